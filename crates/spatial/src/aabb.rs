@@ -1,0 +1,119 @@
+//! Axis-aligned boxes.
+
+use crate::{Pose, Vec3};
+
+/// A box whose faces are parallel to its frame's axes.
+///
+/// ```
+/// use elbowroom_spatial::{Aabb, Vec3};
+/// let a = Aabb::from_points([Vec3::ZERO, Vec3::splat(1.0)]);
+/// let b = Aabb::from_points([Vec3::splat(2.0), Vec3::splat(3.0)]);
+/// assert!(!a.overlaps(&b) && a.inflated(1.0).overlaps(&b));
+/// assert_eq!(a.distance(&b), 3.0_f64.sqrt());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    /// Corner of the smallest coordinates, metres.
+    pub min: Vec3,
+    /// Corner of the largest coordinates, metres.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box that holds nothing; joining it to another gives the other.
+    pub const EMPTY: Self = Self { min: Vec3::splat(f64::INFINITY), max: Vec3::splat(f64::NEG_INFINITY) };
+
+    /// The box that holds all of space.
+    pub const EVERYTHING: Self = Self { min: Vec3::splat(f64::NEG_INFINITY), max: Vec3::splat(f64::INFINITY) };
+
+    /// The smallest box around the points; [`Aabb::EMPTY`] where there are none.
+    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// From centre and half extents.
+    #[inline]
+    pub fn from_center(center: Vec3, half_extents: Vec3) -> Self {
+        Self { min: center - half_extents, max: center + half_extents }
+    }
+
+    /// The smallest box around both.
+    #[inline]
+    #[must_use]
+    pub fn union(&self, o: &Self) -> Self {
+        Self { min: self.min.min(o.min), max: self.max.max(o.max) }
+    }
+
+    /// Grown by `margin` metres on every side.
+    #[inline]
+    #[must_use]
+    pub fn inflated(&self, margin: f64) -> Self {
+        Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
+    }
+
+    /// The smallest box of the outer frame around this box placed by `pose`.
+    #[must_use]
+    pub fn transformed(&self, pose: &Pose) -> Self {
+        if self.is_empty() || !self.extent().is_finite() {
+            return *self;
+        }
+        Self::from_center(pose.transform_point(self.center()), pose.rotation.abs_mul(self.extent() * 0.5))
+    }
+
+    /// True where the boxes share a point (touching counts).
+    #[inline]
+    pub fn overlaps(&self, o: &Self) -> bool {
+        self.min.x <= o.max.x
+            && o.min.x <= self.max.x
+            && self.min.y <= o.max.y
+            && o.min.y <= self.max.y
+            && self.min.z <= o.max.z
+            && o.min.z <= self.max.z
+    }
+
+    /// True where the point is in the box or on it.
+    #[inline]
+    pub fn contains(&self, p: Vec3) -> bool {
+        self.min.x <= p.x
+            && p.x <= self.max.x
+            && self.min.y <= p.y
+            && p.y <= self.max.y
+            && self.min.z <= p.z
+            && p.z <= self.max.z
+    }
+
+    /// Distance between the boxes, 0 where they overlap (metres).
+    #[inline]
+    pub fn distance(&self, o: &Self) -> f64 {
+        self.gap(o).length()
+    }
+
+    /// Square of [`Aabb::distance`].
+    #[inline]
+    pub fn distance_squared(&self, o: &Self) -> f64 {
+        self.gap(o).length_squared()
+    }
+
+    #[inline]
+    fn gap(&self, o: &Self) -> Vec3 {
+        (o.min - self.max).max(self.min - o.max).max(Vec3::ZERO)
+    }
+
+    /// Middle of the box.
+    #[inline]
+    pub fn center(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Edge lengths, metres.
+    #[inline]
+    pub fn extent(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// True where the box holds no point.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
+    }
+}

@@ -1,0 +1,27 @@
+//! Poses, frames, motions and boxes: the words every other room speaks.
+//!
+//! Units are metres, radians and seconds; files convert at the door with [`units`].
+//! A [`Pose`] named `tool_in_world` takes points from the tool's frame to the world's.
+//!
+//! ```
+//! use elbowroom_spatial::{Pose, Rotation, Vec3};
+//! let tool_in_world = Pose::new(Rotation::from_rpy(0.0, 0.0, 0.5), Vec3::new(1.0, 0.0, 0.7));
+//! let p_in_world = tool_in_world.transform_point(Vec3::Z * 0.25);
+//! let p_in_tool = tool_in_world.inverse().transform_point(p_in_world);
+//! assert!((p_in_tool - Vec3::new(0.0, 0.0, 0.25)).length() < 1e-15);
+//! ```
+
+mod aabb;
+mod motion;
+mod obb;
+mod pose;
+mod rotation;
+pub mod units;
+mod vec3;
+
+pub use aabb::Aabb;
+pub use motion::Motion;
+pub use obb::Obb;
+pub use pose::Pose;
+pub use rotation::Rotation;
+pub use vec3::Vec3;

@@ -1,0 +1,229 @@
+//! Orientation of one frame in another.
+
+use std::ops::Mul;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::Vec3;
+
+/// A proper rotation, kept as a matrix because points are turned far more often than rotations are composed.
+///
+/// ```
+/// use elbowroom_spatial::{Rotation, Vec3};
+/// let quarter = Rotation::from_axis_angle(Vec3::Z, std::f64::consts::FRAC_PI_2);
+/// assert!((quarter * Vec3::X - Vec3::Y).length() < 1e-15);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation(DMat3);
+
+impl Default for Rotation {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Rotation {
+    /// No rotation.
+    pub const IDENTITY: Self = Self(DMat3::IDENTITY);
+
+    /// Turns by `angle` radians about the unit vector `axis`, right-handed.
+    #[inline]
+    pub fn from_axis_angle(axis: Vec3, angle: f64) -> Self {
+        Self(DMat3::from_axis_angle(axis.into(), angle))
+    }
+
+    /// Fixed-axis roll, pitch, yaw in radians as in URDF: `Rz(yaw)·Ry(pitch)·Rx(roll)`.
+    pub fn from_rpy(roll: f64, pitch: f64, yaw: f64) -> Self {
+        Self(DMat3::from_rotation_z(yaw) * DMat3::from_rotation_y(pitch) * DMat3::from_rotation_x(roll))
+    }
+
+    /// Rotation vector: its direction is the axis, its length the angle in radians.
+    pub fn from_rotation_vector(v: Vec3) -> Self {
+        match v.try_normalize() {
+            Some(axis) => Self::from_axis_angle(axis, v.length()),
+            None => Self::IDENTITY,
+        }
+    }
+
+    /// The frame whose axes are the given orthonormal right-handed columns.
+    /// `None` where they are not orthonormal within `1e-6`, or left-handed.
+    pub fn from_columns(x: Vec3, y: Vec3, z: Vec3) -> Option<Self> {
+        let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-6;
+        let orthonormal = unit(x) && unit(y) && unit(z) && x.dot(y).abs() < 1e-6 && (x.cross(y) - z).length() < 1e-6;
+        orthonormal.then(|| Self(DMat3::from_cols(x.into(), y.into(), z.into())))
+    }
+
+    /// The frame whose x axis points along `x` and whose xy plane holds `xy`.
+    /// `None` where the two are parallel or one of them is zero.
+    pub fn from_x_and_xy(x: Vec3, xy: Vec3) -> Option<Self> {
+        let ex = x.try_normalize()?;
+        let ez = ex.cross(xy.try_normalize()?);
+        if ez.length() < 1e-9 {
+            return None;
+        }
+        let ez = ez.try_normalize()?;
+        Some(Self(DMat3::from_cols(ex.into(), ez.cross(ex).into(), ez.into())))
+    }
+
+    /// A frame whose z axis is the unit vector `z`; its turn about z is unspecified but reproducible.
+    pub fn from_z(z: Vec3) -> Self {
+        let x = z.any_perpendicular();
+        Self(DMat3::from_cols(x.into(), z.cross(x).into(), z.into()))
+    }
+
+    /// From a quaternion, normalized first. `None` where it is zero or not finite.
+    pub fn from_quaternion_xyzw(q: [f64; 4]) -> Option<Self> {
+        let q = DQuat::from_array(q);
+        let n = q.length();
+        (n > 0.0 && n.is_finite()).then(|| Self(DMat3::from_quat(q.normalize())))
+    }
+
+    /// The unit quaternion `[x, y, z, w]`.
+    pub fn to_quaternion_xyzw(self) -> [f64; 4] {
+        DQuat::from_mat3(&self.0).to_array()
+    }
+
+    /// Roll, pitch, yaw in radians; at a pitch of ±90° the yaw is reported as 0.
+    pub fn to_rpy(self) -> [f64; 3] {
+        let m = self.rows();
+        let pitch = (-m[2][0]).atan2(m[0][0].hypot(m[1][0]));
+        if m[0][0].hypot(m[1][0]) < 1e-12 {
+            let roll = if pitch > 0.0 { m[0][1].atan2(m[1][1]) } else { (-m[0][1]).atan2(m[1][1]) };
+            return [roll, pitch, 0.0];
+        }
+        [m[2][1].atan2(m[2][2]), pitch, m[1][0].atan2(m[0][0])]
+    }
+
+    /// Rotation vector of the shortest turn: axis times angle in `[0, π]`.
+    pub fn to_rotation_vector(self) -> Vec3 {
+        let q = DQuat::from_mat3(&self.0);
+        let q = if q.w < 0.0 { -q } else { q };
+        let v = Vec3::new(q.x, q.y, q.z);
+        match v.try_normalize() {
+            Some(axis) => axis * (2.0 * v.length().atan2(q.w)),
+            None => Vec3::ZERO,
+        }
+    }
+
+    /// Angle of the turn in `[0, π]` radians.
+    pub fn angle(self) -> f64 {
+        self.to_rotation_vector().length()
+    }
+
+    /// The opposite turn.
+    #[inline]
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        Self(self.0.transpose())
+    }
+
+    /// The inverse applied to a vector, without forming it.
+    #[inline]
+    pub fn inverse_rotate(self, v: Vec3) -> Vec3 {
+        Vec3::new(self.x_axis().dot(v), self.y_axis().dot(v), self.z_axis().dot(v))
+    }
+
+    /// A fraction `t` of the shortest turn from here to `other` (slerp).
+    #[must_use]
+    pub fn interpolate(self, other: Self, t: f64) -> Self {
+        let turn = (self.inverse() * other).to_rotation_vector();
+        self * Self::from_rotation_vector(turn * t)
+    }
+
+    /// The same rotation with rounding errors of a long product removed.
+    #[must_use]
+    pub fn renormalized(self) -> Self {
+        let x = self.0.x_axis.normalize();
+        let z = x.cross(self.0.y_axis).normalize();
+        Self(DMat3::from_cols(x, z.cross(x), z))
+    }
+
+    /// First column: the x axis seen from the outer frame.
+    #[inline]
+    pub fn x_axis(self) -> Vec3 {
+        self.0.x_axis.into()
+    }
+
+    /// Second column.
+    #[inline]
+    pub fn y_axis(self) -> Vec3 {
+        self.0.y_axis.into()
+    }
+
+    /// Third column.
+    #[inline]
+    pub fn z_axis(self) -> Vec3 {
+        self.0.z_axis.into()
+    }
+
+    /// Column `i`.
+    #[inline]
+    pub fn axis(self, i: usize) -> Vec3 {
+        self.0.col(i).into()
+    }
+
+    /// The matrix by rows: `rows()[i][j]` is row i, column j.
+    #[inline]
+    pub fn rows(self) -> [[f64; 3]; 3] {
+        self.0.transpose().to_cols_array_2d()
+    }
+
+    /// Component-wise absolute matrix applied to a non-negative vector: half extents of a turned box.
+    #[inline]
+    pub fn abs_mul(self, v: Vec3) -> Vec3 {
+        self.x_axis().abs() * v.x + self.y_axis().abs() * v.y + self.z_axis().abs() * v.z
+    }
+
+    /// True where no entry is NaN or infinite.
+    pub fn is_finite(self) -> bool {
+        self.0.is_finite()
+    }
+}
+
+impl Mul for Rotation {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: Self) -> Self {
+        Self(self.0 * o.0)
+    }
+}
+
+impl Mul<Vec3> for Rotation {
+    type Output = Vec3;
+    #[inline]
+    fn mul(self, v: Vec3) -> Vec3 {
+        (self.0 * DVec3::from(v)).into()
+    }
+}
+
+impl From<Rotation> for mint::ColumnMatrix3<f64> {
+    fn from(r: Rotation) -> Self {
+        Self { x: r.x_axis().into(), y: r.y_axis().into(), z: r.z_axis().into() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn rpy_round_trips_and_survives_gimbal_lock() {
+        for pitch in [-FRAC_PI_2, -1.0, 0.0, 0.3, FRAC_PI_2] {
+            for (roll, yaw) in [(0.0, 0.0), (1.0, -2.0), (-3.0, 3.0)] {
+                let r = Rotation::from_rpy(roll, pitch, yaw);
+                let [a, b, c] = r.to_rpy();
+                let back = Rotation::from_rpy(a, b, c);
+                assert!((r.inverse() * back).angle() < 1e-7, "{roll} {pitch} {yaw}");
+            }
+        }
+    }
+
+    #[test]
+    fn rotation_vector_round_trips_up_to_half_a_turn() {
+        for angle in [0.0, 1e-9, 0.5, 3.0, PI] {
+            let v = Vec3::new(0.48, -0.6, 0.64) * angle;
+            assert!((Rotation::from_rotation_vector(v).to_rotation_vector() - v).length() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! Checks, benches and generated files of the workspace.
+fn main() {}
