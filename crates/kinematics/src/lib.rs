@@ -1,1 +1,44 @@
-//! room: kinematics
+//! Chains of joints: where every link is, how it moves, and which joint values bring a tip to a target.
+//!
+//! A [`Chain`] is constant: a tree of links and joints, checked once. A [`ChainState`] is mutable and belongs to one
+//! thread: joint values in, poses and motions of all links out. Nothing allocates after both have been built.
+//!
+//! ```
+//! use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
+//! use elbowroom_spatial::{Pose, Vec3};
+//!
+//! let elbow = Joint {
+//!     name: "elbow".into(),
+//!     kind: JointKind::Revolute,
+//!     parent: LinkId(0),
+//!     child: LinkId(1),
+//!     origin: Pose::from_translation(Vec3::Z),
+//!     axis: Vec3::Y,
+//!     limits: Limits::symmetric(3.0),
+//!     mimic: None,
+//! };
+//! let chain = Chain::new("arm", vec!["base".into(), "forearm".into()], vec![elbow])?;
+//! let mut state = ChainState::new(&chain);
+//! state.q[0] = 0.5;
+//! state.qd[0] = 2.0;
+//! chain.forward_motion(&mut state);
+//! let forearm = chain.link("forearm").unwrap();
+//! assert_eq!(state.link_in_root(forearm).translation, Vec3::Z);
+//! assert_eq!(state.link_motion(forearm).angular_velocity, Vec3::Y * 2.0);
+//! # Ok::<(), elbowroom_kinematics::ChainError>(())
+//! ```
+
+mod build;
+mod chain;
+pub mod dh;
+mod error;
+mod forward;
+pub mod inverse;
+mod jacobian;
+mod joint;
+mod state;
+
+pub use chain::Chain;
+pub use error::ChainError;
+pub use joint::{Joint, JointId, JointKind, Limits, LinkId, Mimic};
+pub use state::ChainState;

@@ -1,0 +1,172 @@
+//! The constant model.
+
+use std::collections::HashMap;
+
+use elbowroom_spatial::Pose;
+
+use crate::forward::Step;
+use crate::{Joint, JointId, JointKind, LinkId};
+
+/// A joint's value as a function of the independent values: `multiplier · q[index] + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drive {
+    pub index: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+/// A tree of links and joints, immutable. Built and checked by [`Chain::new`].
+///
+/// Links and joints keep the order of the file. The vector `q` holds one value per *independent* joint (neither fixed
+/// nor mimic), in file order, too: see [`Chain::active_joints`].
+#[derive(Debug, Clone)]
+pub struct Chain {
+    pub(crate) name: String,
+    pub(crate) links: Vec<String>,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) link_by_name: HashMap<String, LinkId>,
+    pub(crate) joint_by_name: HashMap<String, JointId>,
+    pub(crate) root: LinkId,
+    pub(crate) parent_joint: Vec<Option<JointId>>,
+    /// Joints from the root outwards.
+    pub(crate) order: Vec<JointId>,
+    pub(crate) active: Vec<JointId>,
+    /// Per joint; `None` where fixed.
+    pub(crate) drives: Vec<Option<Drive>>,
+    /// `order` again, prepared for the forward pass.
+    pub(crate) steps: Vec<Step>,
+}
+
+impl Chain {
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Names of the links, in file order.
+    pub fn links(&self) -> &[String] {
+        &self.links
+    }
+
+    /// The joints, in file order.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Number of independent joints: neither fixed nor mimic. The length of `q`.
+    pub fn dof(&self) -> usize {
+        self.active.len()
+    }
+
+    /// The independent joints, in the order of `q`.
+    pub fn active_joints(&self) -> &[JointId] {
+        &self.active
+    }
+
+    /// The joints from the root outwards: every joint comes after the joint its parent hangs on.
+    pub fn topological_order(&self) -> &[JointId] {
+        &self.order
+    }
+
+    /// The link of that name.
+    pub fn link(&self, name: &str) -> Option<LinkId> {
+        self.link_by_name.get(name).copied()
+    }
+
+    /// The joint of that name.
+    pub fn joint(&self, name: &str) -> Option<JointId> {
+        self.joint_by_name.get(name).copied()
+    }
+
+    /// The one link without parent.
+    pub fn root(&self) -> LinkId {
+        self.root
+    }
+
+    /// The joint that carries the link; `None` for the root and for links that are not of this chain.
+    pub fn parent_joint(&self, link: LinkId) -> Option<JointId> {
+        self.parent_joint.get(link.0).copied().flatten()
+    }
+
+    /// Links that carry no joint, in file order.
+    pub fn leaves(&self) -> Vec<LinkId> {
+        let mut is_leaf = vec![true; self.links.len()];
+        for joint in &self.joints {
+            is_leaf[joint.parent.0] = false;
+        }
+        (0..self.links.len()).filter(|&i| is_leaf[i]).map(LinkId).collect()
+    }
+
+    /// The leaf with the most non-mimic joints (fixed ones counted) between it and the root, the first in the file
+    /// among equals.
+    pub fn tip(&self) -> LinkId {
+        let mut best = (self.root, 0);
+        for leaf in self.leaves() {
+            let joints = self.path(leaf).into_iter().filter(|j| self.joints[j.0].mimic.is_none()).count();
+            if joints > best.1 {
+                best = (leaf, joints);
+            }
+        }
+        best.0
+    }
+
+    /// The joints from the root to the link, in that order; empty for the root.
+    pub fn path(&self, link: LinkId) -> Vec<JointId> {
+        let mut path = Vec::new();
+        let mut at = link;
+        while let Some(joint) = self.parent_joint(at) {
+            path.push(joint);
+            at = self.joints[joint.0].parent;
+        }
+        path.reverse();
+        path
+    }
+
+    /// Lower bounds of `q`, rad or m; −∞ where unlimited.
+    pub fn lower(&self) -> Vec<f64> {
+        self.active.iter().map(|j| self.joints[j.0].limits.lower).collect()
+    }
+
+    /// Upper bounds of `q`, rad or m; +∞ where unlimited.
+    pub fn upper(&self) -> Vec<f64> {
+        self.active.iter().map(|j| self.joints[j.0].limits.upper).collect()
+    }
+
+    /// Where the joint's value stands in `q`; `None` for fixed and mimic joints.
+    pub fn q_index(&self, joint: JointId) -> Option<usize> {
+        self.active.iter().position(|&j| j == joint)
+    }
+
+    /// The independent joint that a mimic joint follows in the end, through mimics of mimics, with the multiplier and
+    /// offset (rad or m) of the whole way; `None` where the joint is free or fixed.
+    pub fn mimic_source(&self, joint: JointId) -> Option<crate::Mimic> {
+        self.joints.get(joint.0)?.mimic?;
+        let drive = self.drives[joint.0]?;
+        Some(crate::Mimic { joint: self.active[drive.index], multiplier: drive.multiplier, offset: drive.offset })
+    }
+
+    /// Value (rad or m) of any joint at `q`: its own entry, what it mimics, or 0 where fixed.
+    /// NaN where `q` is too short.
+    pub fn joint_value(&self, joint: JointId, q: &[f64]) -> f64 {
+        match self.drives.get(joint.0) {
+            Some(Some(d)) => q.get(d.index).map_or(f64::NAN, |v| d.multiplier * v + d.offset),
+            _ => 0.0,
+        }
+    }
+
+    /// The pose of a joint's child in its parent at the joint value `value` (rad or m).
+    pub fn child_in_parent(&self, joint: JointId, value: f64) -> Pose {
+        let j = &self.joints[joint.0];
+        match j.kind {
+            JointKind::Fixed => j.origin,
+            JointKind::Prismatic => j.origin * Pose::from_translation(j.axis * value),
+            JointKind::Revolute | JointKind::Continuous => {
+                j.origin
+                    * Pose::new(
+                        elbowroom_spatial::Rotation::from_axis_angle(j.axis, value),
+                        elbowroom_spatial::Vec3::ZERO,
+                    )
+            }
+        }
+    }
+}

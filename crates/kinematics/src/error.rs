@@ -1,0 +1,129 @@
+//! What may be wrong with a chain.
+
+/// Why links and joints do not make a chain. Every message names the culprit and says what to write instead.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ChainError {
+    /// Nothing to stand on.
+    #[error("the chain has no links; name at least its root link")]
+    NoLinks,
+    /// Two links of one name.
+    #[error("two links are called `{name}`; give every link a name of its own")]
+    DuplicateLink {
+        /// The name.
+        name: String,
+    },
+    /// Two joints of one name.
+    #[error("two joints are called `{name}`; give every joint a name of its own")]
+    DuplicateJoint {
+        /// The name.
+        name: String,
+    },
+    /// A joint's parent or child is not among the links.
+    #[error("joint `{joint}` names link {link} as its {end}, but there are only {count} links (0 to {last}); declare the link first",
+        last = count.saturating_sub(1))]
+    UnknownLink {
+        /// The joint.
+        joint: String,
+        /// The index it asks for.
+        link: usize,
+        /// `parent` or `child`.
+        end: &'static str,
+        /// How many links there are.
+        count: usize,
+    },
+    /// A link hangs on two joints.
+    #[error(
+        "link `{link}` is the child of both `{first}` and `{second}`; a link has one parent, so turn one of the joints around or split the link"
+    )]
+    TwoParents {
+        /// The link.
+        link: String,
+        /// One joint.
+        first: String,
+        /// The other joint.
+        second: String,
+    },
+    /// More than one link has no parent.
+    #[error(
+        "links {roots:?} have no parent joint; a chain has one root, so connect the others to it, with fixed joints if need be"
+    )]
+    ManyRoots {
+        /// The links without parent.
+        roots: Vec<String>,
+    },
+    /// Joints lead in a circle.
+    #[error(
+        "joints lead in a circle through link `{link}`; a chain is a tree, so remove a joint of the circle (a closed linkage is described by a mimic joint)"
+    )]
+    Cycle {
+        /// A link of the circle.
+        link: String,
+    },
+    /// The axis points nowhere.
+    #[error(
+        "joint `{joint}` has the axis ({x}, {y}, {z}), which is no direction; write a finite vector other than zero, e.g. 0 0 1"
+    )]
+    BadAxis {
+        /// The joint.
+        joint: String,
+        /// First component.
+        x: f64,
+        /// Second component.
+        y: f64,
+        /// Third component.
+        z: f64,
+    },
+    /// NaN or infinity in the origin.
+    #[error("the origin of joint `{joint}` is not finite; write numbers of metres and radians")]
+    BadOrigin {
+        /// The joint.
+        joint: String,
+    },
+    /// Bounds out of order or NaN.
+    #[error(
+        "joint `{joint}` may move from {lower} to {upper}; write the smaller bound as lower (leave both out where there is none)"
+    )]
+    BadLimits {
+        /// The joint.
+        joint: String,
+        /// As given, rad or m.
+        lower: f64,
+        /// As given, rad or m.
+        upper: f64,
+    },
+    /// A mimic joint follows nobody.
+    #[error("joint `{joint}` mimics joint {source_joint}, which does not exist; name a joint of this chain")]
+    UnknownMimic {
+        /// The joint that follows.
+        joint: String,
+        /// The index it asks for.
+        source_joint: usize,
+    },
+    /// A mimic joint follows a fixed one.
+    #[error(
+        "joint `{joint}` mimics `{source_joint}`, which is fixed; make `{joint}` fixed, or name a joint that moves"
+    )]
+    MimicOfFixed {
+        /// The joint that follows.
+        joint: String,
+        /// The fixed joint.
+        source_joint: String,
+    },
+    /// Mimic joints follow each other.
+    #[error("joint `{joint}` mimics itself, directly or through others; one joint of such a circle has to be free")]
+    MimicCycle {
+        /// A joint of the circle.
+        joint: String,
+    },
+    /// Factor or offset is no number.
+    #[error("joint `{joint}` mimics with multiplier {multiplier} and offset {offset}; both must be finite")]
+    BadMimic {
+        /// The joint that follows.
+        joint: String,
+        /// As given.
+        multiplier: f64,
+        /// As given.
+        offset: f64,
+    },
+}

@@ -1,0 +1,52 @@
+//! The mutable part: joint values in, poses and motions out.
+
+use elbowroom_spatial::{Motion, Pose};
+
+use crate::{Chain, LinkId};
+
+/// Joint values of a chain and what follows from them. All memory is taken by [`ChainState::new`].
+#[derive(Debug, Clone)]
+pub struct ChainState {
+    /// Values of the independent joints, rad or m, in the order of [`Chain::active_joints`].
+    pub q: Vec<f64>,
+    /// Their velocities, rad/s or m/s.
+    pub qd: Vec<f64>,
+    /// Their accelerations, rad/s² or m/s².
+    pub qdd: Vec<f64>,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) motions: Vec<Motion>,
+}
+
+impl ChainState {
+    /// All joints at zero and at rest, poses computed. (Zero may lie outside a joint's limits: nothing is clamped.)
+    pub fn new(chain: &Chain) -> Self {
+        let mut state = Self {
+            q: vec![0.0; chain.dof()],
+            qd: vec![0.0; chain.dof()],
+            qdd: vec![0.0; chain.dof()],
+            poses: vec![Pose::IDENTITY; chain.links().len()],
+            motions: vec![Motion::REST; chain.links().len()],
+        };
+        chain.forward(&mut state);
+        state
+    }
+
+    /// The link's frame in the root link's, as of the last [`Chain::forward`] or [`Chain::forward_motion`].
+    ///
+    /// # Panics
+    /// Where the link is not of the chain that the state was made for.
+    #[inline]
+    pub fn link_in_root(&self, link: LinkId) -> Pose {
+        self.poses[link.0]
+    }
+
+    /// How the link moves, seen from and expressed in the root link's frame, at the link frame's origin, as of the last
+    /// [`Chain::forward_motion`].
+    ///
+    /// # Panics
+    /// Where the link is not of the chain that the state was made for.
+    #[inline]
+    pub fn link_motion(&self, link: LinkId) -> Motion {
+        self.motions[link.0]
+    }
+}
