@@ -1,0 +1,128 @@
+//! Convex hulls: the finished solid. How it is found: `quickhull`.
+
+use elbowroom_spatial::{Aabb, Vec3};
+
+use super::quickhull;
+
+/// A convex polyhedron with triangular faces.
+///
+/// ```
+/// use elbowroom_proximity::ConvexHull;
+/// use elbowroom_spatial::Vec3;
+/// let corner = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(0.1)];
+/// let hull = ConvexHull::from_points(&corner).unwrap();
+/// assert_eq!((hull.vertices().len(), hull.triangles().len()), (4, 4)); // the fifth point is inside
+/// assert!((hull.volume() - 1.0 / 6.0).abs() < 1e-15);
+/// assert!(ConvexHull::from_points(&corner[..3]).is_err()); // flat
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexHull {
+    vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Unit outward normal and offset of each triangle's plane.
+    planes: Vec<(Vec3, f64)>,
+    volume: f64,
+    aabb: Aabb,
+}
+
+/// Why points have no convex hull with an inside.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum HullError {
+    /// Fewer than four points.
+    #[error("a convex hull needs at least 4 points, not {0}")]
+    TooFew(usize),
+    /// A coordinate is NaN or infinite.
+    #[error("point {0} has a coordinate that is not a finite number")]
+    NotFinite(usize),
+    /// All points are the same within rounding.
+    #[error("all points coincide: a convex hull needs an inside; use a sphere instead")]
+    Point,
+    /// All points lie on one line within rounding.
+    #[error("all points lie on one line: a convex hull needs an inside; use a capsule instead")]
+    Line,
+    /// All points lie in one plane within rounding.
+    #[error("all points lie in one plane: a convex hull needs an inside; use a thin box instead")]
+    Flat,
+    /// Rounding got in the way of a closed surface (points on a scale that f64 cannot separate).
+    #[error("the points are too close to degenerate for a closed hull; scale or thin them out")]
+    Numeric,
+}
+
+impl ConvexHull {
+    /// The convex hull of a set of points (quickhull; Barber, Dobkin, Huhdanpaa, 1996).
+    ///
+    /// Points within about 1e-13 of the extent of a face count as on it; every input point is inside the result to
+    /// within that tolerance.
+    ///
+    /// # Errors
+    /// Fewer than four points, a coordinate that is not finite, or all points on one point, line or plane.
+    pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
+        let (vertices, triangles) = quickhull::quickhull(points)?;
+        let planes = triangles.iter().map(|t| plane(&vertices, *t)).collect::<Option<Vec<_>>>();
+        let planes = planes.ok_or(HullError::Numeric)?;
+        let volume = enclosed_volume(&vertices, &triangles);
+        let aabb = Aabb::from_points(vertices.iter().copied());
+        Ok(Self { vertices, triangles, planes, volume, aabb })
+    }
+
+    /// Corners, metres, local frame.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// Faces as indices into the vertices, counter-clockwise from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Volume in cubic metres.
+    pub fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// Bounds in the local frame.
+    pub fn aabb(&self) -> &Aabb {
+        &self.aabb
+    }
+
+    /// The vertex farthest along `dir`, local frame.
+    pub fn support(&self, dir: Vec3) -> Vec3 {
+        farthest(&self.vertices, dir)
+    }
+
+    pub(crate) fn planes(&self) -> &[(Vec3, f64)] {
+        &self.planes
+    }
+
+    pub(crate) fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|i| self.vertices[i as usize])
+    }
+}
+
+/// The point of the list farthest along `dir`; the origin for an empty list.
+pub(crate) fn farthest(points: &[Vec3], dir: Vec3) -> Vec3 {
+    let mut best = (f64::NEG_INFINITY, Vec3::ZERO);
+    for &p in points {
+        let along = p.dot(dir);
+        if along > best.0 {
+            best = (along, p);
+        }
+    }
+    best.1
+}
+
+/// Signed volume enclosed by outward triangles (divergence theorem), about the first vertex for accuracy.
+pub(crate) fn enclosed_volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    let Some(&o) = vertices.first() else { return 0.0 };
+    let six_fold: f64 =
+        triangles.iter().map(|t| t.map(|i| vertices[i as usize] - o)).map(|[a, b, c]| a.dot(b.cross(c))).sum();
+    six_fold / 6.0
+}
+
+fn plane(vertices: &[Vec3], t: [u32; 3]) -> Option<(Vec3, f64)> {
+    let [a, b, c] = t.map(|i| vertices[i as usize]);
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    // The farthest of the three, so that rounding never cuts a vertex off.
+    let offset = normal.dot(a).max(normal.dot(b)).max(normal.dot(c));
+    Some((normal, offset))
+}
