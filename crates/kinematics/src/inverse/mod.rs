@@ -1,7 +1,52 @@
 //! Joint values that bring a tip to a target.
-use elbowroom_spatial::Pose;
+//!
+//! A [`Solver`] looks at the joints between root and tip once. Six turning axes with a spherical wrist are solved in closed
+//! form, whatever the file's conventions (ortho-parallel basis and spherical wrist after Brandstötter, Angerer, Hofbaur
+//! 2014, by `rs-opw-kinematics`); everything else by damped least squares with joint limits and restarts from a
+//! low-discrepancy sequence, so that the same question always gets the same answer.
+//!
+//! | chain | method | what to expect |
+//! | --- | --- | --- |
+//! | six axes, spherical wrist | closed form, polished on the exact chain | all solutions, singular poses included |
+//! | six or more axes otherwise (UR, iiwa, rails, positioners) | numeric | one solution, near the seed where it can be |
+//! | fewer than six | numeric | [`Task::Pose`] where the target lies on what the chain can do, else [`Task::Position`] |
+//!
+//! ```
+//! use elbowroom_kinematics::inverse::{Options, Solver};
+//! use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, dh::ClassicalRow};
+//! use elbowroom_spatial::Pose;
+//! use std::f64::consts::FRAC_PI_2;
+//!
+//! // A six-axis arm by its Denavit-Hartenberg table (a, α, d, θ).
+//! let rows: Vec<_> = [
+//!     (0.300, FRAC_PI_2, 0.600, 0.0), (0.700, 0.0, 0.0, FRAC_PI_2), (0.185, FRAC_PI_2, 0.0, 0.0),
+//!     (0.0, -FRAC_PI_2, 0.624, 0.0), (0.0, FRAC_PI_2, 0.0, 0.0), (0.0, 0.0, 0.120, 0.0),
+//! ].into_iter().enumerate().map(|(i, (a, alpha, d, theta))| ClassicalRow {
+//!     joint: format!("joint_{}", i + 1), kind: JointKind::Revolute, a, alpha, d, theta, limits: Limits::symmetric(3.1),
+//! }).collect();
+//! let chain = Chain::from_dh("arm", &rows)?;
+//!
+//! let mut state = ChainState::new(&chain);
+//! state.q.copy_from_slice(&[0.3, -0.4, 0.5, 0.6, -0.7, 0.8]);
+//! chain.forward(&mut state);
+//! let target = state.link_in_root(chain.tip());
+//!
+//! let mut solver = Solver::new(&chain, chain.tip(), Pose::IDENTITY, Options::default());
+//! let solution = solver.solve(&target, &[0.0; 6]).unwrap();
+//! assert!(solution.position_error_m < 1e-12);
+//! assert!(solver.solve_all(&target, &[0.0; 6]).len() > 1); // elbow up, elbow down, wrist flipped, …
+//! # Ok::<(), elbowroom_kinematics::ChainError>(())
+//! ```
 
-use crate::{Chain, LinkId};
+mod arm;
+mod damped;
+mod linear;
+mod sequence;
+mod solver;
+mod wrist;
+
+pub(crate) use sequence::spread_state;
+pub use solver::Solver;
 
 /// How a [`Solver`] finds its answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,43 +144,4 @@ pub enum IkError {
     /// Target or seed is no input.
     #[error("{0}")]
     BadInput(&'static str),
-}
-
-/// Inverse kinematics of one tip of one chain. Holds its own copy of the chain and all scratch memory.
-pub struct Solver {
-    _chain: Chain,
-}
-
-impl Solver {
-    /// For the frame `tip_offset` (tool in tip) on the link `tip`.
-    pub fn new(chain: &Chain, tip: LinkId, tip_offset: Pose, options: Options) -> Self {
-        let _ = (tip, tip_offset, options);
-        Self { _chain: chain.clone() }
-    }
-
-    /// The method in use.
-    pub fn method(&self) -> Method {
-        Method::Numeric
-    }
-
-    /// The answer closest to the seed.
-    ///
-    /// # Errors
-    /// [`IkError`].
-    pub fn solve(&mut self, target_in_root: &Pose, seed: &[f64]) -> Result<Solution, IkError> {
-        let _ = (target_in_root, seed);
-        Err(IkError::BadInput("not ready"))
-    }
-
-    /// All answers found, closest to the seed first.
-    pub fn solve_all(&mut self, target_in_root: &Pose, seed: &[f64]) -> Vec<Vec<f64>> {
-        let _ = (target_in_root, seed);
-        Vec::new()
-    }
-
-    /// Few steps from a near `q`; no allocation.
-    pub fn refine(&mut self, target_in_root: &Pose, q: &mut [f64]) -> bool {
-        let _ = (target_in_root, q);
-        false
-    }
 }

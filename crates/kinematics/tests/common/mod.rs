@@ -1,0 +1,136 @@
+//! A URDF reader just good enough for the tests of this room (the product's own lives in another one).
+#![allow(dead_code, missing_docs, clippy::missing_panics_doc)]
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
+use elbowroom_spatial::{Pose, Vec3};
+
+pub fn data() -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let dir = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
+    if dir.is_dir() {
+        return Some(dir);
+    }
+    println!("skipped: no data at {}", dir.display());
+    None
+}
+
+/// Every robot of `urdf` and `cell`, by name.
+pub fn robots() -> Vec<(String, PathBuf)> {
+    let Some(data) = data() else { return Vec::new() };
+    let mut found = Vec::new();
+    for folder in ["urdf", "cell"] {
+        let Ok(entries) = std::fs::read_dir(data.join(folder)) else { continue };
+        for entry in entries.flatten() {
+            let Ok(files) = std::fs::read_dir(entry.path()) else { continue };
+            for file in files.flatten().map(|f| f.path()) {
+                let name = file.file_name().unwrap().to_string_lossy().into_owned();
+                if let Some(stem) = name.strip_suffix(".urdf")
+                    && !stem.ends_with(".package")
+                {
+                    found.push((stem.to_owned(), file));
+                }
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+pub fn robot(name: &str) -> Option<Chain> {
+    robots().into_iter().find(|(n, _)| n == name).map(|(_, path)| load(&path))
+}
+
+fn numbers<const N: usize>(text: Option<&str>, default: [f64; N]) -> [f64; N] {
+    let Some(text) = text else { return default };
+    let values: Vec<f64> = text.split_whitespace().map(|w| w.parse().unwrap()).collect();
+    values.try_into().unwrap()
+}
+
+pub fn load(path: &Path) -> Chain {
+    let text = std::fs::read_to_string(path).unwrap();
+    let xml = roxmltree::Document::parse(&text).unwrap();
+    let root = xml.root_element();
+    let child = |n: roxmltree::Node<'_, '_>, tag: &str| n.children().find(|c| c.has_tag_name(tag)).map(|c| c.id());
+    let of = |tag: &'static str| root.children().filter(move |n| n.has_tag_name(tag));
+    let links: Vec<String> = of("link").map(|n| n.attribute("name").unwrap().to_owned()).collect();
+    let link_at: HashMap<&str, usize> = links.iter().enumerate().map(|(i, n)| (n.as_str(), i)).collect();
+    let joint_at: HashMap<&str, usize> =
+        of("joint").enumerate().map(|(i, n)| (n.attribute("name").unwrap(), i)).collect();
+    let mut joints = Vec::new();
+    for node in of("joint") {
+        let attribute = |tag: &str, name: &str| {
+            child(node, tag).and_then(|id| xml.get_node(id)).and_then(|n| n.attribute(name)).map(str::to_owned)
+        };
+        let number = |tag: &str, name: &str| attribute(tag, name).map(|v| v.trim().parse::<f64>().unwrap());
+        let kind = match node.attribute("type").unwrap() {
+            "revolute" => JointKind::Revolute,
+            "continuous" => JointKind::Continuous,
+            "prismatic" => JointKind::Prismatic,
+            _ => JointKind::Fixed,
+        };
+        joints.push(Joint {
+            name: node.attribute("name").unwrap().to_owned(),
+            kind,
+            parent: LinkId(link_at[attribute("parent", "link").unwrap().as_str()]),
+            child: LinkId(link_at[attribute("child", "link").unwrap().as_str()]),
+            origin: Pose::from_xyz_rpy(
+                numbers(attribute("origin", "xyz").as_deref(), [0.0; 3]),
+                numbers(attribute("origin", "rpy").as_deref(), [0.0; 3]),
+            ),
+            axis: Vec3::from(numbers(attribute("axis", "xyz").as_deref(), [1.0, 0.0, 0.0])),
+            limits: Limits::range(number("limit", "lower").unwrap_or(0.0), number("limit", "upper").unwrap_or(0.0)),
+            mimic: attribute("mimic", "joint").map(|source| Mimic {
+                joint: JointId(joint_at[source.as_str()]),
+                multiplier: number("mimic", "multiplier").unwrap_or(1.0),
+                offset: number("mimic", "offset").unwrap_or(0.0),
+            }),
+        });
+    }
+    Chain::new(root.attribute("name").unwrap_or("robot"), links, joints).unwrap()
+}
+
+/// A small reproducible generator (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, lower: f64, upper: f64) -> f64 {
+        lower + (upper - lower) * self.unit()
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    pub fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0))
+    }
+
+    pub fn pose(&mut self) -> Pose {
+        let turn = self.vector() * 3.0;
+        Pose::new(elbowroom_spatial::Rotation::from_rotation_vector(turn), self.vector())
+    }
+
+    /// A state within the limits; endless joints within a turn or a metre.
+    pub fn state(&mut self, chain: &Chain, q: &mut [f64]) {
+        for (value, id) in q.iter_mut().zip(chain.active_joints()) {
+            let joint = &chain.joints()[id.0];
+            let endless = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
+            *value = self.range(joint.limits.lower.max(-endless * 8.0), joint.limits.upper.min(endless * 8.0));
+        }
+    }
+}
