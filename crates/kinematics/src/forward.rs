@@ -12,7 +12,11 @@ pub(crate) struct Step {
     pub parent: usize,
     pub child: usize,
     pub origin: Pose,
+    /// Most origins in files are plain translations; their rotation need not be multiplied.
+    pub origin_turns: bool,
     pub axis: Vec3,
+    /// Most axes are a coordinate axis, one way or the other: its index and sign.
+    pub principal: Option<(usize, f64)>,
     pub drive: Drive,
 }
 
@@ -23,7 +27,9 @@ impl Step {
             parent: joint.parent.0,
             child: joint.child.0,
             origin: joint.origin,
+            origin_turns: joint.origin.rotation != Rotation::IDENTITY,
             axis: joint.axis,
+            principal: principal(joint.axis),
             drive: drive.unwrap_or(Drive { index: 0, multiplier: 0.0, offset: 0.0 }),
         }
     }
@@ -42,18 +48,28 @@ impl Step {
 
     #[inline]
     fn child_in_root(&self, parent_in_root: &Pose, q: &[f64]) -> Pose {
-        let at_zero = *parent_in_root * self.origin;
+        let translation = parent_in_root.transform_point(self.origin.translation);
+        let rotation =
+            if self.origin_turns { parent_in_root.rotation * self.origin.rotation } else { parent_in_root.rotation };
         match self.kind {
-            JointKind::Fixed => at_zero,
-            JointKind::Revolute | JointKind::Continuous => {
-                Pose::new(at_zero.rotation * Rotation::from_axis_angle(self.axis, self.value(q)), at_zero.translation)
-            }
-            JointKind::Prismatic => {
-                let along = at_zero.rotation * self.axis;
-                Pose::new(at_zero.rotation, at_zero.translation + along * self.value(q))
-            }
+            JointKind::Fixed => Pose::new(rotation, translation),
+            JointKind::Revolute | JointKind::Continuous => Pose::new(self.turned(rotation, self.value(q)), translation),
+            JointKind::Prismatic => Pose::new(rotation, translation + (rotation * self.axis) * self.value(q)),
         }
     }
+
+    #[inline]
+    fn turned(&self, rotation: Rotation, angle: f64) -> Rotation {
+        match self.principal {
+            Some((axis, sign)) => rotation.turned_about(axis, sign * angle),
+            None => rotation * Rotation::from_axis_angle(self.axis, angle),
+        }
+    }
+}
+
+/// Index and sign where the unit vector is a coordinate axis.
+pub(crate) fn principal(axis: Vec3) -> Option<(usize, f64)> {
+    (0..3).find(|&i| axis[i].abs() == 1.0).map(|i| (i, axis[i]))
 }
 
 impl Chain {

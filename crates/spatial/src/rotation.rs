@@ -110,6 +110,31 @@ impl Rotation {
         self.to_rotation_vector().length()
     }
 
+    /// `self` followed inside by a turn about one of its own axes, `self·R(axis, angle)`: axis 0 is x, 1 y, 2 z.
+    /// Same as a product with [`Rotation::from_axis_angle`] for a third of the work.
+    ///
+    /// # Panics
+    /// Where `axis` is not 0, 1 or 2.
+    ///
+    /// ```
+    /// use elbowroom_spatial::{Rotation, Vec3};
+    /// let r = Rotation::from_rpy(0.1, 0.2, 0.3);
+    /// let product = r * Rotation::from_axis_angle(Vec3::Y, 0.7);
+    /// assert!((r.turned_about(1, 0.7).inverse() * product).angle() < 1e-15);
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn turned_about(self, axis: usize, angle: f64) -> Self {
+        let (s, c) = angle.sin_cos();
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.0;
+        Self(match axis {
+            0 => DMat3::from_cols(x, y * c + z * s, z * c - y * s),
+            1 => DMat3::from_cols(x * c - z * s, y, z * c + x * s),
+            2 => DMat3::from_cols(x * c + y * s, y * c - x * s, z),
+            _ => panic!("a frame has the axes 0, 1 and 2, not {axis}"),
+        })
+    }
+
     /// The opposite turn.
     #[inline]
     #[must_use]

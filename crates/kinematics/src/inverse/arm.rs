@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
+use crate::forward::principal;
 use crate::{Chain, JointKind, LinkId};
 
 /// A moving joint on the way to the tip.
@@ -11,6 +12,8 @@ pub struct Segment {
     pub origin: Pose,
     pub slides: bool,
     pub axis: Vec3,
+    /// Index and sign where the axis is a coordinate axis.
+    pub principal: Option<(usize, f64)>,
     /// Which of the arm's variables drives it.
     pub variable: usize,
     pub multiplier: f64,
@@ -61,6 +64,7 @@ impl Arm {
                     origin: pending,
                     slides: joint.kind == JointKind::Prismatic,
                     axis: joint.axis,
+                    principal: principal(joint.axis),
                     variable,
                     multiplier: drive.multiplier,
                     offset: drive.offset,
@@ -120,7 +124,10 @@ impl Arm {
             if segment.slides {
                 at.translation += axis * value;
             } else {
-                at.rotation = at.rotation * Rotation::from_axis_angle(segment.axis, value);
+                at.rotation = match segment.principal {
+                    Some((axis, sign)) => at.rotation.turned_about(axis, sign * value),
+                    None => at.rotation * Rotation::from_axis_angle(segment.axis, value),
+                };
             }
             *out = AxisInRoot { origin: at.translation, axis };
         }
