@@ -1,2 +1,97 @@
-//! Checks, benches and generated files of the workspace.
-fn main() {}
+//! Checks, generated files and benches of the workspace: `cargo xtask help` lists them.
+#![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
+
+mod layers;
+mod models;
+mod python;
+mod robots;
+mod shell;
+mod snippets;
+mod solid;
+mod suite;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const HELP: &str = "\
+cargo xtask COMMAND
+
+  test [--only STEP]… [--list] [--offline]
+        installs what the tests need and runs every check; --list names the steps.
+        --offline installs nothing and says what it therefore leaves out
+  layers
+        who may depend on whom, and that every crate takes the workspace lints
+  models [--check]
+        writes the generated robots and tools under examples/models; --check compares instead
+  fuzz [SECONDS]
+        throws mutated files at every parser, SECONDS each (default 60)
+  bench [ARGS…]
+        cargo bench, with ARGS
+
+Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
+";
+
+/// What went wrong, in the words to print.
+enum Failure {
+    /// A check found something: exit 1.
+    Check(String),
+    /// The command line makes no sense: exit 2.
+    Usage(String),
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self::Check(message)
+    }
+}
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = args.iter().map(String::as_str).collect();
+    match dispatch(&words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Check(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(1)
+        }
+        Err(Failure::Usage(message)) => {
+            eprintln!("error: {message}\n\n{HELP}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(words: &[&str]) -> Result<(), Failure> {
+    let root = workspace_root()?;
+    match words {
+        [] | ["help" | "--help" | "-h"] => {
+            print!("{HELP}");
+            Ok(())
+        }
+        ["test", options @ ..] => suite::run(&root, &suite::Options::parse(options).map_err(Failure::Usage)?),
+        ["layers"] => Ok(layers::run(&root)?),
+        ["models"] => Ok(models::write(&root)?),
+        ["models", "--check"] => Ok(models::check(&root)?),
+        ["fuzz"] => fuzz(&root, "60"),
+        ["fuzz", seconds] => fuzz(&root, seconds),
+        ["bench", rest @ ..] => {
+            let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
+            Ok(shell::cargo(&root, &args, &[])?)
+        }
+        _ => Err(Failure::Usage(format!("unknown call `{}`", words.join(" ")))),
+    }
+}
+
+fn fuzz(root: &Path, seconds: &str) -> Result<(), Failure> {
+    if seconds.parse::<u64>().is_err() {
+        return Err(Failure::Usage(format!("`fuzz {seconds}`: SECONDS is a whole number")));
+    }
+    let args = ["run", "--release", "-p", "elbowroom-formats", "--example", "fuzz", "--", "all", seconds];
+    Ok(shell::cargo(root, &args, &[])?)
+}
+
+/// The directory above `xtask`, wherever the command was started.
+fn workspace_root() -> Result<PathBuf, String> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().map(Path::to_path_buf).ok_or_else(|| format!("{} has no parent directory", here.display()))
+}

@@ -1,0 +1,57 @@
+//! The Python that a few tests use as an independent reference (Pinocchio for kinematics).
+
+use std::path::{Path, PathBuf};
+
+use crate::shell;
+
+/// Pinned, so that a test judges the same reference everywhere.
+const PACKAGES: [&str; 2] = ["pin==4.1.0", "numpy==2.4.6"];
+
+/// Proves that what is installed is what is pinned.
+const PROBE: &str = "import pinocchio, numpy; assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'";
+
+/// The interpreter inside `target/venv`, whether or not it exists.
+pub fn interpreter(root: &Path) -> PathBuf {
+    root.join("target/venv/bin/python")
+}
+
+/// The interpreter, where it is there with every pinned package.
+pub fn ready(root: &Path) -> Option<PathBuf> {
+    let python = interpreter(root);
+    shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
+}
+
+/// Makes `target/venv` ready: nothing where it already is, else a fresh environment from PyPI.
+pub fn install(root: &Path) -> Result<(), String> {
+    if ready(root).is_some() {
+        println!("target/venv has {}", PACKAGES.join(", "));
+        return Ok(());
+    }
+    create(root)?;
+    let python = interpreter(root);
+    let args: Vec<&str> =
+        ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"].into_iter().chain(PACKAGES).collect();
+    shell::run(root, &python.to_string_lossy(), &args, &[]).map_err(|e| explain(&e))?;
+    ready(root).map(|_| ()).ok_or_else(|| explain("the packages are installed, but cannot be imported"))
+}
+
+fn create(root: &Path) -> Result<(), String> {
+    let make = ["-m", "venv", "--clear", "target/venv"];
+    if shell::run(root, "python3", &make, &[]).is_ok() {
+        return Ok(());
+    }
+    println!("python3 cannot make a virtual environment: trying the Debian package python3-venv");
+    let install = ["install", "-y", "--no-install-recommends", "python3", "python3-venv"];
+    let env = [("DEBIAN_FRONTEND", "noninteractive")];
+    let updated = shell::run(root, "apt-get", &["update", "-q"], &env);
+    updated.and_then(|()| shell::run(root, "apt-get", &install, &env)).map_err(|e| explain(&e))?;
+    shell::run(root, "python3", &make, &[]).map_err(|e| explain(&e))
+}
+
+fn explain(reason: &str) -> String {
+    format!(
+        "{reason}\n  The kinematics tests compare with {} in target/venv. Install python3 (3.11 or later) with venv and \
+         give pip a registry, or run `cargo xtask test --offline`, which leaves that comparison out and says so.",
+        PACKAGES.join(" and ")
+    )
+}

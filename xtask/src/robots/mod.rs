@@ -1,0 +1,84 @@
+//! Example robots of our own: figures in, URDF, SRDF and meshes out. One file per robot.
+
+mod ns16;
+mod srdf;
+pub mod tools;
+mod urdf;
+
+use crate::solid::{Mesh, binary_stl};
+
+/// A robot to generate.
+pub struct Robot {
+    /// Folder and file name.
+    pub name: &'static str,
+    /// Written at the head of the URDF.
+    pub about: &'static str,
+    /// In order from the root.
+    pub links: Vec<Link>,
+    /// In order from the root.
+    pub joints: Vec<Joint>,
+    /// Pairs that are never tested, beyond neighbours: link, link, reason.
+    pub disabled: Vec<(&'static str, &'static str, &'static str)>,
+}
+
+/// One rigid body.
+pub struct Link {
+    /// As in the URDF.
+    pub name: &'static str,
+    /// None for a bare frame.
+    pub solid: Option<Mesh>,
+    /// Red, green, blue, 0 to 1.
+    pub colour: [f64; 3],
+}
+
+/// A joint between two links.
+pub struct Joint {
+    /// As in the URDF.
+    pub name: &'static str,
+    /// Nearer to the root.
+    pub parent: &'static str,
+    /// Moved by the joint.
+    pub child: &'static str,
+    /// Joint frame in the parent, metres.
+    pub xyz: [f64; 3],
+    /// Joint frame in the parent: roll, pitch, yaw in radians.
+    pub rpy: [f64; 3],
+    /// None: fixed.
+    pub turns: Option<Turn>,
+}
+
+/// How a revolute joint turns.
+pub struct Turn {
+    /// Unit vector in the joint frame.
+    pub axis: [f64; 3],
+    /// Lower and upper limit, degrees.
+    pub range_deg: [f64; 2],
+    /// Greatest speed, degrees per second.
+    pub speed_deg_s: f64,
+}
+
+/// A generated file: path below `examples/models`, contents.
+pub type File = (String, Vec<u8>);
+
+/// Every robot we generate.
+pub fn all() -> Vec<Robot> {
+    vec![ns16::robot()]
+}
+
+impl Robot {
+    /// URDF, SRDF and one STL per solid link; an error where a solid does not close.
+    pub fn files(&self) -> Result<Vec<File>, String> {
+        let name = self.name;
+        let mut files = vec![
+            (format!("{name}/{name}.urdf"), urdf::text(self).into_bytes()),
+            (format!("{name}/{name}.srdf"), srdf::text(self).into_bytes()),
+        ];
+        for link in &self.links {
+            if let Some(solid) = &link.solid {
+                solid.check().map_err(|e| format!("{name}, {}: {e}", link.name))?;
+                files.push((format!("{name}/meshes/{}.stl", link.name), binary_stl(solid)));
+            }
+        }
+        Ok(files)
+    }
+}

@@ -1,0 +1,51 @@
+//! Running other programs: every call is printed before it runs.
+
+use std::path::Path;
+use std::process::Command;
+
+/// Runs `program args…` in `root` with extra environment; an exit status other than 0 is an error.
+pub fn run(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
+    match status(root, program, args, env)? {
+        0 => Ok(()),
+        code => Err(format!("`{}` ended with exit status {code}", line(program, args, &[]))),
+    }
+}
+
+/// As [`run`], for the cargo that started us.
+pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    println!("$ {}", line("cargo", args, env));
+    match wait(root, &cargo, args, env)? {
+        0 => Ok(()),
+        code => Err(format!("`{}` ended with exit status {code}", line("cargo", args, &[]))),
+    }
+}
+
+/// Prints and runs; gives the exit status, -1 where a signal ended the program.
+pub fn status(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
+    println!("$ {}", line(program, args, env));
+    wait(root, program, args, env)
+}
+
+/// Whether `program args…` runs and ends well; prints nothing.
+pub fn succeeds(root: &Path, program: &str, args: &[&str]) -> bool {
+    let output = Command::new(program).args(args).current_dir(root).output();
+    output.is_ok_and(|output| output.status.success())
+}
+
+fn wait(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
+    let mut command = Command::new(program);
+    command.args(args).current_dir(root).envs(env.iter().copied());
+    let status = command.status().map_err(|e| format!("cannot start `{program}`: {e}"))?;
+    Ok(status.code().unwrap_or(-1))
+}
+
+fn line(program: &str, args: &[&str], env: &[(&str, &str)]) -> String {
+    let settings = env.iter().map(|(key, value)| format!("{key}={value}"));
+    let words = std::iter::once(program).chain(args.iter().copied()).map(quoted);
+    settings.chain(words).collect::<Vec<_>>().join(" ")
+}
+
+fn quoted(word: &str) -> String {
+    if word.is_empty() || word.contains([' ', '\n', '"', '$', '*']) { format!("'{word}'") } else { word.to_owned() }
+}

@@ -1,0 +1,161 @@
+//! `cargo xtask test`: every check, timed, with a table at the end.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::{Failure, layers, models, python, shell, snippets};
+
+type Check = fn(&Context) -> Result<(), String>;
+
+/// What every step knows.
+struct Context<'a> {
+    root: &'a Path,
+    offline: bool,
+}
+
+struct Step {
+    name: &'static str,
+    what: &'static str,
+    check: Check,
+}
+
+/// Cheap checks first: what fails fast should fail first.
+const STEPS: [Step; 8] = [
+    Step { name: "fmt", what: "cargo fmt --check", check: fmt },
+    Step { name: "layers", what: "who may depend on whom", check: |c| layers::run(c.root) },
+    Step {
+        name: "models",
+        what: "committed robots and tools are what the generator writes",
+        check: |c| models::check(c.root),
+    },
+    Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
+    Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
+    Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
+    Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
+    Step { name: "snippets", what: "commands that the documents promise", check: |c| snippets::run(c.root) },
+];
+
+/// Options of `cargo xtask test`.
+#[derive(Debug, Default, PartialEq)]
+pub struct Options {
+    only: Vec<String>,
+    list: bool,
+    offline: bool,
+}
+
+impl Options {
+    /// Reads the words after `test`.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let mut options = Self::default();
+        let mut words = words.iter();
+        while let Some(word) = words.next() {
+            match *word {
+                "--list" => options.list = true,
+                "--offline" => options.offline = true,
+                "--only" => options.only.push(step_name(words.next().copied())?),
+                other => return Err(format!("`test` does not know `{other}`")),
+            }
+        }
+        Ok(options)
+    }
+}
+
+fn step_name(word: Option<&str>) -> Result<String, String> {
+    let names = || STEPS.map(|step| step.name).join(", ");
+    let word = word.ok_or_else(|| format!("`--only` needs one of {}", names()))?;
+    if STEPS.iter().any(|step| step.name == word) {
+        return Ok(word.to_owned());
+    }
+    Err(format!("no step is called `{word}`; there are {}", names()))
+}
+
+/// Runs the chosen steps, all of them even where one fails, and sums up.
+pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
+    if options.list {
+        STEPS.iter().for_each(|step| println!("{:<9} {}", step.name, step.what));
+        return Ok(());
+    }
+    let context = Context { root, offline: options.offline };
+    let chosen =
+        STEPS.iter().filter(|step| options.only.is_empty() || options.only.iter().any(|name| name == step.name));
+    let started = Instant::now();
+    let results: Vec<_> = chosen.map(|step| (step.name, timed(step, &context))).collect();
+    print_table(&results, started.elapsed());
+    let failed: Vec<&str> = results.iter().filter(|(_, (result, _))| result.is_err()).map(|(name, _)| *name).collect();
+    if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+}
+
+fn timed(step: &Step, context: &Context) -> (Result<(), String>, Duration) {
+    println!("\n== {}: {}", step.name, step.what);
+    let started = Instant::now();
+    let result = (step.check)(context);
+    if let Err(message) = &result {
+        println!("{} failed: {message}", step.name);
+    }
+    (result, started.elapsed())
+}
+
+fn print_table(results: &[(&str, (Result<(), String>, Duration))], total: Duration) {
+    println!("\nstep       result      time");
+    for (name, (result, time)) in results {
+        let verdict = if result.is_ok() { "ok" } else { "FAILED" };
+        println!("{name:<10} {verdict:<7} {:>7.1} s", time.as_secs_f64());
+    }
+    println!("{:<10} {:<7} {:>7.1} s", "all", "", total.as_secs_f64());
+}
+
+fn fmt(context: &Context) -> Result<(), String> {
+    shell::cargo(context.root, &["fmt", "--all", "--check"], &[])
+}
+
+fn install_python(context: &Context) -> Result<(), String> {
+    if context.offline {
+        println!("--offline: nothing is installed");
+        return Ok(());
+    }
+    python::install(context.root)
+}
+
+fn clippy(context: &Context) -> Result<(), String> {
+    let args = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    shell::cargo(context.root, &args, &network(context))
+}
+
+fn tests(context: &Context) -> Result<(), String> {
+    let python = python::ready(context.root).map(|path| path.to_string_lossy().into_owned());
+    let mut env = network(context);
+    match &python {
+        Some(path) => env.push(("ELBOWROOM_PYTHON", path)),
+        None if context.offline => {
+            println!("--offline, and target/venv is not ready: the comparison with Pinocchio is skipped")
+        }
+        None => {
+            return Err("target/venv is not ready: run the step `python` first (cargo xtask test --only python)".into());
+        }
+    }
+    shell::cargo(context.root, &["test", "--workspace"], &env)
+}
+
+fn docs(context: &Context) -> Result<(), String> {
+    let mut env = network(context);
+    env.push(("RUSTDOCFLAGS", "-D warnings"));
+    shell::cargo(context.root, &["doc", "--workspace", "--no-deps"], &env)
+}
+
+fn network(context: &Context) -> Vec<(&'static str, &'static str)> {
+    if context.offline { vec![("CARGO_NET_OFFLINE", "true")] } else { Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_read_and_nonsense_is_refused() {
+        let options = Options::parse(&["--only", "fmt", "--only", "docs", "--offline"]).unwrap();
+        assert_eq!(options, Options { only: vec!["fmt".into(), "docs".into()], list: false, offline: true });
+        assert!(Options::parse(&["--only"]).unwrap_err().contains("layers"));
+        assert!(Options::parse(&["--only", "nothing"]).is_err());
+        assert!(Options::parse(&["--fast"]).is_err());
+    }
+}
