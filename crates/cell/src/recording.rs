@@ -1,0 +1,158 @@
+//! What a run leaves behind: read by the report and the CSV writers.
+
+use elbowroom_monitor::{Guards, Reason};
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::{Pose, Vec3};
+
+/// One run of a cell.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// The cell's name.
+    pub cell: String,
+    /// Checksum of the configuration that ran (hex SHA-256).
+    pub checksum: String,
+    /// Period of the control tick, seconds.
+    pub tick_s: f64,
+    /// Simulated time from the first to the last tick, seconds.
+    pub duration_s: f64,
+    /// False where the monitor only watched.
+    pub monitored: bool,
+    /// One per robot, in the order of the cell file.
+    pub robots: Vec<RobotTrack>,
+    /// One per region, in the order of the cell file.
+    pub regions: Vec<RegionTrack>,
+    /// In order of time.
+    pub events: Vec<EventRow>,
+    /// How long the monitor's ticks took on this machine.
+    pub tick_ns: TickTimes,
+}
+
+/// What one robot did.
+#[derive(Debug, Clone)]
+pub struct RobotTrack {
+    /// The robot's name in the cell file.
+    pub name: String,
+    /// Names of the joints in the order of `q`.
+    pub joints: Vec<String>,
+    /// One per tick, first to last of the run.
+    pub samples: Vec<Sample>,
+    /// True where the program came to its end.
+    pub finished: bool,
+    /// Time (s) in which the robot stood still though its program wanted to move.
+    pub stopped_s: f64,
+    /// Smallest override commanded, 0..1.
+    pub min_override: f64,
+    /// First contact of each pair that touched.
+    pub collisions: Vec<Collision>,
+}
+
+/// The robot at one tick.
+#[derive(Debug, Clone)]
+pub struct Sample {
+    /// Seconds since the run began.
+    pub t_s: f64,
+    /// Joint positions, rad or m.
+    pub q: Vec<f64>,
+    /// Tool centre point in the world, m.
+    pub tcp: Vec3,
+    /// Speed of the TCP, m/s.
+    pub tcp_speed: f64,
+    /// Speed the TCP would have at override 1, m/s.
+    pub programmed_speed: f64,
+    /// The override commanded for this state, 0..1, the programmed override in it.
+    pub speed_override: f64,
+    /// Index of the governing region, where one governs.
+    pub region: Option<usize>,
+    /// Distance (m) from the governing point to its region.
+    pub distance_m: Option<f64>,
+    /// Why the override is what it is.
+    pub reason: Reason,
+}
+
+/// A pair of solids that touched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collision {
+    /// When they first touched, s.
+    pub t_s: f64,
+    /// `robot/link`.
+    pub a: String,
+    /// `robot/link` or an object's name.
+    pub b: String,
+}
+
+/// What happened at one region.
+#[derive(Debug, Clone)]
+pub struct RegionTrack {
+    /// The region's name in the cell file.
+    pub name: String,
+    /// `forbidden`, `monitored` or `exchange`.
+    pub kind: &'static str,
+    /// `permanent` or `temporary`.
+    pub life: &'static str,
+    /// Whose distance counts.
+    pub guards: Guards,
+    /// Thickness of the warning zone, m.
+    pub warning_m: f64,
+    /// Its solid.
+    pub shape: Shape,
+    /// Where its shape stood.
+    pub poses: RegionPoses,
+    /// When it was switched: time (s) and whether it was active from then on. The first entry is at the start.
+    pub active: Vec<(f64, bool)>,
+    /// Smallest distance (m) of any guarded volume while active.
+    pub min_distance_m: Option<f64>,
+    /// True where a guarded volume touched or entered it while active (for an exchange region: without holding it).
+    pub entered: bool,
+    /// Time (s) during which any robot was in its warning zone.
+    pub warned_s: f64,
+    /// Who was in the warning zone when.
+    pub warning_spans: Vec<Span>,
+    /// Who was inside when.
+    pub inside_spans: Vec<Span>,
+}
+
+/// A robot's stay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Index of the robot.
+    pub robot: usize,
+    /// Begin, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+}
+
+/// Where a region's shape stood in the world.
+#[derive(Debug, Clone)]
+pub enum RegionPoses {
+    /// Always there.
+    Fixed(Pose),
+    /// One pose per tick.
+    Moving(Vec<Pose>),
+}
+
+/// A line of `events.csv`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventRow {
+    /// Seconds since the run began.
+    pub t_s: f64,
+    /// The robot concerned.
+    pub robot: String,
+    /// The region concerned; empty where none is.
+    pub region: String,
+    /// What happened: `warn_in`, `stop`, …
+    pub event: &'static str,
+}
+
+/// Wall-clock time of the monitor's ticks, nanoseconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TickTimes {
+    /// Median.
+    pub p50: u64,
+    /// 99th percentile.
+    pub p99: u64,
+    /// Largest.
+    pub max: u64,
+    /// How many ticks were timed.
+    pub count: usize,
+}

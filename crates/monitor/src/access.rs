@@ -1,0 +1,135 @@
+//! Who may do what (S1.12).
+
+use crate::{Configuration, Life, Region};
+
+/// Classes of users, each may do what those before it may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum AccessClass {
+    /// Looks; switches nothing.
+    Operator,
+    /// Switches temporary regions, and adds, changes and removes them. User programs are of this class.
+    Programmer,
+    /// May edit everything, permanent regions and laws included.
+    Integrator,
+}
+
+impl AccessClass {
+    /// From its word: `operator`, `programmer`, `integrator`.
+    pub fn parse(word: &str) -> Option<Self> {
+        Some(match word {
+            "operator" => Self::Operator,
+            "programmer" => Self::Programmer,
+            "integrator" => Self::Integrator,
+            _ => return None,
+        })
+    }
+
+    /// The class that an edit of a region of this life needs.
+    pub fn needed_for(life: Life) -> Self {
+        match life {
+            Life::Permanent => Self::Integrator,
+            Life::Temporary => Self::Programmer,
+        }
+    }
+}
+
+/// Why a switch was refused.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SwitchError {
+    /// Permanent regions are always active.
+    #[error("region `{0}` is permanent: no program can switch it; make it `life = \"temporary\"` to switch it")]
+    Permanent(String),
+    /// The class may not.
+    #[error("region `{region}` can be switched by a {needed:?} or above, not by an {who:?}")]
+    Class {
+        /// The region.
+        region: String,
+        /// Who asked.
+        who: AccessClass,
+        /// The least class.
+        needed: AccessClass,
+    },
+}
+
+/// A change of a configuration.
+#[derive(Debug, Clone)]
+pub enum Edit {
+    /// Adds a region.
+    Add(Box<Region>),
+    /// Replaces the region of the same name.
+    Change(Box<Region>),
+    /// Removes the region of this name.
+    Remove(String),
+    /// Replaces the laws.
+    Laws(crate::Laws),
+}
+
+/// Why an edit was refused.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum EditError {
+    /// The class may not.
+    #[error("{what} needs the {needed:?} class, not {who:?}")]
+    Class {
+        /// The change.
+        what: String,
+        /// Who asked.
+        who: AccessClass,
+        /// The least class.
+        needed: AccessClass,
+    },
+    /// There is no such region.
+    #[error("there is no region `{0}`")]
+    Unknown(String),
+    /// There is one already.
+    #[error("there is a region `{0}` already")]
+    Exists(String),
+    /// The result could not be monitored.
+    #[error(transparent)]
+    Config(#[from] crate::ConfigError),
+}
+
+impl Configuration {
+    /// Applies an edit on behalf of a class. Nothing changes where it is refused.
+    ///
+    /// # Errors
+    /// [`EditError`] says why.
+    pub fn edit(&mut self, who: AccessClass, edit: Edit) -> Result<(), EditError> {
+        let mut changed = self.clone();
+        match edit {
+            Edit::Add(region) => {
+                allow(who, AccessClass::needed_for(region.life), format!("adding {} region `{}`", region.life.name(), region.name))?;
+                if changed.region(&region.name).is_some() {
+                    return Err(EditError::Exists(region.name));
+                }
+                changed.regions.push(*region);
+            }
+            Edit::Change(region) => {
+                let old = changed.allowed_region(who, &region.name, "changing")?;
+                allow(who, AccessClass::needed_for(region.life), format!("making region `{}` {}", region.name, region.life.name()))?;
+                changed.regions[old] = *region;
+            }
+            Edit::Remove(name) => {
+                let old = changed.allowed_region(who, &name, "removing")?;
+                changed.regions.remove(old);
+            }
+            Edit::Laws(laws) => {
+                allow(who, AccessClass::Integrator, "changing the laws".into())?;
+                changed.laws = laws;
+            }
+        }
+        changed.validate()?;
+        *self = changed;
+        Ok(())
+    }
+
+    fn allowed_region(&self, who: AccessClass, name: &str, doing: &str) -> Result<usize, EditError> {
+        let at = self.region(name).ok_or_else(|| EditError::Unknown(name.into()))?.0;
+        let life = self.regions[at].life;
+        allow(who, AccessClass::needed_for(life), format!("{doing} {} region `{name}`", life.name()))?;
+        Ok(at)
+    }
+}
+
+fn allow(who: AccessClass, needed: AccessClass, what: String) -> Result<(), EditError> {
+    if who >= needed { Ok(()) } else { Err(EditError::Class { what, who, needed }) }
+}

@@ -1,0 +1,185 @@
+//! A fingerprint of a configuration (S1.12, W.9).
+
+use elbowroom_kinematics::{Chain, JointKind};
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::{Pose, Vec3};
+use sha2::{Digest, Sha256};
+
+use crate::{Configuration, Kind, Laws, Life, Part, Region, Volume};
+
+impl Configuration {
+    /// SHA-256 (hex) over everything that decides an override: chain, volumes, regions and laws, bit by bit. Equal
+    /// configurations have equal checksums on every machine; any change of a number changes it.
+    pub fn checksum(&self) -> String {
+        let mut sink = Sink(Sha256::new());
+        sink.text(&self.robot);
+        sink.pose(&self.base_in_world);
+        sink.chain(&self.chain);
+        sink.list(&self.volumes, Sink::volume);
+        sink.list(&self.regions, Sink::region);
+        sink.list(&self.sources, |s, name| s.text(name));
+        sink.laws(&self.laws);
+        sink.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// Writes values one after the other, each with its length or tag, so that no two configurations read alike.
+struct Sink(Sha256);
+
+impl Sink {
+    fn tag(&mut self, tag: u8) {
+        self.0.update([tag]);
+    }
+
+    fn count(&mut self, n: usize) {
+        self.0.update((n as u64).to_le_bytes());
+    }
+
+    fn number(&mut self, v: f64) {
+        // -0 and 0 are one number.
+        self.0.update((v + 0.0).to_bits().to_le_bytes());
+    }
+
+    fn flag(&mut self, v: bool) {
+        self.tag(u8::from(v));
+    }
+
+    fn optional(&mut self, v: Option<f64>) {
+        self.flag(v.is_some());
+        self.number(v.unwrap_or(0.0));
+    }
+
+    fn text(&mut self, s: &str) {
+        self.count(s.len());
+        self.0.update(s.as_bytes());
+    }
+
+    fn list<T>(&mut self, items: &[T], mut each: impl FnMut(&mut Self, &T)) {
+        self.count(items.len());
+        for item in items {
+            each(self, item);
+        }
+    }
+
+    fn vec3(&mut self, v: Vec3) {
+        v.to_array().into_iter().for_each(|c| self.number(c));
+    }
+
+    fn pose(&mut self, pose: &Pose) {
+        pose.to_rows().into_iter().flatten().for_each(|c| self.number(c));
+    }
+
+    fn mesh(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
+        self.list(vertices, |s, v| s.vec3(*v));
+        self.list(triangles, |s, t| t.iter().for_each(|i| s.count(*i as usize)));
+    }
+
+    fn shape(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Sphere(s) => {
+                self.tag(1);
+                self.number(s.radius);
+            }
+            Shape::Capsule(s) => {
+                self.tag(2);
+                self.number(s.half_length);
+                self.number(s.radius);
+            }
+            Shape::Cylinder(s) => {
+                self.tag(3);
+                self.number(s.half_length);
+                self.number(s.radius);
+            }
+            Shape::Cuboid(s) => {
+                self.tag(4);
+                self.vec3(s.half_extents);
+            }
+            Shape::HalfSpace(_) => self.tag(5),
+            Shape::Hull(h) => {
+                self.tag(6);
+                self.mesh(h.vertices(), h.triangles());
+            }
+            Shape::Mesh(m) => {
+                self.tag(7);
+                self.mesh(m.vertices(), m.triangles());
+            }
+        }
+    }
+
+    fn chain(&mut self, chain: &Chain) {
+        self.list(chain.links(), |s, name| s.text(name));
+        self.list(chain.joints(), |s, joint| {
+            s.text(&joint.name);
+            s.tag(match joint.kind {
+                JointKind::Fixed => 0,
+                JointKind::Revolute => 1,
+                JointKind::Continuous => 2,
+                JointKind::Prismatic => 3,
+            });
+            s.count(joint.parent.0);
+            s.count(joint.child.0);
+            s.pose(&joint.origin);
+            s.vec3(joint.axis);
+            s.number(joint.limits.lower);
+            s.number(joint.limits.upper);
+            s.optional(joint.limits.velocity);
+            s.flag(joint.mimic.is_some());
+            if let Some(mimic) = &joint.mimic {
+                s.count(mimic.joint.0);
+                s.number(mimic.multiplier);
+                s.number(mimic.offset);
+            }
+        });
+    }
+
+    fn volume(&mut self, volume: &Volume) {
+        self.text(&volume.name);
+        self.tag(match volume.part {
+            Part::Tcp => 0,
+            Part::Tool => 1,
+            Part::Arm => 2,
+        });
+        self.count(volume.link.0);
+        self.pose(&volume.in_link);
+        self.shape(&volume.shape);
+    }
+
+    fn region(&mut self, region: &Region) {
+        self.text(&region.name);
+        self.shape(&region.shape);
+        self.pose(&region.anchor);
+        self.pose(&region.shape_in_anchor);
+        match region.kind {
+            Kind::Forbidden => self.tag(0),
+            Kind::Monitored { slow_to } => {
+                self.tag(1);
+                self.optional(slow_to);
+            }
+            Kind::Exchange { slot } => {
+                self.tag(2);
+                self.count(slot.0);
+            }
+        }
+        self.flag(region.life == Life::Permanent);
+        self.number(region.warning_m);
+        self.flag(region.guards.tcp);
+        self.flag(region.guards.tool);
+        self.flag(region.guards.arm);
+        self.count(region.follow.map_or(usize::MAX, |s| s.0));
+        self.number(region.hysteresis_m);
+        self.tag(region.output.unwrap_or(u8::MAX));
+        self.tag(region.warning_output.unwrap_or(u8::MAX));
+    }
+
+    fn laws(&mut self, laws: &Laws) {
+        self.flag(laws.direction_aware);
+        self.number(laws.recovery);
+        self.number(laws.override_rate);
+        self.number(laws.stale_s);
+        self.flag(laws.stopping_distance.is_some());
+        if let Some(stopping) = &laws.stopping_distance {
+            self.number(stopping.reaction_s);
+            self.list(&stopping.joint_deceleration, |s, a| s.number(*a));
+        }
+    }
+}

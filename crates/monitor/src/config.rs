@@ -1,0 +1,135 @@
+//! All that a monitor needs to know before its first tick.
+
+use elbowroom_kinematics::Chain;
+use elbowroom_spatial::Pose;
+
+use crate::{Kind, Laws, Region, RegionId, Volume};
+
+/// One robot, its volumes, and the regions that concern it.
+#[derive(Debug, Clone)]
+pub struct Configuration {
+    /// The robot's name.
+    pub robot: String,
+    /// Where the chain's root link stands.
+    pub base_in_world: Pose,
+    /// Its joints and links.
+    pub chain: Chain,
+    /// What is kept out of regions.
+    pub volumes: Vec<Volume>,
+    /// The regions.
+    pub regions: Vec<Region>,
+    /// Names of the sources that regions follow; snapshots bring one [`Source`](crate::Source) for each.
+    pub sources: Vec<String>,
+    /// The laws.
+    pub laws: Laws,
+}
+
+/// Why a configuration cannot be monitored.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ConfigError {
+    /// A region is unusable.
+    #[error("region `{region}`: {why}")]
+    Region {
+        /// The region.
+        region: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// Two regions have one name.
+    #[error("two regions are named `{0}`; names must differ")]
+    DuplicateRegion(String),
+    /// A volume is unusable.
+    #[error("volume `{volume}`: {why}")]
+    Volume {
+        /// The volume.
+        volume: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A law is unusable.
+    #[error("laws: {0}")]
+    Laws(String),
+    /// The robot's pose is not finite.
+    #[error("the robot's base is not at a finite position")]
+    Base,
+    /// There are exchange regions, but no board to share them on.
+    #[error("region `{0}` is an exchange region: it needs a Board that has its slot")]
+    NoBoard(String),
+}
+
+impl Configuration {
+    /// The region of this name.
+    pub fn region(&self, name: &str) -> Option<RegionId> {
+        self.regions.iter().position(|r| r.name == name).map(RegionId)
+    }
+
+    /// Checks everything that [`Monitor::new`](crate::Monitor::new) relies on.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that is wrong.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        if !self.base_in_world.is_finite() {
+            return Err(ConfigError::Base);
+        }
+        self.regions.iter().enumerate().try_for_each(|(i, r)| self.validate_region(i, r))?;
+        self.volumes.iter().try_for_each(|v| self.validate_volume(v))?;
+        self.validate_laws()
+    }
+
+    fn validate_region(&self, index: usize, region: &Region) -> Result<(), ConfigError> {
+        let bad = |why: String| ConfigError::Region { region: region.name.clone(), why };
+        if self.regions[..index].iter().any(|r| r.name == region.name) {
+            return Err(ConfigError::DuplicateRegion(region.name.clone()));
+        }
+        if let Some(source) = region.follow
+            && source.0 >= self.sources.len()
+        {
+            return Err(bad(format!("it follows source {}, but there are {}", source.0, self.sources.len())));
+        }
+        region.fault().map_or(Ok(()), |why| Err(bad(why)))
+    }
+
+    fn validate_volume(&self, volume: &Volume) -> Result<(), ConfigError> {
+        let bad = |why: String| ConfigError::Volume { volume: volume.name.clone(), why };
+        if volume.link.0 >= self.chain.links().len() {
+            return Err(bad(format!("link {} does not exist", volume.link.0)));
+        }
+        if !volume.in_link.is_finite() {
+            return Err(bad("its position is not a finite number".into()));
+        }
+        if matches!(volume.shape, elbowroom_proximity::Shape::HalfSpace(_)) {
+            return Err(bad("a half-space cannot be carried by a robot".into()));
+        }
+        volume.shape.validate().map_err(|e| bad(e.to_string()))
+    }
+
+    fn validate_laws(&self) -> Result<(), ConfigError> {
+        let laws = &self.laws;
+        let bad = |why: String| Err(ConfigError::Laws(why));
+        if !(laws.stale_s.is_finite() && laws.stale_s > 0.0) {
+            return bad(format!("input must grow stale after a positive time, not {} s", laws.stale_s));
+        }
+        if !(laws.override_rate.is_finite() && laws.override_rate >= 0.0) {
+            return bad(format!("override_rate must be 0 or more, not {}", laws.override_rate));
+        }
+        if !(0.0..=1.0).contains(&laws.recovery) {
+            return bad(format!("recovery must lie between 0 and 1, not {}", laws.recovery));
+        }
+        let Some(stopping) = &laws.stopping_distance else { return Ok(()) };
+        if !(stopping.reaction_s.is_finite() && stopping.reaction_s >= 0.0) {
+            return bad(format!("the reaction time must be 0 or more, not {} s", stopping.reaction_s));
+        }
+        let given = stopping.joint_deceleration.len();
+        if given != self.chain.dof() {
+            return bad(format!("{given} joint decelerations for {} joints", self.chain.dof()));
+        }
+        if let Some(a) = stopping.joint_deceleration.iter().find(|a| !(a.is_finite() && **a > 0.0)) {
+            return bad(format!("a joint deceleration must be positive, not {a}"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn first_exchange(&self) -> Option<&Region> {
+        self.regions.iter().find(|r| matches!(r.kind, Kind::Exchange { .. }))
+    }
+}

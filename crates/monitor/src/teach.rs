@@ -1,0 +1,225 @@
+//! Regions from taught points: the robot is driven to characteristic points and they are recorded (S1.9).
+//!
+//! Every function refuses points that do not determine its shape, and says which of them are to blame.
+
+use elbowroom_spatial::{Rotation, Vec3};
+
+use crate::Region;
+
+/// Points nearer than this (m) count as one: a robot repeats to about 0.05 mm.
+const SAME_POINT_M: f64 = 1e-4;
+/// Directions within this sine of each other count as parallel.
+const PARALLEL: f64 = 1e-3;
+
+/// Why taught points were refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TeachError {
+    /// Two points coincide.
+    #[error("{a} and {b} are the same point (within 0.1 mm); teach {b} elsewhere")]
+    SamePoint {
+        /// First point.
+        a: &'static str,
+        /// Second point.
+        b: &'static str,
+    },
+    /// Three points lie on a line.
+    #[error("{what} lie on a line; teach one of them beside it")]
+    Collinear {
+        /// Which points.
+        what: &'static str,
+    },
+    /// Four points lie in a plane.
+    #[error("the four surface points lie in a plane; teach one of them off it")]
+    Coplanar,
+    /// A size came out as zero or less.
+    #[error("the {what} would be {value_m} m; it must be larger than 0.1 mm")]
+    Size {
+        /// Which size.
+        what: &'static str,
+        /// What came out, m.
+        value_m: f64,
+    },
+    /// A point is not a finite number.
+    #[error("{what} is not a finite point")]
+    NotFinite {
+        /// Which point.
+        what: &'static str,
+    },
+}
+
+/// A sphere from its centre and one point of its surface (m).
+///
+/// # Errors
+/// [`TeachError`] where the two coincide.
+///
+/// ```
+/// use elbowroom_monitor::teach;
+/// use elbowroom_spatial::Vec3;
+/// let ball = teach::sphere_from_center("ball", Vec3::ZERO, Vec3::X * 0.3)?;
+/// assert_eq!(ball.shape.volume(), 4.0 / 3.0 * std::f64::consts::PI * 0.027);
+/// assert!(teach::sphere_from_center("ball", Vec3::X, Vec3::X).is_err());
+/// # Ok::<(), teach::TeachError>(())
+/// ```
+pub fn sphere_from_center(name: &str, center: Vec3, surface: Vec3) -> Result<Region, TeachError> {
+    distinct([("the centre", center), ("the surface point", surface)])?;
+    Ok(Region::sphere(name, center, center.distance(surface)))
+}
+
+/// A sphere from four points of its surface (m).
+///
+/// # Errors
+/// [`TeachError`] where points coincide, three lie on a line or all in a plane.
+pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, TeachError> {
+    let names = ["the first point", "the second point", "the third point", "the fourth point"];
+    distinct(std::array::from_fn::<_, 4, _>(|i| (names[i], points[i])))?;
+    let [a, b, c] = [points[1] - points[0], points[2] - points[0], points[3] - points[0]];
+    off_line(a, b, "the first three surface points")?;
+    let volume = a.dot(b.cross(c));
+    if volume.abs() < PARALLEL * a.length() * b.length() * c.length() {
+        return Err(TeachError::Coplanar);
+    }
+    // The centre x solves 2·a·x = |a|², likewise for b and c, measured from the first point.
+    let x = (b.cross(c) * a.length_squared() + c.cross(a) * b.length_squared() + a.cross(b) * c.length_squared())
+        / (2.0 * volume);
+    Ok(Region::sphere(name, points[0] + x, x.length()))
+}
+
+/// A cylinder from the centre of its base, a point of the base's rim and a point at the height of its top (m).
+/// Its axis is perpendicular to the world's XY plane, as in the paper, upwards or downwards.
+///
+/// # Errors
+/// [`TeachError`] where radius or height would be zero.
+pub fn cylinder(name: &str, base: Vec3, rim: Vec3, top: Vec3) -> Result<Region, TeachError> {
+    distinct([("the base centre", base), ("the rim point", rim), ("the top point", top)])?;
+    let radius = (rim.x - base.x).hypot(rim.y - base.y);
+    let height = (top.z - base.z).abs();
+    positive("radius", radius)?;
+    positive("height", height)?;
+    let bottom = Vec3::new(base.x, base.y, base.z.min(top.z));
+    Ok(Region::cylinder(name, bottom, radius, height, Rotation::IDENTITY))
+}
+
+/// A plane from its origin, a point on its x axis and a point in its xy plane (m); the region lies below it.
+///
+/// # Errors
+/// [`TeachError`] where points coincide or lie on a line.
+pub fn plane(name: &str, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Region, TeachError> {
+    Region::plane(name, origin, on_x, in_xy)
+}
+
+/// A box parallel to the world's axes from two opposite corners (m).
+///
+/// # Errors
+/// [`TeachError`] where an edge would have no length.
+pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, TeachError> {
+    distinct([("the first corner", from), ("the second corner", to)])?;
+    let size = (to - from).abs();
+    positive("length along x", size.x)?;
+    positive("length along y", size.y)?;
+    positive("length along z", size.z)?;
+    Ok(Region::cuboid_from_corners(name, from, to))
+}
+
+/// A box of any orientation from three corners of its base (the first is shared by both edges) and a height (m).
+/// The second edge is squared up to the first; a negative height builds downwards.
+///
+/// # Errors
+/// [`TeachError`] where the corners lie on a line or the height is zero.
+pub fn cuboid_from_base(name: &str, corner: Vec3, along: Vec3, across: Vec3, height: f64) -> Result<Region, TeachError> {
+    distinct([("the first corner", corner), ("the second corner", along), ("the third corner", across)])?;
+    positive("height", height.abs())?;
+    off_line(along - corner, across - corner, "the three base corners")?;
+    let collinear = TeachError::Collinear { what: "the three base corners" };
+    let rotation = Rotation::from_x_and_xy(along - corner, across - corner).ok_or(collinear)?;
+    let length = corner.distance(along);
+    let width = rotation.y_axis().dot(across - corner);
+    positive("width", width)?;
+    let below = if height < 0.0 { height } else { 0.0 };
+    let base_center =
+        corner + rotation.x_axis() * (length / 2.0) + rotation.y_axis() * (width / 2.0) + rotation.z_axis() * below;
+    Ok(Region::cuboid(name, base_center, Vec3::new(length, width, height.abs()), rotation))
+}
+
+pub(crate) fn plane_rotation(origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Rotation, TeachError> {
+    distinct([("the origin", origin), ("the point on x", on_x), ("the point in the xy plane", in_xy)])?;
+    let what = "the plane's three points";
+    off_line(on_x - origin, in_xy - origin, what)?;
+    Rotation::from_x_and_xy(on_x - origin, in_xy - origin).ok_or(TeachError::Collinear { what })
+}
+
+fn distinct<const N: usize>(points: [(&'static str, Vec3); N]) -> Result<(), TeachError> {
+    for (i, (b, p)) in points.iter().enumerate() {
+        if !p.is_finite() {
+            return Err(TeachError::NotFinite { what: b });
+        }
+        if let Some((a, _)) = points[..i].iter().find(|(_, o)| o.distance(*p) < SAME_POINT_M) {
+            return Err(TeachError::SamePoint { a, b });
+        }
+    }
+    Ok(())
+}
+
+fn off_line(u: Vec3, v: Vec3, what: &'static str) -> Result<(), TeachError> {
+    if u.cross(v).length() < PARALLEL * u.length() * v.length() { Err(TeachError::Collinear { what }) } else { Ok(()) }
+}
+
+fn positive(what: &'static str, value_m: f64) -> Result<(), TeachError> {
+    if value_m > SAME_POINT_M { Ok(()) } else { Err(TeachError::Size { what, value_m }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use elbowroom_proximity::{Shape, project_point};
+
+    fn on_surface(region: &Region, p: Vec3) -> f64 {
+        project_point(&region.shape, &(region.anchor * region.shape_in_anchor), p).signed_distance.abs()
+    }
+
+    #[test]
+    fn four_points_make_the_sphere_through_them() {
+        let center = Vec3::new(0.7, -0.2, 1.1);
+        let points = [Vec3::X, Vec3::Y, -Vec3::Z, Vec3::new(-0.6, 0.0, 0.8)].map(|d| center + d * 0.35);
+        let region = sphere_from_points("s", points).unwrap();
+        assert!((region.anchor.translation - center).length() < 1e-12);
+        points.iter().for_each(|p| assert!(on_surface(&region, *p) < 1e-12));
+    }
+
+    #[test]
+    fn a_tilted_box_has_its_taught_corners_on_its_surface() {
+        let corners = [Vec3::new(1.0, 0.0, 0.2), Vec3::new(1.4, 0.3, 0.3), Vec3::new(0.8, 0.4, 0.1)];
+        for height in [0.5, -0.5] {
+            let region = cuboid_from_base("b", corners[0], corners[1], corners[2], height).unwrap();
+            assert!(on_surface(&region, corners[0]) < 1e-12 && on_surface(&region, corners[1]) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_cylinder_taught_from_the_top_is_the_same() {
+        let up = cylinder("c", Vec3::ZERO, Vec3::X * 0.2, Vec3::Z).unwrap();
+        let down = cylinder("c", Vec3::Z, Vec3::new(0.2, 0.0, 1.0), Vec3::ZERO).unwrap();
+        assert_eq!(up.anchor, down.anchor);
+        assert!(matches!(up.shape, Shape::Cylinder(c) if c.radius == 0.2 && c.half_length == 0.5));
+    }
+
+    #[test]
+    fn degenerate_points_are_refused_with_the_reason() {
+        let [o, x, y] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let cases = [
+            (sphere_from_center("s", o, o), "same point"),
+            (sphere_from_points("s", [o, x, x * 2.0, y]), "on a line"),
+            (sphere_from_points("s", [o, x, y, x + y]), "in a plane"),
+            (cylinder("c", o, Vec3::Z, x + Vec3::Z), "radius"),
+            (cylinder("c", o, x, y), "height"),
+            (plane("p", o, x, x * 3.0), "on a line"),
+            (plane("p", o, x, Vec3::splat(f64::NAN)), "not a finite point"),
+            (cuboid_from_corners("b", o, Vec3::new(1.0, 1.0, 0.0)), "along z"),
+            (cuboid_from_base("b", o, x, -x, 1.0), "on a line"),
+            (cuboid_from_base("b", o, x, y, 0.0), "height"),
+        ];
+        for (result, expected) in cases {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! What a volume near a region may do: the laws applied to one pair.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::escape;
+use elbowroom_spatial::Vec3;
+
+use crate::gaps::{Pair, PairLaw};
+use crate::laws::{override_deceleration, speed_zone, stopping_factor, warning_factor};
+use crate::placement::{Placement, region_point_motion};
+use crate::{Configuration, Kind, Snapshot};
+
+/// How far (s) the direction-aware law looks along the program's intent.
+pub(crate) const LOOKAHEAD_S: f64 = 0.01;
+/// A gap must grow by at least this speed (m/s) to count as growing.
+const LEAVING_SPEED: f64 = 5e-4;
+
+/// The laws at one instant.
+pub(crate) struct Judge<'a> {
+    pub(crate) config: &'a Configuration,
+    pub(crate) snapshot: &'a Snapshot<'a>,
+    pub(crate) now: &'a Placement,
+    /// Everything a moment later, where the direction matters.
+    pub(crate) soon: Option<&'a Placement>,
+    /// The chain at the program's own speed, where that speed is needed.
+    pub(crate) intent: Option<&'a ChainState>,
+    /// How fast the override can fall, 1/s.
+    pub(crate) deceleration: f64,
+}
+
+impl Judge<'_> {
+    /// How fast the override can fall without asking more of a joint than it can give, 1/s.
+    pub(crate) fn override_deceleration(config: &Configuration, intent: &[f64]) -> f64 {
+        let stopping = config.laws.stopping_distance.as_ref();
+        stopping.map_or(f64::INFINITY, |s| override_deceleration(intent, &s.joint_deceleration))
+    }
+
+    fn forbidden(&self, pair: &Pair) -> f64 {
+        let v0 = self.snapshot.programmed_override;
+        let region = &self.config.regions[pair.region];
+        let d = pair.separation.distance;
+        let held = (v0 * warning_factor(d, region.warning_m)).min(self.stopping(pair));
+        if self.soon.is_none() || held >= v0 {
+            return held.min(v0);
+        }
+        match self.is_leaving(pair) {
+            false => held,
+            true if d > 0.0 => v0,
+            true => v0 * self.config.laws.recovery,
+        }
+    }
+
+    /// The override from which a stop still ends before the region.
+    fn stopping(&self, pair: &Pair) -> f64 {
+        let (Some(stopping), Some(intent)) = (&self.config.laws.stopping_distance, self.intent) else {
+            return f64::INFINITY;
+        };
+        let s = &pair.separation;
+        let Some(towards) = (s.on_b - s.on_a).try_normalize() else {
+            return if self.is_still(intent) { f64::INFINITY } else { 0.0 };
+        };
+        let region = &self.config.regions[pair.region];
+        let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
+        let approach = (-region_velocity.dot(towards)).max(0.0);
+        let braking_s = if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 };
+        let left = s.distance - approach * (stopping.reaction_s + braking_s);
+        stopping_factor(left, self.closing_speed(pair, intent, towards), self.deceleration, stopping.reaction_s)
+    }
+
+    fn is_still(&self, intent: &ChainState) -> bool {
+        intent.qd.iter().all(|v| *v == 0.0)
+    }
+
+    /// Largest speed (m/s) at override 1 with which any point of the volume moves along `towards`.
+    /// A rigid body's velocity field is linear, so a support point of the volume has it.
+    fn closing_speed(&self, pair: &Pair, intent: &ChainState, towards: Vec3) -> f64 {
+        let volume = &self.config.volumes[pair.volume];
+        let base = &self.config.base_in_world;
+        let motion = intent.link_motion(volume.link);
+        let link_in_world = *base * intent.link_in_root(volume.link);
+        let velocity = base.transform_vector(motion.velocity);
+        let turning = base.transform_vector(motion.angular_velocity);
+        let lever = towards.cross(turning);
+        let in_world = &self.now.volume_in_world[pair.volume];
+        let farthest = in_world.transform_point(volume.shape.support(in_world.inverse_transform_vector(lever)));
+        velocity.dot(towards) - lever.dot(link_in_world.translation - farthest)
+    }
+
+    /// True where the gap of this pair grows, now and over the next moment, in the direction the program asks for,
+    /// and does not shrink by what the robot really does. A gap that shrinks never clears an alarm.
+    fn is_leaving(&self, pair: &Pair) -> bool {
+        let (Some(soon), Some(intent)) = (self.soon, self.intent) else { return false };
+        let (v, r) = (pair.volume, pair.region);
+        let (volume, region) = (&self.config.volumes[v].shape, &self.config.regions[r].shape);
+        let (volume_soon, region_soon) = (&soon.volume_in_world[v], &soon.region_in_world[r]);
+        let least = LEAVING_SPEED * LOOKAHEAD_S;
+        let Some(away) = (pair.separation.on_a - pair.separation.on_b).try_normalize() else {
+            let depth = escape(volume, &self.now.volume_in_world[v], region, &self.now.region_in_world[r]);
+            let depth_soon = escape(volume, volume_soon, region, region_soon);
+            return depth_soon.map_or(0.0, |e| e.depth) + least < depth.map_or(0.0, |e| e.depth);
+        };
+        let region_velocity =
+            region_point_motion(&self.config.regions[r], self.snapshot.sources, pair.separation.on_b).0;
+        let intended = self.velocity_of(intent, v, pair.separation.on_a) - region_velocity;
+        let real = self.now.point_motion(self.config, v, pair.separation.on_a).0 - region_velocity;
+        intended.dot(away) > LEAVING_SPEED
+            && real.dot(away) >= 0.0
+            && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, pair.separation.distance + least)
+    }
+
+    fn velocity_of(&self, state: &ChainState, volume: usize, point: Vec3) -> Vec3 {
+        let base = &self.config.base_in_world;
+        let link = self.config.volumes[volume].link;
+        let origin = base.transform_point(state.link_in_root(link).translation);
+        let offset = base.inverse_transform_vector(point - origin);
+        base.transform_vector(state.link_motion(link).velocity_at(offset))
+    }
+}
+
+impl PairLaw for Judge<'_> {
+    fn asks(&self, pair: &Pair) -> f64 {
+        let v0 = self.snapshot.programmed_override;
+        let region = &self.config.regions[pair.region];
+        match region.kind {
+            Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair),
+            Kind::Monitored { slow_to: None } => v0,
+            Kind::Monitored { slow_to: Some(slow) } => {
+                speed_zone(pair.separation.distance, region.warning_m, slow, v0)
+            }
+        }
+    }
+
+    fn extra_reach(&self, volume: usize) -> f64 {
+        let (Some(stopping), Some(intent)) = (&self.config.laws.stopping_distance, self.intent) else { return 0.0 };
+        let boxed = &self.now.volume_box[volume];
+        let fastest = boxed_speed(self, intent, volume, boxed.center()) + region_speed(self.snapshot);
+        let braking_s = if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 };
+        fastest * (stopping.reaction_s + braking_s)
+    }
+
+    fn only_closest_matters(&self) -> bool {
+        self.soon.is_none() && self.intent.is_none()
+    }
+}
+
+/// Bound on the speed of every point of a volume at override 1, m/s.
+fn boxed_speed(judge: &Judge, intent: &ChainState, volume: usize, center: Vec3) -> f64 {
+    let link = judge.config.volumes[volume].link;
+    let radius = judge.now.volume_box[volume].extent().length() * 0.5;
+    judge.velocity_of(intent, volume, center).length() + intent.link_motion(link).angular_velocity.length() * radius
+}
+
+/// Speed of the fastest source, m/s; regions are near their sources, so their turning is left to the warning zone.
+fn region_speed(snapshot: &Snapshot) -> f64 {
+    snapshot.sources.iter().fold(0.0, |v, s| s.motion.velocity.length().max(v))
+}

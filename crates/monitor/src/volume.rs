@@ -1,0 +1,117 @@
+//! The robot's own volume, as the monitor sees it.
+
+use elbowroom_kinematics::{JointKind, LinkId};
+use elbowroom_proximity::{ConvexHull, Cuboid, Shape, Sphere, fit};
+use elbowroom_scene::{Body, Robot};
+use elbowroom_spatial::{Obb, Pose, Vec3};
+
+use crate::Guards;
+
+/// What a volume belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The tool centre point.
+    Tcp,
+    /// Tool or load.
+    Tool,
+    /// A link.
+    Arm,
+}
+
+impl Part {
+    /// True where a region with these guards measures this part: `arm` is the links with tool and load.
+    pub fn counts_for(self, guards: Guards) -> bool {
+        match self {
+            Self::Tcp => guards.tcp,
+            Self::Tool => guards.tool || guards.arm,
+            Self::Arm => guards.arm,
+        }
+    }
+}
+
+/// A solid that moves with a link and is kept out of regions.
+#[derive(Debug, Clone)]
+pub struct Volume {
+    /// Said in reports; a link's or a tool's name.
+    pub name: String,
+    /// What it belongs to.
+    pub part: Part,
+    /// The link it moves with.
+    pub link: LinkId,
+    /// The solid.
+    pub shape: Shape,
+    /// Where the shape's frame stands in the link's.
+    pub in_link: Pose,
+}
+
+impl Volume {
+    /// The tool centre point at `tcp_in_link` (m).
+    pub fn tcp(link: LinkId, tcp_in_link: Vec3) -> Self {
+        let shape = Shape::Sphere(Sphere { radius: 0.0 });
+        Self { name: "tcp".into(), part: Part::Tcp, link, shape, in_link: Pose::from_translation(tcp_in_link) }
+    }
+
+    /// The tool's oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` in the frame of its link (S1, eq. 5).
+    pub fn tool_box(link: LinkId, obb_in_link: Obb) -> Self {
+        let shape = Shape::Cuboid(Cuboid { half_extents: obb_in_link.half_extents });
+        Self { name: "tool".into(), part: Part::Tool, link, shape, in_link: obb_in_link.pose }
+    }
+}
+
+/// How the solids of links become volumes (S1.10).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum VolumeModel {
+    /// The smaller of the enclosing capsule and the enclosing box, per solid.
+    #[default]
+    Tightest,
+    /// The enclosing capsule.
+    Capsule,
+    /// The enclosing box.
+    Box,
+    /// The convex hull.
+    Hull,
+    /// The solid itself.
+    Exact,
+}
+
+impl VolumeModel {
+    /// The volume of one solid; it encloses the solid in every model.
+    pub fn of(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
+        let points = match shape {
+            Shape::Mesh(mesh) if self != Self::Exact => mesh.vertices(),
+            Shape::Hull(hull) if !matches!(self, Self::Exact | Self::Hull) => hull.vertices(),
+            _ => return (shape.clone(), in_frame),
+        };
+        let fitted = match self {
+            Self::Capsule => fit::capsule(points),
+            Self::Box => fit::cuboid(points),
+            Self::Hull => {
+                if let Ok(hull) = ConvexHull::from_points(points) {
+                    return (Shape::Hull(hull.into()), in_frame);
+                }
+                fit::tightest(points)
+            }
+            Self::Tightest | Self::Exact => fit::tightest(points),
+        };
+        // A solid that cannot be fitted (all its points coincide, say) guards as it is.
+        fitted.map_or_else(|| (shape.clone(), in_frame), |f| (f.shape, in_frame * f.in_frame))
+    }
+}
+
+/// The volumes of all links that a joint moves. Solids fixed to the root stand where the integrator put them: they
+/// cannot approach anything, so they are no volumes.
+pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
+    let chain = &robot.chain;
+    let moves = |link: LinkId| chain.path(link).iter().any(|j| chain.joints()[j.0].kind != JointKind::Fixed);
+    let volume = |link: usize, body: &Body| {
+        let (shape, in_link) = model.of(&body.shape, body.in_link);
+        Volume { name: chain.links()[link].clone(), part: Part::Arm, link: LinkId(link), shape, in_link }
+    };
+    robot
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(link, _)| moves(LinkId(*link)))
+        .flat_map(|(link, bodies)| bodies.iter().map(move |body| volume(link, body)))
+        .collect()
+}
