@@ -1,0 +1,74 @@
+//! COLLADA 1.4 and 1.5: the triangles of the scene, moved by its nodes, in metres.
+//!
+//! One entry per node that shows geometry. Read: units, up axis, `matrix translate rotate scale` of nested and
+//! instanced nodes, `triangles polylist polygons tristrips trifans`, skins in their bind shape. Passed over:
+//! materials, lights, cameras, animations, lines. Refused: `skew`, `lookat`, references into other files.
+
+mod geometry;
+mod scene;
+mod source;
+
+use std::path::Path;
+
+use roxmltree::Node;
+
+use crate::error::Warnings;
+use crate::mesh::{LoadedMeshes, UpAxis};
+use crate::scan::show;
+use crate::transform::Affine;
+use crate::{FormatError, source as bytes_source, xml};
+
+/// Parses a COLLADA file, its unit applied; a file that states none is in metres.
+///
+/// # Errors
+/// Unsound XML, references to nothing, corners that do not exist, numbers that are none, nodes in a circle.
+pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
+    bytes_source::check_content(bytes, file)?;
+    let text = bytes_source::text(bytes, file)?;
+    let document = xml::parse(&text, file)?;
+    let root = document.root_element();
+    if root.tag_name().name() != "COLLADA" {
+        let what = format!("the root element is <{}>, not <COLLADA>", show(root.tag_name().name().as_bytes()));
+        return Err(FormatError::new(file, xml::line(root), what).hint("a COLLADA file, exported as .dae"));
+    }
+    let mut warnings = Warnings::default();
+    let asset = xml::child(root, "asset");
+    let metres = unit_in_metres(asset, file)?;
+    let upright = match up {
+        UpAxis::ToZ => upright(asset, file, &mut warnings),
+        UpAxis::Ignore => Affine::IDENTITY,
+    };
+    let to_metres = upright.after(&Affine::scale([metres; 3]));
+    let meshes = scene::meshes(root, &to_metres, file, &mut warnings)?;
+    Ok(LoadedMeshes { meshes, warnings: warnings.finish(file) })
+}
+
+fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, FormatError> {
+    let Some(unit) = asset.and_then(|a| xml::child(a, "unit")) else { return Ok(1.0) };
+    let Some(meter) = unit.attribute("meter") else { return Ok(1.0) };
+    let metres = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0);
+    metres.ok_or_else(|| {
+        let what = format!("the unit `{}` is not a length in metres", show(meter.as_bytes()));
+        FormatError::new(file, xml::line(unit), what).hint("<unit name=\"millimeter\" meter=\"0.001\"/>")
+    })
+}
+
+/// The turn that makes the stated up axis +z (COLLADA 1.4.1, "up_axis").
+fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut Warnings) -> Affine {
+    let Some(node) = asset.and_then(|a| xml::child(a, "up_axis")) else {
+        // The specification's default.
+        return Affine::rotation(Y_UP);
+    };
+    match node.text().unwrap_or_default().trim() {
+        "Z_UP" => Affine::IDENTITY,
+        "X_UP" => Affine::rotation([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]),
+        "Y_UP" => Affine::rotation(Y_UP),
+        other => {
+            let what = format!("the up axis `{}` is unknown; Y_UP, the default, is taken", show(other.as_bytes()));
+            warnings.push(crate::Warning::new(file, xml::line(node), what).hint("<up_axis>Z_UP</up_axis>"));
+            Affine::rotation(Y_UP)
+        }
+    }
+}
+
+const Y_UP: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];

@@ -1,0 +1,215 @@
+//! The nodes of a scene, nested and instanced.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::rc::Rc;
+
+use elbowroom_spatial::{Rotation, Vec3};
+use roxmltree::{Node, NodeId};
+
+use super::{geometry, source};
+use crate::error::Warnings;
+use crate::mesh::{MOST_ELEMENTS, MeshData};
+use crate::scan::show;
+use crate::transform::Affine;
+use crate::{FormatError, Warning, xml};
+
+/// Nodes that a scene may visit, and how deep: nodes that instance each other grow like powers of two.
+const MOST_VISITS: usize = 100_000;
+const DEEPEST: usize = 200;
+
+pub(super) struct Scene<'a, 'i, 'w> {
+    ids: HashMap<&'a str, Node<'a, 'i>>,
+    geometries: HashMap<NodeId, Rc<MeshData>>,
+    file: &'w Path,
+    warnings: &'w mut Warnings,
+    elements: usize,
+}
+
+/// All objects of the scene that the file shows; where it shows none, all its geometries as they are.
+pub(super) fn meshes<'a>(
+    root: Node<'a, '_>,
+    to_metres: &Affine,
+    file: &Path,
+    warnings: &mut Warnings,
+) -> Result<Vec<MeshData>, FormatError> {
+    let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
+    let mut scene = Scene { ids, geometries: HashMap::new(), file, warnings, elements: 0 };
+    let mut meshes = match scene.shown(root)? {
+        Some(visual_scene) => scene.walk(visual_scene, to_metres)?,
+        None => Vec::new(),
+    };
+    if meshes.is_empty() {
+        scene.all_geometries(root, to_metres, &mut meshes)?;
+    }
+    Ok(meshes)
+}
+
+impl<'a, 'i> Scene<'a, 'i, '_> {
+    fn shown(&self, root: Node<'a, 'i>) -> Result<Option<Node<'a, 'i>>, FormatError> {
+        let instance = xml::child(root, "scene").and_then(|s| xml::child(s, "instance_visual_scene"));
+        match instance {
+            Some(instance) => self.target(instance, "url").map(Some),
+            None => Ok(xml::child(root, "library_visual_scenes").and_then(|l| xml::child(l, "visual_scene"))),
+        }
+    }
+
+    /// The element that a `#reference` names.
+    fn target(&self, node: Node<'a, 'i>, attribute: &str) -> Result<Node<'a, 'i>, FormatError> {
+        source::target(&self.ids, node, attribute, self.file)
+    }
+
+    fn walk(&mut self, visual_scene: Node<'a, 'i>, to_metres: &Affine) -> Result<Vec<MeshData>, FormatError> {
+        let mut meshes = Vec::new();
+        let mut visits = 0;
+        let mut waiting: Vec<_> = xml::children(visual_scene, "node").map(|n| (n, *to_metres, 0)).collect();
+        waiting.reverse();
+        while let Some((node, parent, depth)) = waiting.pop() {
+            visits += 1;
+            if depth > DEEPEST || visits > MOST_VISITS {
+                let what = "nodes that contain or instance each other too deeply, or in a circle";
+                return Err(FormatError::new(self.file, xml::line(node), what).hint("a scene without instance_node"));
+            }
+            let to_scene = parent.after(&self.transform(node)?);
+            self.show(node, &to_scene, &mut meshes)?;
+            let first_child = waiting.len();
+            for child in node.children().filter(Node::is_element) {
+                match child.tag_name().name() {
+                    "node" => waiting.push((child, to_scene, depth + 1)),
+                    "instance_node" => waiting.push((self.target(child, "url")?, to_scene, depth + 1)),
+                    _ => {}
+                }
+            }
+            // The file's order, last in first out.
+            waiting[first_child..].reverse();
+        }
+        Ok(meshes)
+    }
+
+    /// What a node itself shows, as one object.
+    fn show(&mut self, node: Node<'a, 'i>, to_scene: &Affine, out: &mut Vec<MeshData>) -> Result<(), FormatError> {
+        let mut object: Option<MeshData> = None;
+        for instance in node.children().filter(Node::is_element) {
+            let (geometry, bind_shape) = match instance.tag_name().name() {
+                "instance_geometry" => (self.target(instance, "url")?, Affine::IDENTITY),
+                "instance_controller" => self.skinned(instance)?,
+                _ => continue,
+            };
+            let mut part = self.instance(geometry)?;
+            to_scene.after(&bind_shape).apply(&mut part);
+            match &mut object {
+                Some(whole) => append(whole, part),
+                None => object = Some(part),
+            }
+        }
+        if let Some(mut object) = object {
+            if let Some(name) = node.attribute("name").or(node.attribute("id")) {
+                name.clone_into(&mut object.name);
+            }
+            out.push(object);
+        }
+        Ok(())
+    }
+
+    /// The geometry under a controller (skins may stand on morphs), and the skin's bind shape.
+    fn skinned(&self, instance: Node<'a, 'i>) -> Result<(Node<'a, 'i>, Affine), FormatError> {
+        let mut target = self.target(instance, "url")?;
+        let mut bind_shape = Affine::IDENTITY;
+        for _ in 0..8 {
+            if target.tag_name().name() == "geometry" {
+                return Ok((target, bind_shape));
+            }
+            let inner = xml::child(target, "skin").or_else(|| xml::child(target, "morph"));
+            let Some(inner) = inner else { break };
+            if let Some(matrix) = xml::child(inner, "bind_shape_matrix") {
+                bind_shape = bind_shape.after(&self.matrix(matrix)?);
+            }
+            target = self.target(inner, "source")?;
+        }
+        Err(FormatError::new(self.file, xml::line(instance), "the controller leads to no geometry")
+            .hint("<skin source=\"#GEOMETRY\">, or the mesh exported without its armature"))
+    }
+
+    fn instance(&mut self, geometry: Node<'a, 'i>) -> Result<MeshData, FormatError> {
+        if !self.geometries.contains_key(&geometry.id()) {
+            let mesh = geometry::read(geometry, &self.ids, self.file, self.warnings)?;
+            self.geometries.insert(geometry.id(), Rc::new(mesh));
+        }
+        let mesh = &self.geometries[&geometry.id()];
+        self.elements += mesh.vertices.len() + mesh.triangles.len();
+        if self.elements > MOST_ELEMENTS {
+            let what = format!("the scene unfolds into more than {MOST_ELEMENTS} vertices and triangles");
+            return Err(
+                FormatError::new(self.file, xml::line(geometry), what).hint("a coarser mesh, or fewer instances")
+            );
+        }
+        Ok(MeshData::clone(mesh))
+    }
+
+    fn all_geometries(
+        &mut self,
+        root: Node<'a, 'i>,
+        to_metres: &Affine,
+        out: &mut Vec<MeshData>,
+    ) -> Result<(), FormatError> {
+        let geometries = xml::children(root, "library_geometries").flat_map(|l| xml::children(l, "geometry"));
+        for geometry in geometries.collect::<Vec<_>>() {
+            let mut mesh = self.instance(geometry)?;
+            to_metres.apply(&mut mesh);
+            out.push(mesh);
+        }
+        if !out.is_empty() {
+            let what = "the scene shows no geometry; all geometries of the file are taken as they are";
+            self.warnings
+                .push_with(|| Warning::new(self.file, None, what).hint("<instance_geometry url=\"#ID\"/> in a <node>"));
+        }
+        Ok(())
+    }
+
+    /// The product of a node's transforms, in the file's order.
+    fn transform(&self, node: Node<'a, 'i>) -> Result<Affine, FormatError> {
+        let mut total = Affine::IDENTITY;
+        for child in node.children().filter(Node::is_element) {
+            let step = match child.tag_name().name() {
+                "matrix" => self.matrix(child)?,
+                "translate" => Affine::translation(self.numbers(child)?),
+                "scale" => Affine::scale(self.numbers(child)?),
+                "rotate" => {
+                    let [x, y, z, degrees] = self.numbers(child)?;
+                    let axis = Vec3::new(x, y, z).try_normalize();
+                    axis.map_or(Affine::IDENTITY, |axis| {
+                        Affine::rotation(Rotation::from_axis_angle(axis, degrees.to_radians()).rows())
+                    })
+                }
+                name @ ("skew" | "lookat") => {
+                    return Err(FormatError::new(self.file, xml::line(child), format!("<{name}> is not read"))
+                        .hint("the same transform as <matrix>, 16 numbers row by row"));
+                }
+                _ => continue,
+            };
+            total = total.after(&step);
+        }
+        Ok(total)
+    }
+
+    fn matrix(&self, node: Node<'a, 'i>) -> Result<Affine, FormatError> {
+        let n: [f64; 16] = self.numbers(node)?;
+        Ok(Affine([[n[0], n[1], n[2], n[3]], [n[4], n[5], n[6], n[7]], [n[8], n[9], n[10], n[11]]]))
+    }
+
+    fn numbers<const N: usize>(&self, node: Node<'a, 'i>) -> Result<[f64; N], FormatError> {
+        let text = xml::text(node);
+        let numbers: Vec<f64> = text.split_ascii_whitespace().take(N + 1).map_while(|w| w.parse().ok()).collect();
+        <[f64; N]>::try_from(numbers).ok().filter(|n| n.iter().all(|x| x.is_finite())).ok_or_else(|| {
+            let name = node.tag_name().name();
+            let what = format!("<{name}> is not made of {N} finite numbers: `{}`", show(text.trim().as_bytes()));
+            FormatError::new(self.file, xml::line(node), what).hint(format!("{N} numbers, separated by blanks"))
+        })
+    }
+}
+
+fn append(whole: &mut MeshData, part: MeshData) {
+    let offset = whole.vertices.len() as u32;
+    whole.vertices.extend(part.vertices);
+    whole.triangles.extend(part.triangles.into_iter().map(|t| t.map(|i| i + offset)));
+}

@@ -1,0 +1,138 @@
+//! What is wrong with a file, where, and what to write instead.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why a file was refused.
+///
+/// Displayed as `FILE:LINE: what` and, on a line of its own, `  write: hint`.
+///
+/// ```
+/// use elbowroom_formats::FormatError;
+/// let e = FormatError::new("arm.urdf", 7, "the joint `j1` has no <axis>").hint("<axis xyz=\"0 0 1\"/>");
+/// assert_eq!(e.to_string(), "arm.urdf:7: the joint `j1` has no <axis>\n  write: <axis xyz=\"0 0 1\"/>");
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FormatError {
+    /// The file at fault.
+    pub file: PathBuf,
+    /// Its line, counted from 1; `None` where lines make no sense (binary files, missing files).
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub what: String,
+    /// What to write instead, where that can be said.
+    pub write_instead: Option<String>,
+}
+
+/// A sound model, but its user should know.
+///
+/// Displayed like [`FormatError`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// The file that it is about.
+    pub file: PathBuf,
+    /// Its line, counted from 1.
+    pub line: Option<usize>,
+    /// What is odd.
+    pub what: String,
+    /// What to write instead, where that can be said.
+    pub write_instead: Option<String>,
+}
+
+impl FormatError {
+    /// An error at a line (`None`: no line) of a file.
+    pub fn new(file: impl AsRef<Path>, line: impl Into<Option<usize>>, what: impl Into<String>) -> Self {
+        Self { file: file.as_ref().to_owned(), line: line.into(), what: what.into(), write_instead: None }
+    }
+
+    /// The same error with what to write instead.
+    #[must_use]
+    pub fn hint(mut self, write_instead: impl Into<String>) -> Self {
+        self.write_instead = Some(write_instead.into());
+        self
+    }
+}
+
+impl Warning {
+    /// A warning at a line (`None`: no line) of a file.
+    pub fn new(file: impl AsRef<Path>, line: impl Into<Option<usize>>, what: impl Into<String>) -> Self {
+        Self { file: file.as_ref().to_owned(), line: line.into(), what: what.into(), write_instead: None }
+    }
+
+    /// The same warning with what to write instead.
+    #[must_use]
+    pub fn hint(mut self, write_instead: impl Into<String>) -> Self {
+        self.write_instead = Some(write_instead.into());
+        self
+    }
+}
+
+impl From<FormatError> for Warning {
+    fn from(e: FormatError) -> Self {
+        Self { file: e.file, line: e.line, what: e.what, write_instead: e.write_instead }
+    }
+}
+
+fn display(
+    f: &mut fmt::Formatter<'_>,
+    file: &Path,
+    line: Option<usize>,
+    what: &str,
+    write_instead: Option<&str>,
+) -> fmt::Result {
+    write!(f, "{}:", file.display())?;
+    if let Some(line) = line {
+        write!(f, "{line}:")?;
+    }
+    write!(f, " {what}")?;
+    write_instead.map_or(Ok(()), |hint| write!(f, "\n  write: {hint}"))
+}
+
+impl fmt::Display for FormatError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        display(f, &self.file, self.line, &self.what, self.write_instead.as_deref())
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        display(f, &self.file, self.line, &self.what, self.write_instead.as_deref())
+    }
+}
+
+impl std::error::Error for FormatError {}
+
+/// Collects warnings, but not millions of them.
+#[derive(Debug, Default)]
+pub(crate) struct Warnings {
+    list: Vec<Warning>,
+    left_off: usize,
+}
+
+impl Warnings {
+    const MOST: usize = 200;
+
+    /// Builds the warning only when there is room for it: finding a line costs a scan of the file.
+    pub(crate) fn push_with(&mut self, make: impl FnOnce() -> Warning) {
+        if self.list.len() < Self::MOST {
+            self.list.push(make());
+        } else {
+            self.left_off += 1;
+        }
+    }
+
+    pub(crate) fn push(&mut self, warning: Warning) {
+        self.push_with(|| warning);
+    }
+
+    pub(crate) fn extend(&mut self, more: Vec<Warning>) {
+        more.into_iter().for_each(|w| self.push(w));
+    }
+
+    pub(crate) fn finish(mut self, file: &Path) -> Vec<Warning> {
+        if self.left_off > 0 {
+            self.list.push(Warning::new(file, None, format!("{} more warnings are left off", self.left_off)));
+        }
+        self.list
+    }
+}

@@ -1,0 +1,189 @@
+//! glTF 2.0, as JSON or GLB: the triangles of the scene, moved by its nodes.
+//!
+//! One entry per node with a mesh, its primitives together. Numbers are metres and the file's frame is kept: glTF
+//! says +y is up, and nothing is turned. The crate `gltf` reads and validates the JSON; the numbers are fetched by
+//! us, as its iterators trust the file. Skins and morphs stay in their rest shape. External buffers must be relative
+//! paths below the file's directory.
+
+mod accessor;
+mod buffers;
+
+use std::path::Path;
+
+use elbowroom_spatial::{Rotation, Vec3};
+use gltf::scene::Transform;
+use gltf::{Document, Node};
+
+use crate::mesh::{LoadedMeshes, MOST_ELEMENTS, MeshData};
+use crate::ply::strip;
+use crate::transform::Affine;
+use crate::{FormatError, Warning, source};
+use accessor::Reader;
+
+const DEEPEST: usize = 200;
+const MOST_VISITS: usize = 100_000;
+
+/// Parses a glTF or GLB file.
+///
+/// # Errors
+/// JSON or chunks that are damaged, references to nothing, buffers that are missing or too short, extensions that
+/// compress the geometry, nodes in a circle.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+    source::check_content(bytes, file)?;
+    let (json, binary) = buffers::split(bytes, file)?;
+    let document = document(&json, file)?;
+    refuse_compression(&document, file)?;
+    let buffers = buffers::load(&document, binary, file)?;
+    let reader = Reader { buffers: &buffers, file };
+    let mut scene = Scene { reader, meshes: Vec::new(), warnings: Vec::new(), elements: 0 };
+    scene.walk(roots(&document))?;
+    Ok(LoadedMeshes { meshes: scene.meshes, warnings: scene.warnings })
+}
+
+fn document(json: &[u8], file: &Path) -> Result<Document, FormatError> {
+    let root = gltf::json::deserialize::from_slice(json).map_err(|e| {
+        FormatError::new(file, e.line(), format!("the JSON is not glTF: {e}"))
+            .hint("the model exported again as glTF 2.0")
+    })?;
+    Document::from_json(root).map_err(|e| {
+        let what = match e {
+            gltf::Error::Validation(list) => {
+                let shown: Vec<String> = list.iter().take(3).map(|(path, e)| format!("{path}: {e}")).collect();
+                format!("the glTF is not valid: {}{}", shown.join("; "), if list.len() > 3 { "; …" } else { "" })
+            }
+            other => format!("the glTF is not valid: {other}"),
+        };
+        FormatError::new(file, None, what).hint("the model exported again as glTF 2.0, without extensions")
+    })
+}
+
+fn refuse_compression(document: &Document, file: &Path) -> Result<(), FormatError> {
+    let compressed = document.extensions_required().find(|e| e.contains("draco") || e.contains("meshopt"));
+    compressed.map_or(Ok(()), |extension| {
+        Err(FormatError::new(file, None, format!("the geometry is compressed ({extension})"))
+            .hint("the model exported without mesh compression"))
+    })
+}
+
+/// The nodes on top: of the default scene, else of the first, else those that are nobody's child.
+fn roots(document: &Document) -> Vec<Node<'_>> {
+    if let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) {
+        return scene.nodes().collect();
+    }
+    let mut is_child = vec![false; document.nodes().len()];
+    document.nodes().flat_map(|n| n.children().map(|c| c.index()).collect::<Vec<_>>()).for_each(|i| is_child[i] = true);
+    document.nodes().filter(|n| !is_child[n.index()]).collect()
+}
+
+struct Scene<'a> {
+    reader: Reader<'a>,
+    meshes: Vec<MeshData>,
+    warnings: Vec<Warning>,
+    elements: usize,
+}
+
+impl Scene<'_> {
+    fn walk(&mut self, roots: Vec<Node<'_>>) -> Result<(), FormatError> {
+        let file = self.reader.file;
+        let mut waiting: Vec<_> = roots.into_iter().map(|n| (n, Affine::IDENTITY, 0)).rev().collect();
+        let mut visits = 0;
+        while let Some((node, parent, depth)) = waiting.pop() {
+            visits += 1;
+            if depth > DEEPEST || visits > MOST_VISITS {
+                let what = format!("node {}: nodes contain each other too deeply, or in a circle", node.index());
+                return Err(FormatError::new(file, None, what).hint("nodes as a tree"));
+            }
+            let to_scene = parent.after(&local(&node.transform()));
+            if let Some(mesh) = node.mesh() {
+                let name = node.name().or(mesh.name()).map_or_else(|| source::stem(file), str::to_owned);
+                self.object(name, &mesh, &to_scene)?;
+                if node.skin().is_some() && self.warnings.is_empty() {
+                    self.warnings.push(Warning::new(file, None, "skinned meshes are read in their rest shape"));
+                }
+            }
+            let first = waiting.len();
+            waiting.extend(node.children().map(|c| (c, to_scene, depth + 1)));
+            waiting[first..].reverse();
+        }
+        Ok(())
+    }
+
+    fn object(&mut self, name: String, mesh: &gltf::Mesh<'_>, to_scene: &Affine) -> Result<(), FormatError> {
+        let mut whole = MeshData { name, ..MeshData::default() };
+        for primitive in mesh.primitives() {
+            self.primitive(mesh, &primitive, &mut whole)?;
+        }
+        if !whole.triangles.is_empty() {
+            to_scene.apply(&mut whole);
+            self.meshes.push(whole);
+        }
+        Ok(())
+    }
+
+    fn primitive(
+        &mut self,
+        mesh: &gltf::Mesh<'_>,
+        primitive: &gltf::Primitive<'_>,
+        whole: &mut MeshData,
+    ) -> Result<(), FormatError> {
+        use gltf::mesh::Mode;
+        let place = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
+        let mode = primitive.mode();
+        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+            return Ok(());
+        }
+        let positions = primitive.get(&gltf::Semantic::Positions).ok_or_else(|| {
+            self.reader.error(&place, "has no POSITION").hint("the model exported with its positions, uncompressed")
+        })?;
+        let indices = primitive.indices();
+        self.elements += positions.count() + indices.as_ref().map_or(0, gltf::Accessor::count);
+        if self.elements > MOST_ELEMENTS {
+            let what = format!("the scene unfolds into more than {MOST_ELEMENTS} vertices and corners");
+            return Err(self.reader.error(&place, &what).hint("a coarser mesh, or fewer instances"));
+        }
+        let vertices = self.reader.points(&positions, &place)?;
+        let offset = whole.vertices.len() as u32;
+        let corners: Vec<u32> = match indices {
+            Some(indices) => self.reader.indices(&indices, vertices.len(), &place)?,
+            None => (0..vertices.len() as u32).collect(),
+        };
+        let corners: Vec<u32> = corners.into_iter().map(|i| i + offset).collect();
+        whole.vertices.extend(vertices);
+        match mode {
+            Mode::TriangleStrip => strip(&corners, &mut whole.triangles),
+            Mode::TriangleFan => {
+                whole
+                    .triangles
+                    .extend(corners.get(1..).unwrap_or_default().windows(2).map(|w| [corners[0], w[0], w[1]]));
+            }
+            _ => whole.triangles.extend(corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]])),
+        }
+        Ok(())
+    }
+}
+
+/// A node's transform in double precision.
+fn local(transform: &Transform) -> Affine {
+    match transform {
+        Transform::Matrix { matrix } => {
+            let mut rows = [[0.0; 4]; 3];
+            for (r, row) in rows.iter_mut().enumerate() {
+                for (c, cell) in row.iter_mut().enumerate() {
+                    *cell = f64::from(matrix[c][r]);
+                }
+            }
+            Affine(rows)
+        }
+        Transform::Decomposed { translation, rotation, scale } => {
+            let turn = Rotation::from_quaternion_xyzw(rotation.map(f64::from)).unwrap_or(Rotation::IDENTITY);
+            Affine::translation(translation.map(f64::from))
+                .after(&Affine::rotation(turn.rows()))
+                .after(&Affine::scale(scale.map(f64::from)))
+        }
+    }
+}
+
+/// A vector of three numbers as a point.
+fn point(n: [f64; 3]) -> Vec3 {
+    Vec3::from(n)
+}

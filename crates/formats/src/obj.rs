@@ -1,0 +1,262 @@
+//! Wavefront OBJ: polygons of any size, relative indices, joined lines.
+//!
+//! One entry per object: by `o` where the file has any, else by `g`; a name that returns continues its object.
+//! Materials, normals, texture coordinates, points and lines are passed over.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use elbowroom_spatial::Vec3;
+
+use crate::error::Warnings;
+use crate::mesh::{LoadedMeshes, MeshData};
+use crate::scan::{Lines, integer, show, vector};
+use crate::{FormatError, Warning, polygon, source};
+
+/// Parses an OBJ file. Numbers are taken as metres.
+///
+/// # Errors
+/// Faces without corners, corners that do not exist, numbers that are none.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+    source::check_content(bytes, file)?;
+    let text = source::text_bytes(bytes, file)?;
+    let joined = join_lines(&text);
+    let mut reader = Reader::new(file);
+    for (line, content) in Lines::new(&joined) {
+        let content = content.split(|&b| b == b'#').next().unwrap_or(content).trim_ascii();
+        if !content.is_empty() {
+            reader.statement(line, content)?;
+        }
+    }
+    reader.finish()
+}
+
+/// A backslash before a line's end joins it to the next. The end stays in the text as blanks plus a line ending after
+/// the joined line, so that later lines keep their numbers.
+fn join_lines(text: &[u8]) -> std::borrow::Cow<'_, [u8]> {
+    if !text.contains(&b'\\') {
+        return text.into();
+    }
+    let mut joined = Vec::with_capacity(text.len());
+    let (mut owed, mut i) = (0, 0);
+    while i < text.len() {
+        let ending = [&b"\r\n"[..], b"\n", b"\r"].into_iter().find(|e| text[i + 1..].starts_with(e));
+        match (text[i], ending) {
+            (b'\\', Some(ending)) => {
+                joined.push(b' ');
+                owed += 1;
+                i += 1 + ending.len();
+            }
+            (b, _) => {
+                joined.push(b);
+                if b == b'\n' {
+                    joined.resize(joined.len() + std::mem::take(&mut owed), b'\n');
+                }
+                i += 1;
+            }
+        }
+    }
+    joined.into()
+}
+
+struct Face {
+    object: usize,
+    line: usize,
+    /// Where its corners end in `corners`; they begin where those of the face before end.
+    end: usize,
+}
+
+struct Reader<'a> {
+    file: &'a Path,
+    vertices: Vec<Vec3>,
+    corners: Vec<u32>,
+    faces: Vec<Face>,
+    names: Vec<String>,
+    index_of: HashMap<String, usize>,
+    object: usize,
+    has_objects: bool,
+    warnings: Warnings,
+}
+
+impl<'a> Reader<'a> {
+    fn new(file: &'a Path) -> Self {
+        let name = source::stem(file);
+        Self {
+            file,
+            vertices: Vec::new(),
+            corners: Vec::new(),
+            faces: Vec::new(),
+            index_of: HashMap::new(),
+            names: vec![name],
+            object: 0,
+            has_objects: false,
+            warnings: Warnings::default(),
+        }
+    }
+
+    fn statement(&mut self, line: usize, content: &[u8]) -> Result<(), FormatError> {
+        let mut words = content.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
+        match words.next() {
+            Some(b"v") => self.vertices.push(vector(&mut words, self.file, line, "the vertex")?),
+            Some(b"f" | b"fo") => self.face(line, words)?,
+            Some(b"o") => self.object_statement(&content[1..]),
+            Some(b"g") if !self.has_objects => self.select(&content[1..]),
+            Some(b"surf" | b"curv" | b"curv2") => self.warnings.push_with(|| {
+                Warning::new(self.file, line, "a free-form curve or surface is passed over").hint("polygons: f 1 2 3")
+            }),
+            Some(word) if self.vertices.is_empty() && self.faces.is_empty() && !is_keyword(word) => {
+                let what = format!("`{}` is no OBJ statement: is this an OBJ file?", show(word));
+                return Err(FormatError::new(self.file, line, what).hint("v x y z, then f 1 2 3"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// With the first `o`, what groups had divided before comes together again: `o` is the object.
+    fn object_statement(&mut self, name: &[u8]) {
+        if !self.has_objects {
+            self.has_objects = true;
+            self.names.truncate(1);
+            self.index_of.clear();
+            self.faces.iter_mut().for_each(|f| f.object = 0);
+        }
+        self.select(name);
+    }
+
+    fn select(&mut self, name: &[u8]) {
+        let name = String::from_utf8_lossy(name.trim_ascii()).into_owned();
+        let next = self.names.len();
+        self.object = *self.index_of.entry(name.clone()).or_insert(next);
+        if self.object == next {
+            self.names.push(if name.is_empty() { "default".to_owned() } else { name });
+        }
+    }
+
+    fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w [u8]>) -> Result<(), FormatError> {
+        let begin = self.corners.len();
+        for word in words {
+            let corner = self.corner(line, word)?;
+            self.corners.push(corner);
+        }
+        match self.corners.len() - begin {
+            0 => Err(FormatError::new(self.file, line, "a face without corners").hint("f 1 2 3")),
+            1 | 2 => {
+                self.corners.truncate(begin);
+                self.warnings
+                    .push_with(|| Warning::new(self.file, line, "a face with fewer than 3 corners is left out"));
+                Ok(())
+            }
+            _ => {
+                self.faces.push(Face { object: self.object, line, end: self.corners.len() });
+                Ok(())
+            }
+        }
+    }
+
+    fn corner(&self, line: usize, word: &[u8]) -> Result<u32, FormatError> {
+        let index = word.split(|&b| b == b'/').next().and_then(integer).ok_or_else(|| {
+            let what = format!("`{}` is not a corner of a face", show(word));
+            FormatError::new(self.file, line, what)
+                .hint("the number of a vertex, from 1: f 1 2 3, or f 1/1/1 2/2/1 3/3/1")
+        })?;
+        let known = self.vertices.len() as i64;
+        let from_zero = if index < 0 { known.saturating_add(index) } else { index - 1 };
+        // Vertices may follow later, so only what can never be is refused here.
+        u32::try_from(from_zero).map_err(|_| {
+            let what = format!("the corner {index} does not exist: there are {known} vertices before this line");
+            FormatError::new(self.file, line, what).hint("vertices count from 1; -1 is the last one before the line")
+        })
+    }
+
+    fn finish(self) -> Result<LoadedMeshes, FormatError> {
+        let mut meshes: Vec<MeshData> =
+            self.names.into_iter().map(|name| MeshData { name, ..MeshData::default() }).collect();
+        let known = self.vertices.len();
+        let mut begin = 0;
+        for face in &self.faces {
+            let corners = &self.corners[begin..face.end];
+            if let Some(i) = corners.iter().find(|&&i| i as usize >= known) {
+                let what = format!("the corner {} does not exist: the file has {known} vertices", u64::from(*i) + 1);
+                return Err(FormatError::new(self.file, face.line, what).hint("the number of a vertex, counted from 1"));
+            }
+            polygon::triangulate(&self.vertices, corners, &mut meshes[face.object].triangles);
+            begin = face.end;
+        }
+        if self.faces.is_empty() && known > 0 {
+            let what = format!("is a point cloud: {known} vertices, no faces");
+            return Err(FormatError::new(self.file, None, what).hint("faces: f 1 2 3"));
+        }
+        meshes.retain(|m| !m.triangles.is_empty());
+        keep_used_vertices(&self.vertices, &mut meshes);
+        Ok(LoadedMeshes { meshes, warnings: self.warnings.finish(self.file) })
+    }
+}
+
+/// Gives every object its own vertices, in the order of its triangles.
+pub(crate) fn keep_used_vertices(vertices: &[Vec3], meshes: &mut [MeshData]) {
+    let mut new_index = vec![(u32::MAX, 0); vertices.len()];
+    for (m, mesh) in meshes.iter_mut().enumerate() {
+        for corner in mesh.triangles.iter_mut().flatten() {
+            let (owner, index) = &mut new_index[*corner as usize];
+            if *owner != m as u32 {
+                *owner = m as u32;
+                *index = mesh.vertices.len() as u32;
+                mesh.vertices.push(vertices[*corner as usize]);
+            }
+            *corner = *index;
+        }
+    }
+}
+
+fn is_keyword(word: &[u8]) -> bool {
+    const KEYWORDS: [&[u8]; 20] = [
+        b"v",
+        b"vt",
+        b"vn",
+        b"vp",
+        b"f",
+        b"l",
+        b"p",
+        b"o",
+        b"g",
+        b"s",
+        b"mg",
+        b"mtllib",
+        b"usemtl",
+        b"maplib",
+        b"usemap",
+        b"lod",
+        b"bevel",
+        b"deg",
+        b"cstype",
+        b"shadow_obj",
+    ];
+    KEYWORDS.contains(&word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_lines_keep_later_line_numbers() {
+        let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n 2 \\\r\n 3\nf 1 2 9\n";
+        let error = parse(text, Path::new("a.obj")).unwrap_err();
+        assert_eq!(error.line, Some(7));
+        let sound = parse(&text[..text.len() - 8], Path::new("a.obj")).unwrap();
+        assert_eq!(sound.meshes[0].triangles, [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn groups_divide_only_where_there_are_no_objects() {
+        let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        let load = |faces: &str| parse(format!("{vertices}{faces}").as_bytes(), Path::new("a.obj")).unwrap();
+        let groups = load("g a\nf 1 2 3\ng b\nusemtl m\nf -3 -2 -1\ng a\nf 3 2 1\n");
+        let sizes: Vec<_> = groups.meshes.iter().map(|m| (m.name.as_str(), m.triangles.len())).collect();
+        assert_eq!(sizes, [("a", 2), ("b", 1)]);
+        let objects = load("g a\nf 1 2 3\no x\ng b\nf 1 2 3\ng c\nf 3 2 1\n");
+        let sizes: Vec<_> = objects.meshes.iter().map(|m| (m.name.as_str(), m.triangles.len())).collect();
+        assert_eq!(sizes, [("a", 1), ("x", 2)]);
+    }
+}

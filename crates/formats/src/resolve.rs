@@ -1,0 +1,143 @@
+//! From the `filename` of a URDF to a file on disk.
+
+use std::path::{Path, PathBuf};
+
+/// Directories above the file that are searched, and entries of each that are looked into for a `package.xml`.
+const MOST_LEVELS: usize = 24;
+const MOST_ENTRIES: usize = 2000;
+
+/// Finds the file that a reference means, or says where it was looked for.
+///
+/// `package://NAME/PATH` (and `model://`) is looked for in every directory from `base` upward: in a directory called
+/// NAME, or one whose `package.xml` has that name, there or directly below. `file://` is absolute, all else relative
+/// to `base`. The case of the last part of the path may differ.
+pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
+    let reference = reference.trim();
+    let try_both =
+        |make: &dyn Fn(&str) -> Option<PathBuf>| make(reference).or_else(|| make(&percent_decode(reference)));
+    let found = try_both(&|text| {
+        let text = text.replace('\\', "/");
+        match text.split_once("://") {
+            Some(("package" | "model", rest)) => in_package(rest, base),
+            Some(("file", rest)) => existing(Path::new(rest)),
+            Some(_) => None,
+            None => existing(&base.join(&text)),
+        }
+    });
+    found.ok_or_else(|| where_looked(reference, base))
+}
+
+fn where_looked(reference: &str, base: &Path) -> String {
+    match reference.split_once("://") {
+        Some(("package" | "model", rest)) => {
+            let (name, path) = rest.split_once('/').unwrap_or((rest, ""));
+            match package_directories(name, base).next() {
+                Some(directory) => format!("there is no {path} in {}", directory.display()),
+                None => format!(
+                    "no directory called `{name}`, and none with that name in its package.xml, in {} or above",
+                    base.display()
+                ),
+            }
+        }
+        Some(("file", path)) => format!("there is no file {path}"),
+        Some((scheme, _)) => format!("`{scheme}://` is not followed"),
+        None => format!("there is no file {}", base.join(reference).display()),
+    }
+}
+
+fn in_package(rest: &str, base: &Path) -> Option<PathBuf> {
+    let (name, path) = rest.split_once('/')?;
+    package_directories(name, base).find_map(|directory| existing(&directory.join(path.trim_start_matches('/'))))
+}
+
+fn package_directories<'a>(name: &'a str, base: &Path) -> impl Iterator<Item = PathBuf> + 'a {
+    let start = std::path::absolute(base).unwrap_or_else(|_| base.to_owned());
+    let levels: Vec<PathBuf> = start.ancestors().take(MOST_LEVELS).map(Path::to_owned).collect();
+    let by_directory = levels.clone().into_iter().flat_map(move |level| {
+        let is_itself = level.file_name().is_some_and(|n| n == name) || package_name(&level).as_deref() == Some(name);
+        let below = level.join(name);
+        [is_itself.then_some(level), below.is_dir().then_some(below)].into_iter().flatten()
+    });
+    // Reading every neighbour's package.xml comes last: it is the slow and the rare case.
+    by_directory.chain(levels.into_iter().flat_map(move |level| neighbours_called(name, &level)))
+}
+
+fn neighbours_called(name: &str, level: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(level) else { return Vec::new() };
+    let directories = entries.flatten().take(MOST_ENTRIES).map(|e| e.path());
+    let mut found: Vec<PathBuf> = directories.filter(|d| package_name(d).as_deref() == Some(name)).collect();
+    found.sort();
+    found
+}
+
+/// The `<name>` of a directory's `package.xml`.
+fn package_name(directory: &Path) -> Option<String> {
+    let manifest = directory.join("package.xml");
+    let size = std::fs::metadata(&manifest).ok().filter(std::fs::Metadata::is_file)?.len();
+    if size > 1 << 20 {
+        return None;
+    }
+    let text = std::fs::read_to_string(&manifest).ok()?;
+    let document = roxmltree::Document::parse(&text).ok()?;
+    Some(crate::xml::child(document.root_element(), "name")?.text()?.trim().to_owned())
+}
+
+/// The path if it is a file, or its only neighbour whose name differs in case alone.
+fn existing(path: &Path) -> Option<PathBuf> {
+    if path.is_file() {
+        return Some(path.to_owned());
+    }
+    let wanted = path.file_name()?;
+    let entries = std::fs::read_dir(path.parent()?).ok()?;
+    let mut same =
+        entries.flatten().take(MOST_ENTRIES).filter(|e| e.file_name().eq_ignore_ascii_case(wanted)).map(|e| e.path());
+    match (same.next(), same.next()) {
+        (Some(only), None) if only.is_file() => Some(only),
+        _ => None,
+    }
+}
+
+/// `%20` and its like to characters; what is no code stays.
+pub(crate) fn percent_decode(text: &str) -> String {
+    let mut out = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        let digits = after.get(..2).filter(|d| first == b'%' && d.iter().all(u8::is_ascii_hexdigit));
+        let byte = digits.and_then(|d| std::str::from_utf8(d).ok()).and_then(|d| u8::from_str_radix(d, 16).ok());
+        out.push(byte.unwrap_or(first));
+        rest = if byte.is_some() { &after[2..] } else { after };
+    }
+    String::from_utf8_lossy(&out).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packages_are_found_beside_and_above() {
+        let root = tempfile::tempdir().unwrap();
+        let make = |path: &str, text: &str| {
+            let path = root.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        make("arm_support/meshes/Link.STL", "");
+        make("cloned-repository/package.xml", "<package><name>gripper</name></package>");
+        make("cloned-repository/finger a.stl", "");
+        make("arm_support/urdf/deep/arm.urdf", "");
+        let base = root.path().join("arm_support/urdf/deep");
+        let ends = |reference: &str| resolve(reference, &base).map(|p| p.strip_prefix(root.path()).unwrap().to_owned());
+        assert_eq!(ends("package://arm_support/meshes/Link.STL").unwrap(), Path::new("arm_support/meshes/Link.STL"));
+        assert_eq!(ends("package://arm_support/meshes/link.stl").unwrap(), Path::new("arm_support/meshes/Link.STL"));
+        assert_eq!(ends("package://gripper/finger%20a.stl").unwrap(), Path::new("cloned-repository/finger a.stl"));
+        assert_eq!(ends("../../meshes/Link.stl").unwrap().file_name().unwrap(), "Link.STL");
+        assert!(ends("package://nobody/a.stl").unwrap_err().contains("nobody"));
+        assert!(ends("http://example.org/a.stl").unwrap_err().contains("http"));
+    }
+
+    #[test]
+    fn percent_codes_decode_and_others_stay() {
+        assert_eq!(percent_decode("a%20b%2fc%zz%"), "a b/c%zz%");
+    }
+}

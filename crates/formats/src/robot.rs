@@ -1,0 +1,277 @@
+//! A whole robot: URDF, its meshes, and the SRDF that goes with it.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use elbowroom_kinematics as kinematics;
+use elbowroom_kinematics::{Chain, JointId, LinkId};
+use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, TriMesh};
+use elbowroom_scene::{Body, Robot};
+use elbowroom_spatial::units::LengthUnit;
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::error::Warnings;
+use crate::mesh::{self, MeshData, UpAxis};
+use crate::urdf::{Geometry, Model, Solid};
+use crate::{FormatError, Warning, resolve, source, srdf, urdf};
+
+/// How to load a robot.
+#[derive(Debug, Clone, Default)]
+pub struct LoadOptions {
+    /// Its SRDF, whose disabled pairs go into [`Robot::disabled_pairs`].
+    pub srdf: Option<PathBuf>,
+    /// Whether to load what is only looked at.
+    pub load_visuals: bool,
+    /// The unit of meshes whose format states none (STL, OBJ, PLY, OFF); the default is metres. The numbers of the
+    /// URDF itself are always metres.
+    pub unit: Option<LengthUnit>,
+}
+
+/// A robot, and what its user should know.
+#[derive(Debug, Clone)]
+pub struct LoadedRobot {
+    /// Links and joints in the order of the file.
+    pub robot: Robot,
+    /// Of the URDF, its meshes and the SRDF.
+    pub warnings: Vec<Warning>,
+}
+
+/// Loads a URDF with its collision meshes, and as asked with its visual meshes and an SRDF.
+///
+/// Each object of a mesh file becomes one body. A mesh file is read once however many links use it. The unit of a
+/// COLLADA mesh is applied and its up axis is not, as in rviz and `MoveIt`.
+///
+/// # Errors
+/// Whatever is wrong with the URDF or the SRDF, and every collision mesh that is missing or cannot be read; visual
+/// meshes only warn.
+///
+/// ```
+/// use elbowroom_formats::robot::{self, LoadOptions};
+/// # let dir = tempfile::tempdir()?;
+/// let path = dir.path().join("slide.urdf");
+/// std::fs::write(&path, r#"<robot name="slide">
+///   <link name="rail"/>
+///   <link name="cart"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+///   <joint name="x" type="prismatic">
+///     <parent link="rail"/> <child link="cart"/> <limit lower="0" upper="2" velocity="1" effort="0"/>
+///   </joint>
+/// </robot>"#)?;
+/// let loaded = robot::load(&path, &LoadOptions::default())?;
+/// assert_eq!(loaded.robot.chain.dof(), 1);
+/// assert_eq!(loaded.robot.bodies[1].len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatError> {
+    let model = urdf::parse(&source::read(urdf_path)?, urdf_path)?;
+    let mut robot = Robot::new(chain(&model, urdf_path)?);
+    let mut loader = Loader {
+        urdf_path,
+        base: urdf_path.parent().unwrap_or(Path::new("")),
+        unit: options.unit,
+        meshes: HashMap::new(),
+        solids: HashMap::new(),
+        warnings: Warnings::default(),
+        largest: 0.0,
+    };
+    loader.warnings.extend(model.warnings.clone());
+    for (i, link) in model.links.iter().enumerate() {
+        for solid in &link.collisions {
+            robot.bodies[i].extend(loader.bodies(solid)?);
+        }
+        for solid in link.visuals.iter().filter(|_| options.load_visuals) {
+            match loader.bodies(solid) {
+                Ok(bodies) => robot.visuals[i].extend(bodies),
+                Err(e) => loader.warnings.push(e.into()),
+            }
+        }
+    }
+    loader.doubt_units(&model);
+    let mut warnings = loader.warnings;
+    if let Some(srdf_path) = &options.srdf {
+        disable_pairs(&mut robot, srdf_path, &mut warnings)?;
+    }
+    Ok(LoadedRobot { robot, warnings: warnings.finish(urdf_path) })
+}
+
+/// The chain of a model; links and joints keep their order.
+///
+/// # Errors
+/// What the kinematics room refuses beyond the checks of [`urdf::parse`]; the line is that of the joint or link that
+/// the refusal names.
+pub fn chain(model: &Model, file: &Path) -> Result<Chain, FormatError> {
+    let links = model.links.iter().map(|l| l.name.clone()).collect();
+    let joint = |j: &urdf::Joint| kinematics::Joint {
+        name: j.name.clone(),
+        kind: j.kind,
+        parent: LinkId(j.parent),
+        child: LinkId(j.child),
+        origin: j.origin,
+        axis: j.axis,
+        limits: j.limits,
+        mimic: j.mimic.map(|m| kinematics::Mimic {
+            joint: JointId(m.joint),
+            multiplier: m.multiplier,
+            offset: m.offset,
+        }),
+    };
+    Chain::new(model.name.clone(), links, model.joints.iter().map(joint).collect()).map_err(|e| {
+        let message = e.to_string();
+        let named = |name: &str| message.contains(&format!("`{name}`"));
+        let joint = model.joints.iter().find(|j| named(&j.name)).map(|j| j.line);
+        let line = joint.or_else(|| model.links.iter().find(|l| named(&l.name)).map(|l| l.line));
+        FormatError::new(file, line, message)
+    })
+}
+
+/// Solids of one mesh file at one scale, with the names of its objects.
+type Solids = Arc<Vec<(String, Arc<TriMesh>)>>;
+
+struct Loader<'a> {
+    urdf_path: &'a Path,
+    base: &'a Path,
+    unit: Option<LengthUnit>,
+    meshes: HashMap<PathBuf, Result<Arc<Vec<MeshData>>, FormatError>>,
+    solids: HashMap<(PathBuf, [u64; 3]), Solids>,
+    warnings: Warnings,
+    /// The largest extent of any body, metres.
+    largest: f64,
+}
+
+impl Loader<'_> {
+    fn bodies(&mut self, solid: &Solid) -> Result<Vec<Body>, FormatError> {
+        let name = solid.name.clone();
+        let kind = |g: &Geometry| match g {
+            Geometry::Box(_) => "box",
+            Geometry::Sphere { .. } => "sphere",
+            Geometry::Cylinder { .. } => "cylinder",
+            Geometry::Capsule { .. } => "capsule",
+            Geometry::Mesh { .. } => "mesh",
+        };
+        let shape = match &solid.geometry {
+            Geometry::Box(size) => Shape::Cuboid(Cuboid { half_extents: *size * 0.5 }),
+            Geometry::Sphere { radius } => Shape::Sphere(Sphere { radius: *radius }),
+            Geometry::Cylinder { radius, length } => {
+                Shape::Cylinder(Cylinder { half_length: length * 0.5, radius: *radius })
+            }
+            Geometry::Capsule { radius, length } => {
+                Shape::Capsule(Capsule { half_length: length * 0.5, radius: *radius })
+            }
+            Geometry::Mesh { filename, scale } => return self.mesh_bodies(solid, filename, *scale),
+        };
+        shape.validate().map_err(|e| FormatError::new(self.urdf_path, solid.line, e.to_string()))?;
+        self.note_extent(shape.aabb(&Pose::IDENTITY).extent(), solid);
+        Ok(vec![Body { name: name.unwrap_or_else(|| kind(&solid.geometry).to_owned()), shape, in_link: solid.in_link }])
+    }
+
+    fn mesh_bodies(&mut self, solid: &Solid, filename: &str, scale: Vec3) -> Result<Vec<Body>, FormatError> {
+        let path = resolve::resolve(filename, self.base).map_err(|why| {
+            FormatError::new(self.urdf_path, solid.line, format!("the mesh `{filename}` is not found: {why}"))
+                .hint("a path relative to the URDF, or package://NAME/… with a directory NAME beside the URDF or above")
+        })?;
+        let solids = self.solids(&path, scale).map_err(|mut e| {
+            e.what.push_str(&format!(" (named in {}:{})", self.urdf_path.display(), solid.line));
+            e
+        })?;
+        let extent = solids.iter().fold(elbowroom_spatial::Aabb::EMPTY, |all, (_, m)| all.union(m.aabb())).extent();
+        self.note_extent(extent, solid);
+        let stem = solid.name.clone().unwrap_or_else(|| source::stem(&path));
+        let many = solids.len() > 1;
+        let body = |(object, mesh): &(String, Arc<TriMesh>)| Body {
+            name: if many { format!("{stem}:{object}") } else { stem.clone() },
+            shape: Shape::Mesh(Arc::clone(mesh)),
+            in_link: solid.in_link,
+        };
+        Ok(solids.iter().map(body).collect())
+    }
+
+    fn solids(&mut self, path: &Path, scale: Vec3) -> Result<Solids, FormatError> {
+        let key = (path.to_owned(), scale.to_array().map(f64::to_bits));
+        if let Some(known) = self.solids.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let meshes = self.meshes(path)?;
+        let mut solids = Vec::with_capacity(meshes.len());
+        for mesh in meshes.iter() {
+            let mut scaled = mesh.clone();
+            if scale != Vec3::splat(1.0) {
+                scaled.scale(scale);
+            }
+            let name = scaled.name.clone();
+            solids.push((name, Arc::new(scaled.into_trimesh(path)?)));
+        }
+        let solids = Arc::new(solids);
+        self.solids.insert(key, Arc::clone(&solids));
+        Ok(solids)
+    }
+
+    /// The objects of a file, read once; a failure is remembered, too.
+    fn meshes(&mut self, path: &Path) -> Result<Arc<Vec<MeshData>>, FormatError> {
+        if let Some(known) = self.meshes.get(path) {
+            return known.clone();
+        }
+        let loaded = source::read(path).and_then(|bytes| mesh::parse(&bytes, path, self.unit, UpAxis::Ignore));
+        let meshes = loaded.map(|loaded| {
+            self.warnings.extend(loaded.warnings);
+            Arc::new(loaded.meshes)
+        });
+        self.meshes.insert(path.to_owned(), meshes.clone());
+        meshes
+    }
+
+    fn note_extent(&mut self, extent: Vec3, solid: &Solid) {
+        let largest = extent.max_element();
+        self.largest = self.largest.max(largest);
+        if let Some(doubt) = mesh::units_suspicion(extent).filter(|_| largest > 20.0) {
+            self.warnings.push(Warning { file: self.urdf_path.to_owned(), line: Some(solid.line), ..doubt });
+        }
+    }
+
+    /// Small parts are ordinary; a robot of which all parts are tiny is not. Nor is an arm with joints 20 m apart.
+    fn doubt_units(&mut self, model: &Model) {
+        if self.largest > 0.0 {
+            if let Some(doubt) = mesh::units_suspicion(Vec3::splat(self.largest)).filter(|_| self.largest < 1.0) {
+                self.warnings.push(Warning { file: self.urdf_path.to_owned(), ..doubt });
+            }
+        }
+        if let Some(far) = model.joints.iter().find(|j| j.origin.translation.length() > 20.0) {
+            let metres = far.origin.translation.length();
+            let what =
+                format!("the joint `{}` is {metres:.4} m away from its parent: looks like millimetres", far.name);
+            self.warnings.push(Warning::new(self.urdf_path, far.line, what).hint("<origin xyz=\"…\"/> in metres"));
+        }
+    }
+}
+
+fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut Warnings) -> Result<(), FormatError> {
+    let srdf = srdf::parse(&source::read(path)?, path)?;
+    warnings.extend(srdf.warnings);
+    if let Some(name) = srdf.robot.filter(|name| name != robot.chain.name()) {
+        let what = format!("is for the robot `{name}`, but the URDF describes `{}`", robot.chain.name());
+        warnings.push(Warning::new(path, None, what).hint("the same name in both files"));
+    }
+    for pair in srdf.disabled {
+        let mut link = |name: &str| {
+            let found = robot.chain.link(name);
+            if found.is_none() {
+                warnings.push_with(|| {
+                    Warning::new(
+                        path,
+                        pair.line,
+                        format!("there is no link `{name}` in the URDF; the pair is passed over"),
+                    )
+                    .hint("the name of a link, or remove the line")
+                });
+            }
+            found
+        };
+        let (Some(a), Some(b)) = (link(&pair.link1), link(&pair.link2)) else { continue };
+        if a == b {
+            let what = format!("the link `{}` is paired with itself; the pair is passed over", pair.link1);
+            warnings.push_with(|| Warning::new(path, pair.line, what).hint("two different links"));
+            continue;
+        }
+        robot.disabled_pairs.push((a, b, pair.reason));
+    }
+    Ok(())
+}

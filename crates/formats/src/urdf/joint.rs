@@ -1,0 +1,205 @@
+//! Joints: kinds, limits, mimics.
+
+use std::collections::HashMap;
+
+use elbowroom_kinematics::{JointKind, Limits};
+use roxmltree::Node;
+
+use super::reader::Reader;
+use super::{Joint, Link, Mimic};
+use crate::scan::show;
+use crate::{FormatError, xml};
+
+const LIMIT: &str = "<limit lower=\"-3.14\" upper=\"3.14\" velocity=\"1.5\" effort=\"0\"/>, or type=\"continuous\"";
+
+impl Reader<'_> {
+    pub(super) fn joints(&mut self, root: Node<'_, '_>, links: &[Link]) -> Result<Vec<Joint>, FormatError> {
+        let index: HashMap<&str, usize> = links.iter().enumerate().map(|(i, l)| (l.name.as_str(), i)).collect();
+        let nodes: Vec<_> = xml::children(root, "joint").collect();
+        let mut numbers: HashMap<&str, usize> = HashMap::new();
+        for (i, node) in nodes.iter().enumerate() {
+            let name = self.required(*node, "name")?;
+            if let Some(first) = numbers.insert(name, i) {
+                let what = format!(
+                    "a second joint `{}`; the first is on line {}",
+                    show(name.as_bytes()),
+                    self.lines.line(nodes[first])
+                );
+                return Err(self.error(*node, what).hint("a name of its own for each joint"));
+            }
+        }
+        let mut joints = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            joints.push(self.joint(*node, &index, &numbers)?);
+        }
+        self.check_mimics(&nodes, &mut joints)?;
+        Ok(joints)
+    }
+
+    fn joint(
+        &mut self,
+        node: Node<'_, '_>,
+        links: &HashMap<&str, usize>,
+        joints: &HashMap<&str, usize>,
+    ) -> Result<Joint, FormatError> {
+        let name = self.required(node, "name")?.to_owned();
+        let kind = self.kind(node)?;
+        let limits = self.limits(node, kind)?;
+        Ok(Joint {
+            line: self.lines.line(node),
+            kind,
+            parent: self.end(node, "parent", links)?,
+            child: self.end(node, "child", links)?,
+            origin: self.origin(node)?,
+            axis: self.axis(node, kind.moves())?,
+            limits,
+            mimic: self.mimic(node, joints)?,
+            name,
+        })
+    }
+
+    fn kind(&self, node: Node<'_, '_>) -> Result<JointKind, FormatError> {
+        let kind = self.required(node, "type")?;
+        let instead = match kind {
+            "fixed" => return Ok(JointKind::Fixed),
+            "revolute" => return Ok(JointKind::Revolute),
+            "continuous" => return Ok(JointKind::Continuous),
+            "prismatic" => return Ok(JointKind::Prismatic),
+            "floating" => {
+                "type=\"fixed\" here, and the robot's base pose in the cell file; or six joints in a row, three prismatic and three revolute"
+            }
+            "planar" => "two prismatic joints and one continuous joint in a row",
+            "screw" | "universal" | "ball" | "spherical" => {
+                "revolute and prismatic joints in a row; <mimic> couples them"
+            }
+            _ => "type=\"revolute\", \"continuous\", \"prismatic\" or \"fixed\"",
+        };
+        let line = xml::attribute_line(node, "type");
+        let name = node.attribute("name").unwrap_or_default();
+        let what =
+            format!("the joint `{}` is of type `{}`, which is not read", show(name.as_bytes()), show(kind.as_bytes()));
+        Err(FormatError::new(self.file, line, what).hint(instead))
+    }
+
+    fn end(
+        &self,
+        node: Node<'_, '_>,
+        element: &'static str,
+        links: &HashMap<&str, usize>,
+    ) -> Result<usize, FormatError> {
+        let hint = format!("<{element} link=\"NAME\"/>");
+        let end = xml::child(node, element)
+            .ok_or_else(|| self.error(node, format!("the joint has no {element}")).hint(hint))?;
+        let link = self.required(end, "link")?;
+        links.get(link).copied().ok_or_else(|| {
+            let what = format!("there is no link `{}`", show(link.as_bytes()));
+            let line = xml::attribute_line(end, "link");
+            FormatError::new(self.file, line, what)
+                .hint(format!("<link name=\"{}\"/>, or the name of another link", show(link.as_bytes())))
+        })
+    }
+
+    fn limits(&mut self, joint: Node<'_, '_>, kind: JointKind) -> Result<Limits, FormatError> {
+        if !kind.moves() {
+            return Ok(Limits::UNLIMITED);
+        }
+        let bounded = kind != JointKind::Continuous;
+        let name = show(joint.attribute("name").unwrap_or_default().as_bytes());
+        let Some(node) = xml::child(joint, "limit") else {
+            if bounded {
+                return Err(self.error(joint, format!("the joint `{name}` has no <limit>")).hint(LIMIT));
+            }
+            self.warn(
+                joint,
+                format!("the joint `{name}` has no velocity limit"),
+                "<limit velocity=\"1.5\" effort=\"0\"/>",
+            );
+            return Ok(Limits::UNLIMITED);
+        };
+        let (lower, upper) = if bounded { self.bounds(node, &name)? } else { (f64::NEG_INFINITY, f64::INFINITY) };
+        let velocity = self.number(node, "velocity")?.filter(|&v| v != 0.0);
+        if velocity.is_some_and(|v| v < 0.0) {
+            return Err(self
+                .error(node, format!("the velocity limit of `{name}` is negative"))
+                .hint("velocity=\"1.5\", in rad/s or m/s"));
+        }
+        if velocity.is_none() {
+            self.warn(
+                node,
+                format!("the joint `{name}` has no velocity limit, or 0"),
+                "velocity=\"1.5\", in rad/s or m/s",
+            );
+        }
+        // Not in the specification, but written by some tools, with a prefix (drake) or without.
+        let acceleration =
+            node.attributes().find(|a| a.name() == "acceleration").and_then(|a| a.value().trim().parse().ok());
+        let acceleration = acceleration.filter(|a: &f64| a.is_finite() && *a > 0.0);
+        let effort = self.number(node, "effort")?.filter(|&e| e > 0.0);
+        Ok(Limits { lower, upper, velocity, acceleration, effort })
+    }
+
+    fn bounds(&mut self, node: Node<'_, '_>, name: &str) -> Result<(f64, f64), FormatError> {
+        let (lower, upper) = (self.number(node, "lower")?, self.number(node, "upper")?);
+        if lower.is_none() && upper.is_none() {
+            return Err(self.error(node, format!("the limit of `{name}` has neither lower nor upper")).hint(LIMIT));
+        }
+        if lower.is_none() || upper.is_none() {
+            self.warn(node, format!("one bound of `{name}` is missing and taken as 0"), "lower=\"…\" upper=\"…\"");
+        }
+        let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
+        if lower > upper {
+            let what = format!("the joint `{name}` has lower={lower} above upper={upper}");
+            return Err(self.error(node, what).hint(format!("lower=\"{upper}\" upper=\"{lower}\"")));
+        }
+        Ok((lower, upper))
+    }
+
+    fn mimic(&self, joint: Node<'_, '_>, joints: &HashMap<&str, usize>) -> Result<Option<Mimic>, FormatError> {
+        let Some(node) = xml::child(joint, "mimic") else { return Ok(None) };
+        let source = self.required(node, "joint")?;
+        let source = joints.get(source).copied().ok_or_else(|| {
+            let what = format!("there is no joint `{}` to follow", show(source.as_bytes()));
+            self.error(node, what)
+                .hint("<mimic joint=\"NAME\" multiplier=\"1\" offset=\"0\"/> with the name of a joint")
+        })?;
+        let multiplier = self.number(node, "multiplier")?.unwrap_or(1.0);
+        Ok(Some(Mimic { joint: source, multiplier, offset: self.number(node, "offset")?.unwrap_or(0.0) }))
+    }
+
+    /// A fixed joint follows nobody, and nobody follows one; no joint follows itself, not even around corners.
+    fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [Joint]) -> Result<(), FormatError> {
+        for i in 0..joints.len() {
+            let Some(mimic) = joints[i].mimic else { continue };
+            let node = xml::child(nodes[i], "mimic").unwrap_or(nodes[i]);
+            if !joints[i].kind.moves() {
+                self.warn(
+                    node,
+                    "a fixed joint cannot follow another; its <mimic> is passed over",
+                    "type=\"revolute\", or no <mimic>",
+                );
+                joints[i].mimic = None;
+            } else if !joints[mimic.joint].kind.moves() {
+                let what = format!("follows the fixed joint `{}`", show(joints[mimic.joint].name.as_bytes()));
+                return Err(self.error(node, what).hint("the name of a joint that moves"));
+            }
+        }
+        // 0 unseen, 1 on the present trail, 2 known to end.
+        let mut state = vec![0; joints.len()];
+        for start in 0..joints.len() {
+            let mut trail = Vec::new();
+            let mut next = Some(start);
+            while let Some(i) = next.filter(|&i| state[i] != 2) {
+                if state[i] == 1 {
+                    return Err(self
+                        .error(nodes[i], "mimic joints that follow each other in a circle")
+                        .hint("one joint of them without <mimic>"));
+                }
+                state[i] = 1;
+                trail.push(i);
+                next = joints[i].mimic.map(|m| m.joint);
+            }
+            trail.into_iter().for_each(|i| state[i] = 2);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,89 @@
+//! XML with lines in every message.
+
+use std::path::Path;
+
+use roxmltree::{Document, Node, ParsingOptions};
+
+use crate::FormatError;
+use crate::scan::show;
+
+/// More nodes than any robot or mesh has; bounds the memory of the tree (a node takes about 100 bytes).
+const MOST_NODES: u32 = 4_000_000;
+
+pub(crate) fn parse<'a>(text: &'a str, file: &Path) -> Result<Document<'a>, FormatError> {
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|e| explain(&e, text, file))
+}
+
+fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
+    let line = error.pos().row as usize;
+    let at = |what: String| FormatError::new(file, line, what);
+    if !text.trim_start().starts_with('<') {
+        let first = text.trim_start().lines().next().unwrap_or_default();
+        return FormatError::new(file, 1, format!("is not XML: it begins with `{}`", show(first.as_bytes())))
+            .hint("an XML file; a URDF begins with <robot name=\"…\">");
+    }
+    match error {
+        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
+            at("xacro macros that are not expanded".into()).hint("run `xacro FILE > robot.urdf` and name its output")
+        }
+        roxmltree::Error::UnknownNamespace(prefix, _) => at(format!("the prefix `{prefix}:` is not declared"))
+            .hint(format!("xmlns:{prefix}=\"http://{prefix}\" in the root element, or remove the element")),
+        roxmltree::Error::DtdDetected => {
+            FormatError::new(file, None, "has a document type definition").hint("the file without its <!DOCTYPE …>")
+        }
+        roxmltree::Error::NodesLimitReached => {
+            FormatError::new(file, None, format!("has more than {MOST_NODES} XML nodes")).hint("a smaller model")
+        }
+        roxmltree::Error::UnclosedRootNode | roxmltree::Error::UnexpectedEndOfStream => {
+            let last = text.lines().count();
+            FormatError::new(file, last, "the XML ends before its elements are closed; is the file truncated?")
+                .hint("the closing tags; or copy the file again")
+        }
+        _ => at(format!("is not sound XML: {error}")).hint("check the tags around this line"),
+    }
+}
+
+/// The line of a node's begin.
+pub(crate) fn line(node: Node<'_, '_>) -> usize {
+    node.document().text_pos_at(node.range().start).row as usize
+}
+
+/// The line of an attribute, or of its node where it has none of that name.
+pub(crate) fn attribute_line(node: Node<'_, '_>, name: &str) -> usize {
+    let start = node.attribute_node(name).map_or(node.range().start, |a| a.range().start);
+    node.document().text_pos_at(start).row as usize
+}
+
+/// Child elements of a local name, whatever their namespace.
+pub(crate) fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |c| c.is_element() && c.tag_name().name() == name)
+}
+
+/// The first child element of a local name.
+pub(crate) fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
+    children(node, name).next()
+}
+
+/// All text directly in a node; comments and the like may divide it.
+pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
+    let mut pieces = node.children().filter(Node::is_text).filter_map(|t| t.text());
+    match (pieces.next(), pieces.next()) {
+        (None, _) => "".into(),
+        (Some(only), None) => only.into(),
+        (Some(first), Some(second)) => [first, second].into_iter().chain(pieces).collect::<Vec<_>>().join(" ").into(),
+    }
+}
+
+/// Where lines begin, for lines of many nodes: [`line`] scans the whole text before the node.
+pub(crate) struct LineIndex(Vec<usize>);
+
+impl LineIndex {
+    pub(crate) fn new(text: &str) -> Self {
+        Self(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect())
+    }
+
+    pub(crate) fn line(&self, node: Node<'_, '_>) -> usize {
+        self.0.partition_point(|&newline| newline < node.range().start) + 1
+    }
+}
