@@ -59,7 +59,7 @@ fn parse(text: &str) -> Result<Vec<Snippet>, String> {
     let mut lines = text.lines().enumerate();
     while let Some((index, line)) = lines.next() {
         let Some(expected) = marker(line).map_err(|e| format!("{}: {e}", index + 1))? else { continue };
-        if !lines.next().is_some_and(|(_, next)| next.trim() == "```sh") {
+        if lines.next().is_none_or(|(_, next)| next.trim() != "```sh") {
             return Err(format!("{}: `<!-- run -->` must stand right above a ```sh block", index + 1));
         }
         let block: Vec<&str> = lines.by_ref().map(|(_, next)| next).take_while(|next| next.trim() != "```").collect();

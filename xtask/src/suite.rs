@@ -7,6 +7,13 @@ use crate::{Failure, layers, models, python, shell, snippets};
 
 type Check = fn(&Context) -> Result<(), String>;
 
+/// How a step ended and how long it took.
+struct Outcome {
+    name: &'static str,
+    ok: bool,
+    time: Duration,
+}
+
 /// What every step knows.
 struct Context<'a> {
     root: &'a Path,
@@ -72,34 +79,35 @@ fn step_name(word: Option<&str>) -> Result<String, String> {
 /// Runs the chosen steps, all of them even where one fails, and sums up.
 pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if options.list {
-        STEPS.iter().for_each(|step| println!("{:<9} {}", step.name, step.what));
+        for step in &STEPS {
+            println!("{:<9} {}", step.name, step.what);
+        }
         return Ok(());
     }
     let context = Context { root, offline: options.offline };
     let chosen =
         STEPS.iter().filter(|step| options.only.is_empty() || options.only.iter().any(|name| name == step.name));
     let started = Instant::now();
-    let results: Vec<_> = chosen.map(|step| (step.name, timed(step, &context))).collect();
-    print_table(&results, started.elapsed());
-    let failed: Vec<&str> = results.iter().filter(|(_, (result, _))| result.is_err()).map(|(name, _)| *name).collect();
+    let outcomes: Vec<Outcome> = chosen.map(|step| timed(step, &context)).collect();
+    print_table(&outcomes, started.elapsed());
+    let failed: Vec<&str> = outcomes.iter().filter(|outcome| !outcome.ok).map(|outcome| outcome.name).collect();
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
 }
 
-fn timed(step: &Step, context: &Context) -> (Result<(), String>, Duration) {
+fn timed(step: &Step, context: &Context) -> Outcome {
     println!("\n== {}: {}", step.name, step.what);
     let started = Instant::now();
     let result = (step.check)(context);
     if let Err(message) = &result {
         println!("{} failed: {message}", step.name);
     }
-    (result, started.elapsed())
+    Outcome { name: step.name, ok: result.is_ok(), time: started.elapsed() }
 }
 
-fn print_table(results: &[(&str, (Result<(), String>, Duration))], total: Duration) {
-    println!("\nstep       result      time");
-    for (name, (result, time)) in results {
-        let verdict = if result.is_ok() { "ok" } else { "FAILED" };
-        println!("{name:<10} {verdict:<7} {:>7.1} s", time.as_secs_f64());
+fn print_table(outcomes: &[Outcome], total: Duration) {
+    println!("\nstep       result       time");
+    for Outcome { name, ok, time } in outcomes {
+        println!("{name:<10} {:<7} {:>7.1} s", if *ok { "ok" } else { "FAILED" }, time.as_secs_f64());
     }
     println!("{:<10} {:<7} {:>7.1} s", "all", "", total.as_secs_f64());
 }
@@ -124,16 +132,23 @@ fn clippy(context: &Context) -> Result<(), String> {
 fn tests(context: &Context) -> Result<(), String> {
     let python = python::ready(context.root).map(|path| path.to_string_lossy().into_owned());
     let mut env = network(context);
-    match &python {
-        Some(path) => env.push(("ELBOWROOM_PYTHON", path)),
-        None if context.offline => {
-            println!("--offline, and target/venv is not ready: the comparison with Pinocchio is skipped")
-        }
-        None => {
-            return Err("target/venv is not ready: run the step `python` first (cargo xtask test --only python)".into());
-        }
+    if let Some(path) = &python {
+        env.push(("ELBOWROOM_PYTHON", path));
+    } else if context.offline {
+        println!("--offline, and target/venv is not ready: the comparison with Pinocchio is skipped");
+    } else {
+        let first = "run the step `python` first (cargo xtask test --only python)";
+        return Err(format!("target/venv is not ready: {first}, or say --offline"));
     }
+    announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)
+}
+
+/// Tests on real robots pass where their data are missing: the log must show which run it was.
+fn announce_data(root: &Path) {
+    let folder = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), Into::into);
+    let verdict = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
+    println!("{verdict} {}", folder.display());
 }
 
 fn docs(context: &Context) -> Result<(), String> {
