@@ -13,6 +13,8 @@ const ABOUT: &str = "
      pointing forward. joint_2 positive: the upper arm leans forward. joint_3 positive: the forearm dips.
      joint_5 positive: the hand dips. joint_1 turns about z up, joint_4 and joint_6 about x forward.
      tool0 lies on the flange, z out of it, x up at zero. Speeds are those usual for a 16 kg arm.
+     The ranges are the published figures, counted from our zeros. The maker counts joint_3 from the straight arm and
+     the other way round, where the forearm dips 80 and rises 200 degrees from our zero instead of 110 and 170.
 ";
 
 const PAINT: [f64; 3] = [0.86, 0.24, 0.12];
