@@ -236,15 +236,21 @@ impl Solver {
     ) -> (Option<Found>, Remainder) {
         let mut x = if index == 0 { start.to_vec() } else { self.spread(index) };
         let iterations = self.options.iterations;
-        let mut remainder = self.descent(bounded).run(target, &mut x, iterations);
+        let remainder = self.descent(bounded).run(target, &mut x, iterations);
         if !self.met(&remainder) {
             return (None, remainder);
         }
-        let raw = x.clone();
-        if self.unwind(&mut x, start).is_some() && bounded {
-            x = raw;
+        // Met, but perhaps slowly (at a bound, or where axes line up): the last digits are cheap.
+        self.descent(bounded).run(target, &mut x, iterations);
+        let mut unwound = x.clone();
+        if self.unwind(&mut unwound, start).is_none() || !bounded {
+            // Draws in what the turns left outside by rounding.
+            let remainder = self.descent(bounded).run(target, &mut unwound, REFINE_STEPS);
+            if self.met(&remainder) {
+                return (Some(Found { x: unwound, remainder }), remainder);
+            }
         }
-        remainder = self.descent(bounded).remainder(target, &x);
+        let remainder = self.descent(bounded).remainder(target, &x);
         (Some(Found { x, remainder }), remainder)
     }
 

@@ -1,0 +1,68 @@
+//! Nothing on the way of a control tick takes memory. Alone in its file: the counter counts the whole process.
+mod common;
+
+use std::alloc::System;
+
+use common::Random;
+use elbowroom_kinematics::dh::ClassicalRow;
+use elbowroom_kinematics::inverse::{Method, Options, Solver};
+use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits};
+use elbowroom_spatial::{Pose, Vec3};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+fn arm(wrist_offset: f64) -> Chain {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let table = [
+        (0.3, quarter, 0.6, 0.0),
+        (0.7, 0.0, 0.0, quarter),
+        (0.185, quarter, 0.0, 0.0),
+        (wrist_offset, -quarter, 0.624, 0.0),
+        (0.0, quarter, 0.0, 0.0),
+        (0.0, 0.0, 0.12, 0.0),
+    ];
+    let row = |(i, (a, alpha, d, theta)): (usize, (f64, f64, f64, f64))| ClassicalRow {
+        joint: format!("joint_{i}"),
+        kind: JointKind::Revolute,
+        a,
+        alpha,
+        d,
+        theta,
+        limits: Limits::symmetric(3.0),
+    };
+    Chain::from_dh("arm", &table.into_iter().enumerate().map(row).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn forward_motion_jacobian_and_refine_take_no_memory() {
+    for (wrist_offset, method) in [(0.0, Method::SphericalWrist), (0.1, Method::Numeric)] {
+        let chain = arm(wrist_offset);
+        let mut state = ChainState::new(&chain);
+        let mut solver = Solver::new(&chain, chain.tip(), Pose::from_translation(Vec3::Z * 0.2), Options::default());
+        assert_eq!(solver.method(), method);
+        let (tip, mut columns, mut q) = (chain.tip(), [[0.0; 6]; 6], vec![0.0; 6]);
+        let mut random = Random(5);
+        let mut refined = 0;
+        let region = Region::new(ALLOCATOR);
+        for _ in 0..1000 {
+            random.state(&chain, &mut state.q);
+            random.state(&chain, &mut state.qd);
+            chain.forward(&mut state);
+            chain.forward_motion(&mut state);
+            chain.jacobian(&state, tip, Vec3::X, &mut columns);
+            q.copy_from_slice(&state.q);
+            q.iter_mut().for_each(|v| *v = (*v + random.range(-1e-3, 1e-3)).clamp(-3.0, 3.0));
+            let target = state.link_in_root(tip) * Pose::from_translation(Vec3::Z * 0.2);
+            refined += usize::from(solver.refine(&target, &mut q));
+        }
+        let used = region.change();
+        assert_eq!((used.allocations, used.reallocations, used.deallocations), (0, 0, 0));
+        assert!(refined > 990, "{refined}");
+        // The guard itself works.
+        let region = Region::new(ALLOCATOR);
+        assert_eq!(std::hint::black_box(vec![1_u8; 100]).len(), 100);
+        assert!(region.change().allocations > 0);
+    }
+}

@@ -1,0 +1,263 @@
+//! Denavit-Hartenberg tables: their product is the chain, whatever the axes; classical where classical suffices.
+#![allow(clippy::print_stdout)]
+
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use common::{Random, robots};
+use elbowroom_kinematics::dh::{ClassicalRow, Row, Table};
+use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+/// S4.3, written out as 4×4 matrices: the oracle.
+fn product(rows: &[Row], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
+    type M = [[f64; 4]; 4];
+    let times =
+        |a: M, b: M| -> M { std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum())) };
+    let unit: M = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
+    let rz = |t: f64| -> M {
+        let (s, c) = t.sin_cos();
+        [[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+    };
+    let rx = |t: f64| -> M {
+        let (s, c) = t.sin_cos();
+        [[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0], [0.0, 0.0, 0.0, 1.0]]
+    };
+    let along = |i: usize, v: f64| -> M {
+        let mut m = unit;
+        m[i][3] = v;
+        m
+    };
+    rows.iter().fold(unit, |at, row| {
+        let q = row.joint.as_deref().map_or(0.0, &mut value);
+        let (theta, d) = match row.kind {
+            JointKind::Fixed => (row.theta, row.d),
+            JointKind::Prismatic => (row.theta, row.d + q),
+            _ => (row.theta + q, row.d),
+        };
+        [rz(theta), along(2, d), along(0, row.a), along(1, row.b), rx(row.alpha)].into_iter().fold(at, times)
+    })
+}
+
+fn worst(chain: &Chain, table: &Table, tip: LinkId, random: &mut Random, states: usize) -> f64 {
+    let mut state = ChainState::new(chain);
+    let mut worst: f64 = 0.0;
+    for _ in 0..states {
+        for v in &mut state.q {
+            *v = random.range(-PI, PI);
+        }
+        chain.forward(&mut state);
+        let got = product(&table.rows, |name| chain.joint_value(chain.joint(name).unwrap(), &state.q));
+        let expected = state.link_in_root(tip).to_rows();
+        for (g, e) in got.iter().take(3).flatten().zip(expected.iter().flatten()) {
+            assert!(g.is_finite());
+            worst = worst.max((g - e).abs());
+        }
+    }
+    worst
+}
+
+/// Rotations that make axes parallel, opposite, perpendicular, nearly so, or anything; gimbal lock included.
+fn awkward_rotation(random: &mut Random) -> Rotation {
+    let tiny = [0.0, 1e-15, 1e-12, 1e-10, 1e-8, 3.7e-6, 1e-4, 2e-3][random.below(8)];
+    let quarter = |random: &mut Random| FRAC_PI_2 * random.below(4) as f64;
+    match random.below(6) {
+        0 => Rotation::IDENTITY,
+        1 => Rotation::from_rpy(quarter(random), quarter(random), quarter(random)),
+        2 => Rotation::from_rpy(quarter(random) + tiny, quarter(random) - tiny, quarter(random) + tiny),
+        3 => Rotation::from_rpy(tiny, -tiny, random.range(-PI, PI)),
+        4 => Rotation::from_rpy(random.range(-PI, PI), [FRAC_PI_2, -FRAC_PI_2][random.below(2)], random.range(-PI, PI)),
+        _ => random.pose().rotation,
+    }
+}
+
+fn awkward_offset(random: &mut Random) -> Vec3 {
+    let v = random.vector();
+    match random.below(5) {
+        0 => Vec3::ZERO,
+        1 => Vec3::new(0.0, 0.0, v.z),
+        2 => Vec3::new(v.x, 0.0, 0.0),
+        3 => Vec3::new(v.x * 1e-13, v.y * 1e-9, v.z),
+        _ => v,
+    }
+}
+
+fn awkward_chain(random: &mut Random) -> Chain {
+    let n = random.below(8);
+    let axes = [Vec3::Z, -Vec3::Z, Vec3::X, Vec3::Y, random.vector()];
+    let mut joints: Vec<Joint> = (0..n)
+        .map(|i| Joint {
+            name: format!("j{i}"),
+            kind: [
+                JointKind::Revolute,
+                JointKind::Revolute,
+                JointKind::Prismatic,
+                JointKind::Continuous,
+                JointKind::Fixed,
+            ][random.below(5)],
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin: Pose::new(awkward_rotation(random), awkward_offset(random)),
+            axis: axes[random.below(5)],
+            limits: Limits::symmetric(PI),
+            mimic: None,
+        })
+        .collect();
+    if n > 1 && joints[0].kind != JointKind::Fixed {
+        joints[n - 1].mimic = Some(Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.3 });
+    }
+    Chain::new("awkward", (0..=n).map(|i| format!("l{i}")).collect(), joints).unwrap()
+}
+
+#[test]
+fn twenty_thousand_awkward_chains() {
+    let mut random = Random(42);
+    let (mut largest, mut with_b, mut auxiliary) = (0.0_f64, 0, 0);
+    for _ in 0..20_000 {
+        let chain = awkward_chain(&mut random);
+        let table = Table::extract(&chain, chain.tip());
+        let residual = worst(&chain, &table, chain.tip(), &mut random, 3);
+        assert!(residual < 1e-9, "{residual} {table:#?} {:#?}", chain.joints());
+        assert!(table.residual < 1e-9, "{}", table.residual);
+        largest = largest.max(residual);
+        with_b += table.rows.iter().filter(|r| r.b != 0.0).count();
+        auxiliary += table.rows.iter().filter(|r| r.joint.is_none()).count();
+        // One row per moving joint, in order, bearing its name.
+        let names: Vec<_> = table.rows.iter().filter_map(|r| r.joint.clone()).collect();
+        let moving = chain.path(chain.tip()).into_iter().map(|j| &chain.joints()[j.0]);
+        let expected: Vec<_> = moving.filter(|j| j.kind != JointKind::Fixed).map(|j| j.name.clone()).collect();
+        assert_eq!(names, expected);
+        for row in &table.rows {
+            assert!(row.a.abs() < 1e4 && row.d.abs() < 1e4, "no common normal a mile away: {row:?}");
+        }
+    }
+    assert!(with_b > 0 && auxiliary > 0);
+    println!("largest residual {largest:.1e}, {with_b} rows with b, {auxiliary} rows without joint");
+}
+
+/// With every axis well apart from parallel, b is needed in no row but the one that ends at the tip.
+#[test]
+fn classical_where_classical_suffices() {
+    let mut random = Random(1);
+    for _ in 0..2000 {
+        let n = 1 + random.below(7);
+        let angle = |random: &mut Random| [FRAC_PI_2, -FRAC_PI_2, 0.0, PI, random.range(0.1, 3.0)][random.below(5)];
+        let rows: Vec<ClassicalRow> = (0..n)
+            .map(|i| ClassicalRow {
+                joint: format!("j{i}"),
+                kind: if random.below(5) == 0 { JointKind::Prismatic } else { JointKind::Revolute },
+                a: random.range(0.0, 1.0) * random.below(2) as f64,
+                alpha: angle(&mut random),
+                d: random.range(-1.0, 1.0) * random.below(2) as f64,
+                theta: angle(&mut random),
+                limits: Limits::symmetric(PI),
+            })
+            .collect();
+        let chain = Chain::from_dh("classical", &rows).unwrap();
+        let table = Table::extract(&chain, chain.tip());
+        assert!(table.rows.iter().all(|r| r.b.abs() < 1e-9), "{rows:#?} {table:#?}");
+        assert!(table.residual < 1e-12, "{}", table.residual);
+        assert_eq!(table.rows.len(), n, "a row per joint and none beside: {rows:#?} {table:#?}");
+    }
+}
+
+#[test]
+fn a_chain_from_classical_rows_is_their_product() {
+    let mut random = Random(9);
+    for _ in 0..500 {
+        let rows: Vec<ClassicalRow> = (0..6)
+            .map(|i| ClassicalRow {
+                joint: format!("joint_{}", i + 1),
+                kind: [JointKind::Revolute, JointKind::Prismatic, JointKind::Continuous][random.below(3)],
+                a: random.range(-1.0, 1.0),
+                alpha: random.range(-PI, PI),
+                d: random.range(-1.0, 1.0),
+                theta: random.range(-PI, PI),
+                limits: Limits::symmetric(2.0),
+            })
+            .collect();
+        let chain = Chain::from_dh("six", &rows).unwrap();
+        assert_eq!(chain.dof(), 6);
+        assert_eq!(chain.links()[chain.tip().0], "link_6");
+        let given = Table { rows: rows.iter().map(Row::from).collect(), residual: 0.0 };
+        assert!(worst(&chain, &given, chain.tip(), &mut random, 3) < 1e-13);
+        // And the frame of every row is a link.
+        let middle = Table { rows: given.rows[..3].to_vec(), residual: 0.0 };
+        assert!(worst(&chain, &middle, chain.link("link_3").unwrap(), &mut random, 3) < 1e-13);
+    }
+}
+
+/// α = ±π/2 and θ offsets as in robots.md: the KR125 of S2 comes back with its own lengths.
+#[test]
+fn the_table_of_a_known_robot_is_found_again() {
+    let table = [
+        (0.410, -FRAC_PI_2, 0.865, 0.0),
+        (1.000, 0.0, 0.0, 0.0),
+        (0.045, FRAC_PI_2, 0.0, -FRAC_PI_2),
+        (0.0, -FRAC_PI_2, -1.000, 0.0),
+        (0.0, FRAC_PI_2, 0.0, 0.0),
+        (0.0, PI, -0.210, PI),
+    ];
+    let row = |(i, (a, alpha, d, theta)): (usize, (f64, f64, f64, f64))| ClassicalRow {
+        joint: format!("a{}", i + 1),
+        kind: JointKind::Revolute,
+        a,
+        alpha,
+        d,
+        theta,
+        limits: Limits::symmetric(3.0),
+    };
+    let rows: Vec<_> = table.into_iter().enumerate().map(row).collect();
+    let chain = Chain::from_dh("kr125", &rows).unwrap();
+    let found = Table::extract(&chain, chain.tip());
+    assert!(found.residual < 1e-14);
+    assert_eq!(found.rows.len(), 6);
+    for (found, given) in found.rows.iter().zip(&rows) {
+        assert!((found.a - given.a).abs() < 1e-12 && (found.d.abs() - given.d.abs()).abs() < 1e-12, "{found:?}");
+        assert!(found.b == 0.0 && (found.alpha.abs() - given.alpha.abs()).abs() < 1e-12, "{found:?} {given:?}");
+    }
+}
+
+#[test]
+fn tables_become_chains_again() {
+    let mut random = Random(77);
+    for _ in 0..500 {
+        let chain = awkward_chain(&mut random);
+        let table = Table::extract(&chain, chain.tip());
+        let again = table.to_chain("again").unwrap();
+        let (mut a, mut b) = (ChainState::new(&chain), ChainState::new(&again));
+        for v in &mut a.q {
+            *v = random.range(-PI, PI);
+        }
+        for (value, id) in b.q.iter_mut().zip(again.active_joints()) {
+            *value = chain.joint_value(chain.joint(&again.joints()[id.0].name).unwrap(), &a.q);
+        }
+        chain.forward(&mut a);
+        again.forward(&mut b);
+        let (p, q) = (a.link_in_root(chain.tip()), b.link_in_root(again.tip()));
+        assert!(p.translation.distance(q.translation) < 1e-9);
+        assert!((p.rotation.inverse() * q.rotation).angle() < 1e-9);
+    }
+}
+
+#[test]
+fn every_real_robot_has_a_table() {
+    for (name, path) in robots() {
+        let chain = common::load(&path);
+        let mut random = Random(5);
+        for tip in chain.leaves() {
+            let table = Table::extract(&chain, tip);
+            let residual = worst(&chain, &table, tip, &mut random, 200);
+            assert!(residual < 1e-9 && table.residual < 1e-9, "{name} {residual}");
+            if tip == chain.tip() {
+                let b = table.rows.iter().filter(|r| r.b != 0.0).count();
+                let without = table.rows.iter().filter(|r| r.joint.is_none()).count();
+                println!(
+                    "{name:<42} {:>2} rows, {without} without joint, {b} with b, residual {residual:.1e}",
+                    table.rows.len()
+                );
+            }
+        }
+    }
+}

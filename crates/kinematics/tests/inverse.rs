@@ -1,0 +1,363 @@
+//! What an inverse must do beyond succeeding: all branches, nearest first, limits, singular poses, honest failures.
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use common::{Random, robots};
+use elbowroom_kinematics::dh::ClassicalRow;
+use elbowroom_kinematics::inverse::{IkError, Method, Options, Solver, Task};
+use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+fn serial(joints: &[(JointKind, Pose, Vec3, Limits)]) -> Chain {
+    let joints: Vec<Joint> = joints
+        .iter()
+        .enumerate()
+        .map(|(i, &(kind, origin, axis, limits))| Joint {
+            name: format!("j{i}"),
+            kind,
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin,
+            axis,
+            limits,
+            mimic: None,
+        })
+        .collect();
+    let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
+    Chain::new("serial", links, joints).unwrap()
+}
+
+/// Ortho-parallel basis and spherical wrist with every frame turned at random: nothing of the geometry is along an axis.
+fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
+    let lateral = random.range(-0.2, 0.2) * random.below(2) as f64;
+    let points = [
+        Vec3::new(0.0, 0.0, random.range(0.0, 0.5)),
+        Vec3::new(random.range(-0.4, 0.4) * random.below(3).min(1) as f64, lateral, random.range(0.0, 0.5)),
+        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
+        Vec3::new(random.range(-0.2, 0.2), 0.0, random.range(-0.1, 0.1)),
+        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
+        Vec3::new(0.0, 0.0, random.range(0.0, 0.1)),
+    ];
+    let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::Z, Vec3::Y, Vec3::Z];
+    // What the file shows: model frame k = file frame k · hidden(k)
+    let hidden: Vec<Rotation> = (0..7).map(|_| random.pose().rotation).collect();
+    let mut joints = Vec::new();
+    let mut before = random.pose().rotation; // the base itself is turned
+    for k in 0..6 {
+        let bend = Rotation::from_axis_angle(axes[k], random.range(-2.0, 2.0)); // zero positions anywhere
+        let origin = Pose::new(before * bend * hidden[k].inverse(), before * points[k]);
+        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        joints.push((JointKind::Revolute, origin, hidden[k] * (axes[k] * sign), Limits::symmetric(limit)));
+        before = hidden[k];
+    }
+    joints.push((JointKind::Fixed, random.pose(), Vec3::Z, Limits::UNLIMITED));
+    serial(&joints)
+}
+
+fn errors(chain: &Chain, q: &[f64], target: &Pose) -> (f64, f64) {
+    let mut state = ChainState::new(chain);
+    state.q.copy_from_slice(q);
+    chain.forward(&mut state);
+    let tip = state.link_in_root(chain.tip());
+    (tip.translation.distance(target.translation), (tip.rotation.inverse() * target.rotation).angle())
+}
+
+fn tip_at(chain: &Chain, q: &[f64]) -> Pose {
+    let mut state = ChainState::new(chain);
+    state.q.copy_from_slice(q);
+    chain.forward(&mut state);
+    state.link_in_root(chain.tip())
+}
+
+fn solver(chain: &Chain) -> Solver {
+    Solver::new(chain, chain.tip(), Pose::IDENTITY, Options::default())
+}
+
+fn same_modulo_turns(a: &[f64], b: &[f64], tolerance: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| {
+        let d = a - b;
+        (d - TAU * (d / TAU).round()).abs() < tolerance
+    })
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn spherical_wrists_are_seen_through_any_disguise() {
+    let mut random = Random(2);
+    for _ in 0..300 {
+        let chain = disguised_wrist_arm(&mut random, PI);
+        let mut solver = solver(&chain);
+        assert_eq!(solver.method(), Method::SphericalWrist);
+        for _ in 0..5 {
+            let (mut q, mut seed) = (vec![0.0; 6], vec![0.0; 6]);
+            random.state(&chain, &mut q);
+            random.state(&chain, &mut seed);
+            let target = tip_at(&chain, &q);
+            let all = solver.solve_all(&target, &seed);
+            assert!(all.len() <= 8);
+            for answer in &all {
+                let (m, rad) = errors(&chain, answer, &target);
+                assert!(m <= 1e-12 && rad <= 1e-12, "{m} {rad}");
+                assert!(answer.iter().all(|v| v.abs() <= PI));
+            }
+            assert!(all.windows(2).all(|w| distance(&w[0], &seed) <= distance(&w[1], &seed) + 1e-12));
+            assert!(all.iter().any(|a| same_modulo_turns(a, &q, 1e-6)), "the one it was made from: {q:?} {all:?}");
+            assert_eq!(solver.solve(&target, &seed).unwrap().q, all[0]);
+        }
+    }
+}
+
+#[test]
+fn real_spherical_wrists_give_all_branches() {
+    for (name, path) in robots() {
+        let chain = common::load(&path);
+        let mut solver = solver(&chain);
+        if solver.method() != Method::SphericalWrist {
+            continue;
+        }
+        let mut random = Random(8);
+        let (mut q, seed) = (vec![0.0; chain.dof()], vec![0.0; chain.dof()]);
+        for _ in 0..100 {
+            random.state(&chain, &mut q);
+            let all = solver.solve_all(&tip_at(&chain, &q), &seed);
+            let moving: Vec<usize> = chain.path(chain.tip()).into_iter().filter_map(|j| chain.q_index(j)).collect();
+            let pick = |v: &[f64]| moving.iter().map(|&i| v[i]).collect::<Vec<_>>();
+            assert!(all.iter().any(|a| same_modulo_turns(&pick(a), &pick(&q), 1e-6)), "{name} {q:?} {all:?}");
+        }
+    }
+}
+
+#[test]
+fn singular_poses_are_answered() {
+    for name in ["comau_ns16arc", "kuka_kr150_2", "abb_irb2400", "staubli_tx60", "fanuc_m10ia", "ur5e", "panda"] {
+        let Some(chain) = common::robot(name) else { return };
+        let mut solver = solver(&chain);
+        let (lower, upper) = (chain.lower(), chain.upper());
+        let n = chain.dof();
+        let mut random = Random(4);
+        for k in 0..60 {
+            let mut q = vec![0.0; n];
+            random.state(&chain, &mut q);
+            match k % 4 {
+                0 => q[4] = 0.0,                                                            // wrist stretched
+                1 => q[2] = 0.0,                                                            // elbow
+                2 => q.iter_mut().for_each(|v| *v = 0.0),                                   // everything at zero
+                _ => q.clone_from(&if k % 8 == 3 { lower.clone() } else { upper.clone() }), // in the corner of the limits
+            }
+            for i in 0..n {
+                q[i] = q[i].clamp(lower[i], upper[i]);
+            }
+            let target = tip_at(&chain, &q);
+            let mut seed = vec![0.0; n];
+            random.state(&chain, &mut seed);
+            for seed in [&seed, &q] {
+                let answer = solver.solve(&target, seed).unwrap_or_else(|e| panic!("{name} {k} {q:?}: {e}"));
+                let (m, rad) = errors(&chain, &answer.q, &target);
+                assert!(m <= 1e-9 && rad <= 2e-9, "{name} {m} {rad}");
+                assert!((0..n).all(|i| answer.q[i] >= lower[i] && answer.q[i] <= upper[i]));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_seed_on_the_answer_is_the_answer() {
+    for (name, path) in robots() {
+        let chain = common::load(&path);
+        let mut solver = solver(&chain);
+        let mut random = Random(6);
+        let mut q = vec![0.0; chain.dof()];
+        for _ in 0..50 {
+            random.state(&chain, &mut q);
+            let target = tip_at(&chain, &q);
+            let answer = solver.solve(&target, &q).unwrap_or_else(|e| panic!("{name} {q:?}: {e}"));
+            assert!(distance(&answer.q, &q) < 1e-6, "{name} {q:?} {:?}", answer.q);
+            let mut near: Vec<f64> = q.iter().map(|v| v + random.range(-1e-4, 1e-4)).collect();
+            for ((v, lo), hi) in near.iter_mut().zip(chain.lower()).zip(chain.upper()) {
+                *v = v.clamp(lo, hi);
+            }
+            assert!(solver.refine(&target, &mut near), "{name} {q:?}");
+        }
+    }
+}
+
+#[test]
+fn full_turns_follow_the_seed_within_the_limits() {
+    let mut random = Random(12);
+    let chain = disguised_wrist_arm(&mut random, 3.0 * PI);
+    let mut solver = solver(&chain);
+    for _ in 0..200 {
+        let (mut q, mut seed) = (vec![0.0; 6], vec![0.0; 6]);
+        random.state(&chain, &mut q);
+        random.state(&chain, &mut seed);
+        let answer = solver.solve(&tip_at(&chain, &q), &seed).unwrap();
+        for (v, s) in answer.q.iter().zip(&seed) {
+            assert!(v.abs() <= 3.0 * PI);
+            assert!((v - s).abs() <= PI + 1e-9 || v.abs() > PI, "no nearer turn was within: {v} {s}");
+        }
+    }
+    let endless: Vec<_> = chain
+        .joints()
+        .iter()
+        .map(|j| {
+            let kind = if j.kind == JointKind::Fixed { JointKind::Fixed } else { JointKind::Continuous };
+            (kind, j.origin, j.axis, j.limits)
+        })
+        .collect();
+    let chain = serial(&endless);
+    let mut solver = Solver::new(&chain, chain.tip(), Pose::IDENTITY, Options::default());
+    let q = [0.3, -0.4, 0.5, 0.6, 0.7, 0.8];
+    let seed: Vec<f64> = q.iter().map(|v| v + 40.0 * TAU + 0.01).collect();
+    let answer = solver.solve(&tip_at(&chain, &q), &seed).unwrap();
+    assert!(distance(&answer.q, &seed) < 0.1, "{answer:?}");
+}
+
+#[test]
+fn failures_say_what_is_the_matter() {
+    let mut random = Random(20);
+    let chain = disguised_wrist_arm(&mut random, PI);
+    let mut closed = solver(&chain);
+    let far = Pose::from_translation(Vec3::X * 100.0);
+    match closed.solve(&far, &[0.0; 6]) {
+        Err(IkError::Unreachable { position_error_m, .. }) => assert!(position_error_m > 90.0),
+        other => panic!("{other:?}"),
+    }
+    assert!(closed.solve_all(&far, &[0.0; 6]).is_empty());
+    for seed in [&[0.0; 5][..], &[0.0; 7], &[f64::NAN; 6], &[f64::INFINITY; 6]] {
+        assert!(matches!(closed.solve(&Pose::IDENTITY, seed), Err(IkError::BadInput(_))));
+        assert!(closed.solve_all(&Pose::IDENTITY, seed).is_empty());
+    }
+    let nowhere = Pose::from_translation(Vec3::splat(f64::NAN));
+    assert!(matches!(closed.solve(&nowhere, &[0.0; 6]), Err(IkError::BadInput(_))));
+    let mut q = [0.0; 6];
+    assert!(!closed.refine(&nowhere, &mut q) && !closed.refine(&far, &mut q));
+
+    // A planar arm that could, if only its elbow could bend.
+    let z = Vec3::Z;
+    let stiff = serial(&[
+        (JointKind::Revolute, Pose::IDENTITY, z, Limits::symmetric(3.0)),
+        (JointKind::Revolute, Pose::from_translation(Vec3::X), z, Limits::range(-0.1, 0.1)),
+        (JointKind::Fixed, Pose::from_translation(Vec3::X), z, Limits::UNLIMITED),
+    ]);
+    let options = Options { task: Task::Position, ..Options::default() };
+    let mut planar = Solver::new(&stiff, stiff.tip(), Pose::IDENTITY, options);
+    match planar.solve(&Pose::from_translation(Vec3::new(1.0, 0.5, 0.0)), &[0.0; 2]) {
+        Err(IkError::Limits { joint, value, upper, .. }) => {
+            assert!(joint == "j1" && value.abs() > upper);
+        }
+        other => panic!("{other:?}"),
+    }
+    // Off its plane: within reach, yet no.
+    match planar.solve(&Pose::from_translation(Vec3::new(1.0, 0.5, 0.2)), &[0.0; 2]) {
+        Err(IkError::NoConvergence { position_error_m, .. }) => assert!(position_error_m > 0.15),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn fewer_than_six_axes_reach_positions_and_what_poses_they_can() {
+    let (y, z) = (Vec3::Y, Vec3::Z);
+    let limits = Limits::symmetric(3.0);
+    let chain = serial(&[
+        (JointKind::Revolute, Pose::from_translation(z * 0.3), z, limits),
+        (JointKind::Revolute, Pose::IDENTITY, y, limits),
+        (JointKind::Prismatic, Pose::from_translation(z * 0.2), z, Limits::range(0.0, 0.5)),
+        (JointKind::Fixed, Pose::from_translation(z * 0.1), z, Limits::UNLIMITED),
+    ]);
+    let q = [0.5, 0.7, 0.3];
+    let target = tip_at(&chain, &q);
+    let mut pose = solver(&chain);
+    assert_eq!(pose.method(), Method::Numeric);
+    let answer = pose.solve(&target, &[0.1; 3]).unwrap();
+    assert!(answer.position_error_m < 1e-12 && answer.angle_error_rad < 1e-12);
+    let turned = Pose::new(Rotation::from_rpy(0.0, 2.0, 0.0), target.translation);
+    assert!(pose.solve(&turned, &[0.1; 3]).is_err());
+    let options = Options { task: Task::Position, ..Options::default() };
+    let answer = Solver::new(&chain, chain.tip(), Pose::IDENTITY, options).solve(&turned, &[0.1; 3]).unwrap();
+    assert!(answer.position_error_m < 1e-9 && answer.angle_error_rad > 0.1, "{answer:?}");
+}
+
+#[test]
+fn locked_joints_stay_and_joints_beside_the_path_keep_their_seed() {
+    let limits = Limits::symmetric(3.0);
+    let (y, z) = (Vec3::Y, Vec3::Z);
+    let up = Pose::from_translation(z * 0.4);
+    let mut joints: Vec<_> = [z, y, z, y, z, y, z].map(|axis| (JointKind::Revolute, up, axis, limits)).to_vec();
+    joints[2].3 = Limits::range(0.25, 0.25);
+    let chain = serial(&joints);
+    let mut solver = solver(&chain);
+    let target = tip_at(&chain, &[0.1, 0.5, 0.25, 0.8, -0.4, 0.9, 0.2]);
+    let answer = solver.solve(&target, &[0.0; 7]).unwrap();
+    assert_eq!(answer.q[2], 0.25);
+
+    // A gripper on the third link: its joint is none of the tip's business.
+    let mut joints = chain.joints().to_vec();
+    let mut links = chain.links().to_vec();
+    links.push("finger".into());
+    let finger = Joint { name: "finger".into(), parent: LinkId(3), child: LinkId(8), ..joints[0].clone() };
+    joints.insert(0, finger);
+    let gripping = Chain::new("gripping", links, joints).unwrap();
+    let mut seed = vec![0.0; 8];
+    seed[0] = 1.234;
+    let mut solver = Solver::new(&gripping, gripping.link("l7").unwrap(), Pose::IDENTITY, Options::default());
+    let again = solver.solve(&target, &seed).unwrap();
+    assert_eq!((again.q[0], &again.q[1..]), (1.234, &answer.q[..]));
+}
+
+#[test]
+fn mimic_joints_on_the_way_are_followed() {
+    let limits = Limits::symmetric(2.5);
+    let (y, z) = (Vec3::Y, Vec3::Z);
+    let up = Pose::from_translation(z * 0.4);
+    let mut joints =
+        serial(&[z, y, y, z, y, z, y].map(|axis| (JointKind::Revolute, up, axis, limits))).joints().to_vec();
+    joints[2].mimic = Some(Mimic { joint: JointId(1), multiplier: -0.5, offset: 0.2 });
+    let chain = Chain::new("mimic", (0..8).map(|i| format!("l{i}")).collect(), joints).unwrap();
+    assert_eq!(chain.dof(), 6);
+    let mut solver = solver(&chain);
+    assert_eq!(solver.method(), Method::Numeric);
+    let mut random = Random(30);
+    let (mut q, mut seed, mut found) = (vec![0.0; 6], vec![0.0; 6], 0);
+    for _ in 0..200 {
+        random.state(&chain, &mut q);
+        random.state(&chain, &mut seed);
+        let target = tip_at(&chain, &q);
+        if let Ok(answer) = solver.solve(&target, &seed) {
+            let (m, rad) = errors(&chain, &answer.q, &target);
+            assert!(m < 1e-9 && rad < 1e-9);
+            found += 1;
+        }
+    }
+    assert!(found >= 198, "{found}");
+}
+
+#[test]
+fn the_same_question_gets_the_same_answer() {
+    let rows: Vec<ClassicalRow> = (0..7)
+        .map(|i| ClassicalRow {
+            joint: format!("j{i}"),
+            kind: JointKind::Revolute,
+            a: 0.0,
+            alpha: if i % 2 == 0 { FRAC_PI_2 } else { -FRAC_PI_2 },
+            d: 0.2,
+            theta: 0.0,
+            limits: Limits::symmetric(2.0),
+        })
+        .collect();
+    let chain = Chain::from_dh("seven", &rows).unwrap();
+    let target = tip_at(&chain, &[0.3, 1.0, -0.7, 1.2, 0.4, -0.9, 1.1]);
+    let (mut first, mut used) = (solver(&chain), solver(&chain));
+    let _ = used.solve(&Pose::from_translation(Vec3::splat(0.3)), &[0.5; 7]);
+    let (a, b) = (first.solve(&target, &[0.0; 7]).unwrap(), used.solve(&target, &[0.0; 7]).unwrap());
+    assert_eq!(a, b);
+    let all = first.solve_all(&target, &[0.0; 7]);
+    assert!(all.len() > 1 && all.len() <= 16);
+    for q in all {
+        let (m, rad) = errors(&chain, &q, &target);
+        assert!(m < 1e-9 && rad < 1e-9);
+    }
+}
