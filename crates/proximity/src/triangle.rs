@@ -1,1 +1,170 @@
+//! Triangles and segments in a common frame: the leaf tests of meshes.
 
+use elbowroom_spatial::Vec3;
+
+/// Two points and the square of their distance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Near {
+    pub squared: f64,
+    pub on_a: Vec3,
+    pub on_b: Vec3,
+}
+
+impl Near {
+    pub const FAR: Self = Self { squared: f64::INFINITY, on_a: Vec3::ZERO, on_b: Vec3::ZERO };
+
+    #[inline]
+    fn new(on_a: Vec3, on_b: Vec3) -> Self {
+        Self { squared: (on_a - on_b).length_squared(), on_a, on_b }
+    }
+
+    #[inline]
+    fn or_nearer(self, o: Self) -> Self {
+        if o.squared < self.squared { o } else { self }
+    }
+
+    #[inline]
+    fn swapped(self) -> Self {
+        Self { squared: self.squared, on_a: self.on_b, on_b: self.on_a }
+    }
+}
+
+/// The point of the segment nearest to `p`.
+#[inline]
+pub(crate) fn nearest_on_segment(p: Vec3, a: Vec3, b: Vec3) -> Vec3 {
+    let ab = b - a;
+    let along = (p - a).dot(ab);
+    let squared = ab.length_squared();
+    if !(along > 0.0) {
+        return a;
+    }
+    if along >= squared { b } else { a + ab * (along / squared) }
+}
+
+/// The point of the triangle nearest to `p`. Inside is decided by the signs of sub-areas about differences of nearby
+/// points, so slivers and far points do not lose their digits; outside, the nearest edge is exact.
+#[inline]
+pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+    let n = (b - a).cross(c - a);
+    let wa = n.dot((b - p).cross(c - b));
+    let wb = n.dot((c - p).cross(a - c));
+    let wc = n.dot((a - p).cross(b - a));
+    if wa > 0.0 && wb > 0.0 && wc > 0.0 {
+        let sum = wa + wb + wc;
+        return a + (b - a) * (wb / sum) + (c - a) * (wc / sum);
+    }
+    let candidates = [nearest_on_segment(p, a, b), nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)];
+    let squared = candidates.map(|q| (q - p).length_squared());
+    let first = if squared[1] < squared[0] { 1 } else { 0 };
+    candidates[if squared[2] < squared[first] { 2 } else { first }]
+}
+
+/// Nearest points of two segments. The derivative of the squared distance along the first is monotone and piecewise
+/// linear; its root is found in the piece that holds it, with a slope free of cancellation for parallel segments.
+pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
+    let (u, v) = (a1 - a0, b1 - b0);
+    let vv = v.length_squared();
+    let slope_at = |s: f64| {
+        let p = a0 + u * s;
+        (p - nearest_on_segment(p, b0, b1)).dot(u)
+    };
+    let finish = |s: f64| {
+        let p = a0 + u * s;
+        Near::new(p, nearest_on_segment(p, b0, b1))
+    };
+    let (mut lo, mut hi) = (0.0, 1.0);
+    let (mut g_lo, mut g_hi) = (slope_at(0.0), slope_at(1.0));
+    if !(g_lo < 0.0) {
+        return finish(0.0);
+    }
+    if !(g_hi > 0.0) {
+        return finish(1.0);
+    }
+    let uv = u.dot(v);
+    if uv != 0.0 {
+        for s in [(b0 - a0).dot(v) / uv, ((b0 - a0).dot(v) + vv) / uv] {
+            if s > lo && s < hi {
+                let g = slope_at(s);
+                if g > 0.0 {
+                    (hi, g_hi) = (s, g);
+                } else {
+                    (lo, g_lo) = (s, g);
+                }
+            }
+        }
+    }
+    finish(lo + (hi - lo) * (g_lo / (g_lo - g_hi)))
+}
+
+/// True where the segment passes through the triangle (its border included, up to rounding).
+fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
+    let n = (b - a).cross(c - a);
+    let (hp, hq) = (n.dot(p - a), n.dot(q - a));
+    if (hp > 0.0) == (hq > 0.0) || hp == hq {
+        return None;
+    }
+    let x = p + (q - p) * (hp / (hp - hq));
+    let inside =
+        n.dot((b - a).cross(x - a)) >= 0.0 && n.dot((c - b).cross(x - b)) >= 0.0 && n.dot((a - c).cross(x - c)) >= 0.0;
+    inside.then_some(x)
+}
+
+/// Nearest points of a segment (first) and a triangle.
+pub(crate) fn segment_triangle(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Near {
+    if let Some(x) = segment_crosses(p, q, t) {
+        return Near { squared: 0.0, on_a: x, on_b: x };
+    }
+    let mut best = Near::new(p, nearest_on_triangle(p, t)).or_nearer(Near::new(q, nearest_on_triangle(q, t)));
+    for k in 0..3 {
+        best = best.or_nearer(segment_segment(p, q, t[k], t[(k + 1) % 3]));
+    }
+    best
+}
+
+/// Nearest points of two triangles.
+pub(crate) fn triangle_triangle(s: [Vec3; 3], t: [Vec3; 3]) -> Near {
+    let mut best = Near::FAR;
+    for k in 0..3 {
+        let crossing = segment_crosses(s[k], s[(k + 1) % 3], t).or_else(|| segment_crosses(t[k], t[(k + 1) % 3], s));
+        if let Some(x) = crossing {
+            return Near { squared: 0.0, on_a: x, on_b: x };
+        }
+    }
+    for k in 0..3 {
+        best = best.or_nearer(Near::new(s[k], nearest_on_triangle(s[k], t)));
+        best = best.or_nearer(Near::new(t[k], nearest_on_triangle(t[k], s)).swapped());
+        for l in 0..3 {
+            best = best.or_nearer(segment_segment(s[k], s[(k + 1) % 3], t[l], t[(l + 1) % 3]));
+        }
+    }
+    best
+}
+
+/// False only where a plane certainly separates the triangles: 2 normals, 9 edge pairs, and 6 in-plane normals for
+/// coplanar ones. `slack` is the rounding error of a coordinate, metres.
+pub(crate) fn triangles_touch(s: [Vec3; 3], t: [Vec3; 3], slack: f64) -> bool {
+    let edges = |x: [Vec3; 3]| [x[1] - x[0], x[2] - x[1], x[0] - x[2]];
+    let (es, et) = (edges(s), edges(t));
+    let (ns, nt) = (es[0].cross(es[1]), et[0].cross(et[1]));
+    if apart_along(ns, &s, &t, slack) || apart_along(nt, &s, &t, slack) {
+        return false;
+    }
+    for u in es {
+        for v in et {
+            if apart_along(u.cross(v), &s, &t, slack) {
+                return false;
+            }
+        }
+    }
+    !es.iter().any(|&e| apart_along(ns.cross(e), &s, &t, slack))
+        && !et.iter().any(|&e| apart_along(nt.cross(e), &s, &t, slack))
+}
+
+#[inline]
+fn apart_along(axis: Vec3, s: &[Vec3; 3], t: &[Vec3; 3], slack: f64) -> bool {
+    let (a, b) = (s.map(|p| p.dot(axis)), t.map(|p| p.dot(axis)));
+    let low = |x: [f64; 3]| x[0].min(x[1]).min(x[2]);
+    let high = |x: [f64; 3]| x[0].max(x[1]).max(x[2]);
+    let gap = (low(a) - high(b)).max(low(b) - high(a));
+    gap > slack * (axis.x.abs() + axis.y.abs() + axis.z.abs())
+}

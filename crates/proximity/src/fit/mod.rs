@@ -1,8 +1,16 @@
 //! Simple shapes around points, always enclosing every one of them.
+//!
+//! Each fit is verified against all the points by the arithmetic that the distance queries use, and grown by what
+//! rounding asks for. Fits work on the convex hull's vertices where there is one.
+
+mod ball;
+mod capsule;
+mod cuboid;
+mod frame;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::Shape;
+use crate::{ConvexHull, Shape, Sphere};
 
 /// A shape that encloses given points.
 #[derive(Debug, Clone)]
@@ -15,19 +23,88 @@ pub struct Fit {
     pub volume: f64,
 }
 
-/// A small enclosing capsule; `None` without points or where one is not finite.
-pub fn capsule(_points: &[Vec3]) -> Option<Fit> {
-    None
+/// Room for the rounding of a pose that is composed with others later, as a fraction of the coordinates.
+const GROWTH: f64 = 4.0 * f64::EPSILON;
+
+/// A small enclosing capsule: axis from the principal axes, then turned to the least volume (a local minimum).
+/// `None` without points or where one is not finite.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, fit};
+/// use elbowroom_spatial::Vec3;
+/// let rod = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.05, 0.0), Vec3::new(0.5, -0.05, 0.0)];
+/// let fit = fit::capsule(&rod).unwrap();
+/// assert!(matches!(fit.shape, Shape::Capsule(c) if c.radius < 0.06));
+/// ```
+pub fn capsule(points: &[Vec3]) -> Option<Fit> {
+    let points = extreme(points)?;
+    let (capsule, in_frame) = capsule::fit(&points)?;
+    Some(Fit { shape: Shape::Capsule(capsule), in_frame, volume: capsule.volume() })
 }
-/// A small enclosing box; `None` without points or where one is not finite.
-pub fn cuboid(_points: &[Vec3]) -> Option<Fit> {
-    None
+
+/// A small enclosing box: flush with a face and an edge of the convex hull or along the principal axes, then turned to
+/// the least volume (a local minimum). `None` without points or where one is not finite.
+///
+/// ```
+/// use elbowroom_proximity::fit;
+/// use elbowroom_spatial::Vec3;
+/// let fit = fit::cuboid(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(1.0)]).unwrap();
+/// assert!(fit.volume < 1.0 + 1e-9);
+/// ```
+pub fn cuboid(points: &[Vec3]) -> Option<Fit> {
+    let hull = ConvexHull::from_points(points).ok();
+    let points = extreme(points)?;
+    let (cuboid, in_frame) = cuboid::fit(&points, hull.as_ref())?;
+    Some(Fit { shape: Shape::Cuboid(cuboid), in_frame, volume: cuboid.volume() })
 }
-/// The smallest enclosing sphere; `None` without points or where one is not finite.
-pub fn sphere(_points: &[Vec3]) -> Option<Fit> {
-    None
+
+/// The smallest enclosing sphere. `None` without points or where one is not finite.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, fit};
+/// use elbowroom_spatial::Vec3;
+/// let fit = fit::sphere(&[Vec3::X, -Vec3::X, Vec3::Y * 0.5]).unwrap();
+/// assert!(matches!(fit.shape, Shape::Sphere(s) if (s.radius - 1.0).abs() < 1e-12));
+/// ```
+pub fn sphere(points: &[Vec3]) -> Option<Fit> {
+    let points = extreme(points)?;
+    let (center, _) = ball::smallest(&points);
+    let in_frame = Pose::from_translation(center);
+    let reach = points.iter().fold(0.0, |r: f64, p| r.max(p.distance(center)));
+    let sphere = Sphere { radius: reach + GROWTH * scale(&points) };
+    Some(Fit { shape: Shape::Sphere(sphere), in_frame, volume: sphere.volume() })
 }
-/// The smaller of capsule and box by volume; `None` without points or where one is not finite.
-pub fn tightest(_points: &[Vec3]) -> Option<Fit> {
-    None
+
+/// The smaller of capsule and box by volume. `None` without points or where one is not finite.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, fit};
+/// use elbowroom_spatial::{Obb, Pose, Vec3};
+/// let corners = Obb { pose: Pose::IDENTITY, half_extents: Vec3::new(0.3, 0.2, 0.1) }.corners();
+/// assert!(matches!(fit::tightest(&corners).unwrap().shape, Shape::Cuboid(_)));
+/// ```
+pub fn tightest(points: &[Vec3]) -> Option<Fit> {
+    let (capsule, cuboid) = (capsule(points)?, cuboid(points)?);
+    Some(if capsule.volume < cuboid.volume { capsule } else { cuboid })
+}
+
+/// The points that matter: those of the hull, or all where there is no hull. A hull may leave points out by its
+/// tolerance, so those that it does not hold exactly stay in.
+fn extreme(points: &[Vec3]) -> Option<Vec<Vec3>> {
+    if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let Ok(hull) = ConvexHull::from_points(points) else { return Some(points.to_vec()) };
+    let mut kept = hull.vertices().to_vec();
+    let margin = 1e-13 * scale(points);
+    let near_surface = |p: Vec3| hull.planes().iter().any(|(n, offset)| n.dot(p) > offset - margin);
+    if points.len() <= 4096 || points.len() * hull.planes().len() < 50_000_000 {
+        kept.extend(points.iter().copied().filter(|&p| near_surface(p)));
+        return Some(kept);
+    }
+    Some(points.to_vec())
+}
+
+fn scale(points: &[Vec3]) -> f64 {
+    points.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element()))
 }

@@ -1,49 +1,253 @@
-//! Distance between two placed shapes.
+//! Distance between two placed shapes: a file per method, the choice per pair here.
+
+mod box_box;
+pub(crate) mod core;
+pub(crate) mod gjk;
+mod half_space;
+mod mesh;
+mod segment;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::Shape;
+use self::core::{Core, Gap, rounded, rounding};
+use crate::{Capsule, Cuboid, Shape, Sphere};
+
+pub(crate) use box_box::best_axis;
+pub(crate) use mesh::nearest_on_mesh;
 
 /// How far apart two shapes are, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
     /// Distance in metres, 0 on contact or overlap.
     pub distance: f64,
-    /// Proven: the exact distance is not below this, metres.
+    /// Proven: the exact distance is not below this, metres. For closed forms it is `distance` less a few units in
+    /// the last place of the largest coordinate involved.
     pub lower_bound: f64,
-    /// Nearest point of the first shape, in the world. On overlap: some common or nearby point.
+    /// Nearest point of the first shape, in the world. On overlap: a point in or near both.
     pub on_a: Vec3,
     /// Nearest point of the second shape, in the world.
     pub on_b: Vec3,
 }
 
+impl Separation {
+    fn swapped(self) -> Self {
+        Self { on_a: self.on_b, on_b: self.on_a, ..self }
+    }
+
+    fn unknown(a_in_world: &Pose, b_in_world: &Pose) -> Self {
+        Self { distance: 0.0, lower_bound: 0.0, on_a: a_in_world.translation, on_b: b_in_world.translation }
+    }
+}
+
 /// Distance between two shapes, with witness points.
+///
+/// A NaN or an infinity in a pose or a dimension gives distance 0: unknown is not free.
+///
+/// ```
+/// use elbowroom_proximity::{Cuboid, Shape, Sphere, separation};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+/// let table = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.5, 0.5, 0.1) });
+/// let s = separation(&ball, &Pose::from_translation(Vec3::new(0.2, 0.0, 0.5)), &table, &Pose::IDENTITY);
+/// assert!((s.distance - 0.3).abs() < 1e-15 && s.lower_bound <= s.distance);
+/// assert!((s.on_b - Vec3::new(0.2, 0.0, 0.1)).length() < 1e-15);
+/// ```
 pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Separation {
-    separation_within(a, a_in_world, b, b_in_world, f64::INFINITY).unwrap_or(Separation {
-        distance: 0.0,
-        lower_bound: 0.0,
-        on_a: a_in_world.translation,
-        on_b: b_in_world.translation,
-    })
+    // Without a limit nothing is too far; `unknown` is for shapes with no point at all, which cannot be made.
+    separation_within(a, a_in_world, b, b_in_world, f64::INFINITY)
+        .unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
 }
 
-/// Like [`separation`], or `None` where the shapes are certainly farther apart than `limit` metres.
-pub fn separation_within(
-    _a: &Shape,
-    _a_in_world: &Pose,
-    _b: &Shape,
-    _b_in_world: &Pose,
-    _limit: f64,
-) -> Option<Separation> {
-    None
+/// Like [`separation`], or `None` where the shapes are certainly farther apart than `limit` metres: much faster for
+/// far pairs of boxes, cylinders, hulls and meshes.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere, separation_within};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (ball, far) = (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::X * 3.0));
+/// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 1.0).is_none());
+/// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 2.9).is_some());
+/// ```
+pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    if !(usable(a, a_in_world) && usable(b, b_in_world)) {
+        return Some(Separation::unknown(a_in_world, b_in_world));
+    }
+    let found = if rank(a) <= rank(b) {
+        ordered(a, a_in_world, b, b_in_world, limit)?
+    } else {
+        ordered(b, b_in_world, a, a_in_world, limit)?.swapped()
+    };
+    // Numbers so large that their products overflow end here.
+    if !found.distance.is_finite() {
+        return Some(Separation::unknown(a_in_world, b_in_world));
+    }
+    (!(found.lower_bound > limit)).then_some(found)
 }
 
-/// True where the shapes touch or overlap.
+/// True where the shapes touch or overlap, or are too close for f64 to tell.
+///
+/// ```
+/// use elbowroom_proximity::{Cuboid, HalfSpace, Shape, collides};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (floor, gun) = (Shape::HalfSpace(HalfSpace), Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.1) }));
+/// assert!(collides(&gun, &Pose::from_translation(Vec3::Z * 0.1), &floor, &Pose::IDENTITY));
+/// assert!(!collides(&gun, &Pose::from_translation(Vec3::Z * 0.11), &floor, &Pose::IDENTITY));
+/// ```
 pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
     within(a, a_in_world, b, b_in_world, 0.0)
 }
 
-/// True where the shapes are not farther apart than `tolerance` metres.
+/// True where the shapes are not proven to be farther apart than `tolerance` metres.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere, within};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (ball, there) = (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::X));
+/// assert!(within(&ball, &Pose::IDENTITY, &ball, &there, 0.81));
+/// assert!(!within(&ball, &Pose::IDENTITY, &ball, &there, 0.79));
+/// ```
 pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
-    separation(a, a_in_world, b, b_in_world).lower_bound <= tolerance
+    separation_within(a, a_in_world, b, b_in_world, tolerance).is_some()
+}
+
+/// Simple before complex, so that each pair is written once.
+#[inline]
+fn rank(s: &Shape) -> u8 {
+    match s {
+        Shape::Sphere(_) => 0,
+        Shape::Capsule(_) => 1,
+        Shape::Cylinder(_) => 2,
+        Shape::Cuboid(_) => 3,
+        Shape::Hull(_) => 4,
+        Shape::Mesh(_) => 5,
+        Shape::HalfSpace(_) => 6,
+    }
+}
+
+/// True where no number of shape or pose is NaN or infinite, and no dimension is negative.
+#[inline]
+pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
+    let (t, r) = (pose.translation, pose.rotation);
+    let sum = t + r.x_axis() + r.y_axis() + r.z_axis();
+    let dimensions = match s {
+        Shape::Sphere(s) => s.radius >= 0.0 && s.radius.is_finite(),
+        Shape::Capsule(Capsule { half_length: h, radius: r }) => *h >= 0.0 && *r >= 0.0 && (h + r).is_finite(),
+        Shape::Cylinder(c) => c.half_length >= 0.0 && c.radius >= 0.0 && (c.half_length + c.radius).is_finite(),
+        Shape::Cuboid(c) => {
+            let h = c.half_extents;
+            h.x >= 0.0 && h.y >= 0.0 && h.z >= 0.0 && (h.x + h.y + h.z).is_finite()
+        }
+        Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => true,
+    };
+    // A NaN or an infinity in any term makes the sum one.
+    dimensions && (sum.x + sum.y + sum.z).is_finite()
+}
+
+#[inline]
+fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    match (a, b) {
+        (Shape::Sphere(s), _) => point(s, a_in_world, b, b_in_world, limit),
+        (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
+            Some(capsule(c, a_in_world, b, b_in_world))
+        }
+        (Shape::HalfSpace(_), _) => {
+            Some(world(half_space::both(&b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
+        }
+        (Shape::Mesh(m), Shape::HalfSpace(_)) => {
+            Some(world(mesh::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
+        }
+        (Shape::Mesh(m), Shape::Mesh(n)) => {
+            let gap = mesh::mesh_mesh(m, n, &a_in_world.inverse_mul(b_in_world), limit)?;
+            Some(world(gap, [0.0; 2], a_in_world))
+        }
+        (_, Shape::Mesh(m)) => {
+            let (core, radius) = rounded(a)?;
+            let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit + radius, radius)?;
+            Some(world(gap, [0.0, radius], b_in_world).swapped())
+        }
+        _ => convex(a, b, &b_in_world.inverse_mul(a_in_world), limit).map(|(gap, radii)| world(gap, radii, b_in_world)),
+    }
+}
+
+/// A sphere is its centre with a radius, and the centre's distance has a closed form.
+#[inline]
+fn point(s: &Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    let p = b_in_world.inverse_transform_point(a_in_world.translation);
+    let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element();
+    let (q, radius) = match b {
+        Shape::Sphere(o) => (Vec3::ZERO, o.radius),
+        Shape::Capsule(c) => (c.axis_point(p), c.radius),
+        Shape::Cylinder(c) => (c.nearest(p), 0.0),
+        Shape::Cuboid(c) => (c.nearest(p), 0.0),
+        Shape::HalfSpace(_) => (Vec3::new(p.x, p.y, p.z.min(0.0)), 0.0),
+        Shape::Hull(h) => (h.nearest(p), 0.0),
+        Shape::Mesh(m) => {
+            let gap = mesh::mesh_core(m, &Core::Point, &Pose::from_translation(p), limit + s.radius, s.radius)?;
+            return Some(world(gap, [0.0, s.radius], b_in_world).swapped());
+        }
+    };
+    Some(world(Gap::closed(p, q, size + q.abs().max_element()), [s.radius, radius], b_in_world))
+}
+
+fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Separation {
+    let axis = segment::Segment {
+        middle: b_in_world.inverse_transform_point(a_in_world.translation),
+        direction: b_in_world.inverse_transform_vector(a_in_world.rotation.z_axis()),
+        half: c.half_length,
+    };
+    let (p, q, radius) = match b {
+        Shape::Capsule(o) => {
+            let p = segment::nearest_to_box(&axis, &Cuboid { half_extents: Vec3::Z * o.half_length });
+            (p, o.axis_point(p), o.radius)
+        }
+        Shape::Cuboid(o) => {
+            let p = segment::nearest_to_box(&axis, o);
+            (p, o.nearest(p), 0.0)
+        }
+        Shape::Cylinder(o) => {
+            let p = segment::nearest_to_cylinder(&axis, o);
+            (p, o.nearest(p), 0.0)
+        }
+        _ => (axis.middle, axis.middle, 0.0),
+    };
+    let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element() + c.half_length;
+    world(Gap::closed(p, q, size + q.abs().max_element()), [c.radius, radius], b_in_world)
+}
+
+/// Two convex shapes of which the second may be a half-space: gap of the cores in the frame of the second, and radii.
+pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<(Gap, [f64; 2])> {
+    let (core_a, ra) = rounded(a)?;
+    if matches!(b, Shape::HalfSpace(_)) {
+        return Some((half_space::distance(&core_a, a_in_b), [ra, 0.0]));
+    }
+    let (core_b, rb) = rounded(b)?;
+    let limit = limit + ra + rb;
+    let gap = match (&core_a, &core_b) {
+        (Core::Cuboid(x), Core::Cuboid(y)) => box_box::distance(x, y, a_in_b, limit)?,
+        _ => {
+            let start = a_in_b.transform_point(core_a.middle()) - core_b.middle();
+            gjk::distance(&core_a, &core_b, a_in_b, start, limit)?
+        }
+    };
+    Some((gap, [ra, rb]))
+}
+
+/// From the cores' gap in some frame to the shapes' separation in the world.
+#[inline]
+fn world(gap: Gap, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
+    let radius = radii[0] + radii[1];
+    let distance = (gap.distance - radius).max(0.0);
+    let lower_bound = (gap.lower - radius - rounding(radius)).max(0.0);
+    let (mut p, mut q) = (gap.on_a, gap.on_b);
+    if radius > 0.0 && gap.distance > 0.0 {
+        let toward_b = (q - p) / gap.distance;
+        p += toward_b * radii[0].min(gap.distance);
+        q -= toward_b * radii[1].min(gap.distance);
+    }
+    Separation {
+        distance,
+        lower_bound: lower_bound.min(distance),
+        on_a: frame_in_world.transform_point(p),
+        on_b: frame_in_world.transform_point(q),
+    }
 }

@@ -3,6 +3,7 @@
 use elbowroom_spatial::{Aabb, Vec3};
 
 use super::quickhull;
+use crate::triangle::nearest_on_triangle;
 
 /// A convex polyhedron with triangular faces.
 ///
@@ -88,6 +89,22 @@ impl ConvexHull {
     /// The vertex farthest along `dir`, local frame.
     pub fn support(&self, dir: Vec3) -> Vec3 {
         farthest(&self.vertices, dir)
+    }
+
+    /// The point of the solid nearest to `p` (itself where inside), local frame: it lies on a face that `p` is above.
+    pub fn nearest(&self, p: Vec3) -> Vec3 {
+        let mut best = (f64::INFINITY, p);
+        for (i, (normal, offset)) in self.planes.iter().enumerate() {
+            let height = normal.dot(p) - offset;
+            if height > 0.0 && height * height < best.0 {
+                let q = nearest_on_triangle(p, self.corners(i));
+                let squared = (q - p).length_squared();
+                if squared < best.0 {
+                    best = (squared, q);
+                }
+            }
+        }
+        best.1
     }
 
     pub(crate) fn planes(&self) -> &[(Vec3, f64)] {

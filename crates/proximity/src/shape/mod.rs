@@ -6,6 +6,7 @@ mod cuboid;
 mod cylinder;
 mod half_space;
 pub(crate) mod hull;
+mod inside;
 mod mesh;
 mod quickhull;
 mod sphere;

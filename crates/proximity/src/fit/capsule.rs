@@ -1,0 +1,62 @@
+//! Capsule around points.
+
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::{GROWTH, ball, frame, scale};
+use crate::Capsule;
+
+pub(super) fn fit(points: &[Vec3]) -> Option<(Capsule, Pose)> {
+    let principal = frame::principal(points);
+    let starts = [
+        principal,
+        principal * Rotation::from_axis_angle(Vec3::X, std::f64::consts::FRAC_PI_2),
+        principal * Rotation::from_axis_angle(Vec3::Y, std::f64::consts::FRAC_PI_2),
+    ];
+    let turned = starts.map(|s| frame::descend(s, &[Vec3::X, Vec3::Y], |r| along(points, r, 1.0).0.volume()));
+    let (_, rotation) = turned.into_iter().min_by(|x, y| x.0.total_cmp(&y.0))?;
+    let best = widened(points, rotation);
+    Some(verified(points, best))
+}
+
+/// The capsule along the frame's z axis whose radius is `widening` times that of the points' shadow.
+fn along(points: &[Vec3], rotation: Rotation, widening: f64) -> (Capsule, Pose) {
+    let turned: Vec<Vec3> = points.iter().map(|&p| rotation.inverse_rotate(p)).collect();
+    let shadow: Vec<Vec3> = turned.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
+    let (center, shadow_radius) = ball::smallest(&shadow);
+    let radius = shadow_radius * widening;
+    // Each point asks for the axis to reach far enough that a cap covers it.
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (p, s) in turned.iter().zip(&shadow) {
+        let cover = (radius * radius - (*s - center).length_squared()).max(0.0).sqrt();
+        low = low.min(p.z + cover);
+        high = high.max(p.z - cover);
+    }
+    let half_length = (0.5 * (high - low)).max(0.0);
+    let middle = center + Vec3::Z * (0.5 * (high + low));
+    (Capsule { half_length, radius }, Pose::new(rotation, rotation * middle))
+}
+
+/// A wider capsule may be so much shorter that it is smaller: golden-section search.
+fn widened(points: &[Vec3], rotation: Rotation) -> (Capsule, Pose) {
+    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut lo, mut hi) = (1.0, 1.8);
+    for _ in 0..24 {
+        let (x, y) = (hi - ratio * (hi - lo), lo + ratio * (hi - lo));
+        if along(points, rotation, x).0.volume() < along(points, rotation, y).0.volume() {
+            hi = y;
+        } else {
+            lo = x;
+        }
+    }
+    let (narrow, wide) = (along(points, rotation, 1.0), along(points, rotation, 0.5 * (lo + hi)));
+    if wide.0.volume() < narrow.0.volume() { wide } else { narrow }
+}
+
+fn verified(points: &[Vec3], (mut capsule, pose): (Capsule, Pose)) -> (Capsule, Pose) {
+    let reach = points.iter().fold(capsule.radius, |r: f64, &p| {
+        let q = pose.inverse_transform_point(p);
+        r.max(q.distance(capsule.axis_point(q)))
+    });
+    capsule.radius = reach + GROWTH * scale(points);
+    (capsule, pose)
+}

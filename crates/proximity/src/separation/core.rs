@@ -1,0 +1,105 @@
+//! Shapes without their rounding: a sphere is a point with a radius, a capsule a segment with a radius.
+
+use elbowroom_spatial::Vec3;
+
+use crate::shape::hull::farthest;
+use crate::{Cuboid, Cylinder, Shape};
+
+/// What is left of a convex shape when its rounding radius is taken off.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Core<'a> {
+    Point,
+    /// Along z, half length.
+    Segment(f64),
+    Cylinder(Cylinder),
+    Cuboid(Cuboid),
+    /// The convex hull of points.
+    Points(&'a [Vec3]),
+    Triangle([Vec3; 3]),
+}
+
+/// Core and radius of a convex and bounded shape.
+#[inline]
+pub(crate) fn rounded(shape: &Shape) -> Option<(Core<'_>, f64)> {
+    Some(match shape {
+        Shape::Sphere(s) => (Core::Point, s.radius),
+        Shape::Capsule(c) => (Core::Segment(c.half_length), c.radius),
+        Shape::Cylinder(c) => (Core::Cylinder(*c), 0.0),
+        Shape::Cuboid(c) => (Core::Cuboid(*c), 0.0),
+        Shape::Hull(h) => (Core::Points(h.vertices()), 0.0),
+        Shape::HalfSpace(_) | Shape::Mesh(_) => return None,
+    })
+}
+
+impl Core<'_> {
+    /// The point farthest along `dir`, local frame.
+    #[inline]
+    pub fn support(&self, dir: Vec3) -> Vec3 {
+        match self {
+            Self::Point => Vec3::ZERO,
+            Self::Segment(h) => Vec3::Z * h.copysign(dir.z),
+            Self::Cylinder(c) => c.support(dir),
+            Self::Cuboid(c) => c.support(dir),
+            Self::Points(p) => farthest(p, dir),
+            Self::Triangle(t) => farthest(t, dir),
+        }
+    }
+
+    /// Some point of the core, near its middle where that is cheap, local frame.
+    #[inline]
+    pub fn middle(&self) -> Vec3 {
+        match self {
+            Self::Points(p) => p.first().copied().unwrap_or(Vec3::ZERO),
+            Self::Triangle([a, b, c]) => (*a + *b + *c) / 3.0,
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// Largest coordinate that occurs in it, metres: the scale of its rounding errors.
+    #[inline]
+    pub fn size(&self) -> f64 {
+        match self {
+            Self::Point => 0.0,
+            Self::Segment(h) => *h,
+            Self::Cylinder(c) => c.half_length + c.radius,
+            Self::Cuboid(c) => c.half_extents.x + c.half_extents.y + c.half_extents.z,
+            Self::Points(p) => p.iter().fold(0.0, |m: f64, v| m.max(v.abs().max_element())),
+            Self::Triangle(t) => t.iter().fold(0.0, |m: f64, v| m.max(v.abs().max_element())),
+        }
+    }
+
+    /// Extent along a local direction: the largest `dir · p`.
+    #[inline]
+    pub fn reach(&self, dir: Vec3) -> f64 {
+        self.support(dir).dot(dir)
+    }
+}
+
+/// Nearest points of two cores in the frame of the second, the distance, and a proven bound below it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gap {
+    pub distance: f64,
+    pub lower: f64,
+    pub on_a: Vec3,
+    pub on_b: Vec3,
+}
+
+impl Gap {
+    /// From witness points of a method whose only error is rounding of numbers up to `scale`.
+    #[inline]
+    pub fn closed(on_a: Vec3, on_b: Vec3, scale: f64) -> Self {
+        let distance = (on_a - on_b).length();
+        Self { distance, lower: (distance - rounding(scale)).max(0.0), on_a, on_b }
+    }
+
+    #[inline]
+    pub fn touching(on_a: Vec3, on_b: Vec3) -> Self {
+        Self { distance: 0.0, lower: 0.0, on_a, on_b }
+    }
+}
+
+/// What the last places of a short computation on numbers up to `scale` may be worth.
+#[inline]
+pub(crate) fn rounding(scale: f64) -> f64 {
+    16.0 * f64::EPSILON * scale
+}

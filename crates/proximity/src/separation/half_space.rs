@@ -1,0 +1,35 @@
+//! Anything against a half-space: the height of its lowest point (S1, eqs. 7-8 for the box).
+
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::core::{Core, Gap, rounding};
+
+/// Normals closer to opposite than this are taken as opposite.
+const PARALLEL: f64 = 1e-14;
+
+/// Lowest point of the core and its shadow on the plane, in the frame of the half-space.
+#[inline]
+pub(super) fn distance(a: &Core, a_in_b: &Pose) -> Gap {
+    let down = -a_in_b.inverse_transform_vector(Vec3::Z);
+    let lowest = a_in_b.transform_point(a.support(down));
+    let t = a_in_b.translation.abs();
+    above(lowest, t.x + t.y + t.z + a.size())
+}
+
+/// From the lowest point; the frame's solid is `z <= 0`.
+#[inline]
+pub(super) fn above(lowest: Vec3, scale: f64) -> Gap {
+    let height = lowest.z;
+    let foot = Vec3::new(lowest.x, lowest.y, height.min(0.0));
+    Gap { distance: height.max(0.0), lower: (height - rounding(scale)).max(0.0), on_a: lowest, on_b: foot }
+}
+
+/// Two half-spaces are apart only where they face each other exactly.
+pub(super) fn both(a_in_b: &Pose) -> Gap {
+    let normal = a_in_b.rotation.z_axis();
+    let p = a_in_b.translation;
+    if normal.z < 0.0 && normal.x.abs().max(normal.y.abs()) < PARALLEL {
+        return above(p, p.x.abs() + p.y.abs() + p.z.abs());
+    }
+    Gap::touching(p, p)
+}

@@ -1,0 +1,157 @@
+//! A segment against a box (or another segment) and against a cylinder.
+//!
+//! Along the segment the squared distance to a convex solid is convex and once differentiable, so half its derivative
+//! `g(t)`, the dot product of the direction and the excess over the solid, is monotone: its root is bracketed by the
+//! places where it changes form, and found in closed form (box) or by Newton steps (cylinder) in between.
+
+use elbowroom_spatial::Vec3;
+
+use crate::{Cuboid, Cylinder};
+
+/// A segment `middle + t * direction`, `|t| <= half`, in the frame of the solid; `direction` is a unit vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Segment {
+    pub middle: Vec3,
+    pub direction: Vec3,
+    pub half: f64,
+}
+
+impl Segment {
+    #[inline]
+    pub fn at(&self, t: f64) -> Vec3 {
+        self.middle + self.direction * t
+    }
+}
+
+/// The bracket of the root of a monotone function.
+struct Bracket {
+    lo: f64,
+    hi: f64,
+}
+
+impl Bracket {
+    /// The two ends, or the end that is the minimum.
+    #[inline]
+    fn start(half: f64, g: impl Fn(f64) -> f64) -> Result<Self, f64> {
+        let (g_lo, g_hi) = (g(-half), g(half));
+        if g_lo == 0.0 && g_hi == 0.0 {
+            return Err(0.0); // equally near everywhere: the middle is the steadiest choice
+        }
+        if !(g_lo < 0.0) {
+            return Err(-half);
+        }
+        if !(g_hi > 0.0) {
+            return Err(half);
+        }
+        Ok(Self { lo: -half, hi: half })
+    }
+
+    #[inline]
+    fn tighten(&mut self, t: f64, g: impl Fn(f64) -> f64) {
+        if t > self.lo && t < self.hi {
+            if g(t) > 0.0 {
+                self.hi = t;
+            } else {
+                self.lo = t;
+            }
+        }
+    }
+}
+
+/// The point of the segment nearest to the box. With two half extents of 0 the box is a segment along an axis.
+#[inline]
+pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
+    let (c, d, h) = (s.middle, s.direction, solid.half_extents);
+    let g = |t: f64| {
+        let p = s.at(t);
+        (p - solid.nearest(p)).dot(d)
+    };
+    let mut bracket = match Bracket::start(s.half, g) {
+        Ok(bracket) => bracket,
+        Err(t) => return s.at(t),
+    };
+    for k in 0..3 {
+        if d[k] != 0.0 {
+            bracket.tighten((h[k] - c[k]) / d[k], g);
+            bracket.tighten((-h[k] - c[k]) / d[k], g);
+        }
+    }
+    // Linear in between: which excesses act does not change. The middle of the piece tells which.
+    let mid = 0.5 * (bracket.lo + bracket.hi);
+    let p = s.at(mid);
+    let excess = p - solid.nearest(p);
+    let square = |k: usize| if excess[k] == 0.0 { 0.0 } else { d[k] * d[k] };
+    let slope = square(0) + square(1) + square(2);
+    if slope == 0.0 {
+        return p;
+    }
+    s.at((mid - excess.dot(d) / slope).max(bracket.lo).min(bracket.hi))
+}
+
+/// The point of the segment nearest to the cylinder.
+pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
+    let (c, d) = (s.middle, s.direction);
+    let (r, h) = (solid.radius, solid.half_length);
+    let g = |t: f64| {
+        let p = s.at(t);
+        (p - solid.nearest(p)).dot(d)
+    };
+    let mut bracket = match Bracket::start(s.half, g) {
+        Ok(bracket) => bracket,
+        Err(t) => return s.at(t),
+    };
+    if d.z != 0.0 {
+        bracket.tighten((h - c.z) / d.z, g);
+        bracket.tighten((-h - c.z) / d.z, g);
+    }
+    let across2 = d.x * d.x + d.y * d.y;
+    if across2 > 0.0 {
+        // Nearest to the axis, and where the segment passes the lateral surface.
+        let t0 = -(c.x * d.x + c.y * d.y) / across2;
+        bracket.tighten(t0, g);
+        let across = across2.sqrt();
+        let off_axis = (c.x * d.y - c.y * d.x).abs() / across;
+        if off_axis < r {
+            let half_chord = ((r - off_axis) * (r + off_axis)).sqrt() / across;
+            bracket.tighten(t0 - half_chord, g);
+            bracket.tighten(t0 + half_chord, g);
+        }
+    }
+    s.at(newton(s, solid, &mut bracket))
+}
+
+/// Newton steps on `g` inside the bracket, halving it where they leave.
+fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket) -> f64 {
+    let d = s.direction;
+    let mut t = 0.5 * (bracket.lo + bracket.hi);
+    for _ in 0..60 {
+        let p = s.at(t);
+        let excess = p - solid.nearest(p);
+        let value = excess.dot(d);
+        if value == 0.0 {
+            return t;
+        }
+        if value > 0.0 {
+            bracket.hi = t;
+        } else {
+            bracket.lo = t;
+        }
+        let rho = (p.x * p.x + p.y * p.y).sqrt();
+        let mut slope = if excess.z == 0.0 { 0.0 } else { d.z * d.z };
+        if rho > solid.radius {
+            let rate = (p.x * d.x + p.y * d.y) / rho;
+            let across2 = d.x * d.x + d.y * d.y;
+            slope += rate * rate + (rho - solid.radius) / rho * (across2 - rate * rate).max(0.0);
+        }
+        let mut next = t - value / slope;
+        if !(next > bracket.lo && next < bracket.hi) {
+            next = 0.5 * (bracket.lo + bracket.hi);
+        }
+        let done = (next - t).abs() <= 4.0 * f64::EPSILON * (s.half + t.abs());
+        t = next;
+        if done {
+            break;
+        }
+    }
+    t
+}
