@@ -41,10 +41,11 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 }
 
 fn document(json: &[u8], file: &Path) -> Result<Document, FormatError> {
-    let root = gltf::json::deserialize::from_slice(json).map_err(|e| {
+    let mut root: gltf::json::Root = gltf::json::deserialize::from_slice(json).map_err(|e| {
         FormatError::new(file, e.line(), format!("the JSON is not glTF: {e}"))
             .hint("the model exported again as glTF 2.0")
     })?;
+    prepare(&mut root, file)?;
     Document::from_json(root).map_err(|e| {
         let what = match e {
             gltf::Error::Validation(list) => {
@@ -55,6 +56,24 @@ fn document(json: &[u8], file: &Path) -> Result<Document, FormatError> {
         };
         FormatError::new(file, None, what).hint("the model exported again as glTF 2.0, without extensions")
     })
+}
+
+/// Spares the library's validation two things: it panics at positions in an accessor that does not exist, and it
+/// refuses positions without bounds, which many exporters leave out and nothing here needs.
+fn prepare(root: &mut gltf::json::Root, file: &Path) -> Result<(), FormatError> {
+    let key = gltf::json::validation::Checked::Valid(gltf::Semantic::Positions);
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for index in mesh.primitives.iter().filter_map(|p| p.attributes.get(&key)) {
+            let Some(accessor) = root.accessors.get_mut(index.value()) else {
+                let what = format!("mesh {m} has its POSITION in accessor {}, which does not exist", index.value());
+                return Err(FormatError::new(file, None, what).hint("the number of an accessor, counted from 0"));
+            };
+            let zeros = || Some(vec![0.0; 3].into());
+            accessor.min = accessor.min.take().or_else(zeros);
+            accessor.max = accessor.max.take().or_else(zeros);
+        }
+    }
+    Ok(())
 }
 
 fn refuse_compression(document: &Document, file: &Path) -> Result<(), FormatError> {

@@ -151,6 +151,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Model, FormatError> {
     check_root(root, file)?;
     refuse_xacro(root, file)?;
     let mut reader = reader::Reader { file, lines: xml::LineIndex::new(&text), warnings: Warnings::default() };
+    refuse_extensions(root, file)?;
     let name = root.attribute("name").map_or_else(|| source::stem(file), str::to_owned);
     let links = reader.links(root)?;
     let joints = reader.joints(root, &links)?;
@@ -195,4 +196,22 @@ fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
     };
     Err(FormatError::new(file, xml::line(node), format!("is a xacro file that is not expanded: {sign}"))
         .hint("run `xacro FILE > robot.urdf` and name its output"))
+}
+
+/// `<drake:joint>` and `<drake:link>` are parts of the tree: without them it would be another robot.
+fn refuse_extensions(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
+    let is_foreign = |n: &Node<'_, '_>| n.is_element() && n.tag_name().namespace() != root.tag_name().namespace();
+    let part = root.children().filter(is_foreign).find(|n| matches!(n.tag_name().name(), "joint" | "link"));
+    part.map_or(Ok(()), |node| {
+        let name = node.tag_name().name();
+        let what = format!(
+            "a <{name}> of an extension ({}), `{}` of type `{}`, is not read",
+            show(node.tag_name().namespace().unwrap_or_default().as_bytes()),
+            show(node.attribute("name").unwrap_or_default().as_bytes()),
+            show(node.attribute("type").unwrap_or_default().as_bytes())
+        );
+        Err(FormatError::new(file, xml::line(node), what).hint(format!(
+            "<{name} …> without prefix; a joint of type \"revolute\", \"continuous\", \"prismatic\" or \"fixed\""
+        )))
+    })
 }

@@ -40,8 +40,19 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
             FormatError::new(file, last, "the XML ends before its elements are closed; is the file truncated?")
                 .hint("the closing tags; or copy the file again")
         }
-        _ => at(format!("is not sound XML: {error}")).hint("check the tags around this line"),
+        roxmltree::Error::InvalidChar(b'"' | b'\'', b'<', _) => {
+            at("is not sound XML: a `<` inside an attribute's value, or a quotation mark is missing".into())
+                .hint("&lt; for a < inside quotation marks")
+        }
+        _ => at(format!("is not sound XML: {}", without_position(&error.to_string())))
+            .hint("check the tags around this line"),
     }
+}
+
+/// The message without its trailing `at LINE:COLUMN`, which stands in front of it already.
+fn without_position(message: &str) -> &str {
+    let is_position = |tail: &str| tail.bytes().all(|b| b.is_ascii_digit() || b == b':');
+    message.rsplit_once(" at ").filter(|(_, tail)| is_position(tail)).map_or(message, |(what, _)| what)
 }
 
 /// The line of a node's begin.

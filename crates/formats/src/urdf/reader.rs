@@ -113,7 +113,7 @@ impl Reader<'_> {
         let mut seen = HashSet::new();
         for node in root.children().filter(Node::is_element) {
             let tag = node.tag_name();
-            if tag.namespace().is_some() && seen.insert((tag.namespace(), tag.name())) {
+            if tag.namespace() != root.tag_name().namespace() && seen.insert((tag.namespace(), tag.name())) {
                 self.warn(
                     node,
                     format!("<{}> of an extension is passed over", show(tag.name().as_bytes())),

@@ -1,0 +1,197 @@
+//! Small sound files of every kind, ways to damage them, and one door to all readers.
+
+use std::path::Path;
+
+use elbowroom_formats::mesh::{self, UpAxis};
+use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, urdf};
+
+/// All readers; `mesh` is the one that finds out the kind by itself.
+pub const PARSERS: [&str; 9] = ["stl", "obj", "dae", "gltf", "ply", "off", "urdf", "srdf", "mesh"];
+
+/// What a reader made of some bytes: the size of its result in bytes, roughly.
+pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
+    let file = Path::new("fuzz").with_extension(parser);
+    let size = |loaded: LoadedMeshes| {
+        for m in &loaded.meshes {
+            assert!(m.vertices.iter().all(|v| v.is_finite()) || parser != "mesh", "a vertex is not finite");
+            assert!(m.triangles.iter().flatten().all(|&i| (i as usize) < m.vertices.len()), "a corner does not exist");
+        }
+        loaded.meshes.iter().map(|m| m.vertices.len() * 24 + m.triangles.len() * 12).sum()
+    };
+    match parser {
+        "stl" => stl::parse(bytes, &file).map(size),
+        "obj" => obj::parse(bytes, &file).map(size),
+        "dae" => dae::parse(bytes, &file, UpAxis::ToZ).map(size),
+        "gltf" => gltf::parse(bytes, &file).map(size),
+        "ply" => ply::parse(bytes, &file).map(size),
+        "off" => off::parse(bytes, &file).map(size),
+        "urdf" => urdf::parse(bytes, &file).and_then(|m| robot::chain(&m, &file)).map(|c| c.links().len() * 200),
+        "srdf" => srdf::parse(bytes, &file).map(|s| s.disabled.len() * 100),
+        _ => mesh::parse(bytes, &file, None, UpAxis::Ignore).map(size),
+    }
+}
+
+/// Sound files for a reader.
+pub fn samples(parser: &str) -> Vec<Vec<u8>> {
+    let of = |texts: &[&str]| texts.iter().map(|t| t.as_bytes().to_vec()).collect::<Vec<_>>();
+    match parser {
+        "stl" => {
+            let mut list = of(&[STL]);
+            list.push(binary_stl());
+            list
+        }
+        "obj" => of(&[OBJ]),
+        "dae" => of(&[DAE]),
+        "gltf" => of(&[GLTF]),
+        "ply" => {
+            let mut list = of(&[PLY]);
+            list.push(binary_ply());
+            list
+        }
+        "off" => of(&[OFF]),
+        "urdf" => of(&[URDF]),
+        "srdf" => of(&[SRDF]),
+        _ => PARSERS[..6].iter().flat_map(|p| samples(p)).collect(),
+    }
+}
+
+fn binary_stl() -> Vec<u8> {
+    let mesh = stl::parse(STL.as_bytes(), Path::new("a.stl")).unwrap().meshes;
+    let mut bytes = Vec::new();
+    stl::write_binary(&mut bytes, &mesh).unwrap();
+    bytes
+}
+
+fn binary_ply() -> Vec<u8> {
+    let mut bytes =
+        PLY.split_inclusive("end_header\n").next().unwrap().replace("ascii", "binary_big_endian").into_bytes();
+    for x in [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0] {
+        bytes.extend(x.to_be_bytes());
+    }
+    bytes.push(4);
+    [0i32, 1, 2, 3].iter().for_each(|i| bytes.extend(i.to_be_bytes()));
+    bytes
+}
+
+const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
+endsolid a\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\nendloop\nendfacet\nendsolid b\n";
+const OBJ: &str =
+    "# c\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nusemtl m\nf 1//1 2//1 3//1 \\\n 4//1\no b\nf -1 -2 -3\n";
+const OFF: &str = "OFF\n# c\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n";
+const PLY: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+const DAE: &str = r##"<?xml version="1.0"?><COLLADA><asset><unit meter="0.001"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 1 0 0 1 1 0 0 1 0</float_array><technique_common>
+<accessor source="#a" count="4" stride="3"><param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist>
+<triangles><input semantic="VERTEX" source="#v" offset="1"/><p>9 0 9 1 9 2</p></triangles>
+<tristrips><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3</p></tristrips>
+<trifans><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3</p></trifans>
+<polygons><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3</p><ph><p>0 1 2</p><h>1 2 3</h></ph></polygons>
+</mesh></geometry></library_geometries>
+<library_nodes><node id="n"><scale>1 -1 1</scale><instance_geometry url="#g"/></node></library_nodes>
+<library_visual_scenes><visual_scene id="s"><node><rotate>0 0 1 90</rotate><translate>1 2 3</translate>
+<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_node url="#n"/><node><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"##;
+const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"children":[1],"translation":[1,2,3]},{"mesh":0,"name":"n","rotation":[0,0,0.70710678,0.70710678],"scale":[1,-1,1]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":2},"mode":5}]}],
+"buffers":[{"byteLength":44,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIAAAA="}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
+{"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0],
+"sparse":{"count":3,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":0}}}]}"#;
+const URDF: &str = r#"<?xml version="1.0"?><robot name="r" xmlns:drake="http://drake.mit.edu">
+<link name="a"><collision name="c"><origin xyz="0 0 1" rpy="0 1.5 0"/><geometry><box size="1 2 3"/></geometry></collision>
+<visual><geometry><mesh filename="package://p/a.stl" scale="1 1 -1"/></geometry></visual></link>
+<link name="b"><collision><geometry><cylinder radius="1" length="2"/></geometry></collision></link>
+<link name="c"><collision><geometry><sphere radius="1"/></geometry></collision></link>
+<link name="d"/>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="2" drake:acceleration="3"/></joint>
+<joint name="k" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0" upper="1" velocity="0"/><mimic joint="j" multiplier="2" offset="0.5"/></joint>
+<joint name="l" type="fixed"><origin xyz="0 1 0"/><parent link="c"/><child link="d"/><axis xyz="0 0 0"/></joint>
+<transmission/><drake:collision_filter_group name="g"/></robot>"#;
+const SRDF: &str = r#"<robot name="r"><group name="g"><chain base_link="a" tip_link="c"/></group>
+<disable_collisions link1="a" link2="b" reason="Adjacent"/><disable_collisions link1="b" link2="c"/></robot>"#;
+
+/// Xorshift: the same damage for the same seed.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    /// Below `n`; 0 for 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        if n == 0 { 0 } else { (self.next() % n as u64) as usize }
+    }
+}
+
+const EXTREMES: [&str; 16] = [
+    "0",
+    "-1",
+    "1",
+    "4294967295",
+    "4294967296",
+    "2147483647",
+    "-2147483648",
+    "18446744073709551615",
+    "1e308",
+    "-1e999",
+    "nan",
+    "inf",
+    "1e-320",
+    "0.0001",
+    "99999999999999999999",
+    "",
+];
+
+/// Damages a file a few times over: bits, cuts, copies, pieces of another file, numbers at the edge.
+pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8]) {
+    for _ in 0..=random.below(6) {
+        let n = bytes.len();
+        let (at, length) = (random.below(n + 1), random.below(64));
+        let end = (at + length).min(n);
+        match random.below(9) {
+            0 if n > 0 => bytes[at.min(n - 1)] ^= 1 << random.below(8),
+            1 if n > 0 => bytes[at.min(n - 1)] = random.next() as u8,
+            2 => bytes.truncate(at),
+            3 => drop(bytes.drain(at..end)),
+            4 => {
+                let copy = bytes[at..end].to_vec();
+                bytes.splice(at..at, copy);
+            }
+            5 => {
+                let from = random.below(other.len() + 1);
+                let piece = other[from..(from + 4 * length).min(other.len())].to_vec();
+                bytes.splice(at..end, piece);
+            }
+            6 => extreme_bytes(random, bytes, at),
+            _ => extreme_number(random, bytes, at),
+        }
+    }
+}
+
+fn extreme_bytes(random: &mut Random, bytes: &mut [u8], at: usize) {
+    let value =
+        [0u32, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x7f80_0000, 0x7fc0_0000, 0x00ff_ffff][random.below(8)];
+    for (slot, byte) in bytes.iter_mut().skip(at).zip(value.to_le_bytes()) {
+        *slot = byte;
+    }
+}
+
+/// Replaces the number that stands next after a place.
+fn extreme_number(random: &mut Random, bytes: &mut Vec<u8>, at: usize) {
+    let is_part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
+    let Some(begin) = bytes[at..].iter().position(u8::is_ascii_digit).map(|i| i + at) else { return };
+    let end = bytes[begin..].iter().position(|b| !is_part(b)).map_or(bytes.len(), |i| i + begin);
+    let value = EXTREMES[random.below(EXTREMES.len())];
+    bytes.splice(begin..end, value.bytes());
+}

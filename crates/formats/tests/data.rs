@@ -1,0 +1,93 @@
+//! Every file of the real data either loads or gives a message.
+
+mod common;
+
+use std::path::Path;
+use std::time::Instant;
+
+use elbowroom_formats::robot::{self, LoadOptions};
+use elbowroom_formats::{mesh, srdf};
+use elbowroom_proximity::Shape;
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// `loaded (…)` or the message.
+fn outcome(path: &Path) -> Result<String, String> {
+    let text = |e: elbowroom_formats::FormatError| e.to_string();
+    match extension(path).as_str() {
+        "urdf" => {
+            let loaded =
+                robot::load(path, &LoadOptions { load_visuals: true, ..LoadOptions::default() }).map_err(text)?;
+            let count = |bodies: &[Vec<elbowroom_scene::Body>]| {
+                let meshes =
+                    bodies.iter().flatten().filter_map(|b| if let Shape::Mesh(m) = &b.shape { Some(m) } else { None });
+                meshes.fold((0, 0), |(n, t), m| (n + 1, t + m.triangles().len()))
+            };
+            let (collision, visual) = (count(&loaded.robot.bodies), count(&loaded.robot.visuals));
+            let mut line = format!(
+                "{} links, {} dof, collision {} meshes {} triangles, visual {} meshes {} triangles, {} warnings",
+                loaded.robot.chain.links().len(),
+                loaded.robot.chain.dof(),
+                collision.0,
+                collision.1,
+                visual.0,
+                visual.1,
+                loaded.warnings.len()
+            );
+            line.extend(loaded.warnings.iter().map(|w| format!("\n      {w}")));
+            Ok(line)
+        }
+        "srdf" => {
+            let srdf = srdf::parse(&std::fs::read(path).unwrap(), path).map_err(text)?;
+            Ok(format!("{} disabled pairs, {} warnings", srdf.disabled.len(), srdf.warnings.len()))
+        }
+        _ => {
+            let loaded = mesh::load(path, None).map_err(text)?;
+            let triangles: usize = loaded.meshes.iter().map(|m| m.triangles.len()).sum();
+            let e = loaded.aabb().extent();
+            let mut line = format!(
+                "{} meshes, {triangles} triangles, extent {:.6} {:.6} {:.6}, {} warnings",
+                loaded.meshes.len(),
+                e.x,
+                e.y,
+                e.z,
+                loaded.warnings.len()
+            );
+            line.extend(loaded.warnings.iter().map(|w| format!("\n      {w}")));
+            Ok(line)
+        }
+    }
+}
+
+#[test]
+fn every_file_loads_or_says_why_not() {
+    let Some(data) = common::data() else { return };
+    let skip = ["md", "txt", "yaml", "xml", "mtl", "rob", "octree", ""];
+    for directory in ["malformed", "mesh", "urdf", "cell"] {
+        for path in common::files_below(&data.join(directory)) {
+            let name = path.strip_prefix(&data).unwrap().display().to_string();
+            let is_license = name.contains("LICENSE") || name.contains("METADATA");
+            if is_license || (directory != "malformed" && skip.contains(&extension(&path).as_str())) {
+                continue;
+            }
+            let start = Instant::now();
+            let outcome = outcome(&path);
+            let ms = start.elapsed().as_secs_f64() * 1e3;
+            println!(
+                "{name}: {} [{ms:.1} ms]",
+                match &outcome {
+                    Ok(line) => format!("loaded ({line})"),
+                    Err(message) => message.clone(),
+                }
+            );
+            if let Err(message) = &outcome {
+                let file = path.file_name().unwrap().to_string_lossy().into_owned();
+                assert!(message.contains(&file) || message.contains("named in"), "no file in: {message}");
+                assert!(message.contains("write:"), "no advice in: {message}");
+            }
+            assert!(ms < 10_000.0, "{name} took {ms} ms");
+        }
+    }
+}

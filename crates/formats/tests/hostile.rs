@@ -1,0 +1,118 @@
+//! Whatever the bytes: a sound model or a message, never a panic.
+
+#[path = "common/corpus.rs"]
+mod corpus;
+
+use std::path::Path;
+
+use corpus::{PARSERS, Random, mutate, run, samples};
+use elbowroom_formats::{MeshData, stl};
+use elbowroom_spatial::Vec3;
+use proptest::prelude::*;
+
+#[test]
+fn the_samples_are_sound() {
+    for parser in PARSERS {
+        for (i, sample) in samples(parser).iter().enumerate() {
+            let size = run(parser, sample).unwrap_or_else(|e| panic!("{parser} {i}: {e}"));
+            assert!(size > 0, "{parser} {i}");
+        }
+    }
+}
+
+/// Every prefix of a sound file.
+#[test]
+fn truncation_anywhere_is_survived() {
+    for parser in PARSERS {
+        for sample in samples(parser) {
+            for length in 0..sample.len() {
+                if let Err(e) = run(parser, &sample[..length]) {
+                    assert!(!e.what.is_empty());
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn random_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..400), text in "[ -~\n]{0,300}") {
+        for parser in PARSERS {
+            drop(run(parser, &bytes));
+            drop(run(parser, text.as_bytes()));
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_survived(seed in 1..u64::MAX) {
+        let mut random = Random(seed);
+        for parser in PARSERS {
+            let list = samples(parser);
+            let mut bytes = list[random.below(list.len())].clone();
+            let other = list[random.below(list.len())].clone();
+            mutate(&mut random, &mut bytes, &other);
+            if let Ok(size) = run(parser, &bytes) {
+                // Sixteen times is what polygons with shared corners unfold into at most.
+                prop_assert!(size <= 65536 + 64 * bytes.len(), "{} bytes became {size}", bytes.len());
+            }
+        }
+    }
+
+    /// Written and read again: the same corners, in single precision, in the same order.
+    #[test]
+    fn binary_stl_survives_a_round_trip(corners in prop::collection::vec(prop::array::uniform3(-1e3..1e3f32), 3..40),
+                                        faces in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60)) {
+        let vertices: Vec<Vec3> = corners.iter().map(|c| Vec3::from(c.map(f64::from))).collect();
+        let triangles: Vec<[u32; 3]> = faces.iter().map(|f| f.map(|i| i.index(vertices.len()) as u32)).collect();
+        let mesh = MeshData { name: "a".into(), vertices, triangles };
+        let mut bytes = Vec::new();
+        stl::write_binary(&mut bytes, std::slice::from_ref(&mesh)).unwrap();
+        let again = stl::parse(&bytes, Path::new("a.stl")).unwrap().meshes.remove(0);
+        let unfold = |m: &MeshData| -> Vec<Vec3> { m.triangles.iter().flatten().map(|&i| m.vertices[i as usize]).collect() };
+        prop_assert_eq!(unfold(&again), unfold(&mesh));
+        let mut distinct: Vec<[u64; 3]> = unfold(&mesh).iter().map(|v| v.to_array().map(|x| (x + 0.0).to_bits())).collect();
+        distinct.sort_unstable();
+        distinct.dedup();
+        prop_assert_eq!(again.vertices.len(), distinct.len());
+    }
+}
+
+/// Deep nesting must not use up the stack, and millions of small things not the memory or an hour.
+#[test]
+fn towers_and_crowds_are_survived() {
+    let deep = 200_000;
+    let nested = |open: &str, close: &str| format!("{}{}", open.repeat(deep), close.repeat(deep));
+    let robot = format!("<robot><link name=\"a\"/>{}</robot>", nested("<x>", "</x>"));
+    assert!(run("urdf", robot.as_bytes()).is_ok());
+    let scene = format!(
+        "<COLLADA><library_visual_scenes><visual_scene>{}</visual_scene></library_visual_scenes></COLLADA>",
+        nested("<node>", "</node>")
+    );
+    assert!(run("dae", scene.as_bytes()).unwrap_err().what.contains("too deeply"));
+    assert!(run("gltf", nested("{\"a\":", "}").as_bytes()).is_err());
+    let crowd: String = (0..50_000).map(|i| format!("<link name=\"l{i}\"/>\n")).collect();
+    assert!(run("urdf", format!("<robot>{crowd}</robot>").as_bytes()).unwrap_err().what.contains("50000 links"));
+    let chain: String = (1..20_000)
+        .map(|i| format!("<link name=\"l{i}\"/><joint name=\"j{i}\" type=\"continuous\"><parent link=\"l{}\"/><child link=\"l{i}\"/></joint>\n", i - 1))
+        .collect();
+    assert!(run("urdf", format!("<robot><link name=\"l0\"/>{chain}</robot>").as_bytes()).is_ok());
+}
+
+/// Nodes that instance the next one twice would be 2^40 objects.
+#[test]
+fn nodes_that_double_are_refused() {
+    let nodes: String = (0..40)
+        .map(|i| {
+            format!("<node id=\"n{i}\"><instance_node url=\"#n{0}\"/><instance_node url=\"#n{0}\"/></node>", i + 1)
+        })
+        .collect();
+    let text = format!(
+        "<COLLADA><library_nodes>{nodes}<node id=\"n40\"/></library_nodes><library_visual_scenes><visual_scene>\
+         <node><instance_node url=\"#n0\"/></node></visual_scene></library_visual_scenes></COLLADA>"
+    );
+    assert!(run("dae", text.as_bytes()).unwrap_err().what.contains("too deeply"));
+    let circle = text.replace("<node id=\"n40\"/>", "<node id=\"n40\"><instance_node url=\"#n0\"/></node>");
+    assert!(run("dae", circle.as_bytes()).is_err());
+}
