@@ -53,7 +53,9 @@ fn forward_motion_jacobian_and_refine_take_no_memory() {
             chain.forward_motion(&mut state);
             chain.jacobian(&state, tip, Vec3::X, &mut columns);
             q.copy_from_slice(&state.q);
-            q.iter_mut().for_each(|v| *v = (*v + random.range(-1e-3, 1e-3)).clamp(-3.0, 3.0));
+            for v in &mut q {
+                *v = (*v + random.range(-1e-3, 1e-3)).clamp(-3.0, 3.0);
+            }
             let target = state.link_in_root(tip) * Pose::from_translation(Vec3::Z * 0.2);
             refined += usize::from(solver.refine(&target, &mut q));
         }

@@ -242,6 +242,26 @@ fn tables_become_chains_again() {
 }
 
 #[test]
+fn a_point_on_a_surface_can_be_the_end_of_the_table() {
+    let mut random = Random(13);
+    for _ in 0..500 {
+        let chain = awkward_chain(&mut random);
+        let tool_in_tip = Pose::new(awkward_rotation(&mut random), awkward_offset(&mut random));
+        let table = Table::extract_to(&chain, chain.tip(), tool_in_tip);
+        assert!(table.residual < 1e-9);
+        let mut state = ChainState::new(&chain);
+        for v in &mut state.q {
+            *v = random.range(-PI, PI);
+        }
+        chain.forward(&mut state);
+        let value = |name: &str| chain.joint_value(chain.joint(name).unwrap(), &state.q);
+        let (got, expected) = (table.tip_in_root(value), state.link_in_root(chain.tip()) * tool_in_tip);
+        assert!(got.translation.distance(expected.translation) < 1e-9);
+        assert!((got.rotation.inverse() * expected.rotation).angle() < 1e-9);
+    }
+}
+
+#[test]
 fn every_real_robot_has_a_table() {
     for (name, path) in robots() {
         let chain = common::load(&path);

@@ -17,6 +17,7 @@ fn joint(name: &str, parent: usize, child: usize) -> Joint {
     }
 }
 
+#[allow(clippy::unnecessary_wraps)] // as the field wants it
 fn mimic(of: usize, multiplier: f64, offset: f64) -> Option<Mimic> {
     Some(Mimic { joint: JointId(of), multiplier, offset })
 }

@@ -14,6 +14,12 @@ impl Table {
     /// The generalized table of `tip` in the root link, with its residual. Fixed joints are merged into the rows around
     /// them. Works for every chain; the residual is rounding (about 1e-15 per metre and joint), and says so.
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
+        Self::extract_to(chain, tip, Pose::IDENTITY)
+    }
+
+    /// As [`Table::extract`], to a frame fixed on the link `tip`: a tool, or a point of a surface that is to be steered
+    /// (S4.6). `tool_in_tip` is in metres.
+    pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut rows = Vec::new();
         let mut pending = Pose::IDENTITY; // from the frame whose z is the last joint's axis
         let mut joint: Option<(String, JointKind)> = None;
@@ -29,9 +35,9 @@ impl Table {
             // The joint moves what follows its axis frame; turning back puts the link's own frame behind it.
             pending = rest * axis_in_joint.inverse();
         }
-        push_last(&mut rows, joint, &pending);
+        push_last(&mut rows, joint, &(pending * tool_in_tip));
         let mut table = Self { rows, residual: 0.0 };
-        table.residual = residual(&table, chain, tip);
+        table.residual = residual(&table, chain, tip, tool_in_tip);
         table
     }
 }
@@ -73,14 +79,14 @@ fn push_last(rows: &mut Vec<Row>, joint: Option<(String, JointKind)>, t: &Pose) 
     rows.push(along_z(&rest));
 }
 
-fn residual(table: &Table, chain: &Chain, tip: LinkId) -> f64 {
+fn residual(table: &Table, chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> f64 {
     let mut state = ChainState::new(chain);
     let mut worst: f64 = 0.0;
     for index in 0..STATES {
         spread_state(chain, index, &mut state.q);
         chain.forward(&mut state);
         let value = |name: &str| chain.joint(name).map_or(f64::NAN, |id| chain.joint_value(id, &state.q));
-        let difference = largest_difference(&table.tip_in_root(value), &state.link_in_root(tip));
+        let difference = largest_difference(&table.tip_in_root(value), &(state.link_in_root(tip) * tool_in_tip));
         // `max` would drop a NaN.
         worst = if difference.is_nan() { f64::NAN } else { worst.max(difference) };
     }

@@ -184,7 +184,7 @@ impl Descent<'_> {
         let shorten = if largest > 1.0 { 1.0 / largest } else { 1.0 };
         for i in 0..x.len() {
             let value = x[i] + self.scratch.trial[i] * shorten;
-            self.scratch.trial[i] = if self.bounded { self.into_bounds(i, value) } else { value };
+            self.scratch.trial[i] = if self.bounded { self.bring_within(i, value) } else { value };
         }
         true
     }
@@ -194,7 +194,7 @@ impl Descent<'_> {
     }
 
     /// Past the end of a range of a full turn or more lies its other end.
-    fn into_bounds(&self, i: usize, value: f64) -> f64 {
+    fn bring_within(&self, i: usize, value: f64) -> f64 {
         let v = &self.arm.variables[i];
         let turn = std::f64::consts::TAU;
         if v.wraps && value > v.upper && value - turn >= v.lower {

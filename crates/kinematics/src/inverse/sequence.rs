@@ -9,7 +9,7 @@ pub fn quasirandom(index: usize, axis: usize, dimensions: usize) -> f64 {
     for _ in 0..30 {
         phi = (1.0 + phi).powf(1.0 / (dimensions as f64 + 1.0));
     }
-    let step = phi.powi(-(axis as i32 + 1));
+    let step = phi.powf(-(axis as f64 + 1.0));
     (0.5 + step * (index + 1) as f64).fract()
 }
 

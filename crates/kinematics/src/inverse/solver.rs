@@ -20,6 +20,7 @@ const STARTS_AFTER_CLOSED_FORM: usize = 12;
 const DRAW_IN: f64 = 1e-6;
 
 /// Inverse kinematics of one tip of one chain. Holds what it needs of the chain, and all scratch memory.
+#[derive(Clone)]
 pub struct Solver {
     arm: Arm,
     wrist: Option<Wrist>,
@@ -50,8 +51,10 @@ struct Outside {
 }
 
 impl Solver {
-    /// For the frame `tip_offset` (the tool in the link's frame) on the link `tip`. Looks for a spherical wrist by itself;
-    /// where the model does not reproduce the chain, the numeric method is used.
+    /// For the frame `tip_offset` (the tool, or any point of a surface, in the link's frame) on the link `tip`. Looks for a
+    /// spherical wrist by itself; where the model does not reproduce the chain, the numeric method is used.
+    ///
+    /// Limits are those of the independent joints; mimic joints go where their source takes them.
     pub fn new(chain: &Chain, tip: LinkId, tip_offset: Pose, options: Options) -> Self {
         let arm = Arm::new(chain, tip, tip_offset);
         let wrist = if options.task == Task::Pose { Wrist::detect(&arm) } else { None };
@@ -83,9 +86,9 @@ impl Solver {
         let start = self.start(seed);
         let mut outside = None;
         if self.wrist.is_some() {
-            let mut found = self.closed_form(target_in_root, &start, &mut outside);
-            if !found.is_empty() {
-                return Ok(self.solution(found.swap_remove(0), seed, 0));
+            let found = self.closed_form(target_in_root, &start, 1, &mut outside);
+            if let Some(nearest) = found.first() {
+                return Ok(self.solution(nearest, seed, 0));
             }
         }
         self.search(target_in_root, seed, &start, outside)
@@ -102,7 +105,7 @@ impl Solver {
         let start = self.start(seed);
         let mut all = Vec::new();
         if self.wrist.is_some() {
-            all = self.closed_form(target_in_root, &start, &mut None);
+            all = self.closed_form(target_in_root, &start, usize::MAX, &mut None);
         }
         if all.is_empty() {
             for index in 0..self.starts() {
@@ -117,7 +120,7 @@ impl Solver {
             }
             all.sort_by(|a, b| squared_distance(&a.x, &start).total_cmp(&squared_distance(&b.x, &start)));
         }
-        all.into_iter().map(|found| self.solution(found, seed, 0).q).collect()
+        all.iter().map(|found| self.solution(found, seed, 0).q).collect()
     }
 
     /// A few steps from a near `q` (all of the chain's values, within the limits), in place; true where the target is met
@@ -175,7 +178,7 @@ impl Solver {
         target.translation.distance(base) > self.arm.reach * (1.0 + 1e-12) + self.options.position_tolerance_m
     }
 
-    fn solution(&self, found: Found, seed: &[f64], restarts: usize) -> Solution {
+    fn solution(&self, found: &Found, seed: &[f64], restarts: usize) -> Solution {
         let mut q = seed.to_vec();
         for (value, variable) in found.x.iter().zip(&self.arm.variables) {
             q[variable.q_index] = *value;
@@ -188,26 +191,30 @@ impl Solver {
         }
     }
 
-    /// All closed-form answers within the limits, polished on the chain, nearest first.
-    fn closed_form(&mut self, target: &Pose, start: &[f64], outside: &mut Option<Outside>) -> Vec<Found> {
+    /// The `most` nearest closed-form answers within the limits, polished on the chain, nearest first.
+    fn closed_form(&mut self, target: &Pose, start: &[f64], most: usize, outside: &mut Option<Outside>) -> Vec<Found> {
         let Some(wrist) = &self.wrist else { return Vec::new() };
         let seed: [f64; 6] = std::array::from_fn(|i| start[i]);
-        let mut all: Vec<Found> = Vec::new();
-        for candidate in wrist.candidates(target, &seed) {
-            let mut x = candidate.to_vec();
-            if let Some(beyond) = self.unwind(&mut x, start) {
-                if outside.as_ref().is_none_or(|o| beyond.by < o.by) {
-                    *outside = Some(beyond);
-                }
-                continue;
-            }
-            let remainder = self.descent(true).run(target, &mut x, REFINE_STEPS);
-            if self.met(&remainder) && all.iter().all(|known| self.differ(&known.x, &x)) {
-                all.push(Found { x, remainder });
+        let mut within: Vec<[f64; 6]> = Vec::with_capacity(8);
+        for mut x in wrist.candidates(target, &seed) {
+            match self.unwind(&mut x, start) {
+                None => within.push(x),
+                Some(beyond) if outside.as_ref().is_none_or(|o| beyond.by < o.by) => *outside = Some(beyond),
+                Some(_) => {}
             }
         }
-        all.sort_by(|a, b| squared_distance(&a.x, start).total_cmp(&squared_distance(&b.x, start)));
-        all
+        within.sort_by(|a, b| squared_distance(a, start).total_cmp(&squared_distance(b, start)));
+        let mut found: Vec<Found> = Vec::with_capacity(most.min(within.len()));
+        for mut x in within {
+            let remainder = self.descent(true).run(target, &mut x, REFINE_STEPS);
+            if self.met(&remainder) && found.iter().all(|known| self.differ(&known.x, &x)) {
+                found.push(Found { x: x.to_vec(), remainder });
+            }
+            if found.len() >= most {
+                break;
+            }
+        }
+        found
     }
 
     /// Adds and takes off full turns until every joint is as near to `start` as its limits allow. Returns the joint that
@@ -278,7 +285,7 @@ impl Solver {
         for index in 0..starts {
             let (found, remainder) = self.descend_from(target, start, index, true);
             if let Some(found) = found {
-                return Ok(self.solution(found, seed, index));
+                return Ok(self.solution(&found, seed, index));
             }
             if self.weight(&remainder) < self.weight(&closest) {
                 closest = remainder;

@@ -17,6 +17,7 @@ use super::sequence::quasirandom;
 const SLACK: f64 = 1e-3;
 
 /// The closed form of an arm.
+#[derive(Clone)]
 pub struct Wrist {
     model: OPWKinematics,
     base_in_root: Pose,

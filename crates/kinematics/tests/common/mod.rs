@@ -1,5 +1,7 @@
 //! A URDF reader just good enough for the tests of this room (the product's own lives in another one).
-#![allow(dead_code, missing_docs, clippy::missing_panics_doc)]
+#![allow(dead_code, missing_docs, clippy::missing_panics_doc, clippy::print_stdout)]
+
+pub mod measure;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -92,7 +94,7 @@ pub fn load(path: &Path) -> Chain {
     Chain::new(root.attribute("name").unwrap_or("robot"), links, joints).unwrap()
 }
 
-/// A small reproducible generator (SplitMix64).
+/// A small reproducible generator (`SplitMix64`).
 pub struct Random(pub u64);
 
 impl Random {
