@@ -1,6 +1,9 @@
 //! How long forward kinematics takes: `cargo run --release -p elbowroom-kinematics --example speed`.
 #![allow(clippy::print_stdout)]
 
+#[path = "../tests/common/mod.rs"]
+mod common;
+
 use std::f64::consts::FRAC_PI_2;
 use std::hint::black_box;
 use std::time::Instant;
@@ -54,7 +57,7 @@ fn by_table() -> Chain {
 }
 
 fn nanoseconds(mut work: impl FnMut(usize)) -> f64 {
-    let rounds = 200_000;
+    let rounds = 20_000;
     (0..7)
         .map(|_| {
             let start = Instant::now();
@@ -64,36 +67,47 @@ fn nanoseconds(mut work: impl FnMut(usize)) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+fn report(label: &str, chain: &Chain) {
+    let n = chain.dof();
+    let mut state = ChainState::new(chain);
+    let vary = |state: &mut ChainState, i: usize| {
+        for k in 0..n {
+            state.q[k] = 0.3 * k as f64 + 1e-6 * i as f64;
+            state.qd[k] = 0.1;
+            state.qdd[k] = 0.2;
+        }
+    };
+    let forward = nanoseconds(|i| {
+        vary(&mut state, i);
+        chain.forward(black_box(&mut state));
+    });
+    let motion = nanoseconds(|i| {
+        vary(&mut state, i);
+        chain.forward_motion(black_box(&mut state));
+    });
+    let (tip, mut columns) = (chain.tip(), vec![[0.0; 6]; n]);
+    let jacobian = nanoseconds(|_| chain.jacobian(black_box(&state), tip, Vec3::Z, &mut columns));
+    common::Random(1).state(chain, &mut state.q);
+    chain.forward(&mut state);
+    let target = state.link_in_root(tip);
+    let mut solver = Solver::new(chain, tip, Pose::IDENTITY, Options::default());
+    let near: Vec<f64> = state.q.iter().map(|v| v + 1e-3).collect();
+    let mut q = near.clone();
+    let refine = nanoseconds(|_| {
+        q.copy_from_slice(&near);
+        black_box(solver.refine(&target, &mut q));
+    });
+    let (links, joints) = (chain.links().len(), chain.joints().len());
+    println!(
+        "{label:<42}{links:>3} links {joints:>3} joints {forward:>7.0} {motion:>7.0} {jacobian:>7.0} {refine:>7.0}"
+    );
+}
+
 fn main() {
-    for (label, chain) in [("as in a URDF, 7 joints", urdf_like()), ("by DH table, 12 joints", by_table())] {
-        let mut state = ChainState::new(&chain);
-        let vary = |state: &mut ChainState, i: usize| {
-            for k in 0..6 {
-                state.q[k] = 0.3 * k as f64 + 1e-6 * i as f64;
-                state.qd[k] = 0.1;
-                state.qdd[k] = 0.2;
-            }
-        };
-        let forward = nanoseconds(|i| {
-            vary(&mut state, i);
-            chain.forward(black_box(&mut state));
-        });
-        let motion = nanoseconds(|i| {
-            vary(&mut state, i);
-            chain.forward_motion(black_box(&mut state));
-        });
-        let (tip, mut columns) = (chain.tip(), [[0.0; 6]; 6]);
-        let jacobian = nanoseconds(|_| chain.jacobian(black_box(&state), tip, Vec3::Z, &mut columns));
-        let target = state.link_in_root(chain.tip());
-        let mut solver = Solver::new(&chain, chain.tip(), Pose::IDENTITY, Options::default());
-        let near: Vec<f64> = state.q.iter().map(|v| v + 1e-3).collect();
-        let mut q = near.clone();
-        let refine = nanoseconds(|_| {
-            q.copy_from_slice(&near);
-            black_box(solver.refine(&target, &mut q));
-        });
-        println!(
-            "{label}: forward {forward:.0} ns, forward_motion {motion:.0} ns, jacobian {jacobian:.0} ns, refine {refine:.0} ns"
-        );
+    println!("nanoseconds (best of seven): forward, forward_motion, jacobian of the tip, refine from 1e-3 rad away");
+    report("as in a URDF", &urdf_like());
+    report("by DH table", &by_table());
+    for (name, path) in common::robots() {
+        report(&name, &common::load(&path));
     }
 }

@@ -14,7 +14,7 @@ fn every_robot_reaches_what_it_can_reach() {
         let chain = common::load(&path);
         let line = measure(&chain, if cfg!(debug_assertions) { 300 } else { 5000 });
         println!("{}", line.text(&name));
-        assert!(line.worst_m <= 1e-9 && line.worst_rad <= 1e-9 + 1e-15, "{name}");
+        assert!(line.worst_m <= 1e-12 && line.worst_rad <= 1e-12, "{name}");
         let wanted = if line.method == Method::SphericalWrist { 100.0 } else { 99.0 };
         assert!(line.success >= wanted, "{name}: {}", line.success);
         if name.starts_with("comau_ns16") || name.starts_with("staubli") || name.starts_with("kuka_kr") {

@@ -96,7 +96,7 @@ impl Descent<'_> {
                 milestone = (iteration, cost);
             }
             let mut improved = false;
-            self.linearize(target, x, &e);
+            self.linearize(x);
             for _ in 0..6 {
                 if !self.step(x, &e, damping * cost + 1e-15) {
                     damping *= 10.0;
@@ -134,10 +134,9 @@ impl Descent<'_> {
         }
     }
 
-    /// Fills the weighted Jacobian at `x` and holds the joints that a descent would push out of bounds.
-    fn linearize(&mut self, target: &Pose, x: &[f64], e: &[f64; 6]) {
+    /// Fills the weighted Jacobian at `x` and holds the joints that cannot move at all.
+    fn linearize(&mut self, x: &[f64]) {
         let tip = self.arm.tip_in_root(x, &mut self.scratch.axes);
-        debug_assert!(target.translation.is_finite());
         self.arm.columns(tip.translation, &self.scratch.axes, &mut self.scratch.columns);
         for (i, column) in self.scratch.columns.iter_mut().enumerate() {
             for (row, value) in column.iter_mut().enumerate() {
@@ -148,18 +147,28 @@ impl Descent<'_> {
                 }
             }
             let variable = &self.arm.variables[i];
-            let push: f64 = column.iter().zip(e).map(|(c, e)| c * e).sum();
-            let outward = (x[i] <= variable.lower && push < 0.0) || (x[i] >= variable.upper && push > 0.0);
-            let locked = variable.lower >= variable.upper;
-            let can_wrap = variable.wraps && variable.upper - variable.lower >= std::f64::consts::TAU - 1e-9;
-            self.scratch.held[i] = self.bounded && (locked || (outward && !can_wrap));
+            self.scratch.held[i] = self.bounded && variable.lower >= variable.upper;
         }
     }
 
-    /// `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not held, into `trial`; false where that has no solution.
+    /// A step into `trial`, without the joints that would leave their range by it; false where there is none.
     fn step(&mut self, x: &[f64], e: &[f64; 6], lambda: f64) -> bool {
+        // Every round but the last takes a joint out, so there are no more rounds than joints.
+        for _ in 0..=x.len() {
+            if !self.solve_for_step(e, lambda) {
+                return false;
+            }
+            if !self.hold_what_presses(x) {
+                break;
+            }
+        }
+        self.apply_step(x)
+    }
+
+    /// `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not held.
+    fn solve_for_step(&mut self, e: &[f64; 6], lambda: f64) -> bool {
         let mut a = [[0.0; 6]; 6];
-        for (column, _) in self.free_columns() {
+        for column in self.free_columns() {
             for i in 0..6 {
                 for j in 0..=i {
                     a[i][j] += column[i] * column[j];
@@ -170,16 +179,37 @@ impl Descent<'_> {
             row[i] += lambda;
         }
         let Some(y) = solve_spd(a, *e) else { return false };
-        let mut largest: f64 = 0.0;
-        for i in 0..x.len() {
-            let column = &self.scratch.columns[i];
-            let delta = if self.scratch.held[i] { 0.0 } else { column.iter().zip(y).map(|(c, y)| c * y).sum() };
-            let unit = if self.arm.variables[i].turns { 1.0 } else { self.scale };
-            largest = largest.max(delta.abs() / unit);
-            self.scratch.trial[i] = delta;
+        let Scratch { columns, trial, held, .. } = &mut *self.scratch;
+        for ((delta, column), held) in trial.iter_mut().zip(columns).zip(held) {
+            *delta = if *held { 0.0 } else { column.iter().zip(y).map(|(c, y)| c * y).sum() };
         }
-        if !largest.is_finite() {
-            return false;
+        true
+    }
+
+    /// Holds the joints that stand at a bound and would go on; true where there was one.
+    fn hold_what_presses(&mut self, x: &[f64]) -> bool {
+        let mut any = false;
+        for (i, variable) in self.arm.variables.iter().enumerate() {
+            let delta = self.scratch.trial[i];
+            let outward = (x[i] <= variable.lower && delta < 0.0) || (x[i] >= variable.upper && delta > 0.0);
+            let can_wrap = variable.wraps && variable.upper - variable.lower >= std::f64::consts::TAU - 1e-9;
+            if self.bounded && outward && !can_wrap && !self.scratch.held[i] {
+                self.scratch.held[i] = true;
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Shortens the step where it is long, and keeps it within the bounds.
+    fn apply_step(&mut self, x: &[f64]) -> bool {
+        let mut largest: f64 = 0.0;
+        for (delta, variable) in self.scratch.trial.iter().zip(&self.arm.variables) {
+            let unit = if variable.turns { 1.0 } else { self.scale };
+            if !delta.is_finite() {
+                return false;
+            }
+            largest = largest.max(delta.abs() / unit);
         }
         let shorten = if largest > 1.0 { 1.0 / largest } else { 1.0 };
         for i in 0..x.len() {
@@ -189,8 +219,8 @@ impl Descent<'_> {
         true
     }
 
-    fn free_columns(&self) -> impl Iterator<Item = (&[f64; 6], usize)> {
-        self.scratch.columns.iter().zip(0..).filter(|&(_, i)| !self.scratch.held[i])
+    fn free_columns(&self) -> impl Iterator<Item = &[f64; 6]> {
+        self.scratch.columns.iter().zip(&self.scratch.held).filter(|(_, held)| !**held).map(|(column, _)| column)
     }
 
     /// Past the end of a range of a full turn or more lies its other end.
