@@ -53,7 +53,7 @@ fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, Forma
     })
 }
 
-/// The turn that makes the stated up axis +z (COLLADA 1.4.1, "up_axis").
+/// The turn that makes the stated up axis +z (COLLADA 1.4.1, `up_axis`).
 fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut Warnings) -> Affine {
     let Some(node) = asset.and_then(|a| xml::child(a, "up_axis")) else {
         // The specification's default.

@@ -126,7 +126,9 @@ impl Warnings {
     }
 
     pub(crate) fn extend(&mut self, more: Vec<Warning>) {
-        more.into_iter().for_each(|w| self.push(w));
+        for warning in more {
+            self.push(warning);
+        }
     }
 
     pub(crate) fn finish(mut self, file: &Path) -> Vec<Warning> {

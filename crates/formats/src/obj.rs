@@ -160,7 +160,7 @@ impl<'a> Reader<'a> {
             FormatError::new(self.file, line, what)
                 .hint("the number of a vertex, from 1: f 1 2 3, or f 1/1/1 2/2/1 3/3/1")
         })?;
-        let known = self.vertices.len() as i64;
+        let known = i64::try_from(self.vertices.len()).unwrap_or(i64::MAX);
         let from_zero = if index < 0 { known.saturating_add(index) } else { index - 1 };
         // Vertices may follow later, so only what can never be is refused here.
         u32::try_from(from_zero).map_err(|_| {

@@ -1,6 +1,7 @@
 //! A whole robot: URDF, its meshes, and the SRDF that goes with it.
 
-use std::collections::HashMap;
+mod meshes;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,9 +13,10 @@ use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::error::Warnings;
-use crate::mesh::{self, MeshData, UpAxis};
+use crate::mesh;
 use crate::urdf::{Geometry, Model, Solid};
-use crate::{FormatError, Warning, resolve, source, srdf, urdf};
+use crate::{FormatError, Warning, source, srdf, urdf};
+use meshes::Meshes;
 
 /// How to load a robot.
 #[derive(Debug, Clone, Default)]
@@ -65,12 +67,11 @@ pub struct LoadedRobot {
 pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatError> {
     let model = urdf::parse(&source::read(urdf_path)?, urdf_path)?;
     let mut robot = Robot::new(chain(&model, urdf_path)?);
+    let base = urdf_path.parent().unwrap_or(Path::new(""));
+    let wanted = model.links.iter().flat_map(|l| l.collisions.iter().chain(shown(l, options)));
     let mut loader = Loader {
         urdf_path,
-        base: urdf_path.parent().unwrap_or(Path::new("")),
-        unit: options.unit,
-        meshes: HashMap::new(),
-        solids: HashMap::new(),
+        meshes: Meshes::load(wanted, base, options.unit),
         warnings: Warnings::default(),
         largest: 0.0,
     };
@@ -79,7 +80,7 @@ pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, Form
         for solid in &link.collisions {
             robot.bodies[i].extend(loader.bodies(solid)?);
         }
-        for solid in link.visuals.iter().filter(|_| options.load_visuals) {
+        for solid in shown(link, options) {
             match loader.bodies(solid) {
                 Ok(bodies) => robot.visuals[i].extend(bodies),
                 Err(e) => loader.warnings.push(e.into()),
@@ -92,6 +93,10 @@ pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, Form
         disable_pairs(&mut robot, srdf_path, &mut warnings)?;
     }
     Ok(LoadedRobot { robot, warnings: warnings.finish(urdf_path) })
+}
+
+fn shown<'a>(link: &'a urdf::Link, options: &LoadOptions) -> &'a [Solid] {
+    if options.load_visuals { &link.visuals } else { &[] }
 }
 
 /// The chain of a model; links and joints keep their order.
@@ -124,15 +129,9 @@ pub fn chain(model: &Model, file: &Path) -> Result<Chain, FormatError> {
     })
 }
 
-/// Solids of one mesh file at one scale, with the names of its objects.
-type Solids = Arc<Vec<(String, Arc<TriMesh>)>>;
-
 struct Loader<'a> {
     urdf_path: &'a Path,
-    base: &'a Path,
-    unit: Option<LengthUnit>,
-    meshes: HashMap<PathBuf, Result<Arc<Vec<MeshData>>, FormatError>>,
-    solids: HashMap<(PathBuf, [u64; 3]), Solids>,
+    meshes: Meshes,
     warnings: Warnings,
     /// The largest extent of any body, metres.
     largest: f64,
@@ -165,14 +164,15 @@ impl Loader<'_> {
     }
 
     fn mesh_bodies(&mut self, solid: &Solid, filename: &str, scale: Vec3) -> Result<Vec<Body>, FormatError> {
-        let path = resolve::resolve(filename, self.base).map_err(|why| {
+        let path = self.meshes.path(filename).map(Path::to_owned).map_err(|why| {
             FormatError::new(self.urdf_path, solid.line, format!("the mesh `{filename}` is not found: {why}"))
                 .hint("a path relative to the URDF, or package://NAME/… with a directory NAME beside the URDF or above")
         })?;
-        let solids = self.solids(&path, scale).map_err(|mut e| {
-            e.what.push_str(&format!(" (named in {}:{})", self.urdf_path.display(), solid.line));
+        let (solids, warnings) = self.meshes.solids(&path, scale).map_err(|mut e| {
+            e.what = format!("{} (named in {}:{})", e.what, self.urdf_path.display(), solid.line);
             e
         })?;
+        self.warnings.extend(warnings);
         let extent = solids.iter().fold(elbowroom_spatial::Aabb::EMPTY, |all, (_, m)| all.union(m.aabb())).extent();
         self.note_extent(extent, solid);
         let stem = solid.name.clone().unwrap_or_else(|| source::stem(&path));
@@ -185,40 +185,6 @@ impl Loader<'_> {
         Ok(solids.iter().map(body).collect())
     }
 
-    fn solids(&mut self, path: &Path, scale: Vec3) -> Result<Solids, FormatError> {
-        let key = (path.to_owned(), scale.to_array().map(f64::to_bits));
-        if let Some(known) = self.solids.get(&key) {
-            return Ok(Arc::clone(known));
-        }
-        let meshes = self.meshes(path)?;
-        let mut solids = Vec::with_capacity(meshes.len());
-        for mesh in meshes.iter() {
-            let mut scaled = mesh.clone();
-            if scale != Vec3::splat(1.0) {
-                scaled.scale(scale);
-            }
-            let name = scaled.name.clone();
-            solids.push((name, Arc::new(scaled.into_trimesh(path)?)));
-        }
-        let solids = Arc::new(solids);
-        self.solids.insert(key, Arc::clone(&solids));
-        Ok(solids)
-    }
-
-    /// The objects of a file, read once; a failure is remembered, too.
-    fn meshes(&mut self, path: &Path) -> Result<Arc<Vec<MeshData>>, FormatError> {
-        if let Some(known) = self.meshes.get(path) {
-            return known.clone();
-        }
-        let loaded = source::read(path).and_then(|bytes| mesh::parse(&bytes, path, self.unit, UpAxis::Ignore));
-        let meshes = loaded.map(|loaded| {
-            self.warnings.extend(loaded.warnings);
-            Arc::new(loaded.meshes)
-        });
-        self.meshes.insert(path.to_owned(), meshes.clone());
-        meshes
-    }
-
     fn note_extent(&mut self, extent: Vec3, solid: &Solid) {
         let largest = extent.max_element();
         self.largest = self.largest.max(largest);
@@ -229,10 +195,9 @@ impl Loader<'_> {
 
     /// Small parts are ordinary; a robot of which all parts are tiny is not. Nor is an arm with joints 20 m apart.
     fn doubt_units(&mut self, model: &Model) {
-        if self.largest > 0.0 {
-            if let Some(doubt) = mesh::units_suspicion(Vec3::splat(self.largest)).filter(|_| self.largest < 1.0) {
-                self.warnings.push(Warning { file: self.urdf_path.to_owned(), ..doubt });
-            }
+        let is_tiny = self.largest > 0.0 && self.largest < 1.0;
+        if let Some(doubt) = mesh::units_suspicion(Vec3::splat(self.largest)).filter(|_| is_tiny) {
+            self.warnings.push(Warning { file: self.urdf_path.to_owned(), ..doubt });
         }
         if let Some(far) = model.joints.iter().find(|j| j.origin.translation.length() > 20.0) {
             let metres = far.origin.translation.length();

@@ -73,7 +73,7 @@ fn utf8<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
     if head.starts_with("<?xml") && (head.contains("iso-8859-1") || head.contains("windows-1252")) {
         return Ok(Cow::Owned(bytes.iter().map(|&b| b as char).collect()));
     }
-    let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+    let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
     Err(FormatError::new(file, line, "is not text: a byte here is not UTF-8").hint("save the file as UTF-8"))
 }
 

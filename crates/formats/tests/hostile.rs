@@ -92,22 +92,25 @@ fn towers_and_crowds_are_survived() {
     );
     assert!(run("dae", scene.as_bytes()).unwrap_err().what.contains("too deeply"));
     assert!(run("gltf", nested("{\"a\":", "}").as_bytes()).is_err());
-    let crowd: String = (0..50_000).map(|i| format!("<link name=\"l{i}\"/>\n")).collect();
+    let many = |n: usize, line: &dyn Fn(usize) -> String| (0..n).map(line).collect::<Vec<_>>().concat();
+    let crowd = many(50_000, &|i| format!("<link name=\"l{i}\"/>\n"));
     assert!(run("urdf", format!("<robot>{crowd}</robot>").as_bytes()).unwrap_err().what.contains("50000 links"));
-    let chain: String = (1..20_000)
-        .map(|i| format!("<link name=\"l{i}\"/><joint name=\"j{i}\" type=\"continuous\"><parent link=\"l{}\"/><child link=\"l{i}\"/></joint>\n", i - 1))
-        .collect();
+    let chain = many(20_000, &|i| {
+        let joint = format!(
+            "<joint name=\"j{i}\" type=\"continuous\"><parent link=\"l{i}\"/><child link=\"l{}\"/></joint>",
+            i + 1
+        );
+        format!("<link name=\"l{}\"/>{joint}\n", i + 1)
+    });
     assert!(run("urdf", format!("<robot><link name=\"l0\"/>{chain}</robot>").as_bytes()).is_ok());
 }
 
 /// Nodes that instance the next one twice would be 2^40 objects.
 #[test]
 fn nodes_that_double_are_refused() {
-    let nodes: String = (0..40)
-        .map(|i| {
-            format!("<node id=\"n{i}\"><instance_node url=\"#n{0}\"/><instance_node url=\"#n{0}\"/></node>", i + 1)
-        })
-        .collect();
+    let node =
+        |i| format!("<node id=\"n{i}\"><instance_node url=\"#n{0}\"/><instance_node url=\"#n{0}\"/></node>", i + 1);
+    let nodes = (0..40).map(node).collect::<Vec<_>>().concat();
     let text = format!(
         "<COLLADA><library_nodes>{nodes}<node id=\"n40\"/></library_nodes><library_visual_scenes><visual_scene>\
          <node><instance_node url=\"#n0\"/></node></visual_scene></library_visual_scenes></COLLADA>"

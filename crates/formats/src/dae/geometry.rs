@@ -134,7 +134,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 
     fn corners(&self, list: Node<'a, 'i>, layout: &Layout) -> Result<Vec<u32>, FormatError> {
         let numbers = indices(list, self.file)?;
-        if numbers.len() % layout.stride != 0 {
+        if !numbers.len().is_multiple_of(layout.stride) {
             let what = format!(
                 "<p> has {} numbers, which is no multiple of the {} of one corner",
                 numbers.len(),
@@ -153,7 +153,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     fn triangles(&mut self, list: Node<'a, 'i>, corners: &[u32]) -> Result<(), FormatError> {
-        if corners.len() % 3 != 0 {
+        if !corners.len().is_multiple_of(3) {
             let what = format!("<triangles> with {} corners", corners.len());
             return Err(FormatError::new(self.file, xml::line(list), what).hint("three corners for each triangle"));
         }

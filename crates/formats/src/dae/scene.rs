@@ -27,8 +27,8 @@ pub(super) struct Scene<'a, 'i, 'w> {
 }
 
 /// All objects of the scene that the file shows; where it shows none, all its geometries as they are.
-pub(super) fn meshes<'a>(
-    root: Node<'a, '_>,
+pub(super) fn meshes(
+    root: Node<'_, '_>,
     to_metres: &Affine,
     file: &Path,
     warnings: &mut Warnings,

@@ -10,8 +10,11 @@ use gltf::buffer::Source;
 use crate::scan::show;
 use crate::{FormatError, source};
 
-/// The JSON, and the binary chunk of a GLB. Text before the chunks means a plain glTF.
-pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<(Cow<'a, [u8]>, Option<&'a [u8]>), FormatError> {
+/// The JSON, and the binary chunk of a GLB.
+type Chunks<'a> = (Cow<'a, [u8]>, Option<&'a [u8]>);
+
+/// Takes a file apart. Text before the chunks means a plain glTF.
+pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, FormatError> {
     if !bytes.starts_with(b"glTF") {
         return source::text_bytes(bytes, file).map(|json| (json, None));
     }

@@ -198,7 +198,9 @@ impl Reader<'_> {
                 trail.push(i);
                 next = joints[i].mimic.map(|m| m.joint);
             }
-            trail.into_iter().for_each(|i| state[i] = 2);
+            for i in trail {
+                state[i] = 2;
+            }
         }
         Ok(())
     }

@@ -126,7 +126,7 @@ impl Reader<'_> {
     pub(super) fn axis(&self, joint: Node<'_, '_>, moves: bool) -> Result<Vec3, FormatError> {
         let Some(node) = xml::child(joint, "axis") else { return Ok(Vec3::X) };
         let xyz = self.vector(node, "xyz")?;
-        match xyz.map(Vec3::from).unwrap_or(Vec3::X).try_normalize() {
+        match xyz.map_or(Vec3::X, Vec3::from).try_normalize() {
             Some(axis) => Ok(axis),
             None if moves => Err(self.error(node, "the axis 0 0 0 is no direction").hint("<axis xyz=\"0 0 1\"/>")),
             None => Ok(Vec3::X),

@@ -54,7 +54,9 @@ fn refuse_circles(links: &[Link], joints: &[Joint], carrier: &[Option<usize>], f
             }
             trail.push(joint.parent);
         }
-        trail.into_iter().for_each(|link| arrives[link] = true);
+        for link in trail {
+            arrives[link] = true;
+        }
     }
     Ok(())
 }

@@ -69,7 +69,9 @@ fn binary_ply() -> Vec<u8> {
         bytes.extend(x.to_be_bytes());
     }
     bytes.push(4);
-    [0i32, 1, 2, 3].iter().for_each(|i| bytes.extend(i.to_be_bytes()));
+    for i in 0..4i32 {
+        bytes.extend(i.to_be_bytes());
+    }
     bytes
 }
 

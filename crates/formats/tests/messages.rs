@@ -1,0 +1,122 @@
+//! What is wrong with a URDF or an SRDF, on which line, and what to write instead.
+
+use std::path::Path;
+
+use elbowroom_formats::{FormatError, srdf, urdf};
+
+const HEAD: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n";
+
+/// A joint from a to b on lines 5 to 8, in front of what is given.
+fn with_joint(kind: &str, inside: &str, after: &str) -> String {
+    format!(
+        "{HEAD}<joint name=\"j\" type=\"{kind}\">\n<parent link=\"a\"/>\n<child link=\"b\"/>\n{inside}</joint>\n{after}</robot>\n"
+    )
+}
+
+fn refused(text: &str) -> FormatError {
+    urdf::parse(text.as_bytes(), Path::new("arm.urdf")).expect_err(text)
+}
+
+#[test]
+fn every_mistake_has_its_line_and_its_advice() {
+    let limit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\"/>\n";
+    let joint_k = |parent: &str, child: &str| {
+        format!("<joint name=\"k\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>\n")
+    };
+    let table: Vec<(String, usize, &str, &str)> = vec![
+        (String::new(), 0, "empty", "export"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0\n".into(), 1, "Git LFS", "git lfs pull"),
+        ("hello".into(), 1, "not XML", "<robot"),
+        ("<robot name=\"r\"><link name=\"a\"/>\n\n".into(), 2, "truncated", "closing"),
+        ("<sdf version=\"1.9\"/>".into(), 1, "SDF", "URDF"),
+        ("<COLLADA/>".into(), 1, "COLLADA", "URDF"),
+        ("<robot name=\"r\"/>".into(), 1, "no links", "<link"),
+        ("<robot>\n<group name=\"g\"/></robot>".into(), 1, "SRDF", "srdf"),
+        ("<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/>\n<link name=\"a\"/></robot>".into(), 2, "xacro", "xacro FILE"),
+        ("<robot>\n<xacro:arm/></robot>".into(), 2, "xacro", "xacro FILE"),
+        ("<robot><link name=\"a\">\n<collision><origin xyz=\"0 0 ${h}\"/></collision></link></robot>".into(), 2, "xacro", "xacro FILE"),
+        (format!("{HEAD}<link name=\"a\"/></robot>"), 5, "second link `a`; the first is on line 3", "name of its own"),
+        (format!("{HEAD}<link/></robot>"), 5, "no name", "name="),
+        (format!("{HEAD}</robot>"), 4, "2 links have no parent", "fixed"),
+        (with_joint("floating", "", ""), 5, "`floating`", "base pose"),
+        (with_joint("planar", "", ""), 5, "`planar`", "prismatic"),
+        (with_joint("hinge", "", ""), 5, "`hinge`", "revolute"),
+        (with_joint("revolute", "", ""), 5, "no <limit>", "<limit lower="),
+        (with_joint("revolute", "<limit velocity=\"1\"/>\n", ""), 8, "neither lower nor upper", "<limit lower="),
+        (with_joint("prismatic", "<limit lower=\"2\" upper=\"1\"/>\n", ""), 8, "above", "lower=\"1\" upper=\"2\""),
+        (with_joint("prismatic", "<limit lower=\"-inf\" upper=\"1\"/>\n", ""), 8, "not finite", "finite"),
+        (with_joint("revolute", &format!("<axis xyz=\"0 0 0\"/>\n{limit}"), ""), 8, "no direction", "0 0 1"),
+        (with_joint("revolute", &format!("<axis xyz=\"0 1\"/>\n{limit}"), ""), 8, "2 numbers", "three"),
+        (with_joint("fixed", "<origin\n xyz=\"0 nan 0\"/>\n", ""), 9, "not finite", "three finite numbers"),
+        (with_joint("fixed", "<origin rpy=\"0 0 1,5\"/>\n", ""), 8, "not made of numbers", "three"),
+        (with_joint("revolute", &format!("{limit}<mimic joint=\"x\"/>\n"), ""), 9, "no joint `x`", "name of a joint"),
+        (with_joint("revolute", &format!("{limit}<mimic joint=\"j\"/>\n"), ""), 5, "circle", "without <mimic>"),
+        (with_joint("fixed", "", &joint_k("b", "a")), 9, "circle", "tree"),
+        (with_joint("fixed", "", &joint_k("a", "b")), 9, "already the child", "one joint for each child"),
+        (with_joint("fixed", "", &joint_k("b", "b")), 9, "itself", "two different"),
+        (with_joint("fixed", "", &joint_k("b", "world")), 9, "no link `world`", "<link name=\"world\"/>"),
+        (with_joint("fixed", "", "<joint name=\"j\" type=\"fixed\"/>\n"), 9, "second joint `j`; the first is on line 5", "own"),
+        (format!("{HEAD}<joint name=\"j\" type=\"fixed\"><child link=\"b\"/></joint></robot>"), 5, "no parent", "<parent link="),
+        ("<robot><link name=\"a\"><collision>\n</collision></link></robot>".into(), 1, "no <geometry>", "<box"),
+        ("<robot><link name=\"a\"><collision><geometry>\n<cone/></geometry></collision></link></robot>".into(), 2, "<cone>", "<cylinder"),
+        ("<robot><link name=\"a\"><collision><geometry>\n<sphere radius=\"-1\"/></geometry></collision></link></robot>".into(), 2, "negative", "radius="),
+        ("<robot><link name=\"a\"><collision><geometry>\n<mesh/></geometry></collision></link></robot>".into(), 2, "no filename", "filename="),
+        ("<robot xmlns:drake=\"http://drake.mit.edu\"><link name=\"a\"/>\n<drake:joint name=\"s\" type=\"screw\"/></robot>".into(), 2, "extension", "without prefix"),
+        ("<!DOCTYPE x [<!ENTITY a \"b\">]><robot/>".into(), 0, "document type", "DOCTYPE"),
+        ("<robot><link name=\"<a>\"/></robot>".into(), 1, "`<`", "&lt;"),
+    ];
+    let mut whats: Vec<String> = Vec::new();
+    for (text, line, what, hint) in table {
+        let error = refused(&text);
+        assert_eq!(error.line.unwrap_or(0), line, "{error}\n{text}");
+        assert!(error.what.contains(what), "{error}\nwants: {what}");
+        assert!(error.write_instead.as_ref().is_some_and(|w| w.contains(hint)), "{error}\nwants: {hint}");
+        whats.push(error.what);
+    }
+    whats.sort();
+    whats.dedup();
+    assert!(whats.len() > 30, "messages tell mistakes apart");
+}
+
+#[test]
+fn a_namespace_for_all_is_no_stranger() {
+    let text = with_joint("fixed", "", "").replace("<robot name", "<robot xmlns=\"http://www.ros.org\" name");
+    let model = urdf::parse(text.as_bytes(), Path::new("arm.urdf")).unwrap();
+    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert_eq!(model.joints.len(), 1);
+}
+
+#[test]
+fn a_missing_speed_is_a_warning_and_unknown() {
+    for limit in ["<limit lower=\"-1\" upper=\"1\" velocity=\"0\"/>\n", "<limit lower=\"-1\" upper=\"1\"/>\n"] {
+        let model = urdf::parse(with_joint("revolute", limit, "").as_bytes(), Path::new("arm.urdf")).unwrap();
+        assert_eq!(model.joints[0].limits.velocity, None);
+        assert_eq!(model.warnings.len(), 1);
+        assert_eq!(model.warnings[0].line, Some(8));
+    }
+}
+
+#[test]
+fn utf16_and_latin1_are_read() {
+    let text = with_joint("fixed", "", "");
+    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    assert_eq!(urdf::parse(&utf16, Path::new("a.urdf")).unwrap().links.len(), 2);
+    let latin1 =
+        text.replace("version=\"1.0\"", "version=\"1.0\" encoding=\"ISO-8859-1\"").replace("name=\"r\"", "name=\"r?\"");
+    let latin1: Vec<u8> = latin1.into_bytes().into_iter().map(|b| if b == b'?' { 0xe4 } else { b }).collect();
+    // Both question marks of the XML declaration turn into letters, too: put them back.
+    let mut latin1 = latin1;
+    latin1[1] = b'?';
+    let end = latin1.iter().position(|&b| b == b'>').unwrap();
+    latin1[end - 1] = b'?';
+    assert_eq!(urdf::parse(&latin1, Path::new("a.urdf")).unwrap().name, "rä");
+}
+
+#[test]
+fn srdf_mistakes_have_their_line() {
+    let parse = |text: &str| srdf::parse(text.as_bytes(), Path::new("arm.srdf"));
+    let error = parse("<robot>\n<disable_collisions link1=\"a\"/>\n</robot>").unwrap_err();
+    assert_eq!((error.line, error.what.contains("link2")), (Some(2), true));
+    assert_eq!(parse("<robot>\n<disable_collisions").unwrap_err().line, Some(2));
+    assert!(parse("<sdf/>").unwrap_err().what.contains("<sdf>"));
+}
