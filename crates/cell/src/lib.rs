@@ -1,1 +1,48 @@
-//! room: cell
+//! A whole cell from one file, run in simulated time.
+//!
+//! A cell file names robots, tools, objects, regions and programs ([`Cell::load`]; every key is in `docs/cell-file.md`).
+//! [`simulate`] runs the programs under the monitor on one clock and returns a [`Recording`], which [`Summary`] and [`csv`]
+//! turn into what scripts and people read.
+//!
+//! ```
+//! use elbowroom_cell::{Cell, RunOptions, simulate};
+//! let cell = Cell::parse("rail.toml", r#"
+//! version = 1
+//! units = { length = "mm", angle = "deg" }
+//! [robot.rail]
+//! dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+//! [region.end]
+//! shape = "plane"
+//! origin = [0, 0, 1000]
+//! x = [0, 1, 1000]
+//! y = [1, 0, 1000]       # its normal looks down: all above z = 1000 is forbidden
+//! warning = 300
+//! guards = ["tcp"]
+//! [program.rail]
+//! steps = [{ move = "joint", to = [1500], speed = 50 }]
+//! "#)?;
+//! let outcome = simulate(&cell, &RunOptions::default())?;
+//! assert!(!outcome.recording.robots[0].finished); // it stopped at the border
+//! assert!(!outcome.bad_news());
+//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! ```
+
+mod cell;
+pub mod configure;
+pub mod csv;
+mod file;
+pub mod motion;
+mod recording;
+pub mod run;
+mod summary;
+
+pub use cell::{
+    Action, Cell, CellLaws, CellRegion, CellRobot, Encoder, Follow, JointLimits, MapSpec, Program, ProgramBody, Step,
+    Target, TrajectoryRow, Travel, Units,
+};
+pub use file::{CellFile, NumberTable};
+pub use recording::{
+    Collision, EventRow, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes,
+};
+pub use run::{RunOptions, RunOutcome, simulate};
+pub use summary::Summary;

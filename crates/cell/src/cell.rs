@@ -1,0 +1,286 @@
+//! A cell, resolved: every name looked up, every number in metres, radians and seconds.
+
+use std::path::PathBuf;
+
+use elbowroom_formats::Warning;
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{Laws, Region, Volume, VolumeModel, arm_volumes};
+use elbowroom_proximity::Shape;
+use elbowroom_scene::{Body, Object, Robot};
+use elbowroom_spatial::units::{AngleUnit, LengthUnit};
+use elbowroom_spatial::{Pose, Vec3};
+
+/// Everything that a cell file says. Read by [`Cell::load`].
+#[derive(Debug, Clone)]
+pub struct Cell {
+    /// The file it came from.
+    pub file: PathBuf,
+    /// Its name.
+    pub name: String,
+    /// The units its file is written in, for messages.
+    pub units: Units,
+    /// Period of the control tick, s.
+    pub tick_s: f64,
+    /// Longest simulated time of a run, s.
+    pub max_s: f64,
+    /// In file order.
+    pub robots: Vec<CellRobot>,
+    /// In file order.
+    pub objects: Vec<Object>,
+    /// In file order.
+    pub regions: Vec<CellRegion>,
+    /// In file order.
+    pub encoders: Vec<Encoder>,
+    /// The laws of all monitors; joint decelerations are filled in per robot.
+    pub laws: CellLaws,
+    /// One per robot; `None` for a robot that stands at its start.
+    pub programs: Vec<Option<Program>>,
+    /// Joint-space maps, checked but used by later verbs.
+    pub maps: Vec<MapSpec>,
+    /// SHA-256 of the monitors' configurations, hex.
+    pub checksum: String,
+    /// What a user should know about the file, none of it fatal.
+    pub warnings: Vec<Warning>,
+}
+
+/// The units of a cell file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Units {
+    /// Of lengths.
+    pub length: LengthUnit,
+    /// Of angles.
+    pub angle: AngleUnit,
+}
+
+/// A robot, its place, its tool.
+#[derive(Debug, Clone)]
+pub struct CellRobot {
+    /// Its name in the cell.
+    pub name: String,
+    /// Line of its table.
+    pub line: usize,
+    /// Links, joints, solids; tool and load are bodies of the flange link.
+    pub robot: Robot,
+    /// Where the root link stands.
+    pub base_in_world: Pose,
+    /// The link that carries the tool.
+    pub flange: LinkId,
+    /// Tool centre point frame in the flange link.
+    pub tcp_in_flange: Pose,
+    /// The tool's solid, in the flange link.
+    pub tool: Option<Body>,
+    /// The load's solid, in the flange link.
+    pub load: Option<Body>,
+    /// Joint values at the start, rad or m.
+    pub start: Vec<f64>,
+    /// True where the file gives `start`.
+    pub start_given: bool,
+    /// How links become guarded volumes.
+    pub volumes: VolumeModel,
+    /// Per value of `q`.
+    pub limits: Vec<JointLimits>,
+}
+
+/// How fast a joint may move. Per second, per second² and per second³, in rad or m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointLimits {
+    /// Largest speed.
+    pub velocity: f64,
+    /// Largest acceleration of a programmed move.
+    pub acceleration: f64,
+    /// Largest jerk of a programmed move.
+    pub jerk: f64,
+    /// Deceleration that the joint reaches when the override falls.
+    pub stop: f64,
+}
+
+/// A region and whom it concerns.
+#[derive(Debug, Clone)]
+pub struct CellRegion {
+    /// As the monitors see it; `follow` and the slot of an exchange region are filled in per monitor.
+    pub region: Region,
+    /// Line of its table.
+    pub line: usize,
+    /// Indices of the robots that it guards against.
+    pub robots: Vec<usize>,
+    /// What carries it.
+    pub follow: Option<Follow>,
+}
+
+/// What a dynamic region rides on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Follow {
+    /// A frame of a robot.
+    Robot {
+        /// Index of the robot.
+        robot: usize,
+        /// The link.
+        link: LinkId,
+        /// The frame in the link.
+        in_link: Pose,
+    },
+    /// Index of an encoder.
+    Encoder(usize),
+}
+
+/// A conveyor or a rail: something that travels along a line.
+#[derive(Debug, Clone)]
+pub struct Encoder {
+    /// Its name.
+    pub name: String,
+    /// Unit vector of positive travel, in the world.
+    pub direction: Vec3,
+    /// How it travels.
+    pub travel: Travel,
+    /// Travel after which it begins again at 0, m.
+    pub wrap_m: Option<f64>,
+}
+
+/// Travel over time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Travel {
+    /// Constant speed between two times.
+    Constant {
+        /// Travel before it starts, m.
+        at_m: f64,
+        /// m/s.
+        speed: f64,
+        /// It starts at this time, s.
+        start_s: f64,
+        /// It stops at this time, s; infinite for never.
+        end_s: f64,
+    },
+    /// Times (s, rising) and travels (m), linear between.
+    Table(Vec<(f64, f64)>),
+}
+
+/// The laws of a cell.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellLaws {
+    /// As the monitors take them, without stopping distance.
+    pub laws: Laws,
+    /// Reaction time (s) of the stopping-distance law, where that is on.
+    pub stopping_reaction_s: Option<f64>,
+}
+
+/// What a robot does.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// Programmed override at the start, 0..1.
+    pub speed_override: f64,
+    /// How often it runs.
+    pub repeat: u32,
+    /// What it does.
+    pub body: ProgramBody,
+    /// Line of its table.
+    pub line: usize,
+}
+
+/// Steps, or a recording.
+#[derive(Debug, Clone)]
+pub enum ProgramBody {
+    /// One after the other, at rest in between.
+    Steps(Vec<Step>),
+    /// Joint values over time.
+    Trajectory(Vec<TrajectoryRow>),
+}
+
+/// A row of a recorded trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrajectoryRow {
+    /// Time, s.
+    pub t_s: f64,
+    /// Joint values, rad or m.
+    pub q: Vec<f64>,
+}
+
+/// One step of a program.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Its line in the cell file.
+    pub line: usize,
+    /// What it does.
+    pub action: Action,
+}
+
+/// What a step does.
+#[derive(Debug, Clone)]
+pub enum Action {
+    /// Straight in joint space.
+    Joint {
+        /// Where to.
+        to: Target,
+        /// Share of each joint's speed, 0..1.
+        speed: f64,
+    },
+    /// TCP on a straight line.
+    Linear {
+        /// Where to.
+        to: Target,
+        /// TCP speed, m/s.
+        speed: f64,
+    },
+    /// Switches a temporary region.
+    Switch {
+        /// Index of the region.
+        region: usize,
+        /// On or off.
+        active: bool,
+    },
+    /// Waits, s.
+    Wait(f64),
+    /// Sets the programmed override, 0..1.
+    Override(f64),
+}
+
+/// Where a move goes.
+#[derive(Debug, Clone)]
+pub enum Target {
+    /// Joint values, rad or m.
+    Joints(Vec<f64>),
+    /// TCP in the world.
+    Tcp(Pose),
+}
+
+/// The joint-space map that a robot asks for.
+#[derive(Debug, Clone)]
+pub struct MapSpec {
+    /// Index of the robot.
+    pub robot: usize,
+    /// Indices in `q`.
+    pub joints: Vec<usize>,
+    /// Width of a cell per joint, rad or m.
+    pub step: Vec<f64>,
+    /// True where the remaining joints are held at the start.
+    pub others_at_start: bool,
+}
+
+impl CellRobot {
+    /// Names of the joints in the order of `q`.
+    pub fn joint_names(&self) -> Vec<String> {
+        let chain = &self.robot.chain;
+        chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
+    }
+
+    /// What the monitor keeps out of regions: the TCP, tool and load, and the links.
+    pub fn guarded_volumes(&self) -> Vec<Volume> {
+        let mut bare = self.robot.clone();
+        // Tool and load are bodies of the flange for collisions; the monitor wants them as parts of their own.
+        let carried = usize::from(self.tool.is_some()) + usize::from(self.load.is_some());
+        let bodies = &mut bare.bodies[self.flange.0];
+        bodies.truncate(bodies.len().saturating_sub(carried));
+        let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
+        let parts = [("tool", &self.tool), ("load", &self.load)];
+        volumes.extend(parts.into_iter().filter_map(|(name, body)| {
+            let body = body.as_ref()?;
+            let (shape, in_link) = match body.shape {
+                Shape::Mesh(_) => self.volumes.of(&body.shape, body.in_link),
+                _ => (body.shape.clone(), body.in_link),
+            };
+            let part = elbowroom_monitor::Part::Tool;
+            Some(Volume { name: name.into(), part, link: self.flange, shape, in_link })
+        }));
+        volumes.extend(arm_volumes(&bare, self.volumes));
+        volumes
+    }
+}

@@ -1,0 +1,137 @@
+//! From a cell to what each robot's monitor is given.
+
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::{
+    Board, ConfigError, Configuration, Kind, Monitor, Region, RobotSlot, SlotId, SourceId, Stopping, group_overlapping,
+};
+use sha2::{Digest, Sha256};
+
+use crate::{Cell, CellRobot, Follow};
+
+/// What one robot's monitor is given, and how its indices relate to the cell's.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// For [`Monitor::new`].
+    pub configuration: Configuration,
+    /// Per region of the configuration, its index in [`Cell::regions`].
+    pub regions: Vec<usize>,
+    /// Per source of the configuration, what it follows.
+    pub sources: Vec<Follow>,
+}
+
+/// One set-up per robot, in order.
+///
+/// # Errors
+/// [`FormatError`] at the line of the region or robot that a monitor would refuse.
+pub fn setups(cell: &Cell) -> Result<Vec<Setup>, FormatError> {
+    let slots = slots(cell);
+    cell.robots.iter().enumerate().map(|(i, robot)| setup(cell, i, robot, &slots)).collect()
+}
+
+/// The monitors, joined by a board where there are exchange regions.
+///
+/// # Errors
+/// As for [`setups`].
+pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatError> {
+    let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+    let slots = slots(cell);
+    let count = slots.iter().flatten().map(|s| s.0 + 1).max().unwrap_or(0);
+    let slot_names: Vec<String> = (0..count).map(|i| format!("slot {i}")).collect();
+    let slot_names: Vec<&str> = slot_names.iter().map(String::as_str).collect();
+    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names)));
+    let monitor = |(i, s): (usize, &Setup)| {
+        Monitor::new(s.configuration.clone(), board.clone().map(|b| (b, RobotSlot(i))))
+            .map_err(|e| config_error(cell, &cell.robots[i], &e))
+    };
+    setups.iter().enumerate().map(monitor).collect()
+}
+
+/// SHA-256 (hex) over the checksums of all monitors' configurations.
+pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
+    let mut hash = Sha256::new();
+    for setup in setups(cell)? {
+        hash.update(setup.configuration.checksum());
+        hash.update("\n");
+    }
+    Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// The lock of each exchange region; zones that overlap share one, so that nobody waits in a circle.
+fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
+    let exchange: Vec<usize> =
+        (0..cell.regions.len()).filter(|i| matches!(cell.regions[*i].region.kind, Kind::Exchange { .. })).collect();
+    // Grouping looks at `follow`, which the cell keeps beside the region.
+    let regions: Vec<Region> = exchange
+        .iter()
+        .map(|i| {
+            let r = &cell.regions[*i];
+            Region { follow: r.follow.map(|_| SourceId(0)), ..r.region.clone() }
+        })
+        .collect();
+    let groups = group_overlapping(&regions.iter().collect::<Vec<_>>());
+    let mut slots = vec![None; cell.regions.len()];
+    exchange.iter().zip(groups).for_each(|(i, g)| slots[*i] = Some(SlotId(g)));
+    slots
+}
+
+fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<Setup, FormatError> {
+    let mut regions = Vec::new();
+    let mut indices = Vec::new();
+    let mut sources: Vec<Follow> = Vec::new();
+    for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&index)) {
+        let mut region = r.region.clone();
+        if let Some(slot) = slots[i] {
+            region.kind = Kind::Exchange { slot };
+        }
+        region.follow = r.follow.map(|follow| {
+            let known = sources.iter().position(|s| *s == follow);
+            SourceId(known.unwrap_or_else(|| {
+                sources.push(follow);
+                sources.len() - 1
+            }))
+        });
+        regions.push(region);
+        indices.push(i);
+    }
+    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
+        reaction_s,
+        joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
+    });
+    let configuration = Configuration {
+        robot: robot.name.clone(),
+        base_in_world: robot.base_in_world,
+        chain: robot.robot.chain.clone(),
+        volumes: robot.guarded_volumes(),
+        regions,
+        sources: sources.iter().map(|s| source_name(cell, s)).collect(),
+        laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
+    };
+    configuration.validate().map_err(|e| config_error(cell, robot, &e))?;
+    Ok(Setup { configuration, regions: indices, sources })
+}
+
+fn source_name(cell: &Cell, follow: &Follow) -> String {
+    match follow {
+        Follow::Encoder(i) => format!("encoder {}", cell.encoders[*i].name),
+        Follow::Robot { robot, link, .. } => {
+            let robot = &cell.robots[*robot];
+            format!("{}/{}", robot.name, robot.robot.chain.links()[link.0])
+        }
+    }
+}
+
+fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> FormatError {
+    let line = match e {
+        ConfigError::Region { region, .. } | ConfigError::DuplicateRegion(region) | ConfigError::NoBoard(region) => {
+            cell.regions.iter().find(|r| r.region.name == *region).map_or(robot.line, |r| r.line)
+        }
+        _ => robot.line,
+    };
+    FormatError::new(&cell.file, line, e.to_string())
+}

@@ -1,0 +1,292 @@
+//! The cell file: TOML in, [`Cell`](crate::Cell) out. `docs/cell-file.md` describes every key.
+
+mod models;
+mod node;
+mod program;
+mod read;
+mod region;
+pub(crate) mod robot;
+mod suggest;
+mod words;
+
+use std::path::Path;
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_monitor::Laws;
+use elbowroom_scene::Object;
+
+pub use models::NumberTable;
+use read::{Table, Value};
+
+use crate::{Cell, CellLaws, CellRobot, MapSpec, Units, configure};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// Largest cell file that is read, bytes.
+const MOST_BYTES: u64 = 64 << 20;
+
+const KEYS: &[&str] = &[
+    "version", "name", "units", "tick_ms", "max_s", "checksum", "robot", "object", "region", "encoder", "monitor", "map",
+    "program",
+];
+
+/// A cell file, parsed but not yet resolved: every key and value with its line.
+#[derive(Debug, Clone)]
+pub struct CellFile {
+    file: std::path::PathBuf,
+    entries: Vec<node::Entry>,
+}
+
+impl CellFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it cannot be read or is not TOML.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let unreadable = |e: std::io::Error| {
+            FormatError::new(path, None, format!("cannot be read: {e}")).hint("the path of a cell file (see docs/cell-file.md)")
+        };
+        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
+            return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
+        }
+        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count();
+            FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Parses text as if it stood in the file `path`; files it names are relative to that.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it is not TOML.
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
+        let file = path.as_ref().to_owned();
+        let entries = node::parse(&file, text)?;
+        Ok(Self { file, entries })
+    }
+
+    /// Looks everything up, reads the files it names, converts to SI.
+    ///
+    /// # Errors
+    /// [`FormatError`] at the first line that is wrong.
+    pub fn resolve(&self) -> Result<Cell> {
+        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
+        root.only(KEYS)?;
+        version(&root)?;
+        let units = Units::read(&root)?;
+        let mut warnings = Vec::new();
+        let mut cell = Cell {
+            file: self.file.clone(),
+            name: name(&root)?,
+            units,
+            tick_s: root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0,
+            max_s: root.get("max_s").map_or(Ok(600.0), |v| v.positive())?,
+            robots: Vec::new(),
+            objects: Vec::new(),
+            regions: Vec::new(),
+            encoders: Vec::new(),
+            laws: laws(&root)?,
+            programs: Vec::new(),
+            maps: Vec::new(),
+            checksum: String::new(),
+            warnings: Vec::new(),
+        };
+        for (name, t) in root.named("robot")? {
+            cell.robots.push(robot::read(name, &t, units, &mut warnings)?);
+        }
+        objects(&root, &mut cell)?;
+        regions(&root, &mut cell, &mut warnings)?;
+        programs(&root, &mut cell, &mut warnings)?;
+        cell.maps = maps(&root, &cell)?;
+        self.check(&root, &mut cell)?;
+        cell.warnings = warnings;
+        Ok(cell)
+    }
+
+    /// Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
+    fn check(&self, root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+        cell.checksum = configure::checksum(cell)?;
+        let Some(v) = root.get("checksum") else { return Ok(()) };
+        let expected = v.text()?;
+        if expected.eq_ignore_ascii_case(&cell.checksum) {
+            return Ok(());
+        }
+        let what = format!("is {expected}, but the configuration in this file has {}", cell.checksum);
+        Err(v.error(what).hint(format!("checksum = \"{}\", once the change has been checked", cell.checksum)))
+    }
+}
+
+impl Cell {
+    /// Reads and resolves a cell file.
+    ///
+    /// # Errors
+    /// [`FormatError`] names file, line, what is wrong and what to write instead.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        CellFile::read(path)?.resolve()
+    }
+
+    /// Resolves text as if it stood in the file `path`.
+    ///
+    /// # Errors
+    /// As for [`Cell::load`].
+    ///
+    /// ```
+    /// let error = elbowroom_cell::Cell::parse("cell.toml", "version = 1\nunit = 5\n").unwrap_err();
+    /// assert_eq!(error.line, Some(2));
+    /// assert!(error.to_string().contains("units"));
+    /// ```
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
+        CellFile::parse(path, text)?.resolve()
+    }
+
+    /// Index of the robot of this name.
+    pub fn robot(&self, name: &str) -> Option<usize> {
+        self.robots.iter().position(|r| r.name == name)
+    }
+}
+
+fn version(root: &Table<'_>) -> Result<()> {
+    let v = root.need("version", "version = 1")?;
+    let number = v.number()?;
+    if number == 1.0 {
+        return Ok(());
+    }
+    Err(v.error(format!("is {number}; this program reads version 1")).hint("version = 1"))
+}
+
+fn name(root: &Table<'_>) -> Result<String> {
+    match root.get("name") {
+        Some(v) => v.text().map(str::to_owned),
+        None => Ok(root.file.file_stem().map_or_else(|| "cell".into(), |s| s.to_string_lossy().into_owned())),
+    }
+}
+
+fn tick_ms(v: &Value<'_>) -> Result<f64> {
+    let ms = v.positive()?;
+    if (0.01..=1000.0).contains(&ms) {
+        return Ok(ms);
+    }
+    Err(v.error(format!("is {ms} ms")).hint("tick_ms = 2   (0.01 to 1000)"))
+}
+
+fn laws(root: &Table<'_>) -> Result<CellLaws> {
+    let Some(v) = root.get("monitor") else { return Ok(CellLaws::default()) };
+    let t = v.table("[monitor]")?;
+    t.only(&["direction_aware", "recovery", "stopping_distance", "reaction_ms", "override_rate", "stale_ms"])?;
+    let mut laws = Laws { direction_aware: t.flag_or("direction_aware", false)?, ..Laws::default() };
+    if let Some(v) = t.get("recovery") {
+        laws.recovery = v.percent()?;
+    }
+    if let Some(v) = t.get("override_rate") {
+        laws.override_rate = v.not_negative()?;
+    }
+    if let Some(v) = t.get("stale_ms") {
+        laws.stale_s = v.positive()? / 1000.0;
+    }
+    let reaction = t.get("reaction_ms").map(|v| v.not_negative()).transpose()?;
+    let stopping = t.flag_or("stopping_distance", false)?;
+    // By default the reaction is the time until the next tick obeys.
+    let tick = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))?;
+    Ok(CellLaws { laws, stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0) })
+}
+
+fn objects(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    for (name, t) in root.named("object")? {
+        let units = cell.units;
+        let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, mesh)")?;
+        let words = ["box", "sphere", "cylinder", "capsule", "mesh"].map(|w| (w, w));
+        let (shape, in_world) = match word.word(&words)? {
+            "box" => t.only(&["shape", "at", "rpy", "size"]).and_then(|()| units.cuboid(&t)),
+            "sphere" => t.only(&["shape", "at", "rpy", "radius"]).and_then(|()| units.sphere(&t)),
+            "cylinder" => t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t)),
+            "capsule" => t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t)),
+            _ => t.only(&["shape", "at", "rpy", "mesh", "mesh_unit"]).and_then(|()| units.mesh(&t, "mesh")),
+        }?;
+        if cell.robots.iter().any(|r| r.name == name) {
+            let what = format!("object and robot are both named \"{name}\"; reports could not tell them apart");
+            return Err(t.error(what).hint(format!("[object.{name}_2]")));
+        }
+        cell.objects.push(Object { name: name.to_owned(), shape, in_world });
+    }
+    Ok(())
+}
+
+fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+    for (name, t) in root.named("encoder")? {
+        cell.encoders.push(region::encoder(name, &t, cell.units)?);
+    }
+    let known = region::Known { robots: &cell.robots, encoders: &cell.encoders };
+    let mut regions = Vec::new();
+    for (name, t) in root.named("region")? {
+        regions.push(region::read(name, &t, cell.units, &known, warnings)?);
+    }
+    cell.regions = regions;
+    Ok(())
+}
+
+/// The robot that a table `[map.NAME]` or `[program.NAME]` is about.
+fn robot_of<'a>(name: &str, t: &Table<'_>, robots: &'a [CellRobot]) -> Result<(usize, &'a CellRobot)> {
+    robots.iter().enumerate().find(|(_, r)| r.name == name).ok_or_else(|| {
+        t.error(format!("`{}` is about the robot \"{name}\", which is not in this cell", t.name))
+            .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
+    })
+}
+
+fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+    let mut programs = vec![None; cell.robots.len()];
+    for (name, t) in root.named("program")? {
+        let (index, robot) = robot_of(name, &t, &cell.robots)?;
+        programs[index] = Some(program::read(&t, cell.units, robot, &cell.regions, warnings)?);
+    }
+    cell.programs = programs;
+    Ok(())
+}
+
+fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
+    let mut maps = Vec::new();
+    for (name, t) in root.named("map")? {
+        t.only(&["joints", "step", "others"])?;
+        let (index, robot) = robot_of(name, &t, &cell.robots)?;
+        let names = robot.joint_names();
+        let joints = match t.get("joints") {
+            None => (0..names.len().min(3)).collect(),
+            Some(v) => v.list("joints = [\"joint_1\"]")?.iter().map(|v| map_joint(v, &names)).collect::<Result<Vec<_>>>()?,
+        };
+        let chain = &robot.robot.chain;
+        let prismatic = |j: usize| {
+            let id = chain.active_joints()[j];
+            chain.joints()[id.0].kind == elbowroom_kinematics::JointKind::Prismatic
+        };
+        let step = match t.get("step") {
+            None => joints.iter().map(|j| if prismatic(*j) { 0.02 } else { 2.0_f64.to_radians() }).collect(),
+            Some(v) => map_steps(&v, &joints, |j, x| cell.units.joint(prismatic(j), x))?,
+        };
+        let others_at_start = t.get("others").map_or(Ok(false), |v| v.word(&[("any", false), ("start", true)]))?;
+        maps.push(MapSpec { robot: index, joints, step, others_at_start });
+    }
+    Ok(maps)
+}
+
+fn map_joint(v: &Value<'_>, names: &[String]) -> Result<usize> {
+    let name = v.text()?;
+    names.iter().position(|n| n == name).ok_or_else(|| {
+        v.error(format!("names the joint \"{name}\", which the robot does not have"))
+            .hint(suggest::hint(name, names.iter().map(String::as_str)))
+    })
+}
+
+fn map_steps(v: &Value<'_>, joints: &[usize], convert: impl Fn(usize, f64) -> f64) -> Result<Vec<f64>> {
+    if v.is_number() {
+        let step = v.positive()?;
+        return Ok(joints.iter().map(|j| convert(*j, step)).collect());
+    }
+    let list = v.list("step = 2")?;
+    if list.len() != joints.len() {
+        let what = format!("has {} values for {} joints", list.len(), joints.len());
+        return Err(v.error(what).hint("one number, or one per joint"));
+    }
+    list.iter().zip(joints).map(|(v, j)| v.positive().map(|x| convert(*j, x))).collect()
+}

@@ -1,0 +1,113 @@
+//! TOML with the line of every key and value, and no type yet.
+
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+use toml::de::{DeTable, DeValue};
+
+/// A value and the line where it stands (from 1).
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub line: usize,
+    pub data: Data,
+}
+
+/// What a value is.
+#[derive(Debug, Clone)]
+pub(crate) enum Data {
+    Text(String),
+    Number(f64),
+    Flag(bool),
+    Date,
+    List(Vec<Node>),
+    Table(Vec<Entry>),
+}
+
+/// `key = value`, in file order.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub key: String,
+    /// Line of the key.
+    pub line: usize,
+    pub node: Node,
+}
+
+impl Data {
+    /// The type in words, for messages.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "a text",
+            Self::Number(_) => "a number",
+            Self::Flag(_) => "true or false",
+            Self::Date => "a date",
+            Self::List(_) => "a list",
+            Self::Table(_) => "a table",
+        }
+    }
+}
+
+/// Byte offsets to lines.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        Self(std::iter::once(0).chain(text.bytes().enumerate().filter(|b| b.1 == b'\n').map(|b| b.0 + 1)).collect())
+    }
+
+    fn at(&self, offset: usize) -> usize {
+        self.0.partition_point(|&start| start <= offset).max(1)
+    }
+}
+
+/// Parses the text of a cell file.
+pub(crate) fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> {
+    let lines = Lines::of(text);
+    match DeTable::parse(text) {
+        Ok(table) => Ok(entries(&lines, table.get_ref())),
+        Err(e) => {
+            let line = e.span().map(|span| lines.at(span.start));
+            let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
+            Err(FormatError::new(file, line, what).hint(syntax_hint(e.message())))
+        }
+    }
+}
+
+fn syntax_hint(message: &str) -> &'static str {
+    if message.contains("duplicate key") {
+        "each key and each [table] once; names of robots, objects and regions must differ"
+    } else {
+        "key = value, with texts in \"double quotes\", lists in [square brackets] and tables as [name] or { key = value }"
+    }
+}
+
+fn entries(lines: &Lines, table: &DeTable<'_>) -> Vec<Entry> {
+    let mut list: Vec<_> = table.iter().collect();
+    list.sort_by_key(|(key, _)| key.span().start);
+    list.into_iter()
+        .map(|(key, value)| {
+            let line = lines.at(key.span().start);
+            Entry { key: key.get_ref().to_string(), line, node: node(lines, value.get_ref(), value.span().start, line) }
+        })
+        .collect()
+}
+
+fn node(lines: &Lines, value: &DeValue<'_>, offset: usize, key_line: usize) -> Node {
+    let line = lines.at(offset).max(key_line);
+    let data = match value {
+        DeValue::String(text) => Data::Text(text.to_string()),
+        DeValue::Integer(i) => Data::Number(integer(i.as_str(), i.radix())),
+        DeValue::Float(f) => Data::Number(f.as_str().replace('_', "").parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(b) => Data::Flag(*b),
+        DeValue::Datetime(_) => Data::Date,
+        DeValue::Array(list) => {
+            Data::List(list.iter().map(|v| node(lines, v.get_ref(), v.span().start, key_line)).collect())
+        }
+        DeValue::Table(table) => Data::Table(entries(lines, table)),
+    };
+    Node { line, data }
+}
+
+fn integer(digits: &str, radix: u32) -> f64 {
+    let digits = digits.replace('_', "");
+    i128::from_str_radix(&digits, radix).map_or_else(|_| digits.parse().unwrap_or(f64::NAN), |i| i as f64)
+}

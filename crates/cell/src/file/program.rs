@@ -1,0 +1,127 @@
+//! `[program.NAME]`: steps or a recorded trajectory.
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::Chain;
+use elbowroom_monitor::Life;
+
+use super::read::{Table, Value};
+use super::robot::joint_values;
+use super::{models, suggest};
+use crate::{Action, CellRegion, CellRobot, Program, ProgramBody, Step, Target, TrajectoryRow, Units};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// TCP speed (m/s) of a linear move that gives none: the reduced speed of ISO 10218-1.
+const LINEAR_SPEED: f64 = 0.25;
+
+pub(super) fn read(
+    t: &Table<'_>,
+    units: Units,
+    robot: &CellRobot,
+    regions: &[CellRegion],
+    warnings: &mut Vec<Warning>,
+) -> Result<Program> {
+    t.only(&["override", "repeat", "steps", "trajectory"])?;
+    let speed_override = t.get("override").map_or(Ok(1.0), |v| v.percent())?;
+    let repeat = t.get("repeat").map_or(Ok(1), |v| v.whole(1, 1_000_000))?;
+    let body = match (t.get("steps"), t.get("trajectory")) {
+        (Some(_), Some(v)) => return Err(v.error("stands beside `steps`").hint("one of the two: steps or trajectory")),
+        (Some(steps), None) => {
+            let list = steps.list("steps = [{ move = \"joint\", to = [0, 0, 0, 0, 0, 0] }]")?;
+            ProgramBody::Steps(list.iter().map(|s| step(s, units, robot, regions)).collect::<Result<_>>()?)
+        }
+        (None, Some(file)) => ProgramBody::Trajectory(trajectory(&file, &robot.robot.chain, warnings)?),
+        (None, None) => {
+            let example = "steps = [{ move = \"joint\", to = [0, -20, 90, 0, 40, 0], speed = 50 }]   (or: trajectory = \"recorded.csv\")";
+            return Err(t.error(format!("`{}` has neither `steps` nor `trajectory`", t.name)).hint(example));
+        }
+    };
+    Ok(Program { speed_override, repeat, body, line: t.line })
+}
+
+fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) -> Result<Step> {
+    const KINDS: [&str; 4] = ["move", "region", "wait", "override"];
+    const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 } or { override = 50 }";
+    let t = v.table(EXAMPLE)?;
+    let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
+    let action = match given.as_slice() {
+        ["move"] => movement(&t, units, robot)?,
+        ["region"] => switch(&t, regions)?,
+        ["wait"] => {
+            t.only(&["wait"])?;
+            Action::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
+        }
+        ["override"] => {
+            t.only(&["override"])?;
+            Action::Override(t.need("override", "override = 50")?.percent()?)
+        }
+        [] => {
+            t.only(&["move", "to", "speed", "region", "active", "wait", "override"])?;
+            return Err(v.error("is no step").hint(EXAMPLE));
+        }
+        _ => return Err(v.error("is several steps in one").hint("one of move, region, wait, override per step")),
+    };
+    Ok(Step { line: t.line, action })
+}
+
+fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Action> {
+    t.only(&["move", "to", "speed"])?;
+    let linear = t.need("move", "move = \"joint\"")?.word(&[("joint", false), ("linear", true)])?;
+    let example = if linear { "to = { at = [900, 600, 700], rpy = [180, 0, 0] }" } else { "to = [0, -20, 90, 0, 40, 0]" };
+    let to = t.need("to", example)?;
+    let to = if to.is_table() {
+        Target::Tcp(units.pose(&to)?)
+    } else if to.is_list() {
+        Target::Joints(joint_values(&to, &robot.robot.chain, units)?)
+    } else {
+        return Err(to.error("is neither joint values nor a pose").hint(example));
+    };
+    let speed = t.get("speed");
+    if linear {
+        let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
+        return Ok(Action::Linear { to, speed });
+    }
+    let speed = speed.map_or(Ok(1.0), |v| {
+        v.positive()?;
+        v.percent()
+    })?;
+    Ok(Action::Joint { to, speed })
+}
+
+fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<Action> {
+    t.only(&["region", "active"])?;
+    let v = t.need("region", "region = \"column\"")?;
+    let name = v.text()?;
+    let Some(region) = regions.iter().position(|r| r.region.name == name) else {
+        let known = regions.iter().map(|r| r.region.name.as_str());
+        return Err(v
+            .error(format!("names the region \"{name}\", which is not in this cell"))
+            .hint(suggest::hint(name, known)));
+    };
+    if regions[region].region.life == Life::Permanent {
+        let what = format!("switches the region \"{name}\", which is permanent (line {}): no program may", regions[region].line);
+        return Err(v.error(what).hint(format!("life = \"temporary\" in [region.{name}], or leave the step out")));
+    }
+    let active = t.need("active", "active = true")?.flag()?;
+    Ok(Action::Switch { region, active })
+}
+
+fn trajectory(v: &Value<'_>, chain: &Chain, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {
+    let table = models::number_table(v)?;
+    let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
+    let columns = names.iter().map(|n| table.column(n)).collect::<Result<Vec<_>>>()?;
+    if let Some(extra) = table.columns.iter().find(|c| *c != "t_s" && !names.contains(&c.as_str())) {
+        let what = format!("column `{extra}` is no joint of \"{}\": ignored", chain.name());
+        warnings.push(Warning::new(&table.file, 1, what).hint(names.join(", ")));
+    }
+    let (lower, upper) = (chain.lower(), chain.upper());
+    let rows = table.timed(&columns)?;
+    for (line, _, q) in &rows {
+        if let Some(j) = (0..q.len()).find(|j| q[*j] < lower[*j] - 1e-6 || q[*j] > upper[*j] + 1e-6) {
+            let what = format!("joint `{}` is at {}, outside its limits", names[j], q[j]);
+            return Err(FormatError::new(&table.file, *line, what)
+                .hint(format!("radians (metres where sliding) from {} to {}", lower[j], upper[j])));
+        }
+    }
+    Ok(rows.into_iter().map(|(_, t_s, q)| TrajectoryRow { t_s, q }).collect())
+}

@@ -1,0 +1,224 @@
+//! Typed access to the nodes, with errors that teach.
+
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+use elbowroom_spatial::Vec3;
+
+use super::node::{Data, Entry, Node};
+use super::suggest;
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// A table of the file and its name there: `robot.ns16.tool`.
+#[derive(Clone)]
+pub(crate) struct Table<'a> {
+    pub file: &'a Path,
+    pub name: String,
+    pub line: usize,
+    pub entries: &'a [Entry],
+}
+
+/// A value of the file and its name there.
+#[derive(Clone)]
+pub(crate) struct Value<'a> {
+    pub file: &'a Path,
+    pub name: String,
+    pub line: usize,
+    pub node: &'a Node,
+}
+
+impl<'a> Table<'a> {
+    pub fn error(&self, what: impl Into<String>) -> FormatError {
+        FormatError::new(self.file, self.line, what)
+    }
+
+    fn full_name(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    fn said(&self) -> String {
+        if self.name.is_empty() { "the cell file".into() } else { format!("`{}`", self.name) }
+    }
+
+    fn value(&self, entry: &'a Entry) -> Value<'a> {
+        Value { file: self.file, name: self.full_name(&entry.key), line: entry.node.line, node: &entry.node }
+    }
+
+    /// Refuses keys that are not in `known`.
+    pub fn only(&self, known: &[&str]) -> Result<()> {
+        let Some(entry) = self.entries.iter().find(|e| !known.contains(&e.key.as_str())) else { return Ok(()) };
+        let what = format!("{} has no key `{}`", self.said(), entry.key);
+        let hint = suggest::hint(&entry.key, known.iter().copied());
+        Err(FormatError::new(self.file, entry.line, what).hint(hint))
+    }
+
+    pub fn get(&self, key: &str) -> Option<Value<'a>> {
+        self.entries.iter().find(|e| e.key == key).map(|e| self.value(e))
+    }
+
+    /// The value of a key that must be there; `example` is what to write.
+    pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
+        self.get(key).ok_or_else(|| self.error(format!("{} needs the key `{key}`", self.said())).hint(example))
+    }
+
+    /// The values in file order, with their keys.
+    pub fn each(&self) -> impl Iterator<Item = (&'a str, Value<'a>)> + '_ {
+        self.entries.iter().map(|e| (e.key.as_str(), self.value(e)))
+    }
+
+    /// The tables `[key.NAME]` in file order.
+    pub fn named(&self, key: &str) -> Result<Vec<(&'a str, Table<'a>)>> {
+        let Some(group) = self.get(key) else { return Ok(Vec::new()) };
+        let group = group.table_like(&format!("[{key}.NAME]"))?;
+        let named: Vec<_> = group.entries.iter().map(|e| (e, group.value(e))).collect();
+        named
+            .into_iter()
+            .map(|(e, v)| {
+                if e.key.trim().is_empty() || e.key.contains(['/', ',', '"', '\n', '\r']) {
+                    let what = format!("`{}` is no name for a {key}", e.key.escape_debug());
+                    return Err(FormatError::new(v.file, e.line, what)
+                        .hint("a name without slash, comma, quote and line break, for it appears in CSV files"));
+                }
+                Ok((e.key.as_str(), v.table_like(&format!("[{key}.{}]", e.key))?.at_line(e.line)))
+            })
+            .collect()
+    }
+
+    pub fn at_line(mut self, line: usize) -> Self {
+        self.line = line;
+        self
+    }
+
+    pub fn flag_or(&self, key: &str, default: bool) -> Result<bool> {
+        self.get(key).map_or(Ok(default), |v| v.flag())
+    }
+}
+
+impl<'a> Value<'a> {
+    pub fn error(&self, what: impl AsRef<str>) -> FormatError {
+        FormatError::new(self.file, self.line, format!("`{}` {}", self.name, what.as_ref()))
+    }
+
+    fn wrong_type(&self, wanted: &str, example: &str) -> FormatError {
+        self.error(format!("must be {wanted}, not {}", self.node.data.type_name())).hint(example)
+    }
+
+    fn key(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or(&self.name)
+    }
+
+    /// A finite number.
+    pub fn number(&self) -> Result<f64> {
+        match self.node.data {
+            Data::Number(v) if v.is_finite() => Ok(v),
+            Data::Number(v) => Err(self.error(format!("is {v}")).hint(format!("{} = a finite number", self.key()))),
+            _ => Err(self.wrong_type("a number", &format!("{} = 100", self.key()))),
+        }
+    }
+
+    pub fn positive(&self) -> Result<f64> {
+        let v = self.number()?;
+        let more = || format!("{} = a number above 0", self.key());
+        if v > 0.0 { Ok(v) } else { Err(self.error(format!("must be above 0, not {v}")).hint(more())) }
+    }
+
+    pub fn not_negative(&self) -> Result<f64> {
+        let v = self.number()?;
+        let more = || format!("{} = 0 or a number above it", self.key());
+        if v >= 0.0 { Ok(v) } else { Err(self.error(format!("must be 0 or more, not {v}")).hint(more())) }
+    }
+
+    /// A number from 0 to 100, as a fraction.
+    pub fn percent(&self) -> Result<f64> {
+        let v = self.number()?;
+        if (0.0..=100.0).contains(&v) {
+            return Ok(v / 100.0);
+        }
+        Err(self.error(format!("is a percentage: 0 to 100, not {v}")).hint(format!("{} = 50", self.key())))
+    }
+
+    pub fn whole(&self, least: u32, most: u32) -> Result<u32> {
+        let v = self.number()?;
+        if v.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&v) {
+            return Ok(v as u32);
+        }
+        let what = format!("must be a whole number from {least} to {most}, not {v}");
+        Err(self.error(what).hint(format!("{} = {least}", self.key())))
+    }
+
+    pub fn text(&self) -> Result<&'a str> {
+        match &self.node.data {
+            Data::Text(t) => Ok(t),
+            _ => Err(self.wrong_type("a text in quotes", &format!("{} = \"…\"", self.key()))),
+        }
+    }
+
+    pub fn flag(&self) -> Result<bool> {
+        match self.node.data {
+            Data::Flag(b) => Ok(b),
+            _ => Err(self.wrong_type("true or false", &format!("{} = true", self.key()))),
+        }
+    }
+
+    /// One of some words.
+    pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Result<T> {
+        let list = || words.iter().map(|w| w.0);
+        let Data::Text(text) = &self.node.data else {
+            return Err(self.wrong_type(
+                &format!("one of {}", suggest::quoted(list())),
+                &format!("{} = \"{}\"", self.key(), words.first().map_or("…", |w| w.0)),
+            ));
+        };
+        words
+            .iter()
+            .find(|w| w.0 == text)
+            .map(|w| w.1)
+            .ok_or_else(|| self.error(format!("cannot be \"{text}\"")).hint(suggest::hint(text, list())))
+    }
+
+    pub fn is_list(&self) -> bool {
+        matches!(self.node.data, Data::List(_))
+    }
+
+    pub fn is_table(&self) -> bool {
+        matches!(self.node.data, Data::Table(_))
+    }
+
+    pub fn is_number(&self) -> bool {
+        matches!(self.node.data, Data::Number(_))
+    }
+
+    pub fn list(&self, example: &str) -> Result<Vec<Value<'a>>> {
+        let Data::List(nodes) = &self.node.data else { return Err(self.wrong_type("a list", example)) };
+        let item = |(i, node): (usize, &'a Node)| Value {
+            file: self.file,
+            name: format!("{}[{i}]", self.name),
+            line: node.line,
+            node,
+        };
+        Ok(nodes.iter().enumerate().map(item).collect())
+    }
+
+    pub fn numbers(&self, example: &str) -> Result<Vec<f64>> {
+        self.list(example)?.iter().map(Value::number).collect()
+    }
+
+    /// Three numbers, unit not applied.
+    pub fn three(&self) -> Result<Vec3> {
+        let example = format!("{} = [0, 0, 0]", self.key());
+        let v = self.numbers(&example)?;
+        <[f64; 3]>::try_from(v.as_slice())
+            .map(Vec3::from)
+            .map_err(|_| self.error(format!("needs 3 numbers, not {}", v.len())).hint(example))
+    }
+
+    pub fn table(&self, example: &str) -> Result<Table<'a>> {
+        self.table_like(example)
+    }
+
+    pub(super) fn table_like(&self, example: &str) -> Result<Table<'a>> {
+        let Data::Table(entries) = &self.node.data else { return Err(self.wrong_type("a table", example)) };
+        Ok(Table { file: self.file, name: self.name.clone(), line: self.line, entries })
+    }
+}

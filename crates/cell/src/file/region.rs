@@ -1,0 +1,270 @@
+//! `[region.NAME]` and `[encoder.NAME]`.
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_monitor::{Guards, Kind, Life, Region, SlotId};
+use elbowroom_proximity::{ConvexHull, Shape};
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::read::{Table, Value};
+use super::robot::unknown_link;
+use super::{models, suggest};
+use crate::{CellRegion, CellRobot, Encoder, Follow, Travel, Units};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+const COMMON: &[&str] = &[
+    "shape", "rpy", "kind", "life", "warning", "slow_to", "guards", "robots", "follow", "hysteresis", "output",
+    "warning_output",
+];
+
+/// What a region may name.
+pub(super) struct Known<'a> {
+    pub robots: &'a [CellRobot],
+    pub encoders: &'a [Encoder],
+}
+
+pub(super) fn read(
+    name: &str,
+    t: &Table<'_>,
+    units: Units,
+    known: &Known<'_>,
+    warnings: &mut Vec<Warning>,
+) -> Result<CellRegion> {
+    let mut region = solid(name, t, units)?;
+    region.kind = kind(t)?;
+    region.life = t.get("life").map_or(Ok(Life::Permanent), |v| {
+        v.word(&[("permanent", Life::Permanent), ("temporary", Life::Temporary)])
+    })?;
+    region.warning_m = t.get("warning").map_or(Ok(0.0), |v| units.not_negative_length(&v))?;
+    region.guards = t.get("guards").map_or(Ok(Guards::ARM), |v| guards(&v))?;
+    if let Some(v) = t.get("hysteresis") {
+        region.hysteresis_m = units.not_negative_length(&v)?;
+    }
+    let channel = |key: &str| t.get(key).map(|v| v.whole(0, 63).map(|c| c as u8)).transpose();
+    region.output = channel("output")?;
+    region.warning_output = channel("warning_output")?;
+    check_warning(name, t, &region, warnings)?;
+    let follow = t.get("follow").map(|v| follow(&v, known)).transpose()?;
+    let robots = robots(t, known, follow)?;
+    Ok(CellRegion { region, line: t.line, robots, follow })
+}
+
+fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
+    if region.warning_m > 0.0 {
+        return Ok(());
+    }
+    match region.kind {
+        Kind::Exchange { .. } => Err(t
+            .error(format!("region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one"))
+            .hint("warning = 250")),
+        Kind::Forbidden => {
+            let what = format!("region \"{name}\" has no warning zone: robots stop only when they touch it");
+            warnings.push(Warning::new(t.file, t.line, what).hint("warning = 250"));
+            Ok(())
+        }
+        Kind::Monitored { .. } => Ok(()),
+    }
+}
+
+fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+    const SHAPES: &[(&str, &[&str])] = &[
+        ("sphere", &["centre", "center", "radius"]),
+        ("cylinder", &["base", "radius", "height"]),
+        ("plane", &["origin", "x", "y"]),
+        ("box", &["from", "to", "base", "size"]),
+        ("capsule", &["at", "radius", "height"]),
+        ("mesh", &["at", "mesh", "mesh_unit"]),
+        ("convex", &["at", "mesh", "mesh_unit"]),
+    ];
+    let shape = t.need("shape", "shape = \"cylinder\"   (or sphere, plane, box, capsule, mesh, convex)")?;
+    let words: Vec<_> = SHAPES.iter().map(|s| (s.0, *s)).collect();
+    let (shape, own_keys) = shape.word(&words)?;
+    t.only(&[COMMON, own_keys].concat())?;
+    let rotation = units.rotation(t.get("rpy"))?;
+    let point = |key: &str| units.point(&t.need(key, &format!("{key} = [900, 0, 0]"))?);
+    let radius = || units.positive_length(&t.need("radius", "radius = 150")?);
+    let height = || units.positive_length(&t.need("height", "height = 1200")?);
+    match shape {
+        "sphere" => {
+            let centre = if t.get("center").is_some() { "center" } else { "centre" };
+            Ok(Region::sphere(name, point(centre)?, radius()?))
+        }
+        "cylinder" => Ok(Region::cylinder(name, point("base")?, radius()?, height()?, rotation)),
+        "plane" => {
+            let mut plane = Region::plane(name, point("origin")?, point("x")?, point("y")?)
+                .map_err(|e| t.error(format!("`{}`: {e}", t.name)).hint("origin, x and y: three points that are not on one line"))?;
+            plane.anchor.rotation = rotation * plane.anchor.rotation;
+            Ok(plane)
+        }
+        "box" => cuboid(name, t, units),
+        "capsule" => {
+            let (half_length, radius) = (height()? / 2.0, radius()?);
+            let shape = Shape::Capsule(elbowroom_proximity::Capsule { half_length, radius });
+            Ok(Region::solid(name, shape, units.place(t)?))
+        }
+        _ => {
+            let (solid, pose) = units.mesh(t, "mesh")?;
+            let solid = if shape == "convex" { hull(t, &solid)? } else { solid };
+            Ok(Region::solid(name, solid, pose))
+        }
+    }
+}
+
+fn hull(t: &Table<'_>, solid: &Shape) -> Result<Shape> {
+    let Shape::Mesh(mesh) = solid else { return Ok(solid.clone()) };
+    ConvexHull::from_points(mesh.vertices())
+        .map(|h| Shape::Hull(h.into()))
+        .map_err(|e| t.error(format!("`{}`: the mesh has no convex hull: {e}", t.name)))
+}
+
+fn cuboid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+    let rotation = units.rotation(t.get("rpy"))?;
+    if t.get("base").is_some() || t.get("size").is_some() {
+        if let Some(v) = t.get("from").or_else(|| t.get("to")) {
+            return Err(v.error("stands beside `base` and `size`").hint("either from and to, or base and size"));
+        }
+        let base = units.point(&t.need("base", "base = [900, 0, 0]")?)?;
+        return Ok(Region::cuboid(name, base, units.size(&t.need("size", "size = [600, 400, 700]")?)?, rotation));
+    }
+    let from = units.point(&t.need("from", "from = [500, -200, 0]   (or: base and size)")?)?;
+    let to = t.need("to", "to = [1100, 200, 700]")?;
+    let mut region = Region::cuboid_from_corners(name, from, units.point(&to)?);
+    let extent = (units.point(&to)? - from).abs();
+    if extent.min_element() <= 0.0 {
+        return Err(to.error("lies on a face with `from`: the box has no volume").hint("two corners that differ in x, y and z"));
+    }
+    region.anchor.rotation = rotation;
+    Ok(region)
+}
+
+fn kind(t: &Table<'_>) -> Result<Kind> {
+    let exchange = Kind::Exchange { slot: SlotId(0) };
+    let monitored = Kind::Monitored { slow_to: None };
+    let kind = t.get("kind").map_or(Ok(Kind::Forbidden), |v| {
+        v.word(&[("forbidden", Kind::Forbidden), ("monitored", monitored), ("exchange", exchange)])
+    })?;
+    let Some(slow_to) = t.get("slow_to") else { return Ok(kind) };
+    match kind {
+        Kind::Monitored { .. } => Ok(Kind::Monitored { slow_to: Some(slow_to.percent()?) }),
+        _ => Err(slow_to.error("makes a speed zone of a monitored region; this one is not").hint("kind = \"monitored\"")),
+    }
+}
+
+fn guards(v: &Value<'_>) -> Result<Guards> {
+    const EXAMPLE: &str = "guards = [\"arm\"]   (any of \"tcp\", \"tool\", \"arm\")";
+    let list = v.list(EXAMPLE)?;
+    if list.is_empty() {
+        return Err(v.error("is empty: the region would guard nothing").hint(EXAMPLE));
+    }
+    let mut guards = Guards { tcp: false, tool: false, arm: false };
+    for item in &list {
+        match item.word(&[("tcp", 0), ("tool", 1), ("arm", 2)])? {
+            0 => guards.tcp = true,
+            1 => guards.tool = true,
+            _ => guards.arm = true,
+        }
+    }
+    Ok(guards)
+}
+
+pub(super) fn robot_index(v: &Value<'_>, robots: &[CellRobot]) -> Result<usize> {
+    let name = v.text()?;
+    robots.iter().position(|r| r.name == name).ok_or_else(|| {
+        v.error(format!("names the robot \"{name}\", which is not in this cell"))
+            .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
+    })
+}
+
+fn robots(t: &Table<'_>, known: &Known<'_>, follow: Option<Follow>) -> Result<Vec<usize>> {
+    let followed = match follow {
+        Some(Follow::Robot { robot, .. }) => Some(robot),
+        _ => None,
+    };
+    let Some(v) = t.get("robots") else {
+        return Ok((0..known.robots.len()).filter(|i| Some(*i) != followed).collect());
+    };
+    let list = v.list("robots = [\"r1\"]")?;
+    if list.is_empty() {
+        return Err(v.error("is empty: the region would concern nobody").hint("leave it out for all robots"));
+    }
+    let mut robots = Vec::new();
+    for item in &list {
+        let index = robot_index(item, known.robots)?;
+        if Some(index) == followed {
+            let what = "names the robot that carries the region: it would stop itself";
+            return Err(item.error(what).hint("the other robots only, or leave `robots` out"));
+        }
+        if robots.contains(&index) {
+            return Err(item.error("is named twice").hint("each robot once"));
+        }
+        robots.push(index);
+    }
+    Ok(robots)
+}
+
+fn follow(v: &Value<'_>, known: &Known<'_>) -> Result<Follow> {
+    const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: follow = { encoder = \"conveyor\" })";
+    let t = v.table(EXAMPLE)?;
+    t.only(&["robot", "frame", "encoder"])?;
+    match (t.get("robot"), t.get("encoder")) {
+        (Some(_), Some(e)) => Err(e.error("stands beside `robot`: a region follows one thing").hint(EXAMPLE)),
+        (None, None) => Err(v.error("names nothing to follow").hint(EXAMPLE)),
+        (None, Some(e)) => {
+            if let Some(frame) = t.get("frame") {
+                return Err(frame.error("goes with `robot`; an encoder has one frame").hint("leave it out"));
+            }
+            let name = e.text()?;
+            let names = || known.encoders.iter().map(|e| e.name.as_str());
+            names().position(|n| n == name).map(Follow::Encoder).ok_or_else(|| {
+                let what = format!("names the encoder \"{name}\", which has no table [encoder.{name}]");
+                e.error(what).hint(suggest::hint(name, names()))
+            })
+        }
+        (Some(robot), None) => {
+            let robot = robot_index(&robot, known.robots)?;
+            let (link, in_link) = frame(t.get("frame").as_ref(), &known.robots[robot])?;
+            Ok(Follow::Robot { robot, link, in_link })
+        }
+    }
+}
+
+fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(elbowroom_kinematics::LinkId, Pose)> {
+    let Some(v) = v else { return Ok((robot.flange, Pose::IDENTITY)) };
+    match v.text()? {
+        "flange" => Ok((robot.flange, Pose::IDENTITY)),
+        "tool" | "tcp" => Ok((robot.flange, robot.tcp_in_flange)),
+        name => match robot.robot.chain.link(name) {
+            Some(link) => Ok((link, Pose::IDENTITY)),
+            None => Err(unknown_link(v, name, &robot.robot.chain)),
+        },
+    }
+}
+
+pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder> {
+    t.only(&["direction", "speed", "at", "start", "end", "wrap", "file"])?;
+    let direction = t.get("direction").map_or(Ok(Vec3::X), |v| {
+        v.three()?.try_normalize().ok_or_else(|| v.error("has no length").hint("direction = [1, 0, 0]"))
+    })?;
+    let wrap_m = t.get("wrap").map(|v| units.positive_length(&v)).transpose()?;
+    let travel = match (t.get("file"), t.get("speed")) {
+        (Some(_), Some(speed)) => return Err(speed.error("stands beside `file`").hint("one of the two: speed or file")),
+        (Some(file), None) => {
+            if let Some(v) = ["at", "start", "end"].iter().find_map(|k| t.get(k)) {
+                return Err(v.error("goes with `speed`; the file says when and where").hint("leave it out"));
+            }
+            Travel::Table(models::travel(&file)?)
+        }
+        (None, speed) => {
+            let speed = speed.map_or_else(|| t.need("speed", "speed = 200   (length units per second; or: file = \"belt.csv\")"), Ok)?;
+            let start = t.get("start");
+            let start_s = start.map_or(Ok(0.0), |v| v.not_negative())?;
+            let end_s = t.get("end").map_or(Ok(f64::INFINITY), |v| v.not_negative())?;
+            if end_s < start_s {
+                return Err(t.error(format!("`{}` ends before it starts", t.name)).hint("start = 0, end = 10"));
+            }
+            let at_m = t.get("at").map_or(Ok(0.0), |v| units.length_of(&v))?;
+            Travel::Constant { at_m, speed: units.length_of(&speed)?, start_s, end_s }
+        }
+    };
+    Ok(Encoder { name: name.to_owned(), direction, travel, wrap_m })
+}

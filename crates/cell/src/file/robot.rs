@@ -1,0 +1,294 @@
+//! `[robot.NAME]`.
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::dh::ClassicalRow;
+use elbowroom_kinematics::{Chain, JointKind, Limits, LinkId};
+use elbowroom_monitor::VolumeModel;
+use elbowroom_proximity::Shape;
+use elbowroom_scene::{Body, Robot};
+use elbowroom_spatial::Pose;
+
+use super::read::{Table, Value};
+use super::{models, suggest};
+use crate::{CellRobot, JointLimits, Units};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+const KEYS: &[&str] = &[
+    "model", "srdf", "dh", "links", "foot", "base", "flange", "start", "tool", "load", "volumes", "speed",
+    "acceleration", "jerk", "stop_time",
+];
+
+/// Full speed to rest in this time, where `stop_time` does not say otherwise.
+pub(crate) const STOP_TIME_S: f64 = 0.1;
+/// Rest to full speed in this time, where neither model nor `acceleration` say otherwise.
+pub(crate) const ACCELERATION_TIME_S: f64 = 0.25;
+/// Full acceleration within this time, where `jerk` does not say otherwise.
+pub(crate) const JERK_TIME_S: f64 = 0.1;
+/// Speed of a revolute joint that has none, rad/s.
+const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
+/// Speed of a prismatic joint that has none, m/s.
+const PRISMATIC_SPEED: f64 = 1.0;
+
+pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
+    t.only(KEYS)?;
+    let mut robot = model(t, units, warnings)?;
+    let flange = flange(t, &robot.chain)?;
+    let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
+    let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
+    let load = t.get("load").map(|v| solid(&v, units, "load")).transpose()?;
+    robot.bodies[flange.0].extend(tool.iter().chain(&load).cloned());
+    let start = start(name, t, &robot.chain, units, warnings)?;
+    let limits = limits(name, t, &robot.chain, units, warnings)?;
+    if t.get("speed").is_some() {
+        robot.chain = with_speeds(t, &robot.chain, &limits)?;
+    }
+    Ok(CellRobot {
+        name: name.to_owned(),
+        line: t.line,
+        base_in_world,
+        flange,
+        tcp_in_flange,
+        tool,
+        load,
+        start,
+        start_given: t.get("start").is_some(),
+        volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
+        limits,
+        robot,
+    })
+}
+
+fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Robot> {
+    let example = "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
+    match (t.get("model"), t.get("dh")) {
+        (Some(_), Some(dh)) => Err(dh.error("stands beside `model`").hint("one of the two: model or dh")),
+        (Some(file), None) => {
+            if let Some(v) = t.get("links").or_else(|| t.get("foot")) {
+                return Err(v.error("goes with `dh`; a model brings its own solids").hint("leave it out"));
+            }
+            models::robot(&file, t.get("srdf").as_ref(), warnings)
+        }
+        (None, Some(dh)) => {
+            if let Some(srdf) = t.get("srdf") {
+                return Err(srdf.error("goes with `model`, not with `dh`").hint("leave it out"));
+            }
+            dh_robot(t, &dh, units)
+        }
+        (None, None) => Err(t.need("model", example).err().unwrap_or_else(|| t.error("no model"))),
+    }
+}
+
+fn dh_robot(t: &Table<'_>, dh: &Value<'_>, units: Units) -> Result<Robot> {
+    let rows = dh.list("dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }]")?;
+    if rows.is_empty() || rows.len() > 64 {
+        return Err(dh.error(format!("has {} rows", rows.len())).hint("1 to 64 rows, one per joint"));
+    }
+    let rows = rows.iter().enumerate().map(|(i, v)| dh_row(i, v, units)).collect::<Result<Vec<_>>>()?;
+    let chain = Chain::from_dh(t.name.rsplit('.').next().unwrap_or("robot"), &rows)
+        .map_err(|e| dh.error(format!("gives no chain: {e}")))?;
+    let mut robot = Robot::new(chain);
+    if let Some(foot) = t.get("foot") {
+        robot.bodies[robot.chain.root().0] = solids(&foot, units, "foot")?;
+    }
+    let Some(links) = t.get("links") else { return Ok(robot) };
+    let entries = links.list("links = [{ capsule = { from = [0, 0, 0], to = [0, 0, 400], radius = 60 } }, …]")?;
+    if entries.len() != rows.len() {
+        let what = format!("has {} entries for {} rows of `dh`", entries.len(), rows.len());
+        return Err(links.error(what).hint("one entry per row, [] for a row without solids"));
+    }
+    for (i, entry) in entries.iter().enumerate() {
+        let name = format!("link_{}", i + 1);
+        let Some(link) = robot.chain.link(&name) else { continue };
+        robot.bodies[link.0] = solids(entry, units, &name)?;
+    }
+    Ok(robot)
+}
+
+fn dh_row(index: usize, v: &Value<'_>, units: Units) -> Result<ClassicalRow> {
+    let t = v.table("{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180, speed = 170 }")?;
+    t.only(&["name", "kind", "a", "alpha", "d", "theta", "min", "max", "speed", "acceleration"])?;
+    let prismatic = t.get("kind").map_or(Ok(false), |k| k.word(&[("revolute", false), ("prismatic", true)]))?;
+    let length = |key: &str| t.get(key).map_or(Ok(0.0), |v| units.length_of(&v));
+    let angle = |key: &str| t.get(key).map_or(Ok(0.0), |v| v.number().map(|x| units.joint(false, x)));
+    let bound = |key: &str| t.get(key).map(|v| v.number().map(|x| units.joint(prismatic, x))).transpose();
+    let rate = |key: &str| t.get(key).map(|v| v.positive().map(|x| units.joint(prismatic, x))).transpose();
+    let (kind, lower, upper) = match (prismatic, bound("min")?, bound("max")?) {
+        (_, Some(min), Some(max)) if min >= max => {
+            return Err(t.error(format!("`{}`: min is not below max", t.name)).hint("min = -180, max = 180"));
+        }
+        (true, Some(min), Some(max)) => (JointKind::Prismatic, min, max),
+        (false, Some(min), Some(max)) => (JointKind::Revolute, min, max),
+        (false, None, None) => (JointKind::Continuous, f64::NEG_INFINITY, f64::INFINITY),
+        (true, ..) => return Err(t.error(format!("`{}` slides: it needs min and max", t.name)).hint("min = 0, max = 1000")),
+        _ => return Err(t.error(format!("`{}` has one bound", t.name)).hint("both min and max, or neither for endless turning")),
+    };
+    let joint = match t.get("name") {
+        Some(v) => v.text()?.to_owned(),
+        None => format!("joint_{}", index + 1),
+    };
+    let limits = Limits { velocity: rate("speed")?, acceleration: rate("acceleration")?, ..Limits::range(lower, upper) };
+    Ok(ClassicalRow { joint, kind, a: length("a")?, alpha: angle("alpha")?, d: length("d")?, theta: angle("theta")?, limits })
+}
+
+fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Body>> {
+    if v.is_list() {
+        return v.list("[]")?.iter().map(|s| solid(s, units, name)).collect();
+    }
+    let empty = v.table("{ capsule = { … } }")?.entries.is_empty();
+    if empty { Ok(Vec::new()) } else { solid(v, units, name).map(|b| vec![b]) }
+}
+
+/// `{ capsule = { … } }`, likewise box, sphere, cylinder, mesh.
+fn solid(v: &Value<'_>, units: Units, name: &str) -> Result<Body> {
+    const KINDS: &[&str] = &["box", "sphere", "cylinder", "capsule", "mesh"];
+    const EXAMPLE: &str = "{ capsule = { from = [0, 0, 0], to = [0, 0, 400], radius = 60 } }";
+    let t = v.table(EXAMPLE)?;
+    t.only(KINDS)?;
+    let mut kinds = t.each();
+    let (Some((kind, inner)), None) = (kinds.next(), kinds.next()) else {
+        return Err(v.error("must be exactly one of box, sphere, cylinder, capsule, mesh").hint(EXAMPLE));
+    };
+    let (shape, in_link) = named_solid(kind, &inner, &t, units)?;
+    Ok(Body { name: name.to_owned(), shape, in_link })
+}
+
+fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -> Result<(Shape, Pose)> {
+    if kind == "mesh" && !inner.is_table() {
+        return units.mesh(outer, "mesh");
+    }
+    let t = inner.table("{ at = [0, 0, 0], … }")?;
+    match kind {
+        "box" => t.only(&["at", "rpy", "size"]).and_then(|()| units.cuboid(&t)),
+        "sphere" => t.only(&["at", "rpy", "radius"]).and_then(|()| units.sphere(&t)),
+        "cylinder" => t.only(&["at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t)),
+        "capsule" => t.only(&["at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t)),
+        _ => t.only(&["at", "rpy", "file", "mesh_unit"]).and_then(|()| units.mesh(&t, "file")),
+    }
+}
+
+fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Body>)> {
+    let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
+    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "load"])?;
+    let tcp = t.get("tcp").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
+    let body = |(shape, in_link)| Some(Body { name: "tool".into(), shape, in_link });
+    match (t.get("box"), t.get("mesh")) {
+        (Some(_), Some(mesh)) => Err(mesh.error("stands beside `box`").hint("one of the two: box or mesh")),
+        (Some(cuboid), None) => Ok((tcp, body(named_solid("box", &cuboid, &t, units)?))),
+        (None, Some(mesh)) => Ok((tcp, body(named_solid("mesh", &mesh, &t, units)?))),
+        (None, None) => Ok((tcp, None)),
+    }
+}
+
+fn flange(t: &Table<'_>, chain: &Chain) -> Result<LinkId> {
+    let Some(v) = t.get("flange") else { return Ok(chain.tip()) };
+    let name = v.text()?;
+    chain.link(name).ok_or_else(|| unknown_link(&v, name, chain))
+}
+
+/// "has no link …", with the links that it has.
+pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> FormatError {
+    let hint = suggest::hint(name, chain.links().iter().map(String::as_str));
+    v.error(format!("names the link \"{name}\", which robot \"{}\" does not have", chain.name())).hint(hint)
+}
+
+fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
+    v.word(&[
+        ("auto", VolumeModel::Tightest),
+        ("capsule", VolumeModel::Capsule),
+        ("box", VolumeModel::Box),
+        ("hull", VolumeModel::Hull),
+        ("mesh", VolumeModel::Exact),
+    ])
+}
+
+/// Joint values of a list in the file's units, checked against number of joints and limits.
+pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
+    let zeros = vec!["0"; chain.dof()].join(", ");
+    let raw = v.numbers(&format!("[{zeros}]"))?;
+    let names = || chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect::<Vec<_>>().join(", ");
+    if raw.len() != chain.dof() {
+        let what = format!("has {} values for the {} joints of \"{}\"", raw.len(), chain.dof(), chain.name());
+        return Err(v.error(what).hint(format!("one value per joint, in this order: {}", names())));
+    }
+    let mut q = Vec::with_capacity(raw.len());
+    for (raw, id) in raw.iter().zip(chain.active_joints()) {
+        let joint = &chain.joints()[id.0];
+        let prismatic = joint.kind == JointKind::Prismatic;
+        let value = units.joint(prismatic, *raw);
+        if !joint.limits.contains(value, 1e-9) {
+            let [is, low, high] = [value, joint.limits.lower, joint.limits.upper].map(|x| units.show_joint(prismatic, x));
+            let what = format!("brings joint \"{}\" to {is}, outside its limits", joint.name);
+            return Err(v.error(what).hint(format!("a value from {low} to {high}")));
+        }
+        q.push(value.max(joint.limits.lower).min(joint.limits.upper));
+    }
+    Ok(q)
+}
+
+fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<f64>> {
+    if let Some(v) = t.get("start") {
+        return joint_values(&v, chain, units);
+    }
+    let clamped: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| 0.0_f64.max(*lo).min(hi)).collect();
+    if clamped.iter().any(|v| *v != 0.0) {
+        let what = format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
+        warnings.push(Warning::new(t.file, t.line, what).hint(format!("start = [{}]", vec!["…"; clamped.len()].join(", "))));
+    }
+    Ok(clamped)
+}
+
+/// One number for all joints, or a list with one per joint.
+fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
+    let values = if v.is_list() {
+        v.list("[…]")?.iter().map(Value::positive).collect::<Result<Vec<_>>>()?
+    } else {
+        vec![v.positive()?; chain.dof()]
+    };
+    if values.len() != chain.dof() {
+        let what = format!("has {} values for {} joints", values.len(), chain.dof());
+        return Err(v.error(what).hint("one number for all joints, or a list with one per joint"));
+    }
+    let prismatic = |j: &elbowroom_kinematics::JointId| chain.joints()[j.0].kind == JointKind::Prismatic;
+    Ok(values.iter().zip(chain.active_joints()).map(|(x, j)| units.joint(prismatic(j), *x)).collect())
+}
+
+/// The chain with the cell's speeds in it: the monitor judges by them what is plausible.
+fn with_speeds(t: &Table<'_>, chain: &Chain, limits: &[JointLimits]) -> Result<Chain> {
+    let mut joints = chain.joints().to_vec();
+    for (id, limit) in chain.active_joints().iter().zip(limits) {
+        joints[id.0].limits.velocity = Some(limit.velocity);
+    }
+    Chain::new(chain.name(), chain.links().to_vec(), joints).map_err(|e| t.error(e.to_string()))
+}
+
+fn limits(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<JointLimits>> {
+    let given = |key: &str| t.get(key).map(|v| per_joint(&v, chain, units)).transpose();
+    let (speed, acceleration, jerk) = (given("speed")?, given("acceleration")?, given("jerk")?);
+    let stop_time = t.get("stop_time").map_or(Ok(STOP_TIME_S), |v| v.positive())?;
+    let mut unknown = Vec::new();
+    let mut limits = Vec::with_capacity(chain.dof());
+    for (i, id) in chain.active_joints().iter().enumerate() {
+        let joint = &chain.joints()[id.0];
+        let sane = |v: Option<f64>| v.filter(|x| *x > 0.0 && x.is_finite());
+        let velocity = speed.as_ref().map(|s| s[i]).or(sane(joint.limits.velocity)).unwrap_or_else(|| {
+            unknown.push(joint.name.as_str());
+            if joint.kind == JointKind::Prismatic { PRISMATIC_SPEED } else { REVOLUTE_SPEED }
+        });
+        let acceleration = acceleration
+            .as_ref()
+            .map(|a| a[i])
+            .or(sane(joint.limits.acceleration))
+            .unwrap_or(velocity / ACCELERATION_TIME_S);
+        let jerk = jerk.as_ref().map_or(acceleration / JERK_TIME_S, |j| j[i]);
+        limits.push(JointLimits { velocity, acceleration, jerk, stop: velocity / stop_time });
+    }
+    if !unknown.is_empty() {
+        let what = format!(
+            "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s where sliding)",
+            unknown.join(", ")
+        );
+        warnings.push(Warning::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"));
+    }
+    Ok(limits)
+}

@@ -1,0 +1,199 @@
+//! A program with every move worked out before anything moves.
+
+use std::sync::Arc;
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::inverse::{Options, Solver};
+
+use super::{Geometry, Line, Playback, Segment};
+use crate::{Action, Cell, CellRobot, Program, ProgramBody, Step, Target};
+
+/// Most steps that a plan holds, repeats counted.
+const MOST_STEPS: u64 = 1_000_000;
+/// Speeds of recordings are averaged over this time, s: readings are quantized.
+const WINDOW_S: f64 = 0.04;
+
+/// What a robot will do.
+#[derive(Debug, Clone, Default)]
+pub struct Plan {
+    /// Joint values before the first step, rad or m.
+    pub start: Vec<f64>,
+    /// Programmed override at the start, 0..1.
+    pub speed_override: f64,
+    /// One after the other.
+    pub steps: Vec<PlanStep>,
+}
+
+/// One step of a plan.
+#[derive(Debug, Clone)]
+pub enum PlanStep {
+    /// A timed move.
+    Move(Arc<Segment>),
+    /// A recording.
+    Play(Arc<Playback>),
+    /// Switches the region of this index.
+    Switch {
+        /// Index in the cell.
+        region: usize,
+        /// On or off.
+        active: bool,
+    },
+    /// Waits, s.
+    Wait(f64),
+    /// Sets the programmed override, 0..1.
+    Override(f64),
+}
+
+/// Works out the program of one robot, run `repeat` times (times the program's own `repeat`).
+///
+/// # Errors
+/// [`FormatError`] at the line of the step that cannot be done: out of reach, through a singularity, beyond limits.
+pub fn plan(cell: &Cell, robot: usize, repeat: u32, notes: &mut Vec<Warning>) -> Result<Plan, FormatError> {
+    let at = &cell.robots[robot];
+    let Some(program) = &cell.programs[robot] else {
+        return Ok(Plan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
+    };
+    let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
+    let mut planner = Planner { cell, robot: at, q: at.start.clone(), notes, known: Vec::new() };
+    match &program.body {
+        ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MOST_STEPS / steps.len().max(1) as u64)),
+        ProgramBody::Trajectory(rows) => planner.playback(program, rows, passes.min(MOST_STEPS)),
+    }
+}
+
+struct Planner<'a> {
+    cell: &'a Cell,
+    robot: &'a CellRobot,
+    /// Where the robot is after the steps so far.
+    q: Vec<f64>,
+    notes: &'a mut Vec<Warning>,
+    /// Moves of earlier passes: index of the step, where it began, the move.
+    known: Vec<(usize, Vec<f64>, Arc<Segment>)>,
+}
+
+impl Planner<'_> {
+    fn steps(&mut self, program: &Program, steps: &[Step], passes: u64) -> Result<Plan, FormatError> {
+        let mut plan = Plan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
+        for pass in 0..passes {
+            if pass > 0 {
+                plan.steps.push(PlanStep::Override(program.speed_override));
+            }
+            for (i, step) in steps.iter().enumerate() {
+                plan.steps.push(match &step.action {
+                    Action::Switch { region, active } => PlanStep::Switch { region: *region, active: *active },
+                    Action::Wait(s) => PlanStep::Wait(*s),
+                    Action::Override(o) => PlanStep::Override(*o),
+                    Action::Joint { .. } | Action::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
+                });
+            }
+        }
+        Ok(plan)
+    }
+
+    fn segment(&mut self, index: usize, step: &Step) -> Result<Arc<Segment>, FormatError> {
+        let known = self.known.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let segment = match known {
+            Some(segment) => segment,
+            None => {
+                let segment = Arc::new(self.timed(index, step)?);
+                self.known.push((index, self.q.clone(), segment.clone()));
+                segment
+            }
+        };
+        self.q = segment.end();
+        Ok(segment)
+    }
+
+    fn error(&self, index: usize, step: &Step, what: &str) -> FormatError {
+        let what = format!("`program.{}`, step {}: {what}", self.robot.name, index + 1);
+        FormatError::new(&self.cell.file, step.line, what)
+    }
+
+    fn timed(&mut self, index: usize, step: &Step) -> Result<Segment, FormatError> {
+        let limits = &self.robot.limits;
+        match &step.action {
+            Action::Linear { to, speed } => {
+                let line = self.line(index, step, to)?;
+                let rate = if line.length() > 1e-9 { speed / line.length() } else { f64::INFINITY };
+                if !line.keeps_orientation {
+                    let what = "the robot has too few axes to turn the tool along this line: only the TCP follows it";
+                    let note = self.error(index, step, what);
+                    self.notes.push(note.into());
+                }
+                let segment = Segment::new(Geometry::Line(Box::new(line)), limits, 1.0, rate)
+                    .map_err(|e| self.error(index, step, &e))?;
+                if segment.speed_share < 0.999 {
+                    let share = segment.speed_share * 100.0;
+                    let reached = self.cell.units.show_length(speed * segment.speed_share);
+                    let what = format!("the joints allow {share:.0} % of the programmed speed on this line: {reached}/s");
+                    let note = self.error(index, step, &what);
+                    self.notes.push(note.into());
+                }
+                Ok(segment)
+            }
+            Action::Joint { to, speed } => {
+                let to = self.joint_target(index, step, to)?;
+                let course = Geometry::Joint { from: self.q.clone(), to };
+                Segment::new(course, limits, *speed, f64::INFINITY).map_err(|e| self.error(index, step, &e))
+            }
+            _ => Err(self.error(index, step, "is no move")),
+        }
+    }
+
+    fn line(&self, index: usize, step: &Step, to: &Target) -> Result<Line, FormatError> {
+        let to_in_root = match to {
+            Target::Tcp(in_world) => self.robot.base_in_world.inverse_mul(in_world),
+            Target::Joints(q) => self.tcp_in_root(q),
+        };
+        Line::new(self.robot, &self.q, to_in_root).map_err(|broken| {
+            let [at, length] = [broken.at_m, broken.length_m].map(|m| format!("{:.1} mm", m * 1000.0));
+            let what = format!("the line of {length} cannot be followed beyond {at}: {}", broken.why);
+            let hint = "a target within reach on this side of the arm, or a joint move to it";
+            self.error(index, step, &what).hint(hint)
+        })
+    }
+
+    fn tcp_in_root(&self, q: &[f64]) -> elbowroom_spatial::Pose {
+        let chain = &self.robot.robot.chain;
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(q);
+        chain.forward(&mut state);
+        state.link_in_root(self.robot.flange) * self.robot.tcp_in_flange
+    }
+
+    fn joint_target(&self, index: usize, step: &Step, to: &Target) -> Result<Vec<f64>, FormatError> {
+        let in_world = match to {
+            Target::Joints(q) => return Ok(q.clone()),
+            Target::Tcp(in_world) => in_world,
+        };
+        let target = self.robot.base_in_world.inverse_mul(in_world);
+        let mut solver = Solver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, Options::default());
+        match solver.solve(&target, &self.q) {
+            Ok(solution) => Ok(solution.q),
+            Err(e) => Err(self.error(index, step, &e.to_string()).hint("a pose within reach, or joint values")),
+        }
+    }
+
+    fn playback(&mut self, program: &Program, rows: &[crate::TrajectoryRow], passes: u64) -> Result<Plan, FormatError> {
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(Plan::default()) };
+        let farthest = first.q.iter().zip(&self.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if self.robot.start_given && farthest > 1e-6 {
+            let what = format!("the trajectory of \"{}\" begins elsewhere than `start`: it begins at its first row", self.robot.name);
+            self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
+        }
+        let mut plan = Plan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
+        let play = Arc::new(Playback::new(rows.to_vec(), WINDOW_S));
+        let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
+        let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
+            .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
+        let back = Arc::new(back);
+        for pass in 0..passes {
+            if pass > 0 {
+                plan.steps.push(PlanStep::Move(back.clone()));
+            }
+            plan.steps.push(PlanStep::Play(play.clone()));
+        }
+        Ok(plan)
+    }
+}

@@ -1,0 +1,91 @@
+//! Where things are that regions follow, and how they move.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::Source;
+use elbowroom_spatial::{Motion, Pose, Vec3};
+
+use crate::{Cell, Encoder, Follow, Travel};
+
+/// Frames of robots and encoders.
+#[derive(Debug)]
+pub(super) struct Frames<'a> {
+    cell: &'a Cell,
+}
+
+impl<'a> Frames<'a> {
+    pub fn new(cell: &'a Cell) -> Self {
+        Self { cell }
+    }
+
+    pub fn sources(&self, follows: &[Follow], states: &[ChainState], t_s: f64) -> Vec<Source> {
+        follows.iter().map(|f| self.source(f, states, t_s)).collect()
+    }
+
+    /// Pose and motion of a followed frame in the world.
+    pub fn source(&self, follow: &Follow, states: &[ChainState], t_s: f64) -> Source {
+        match follow {
+            Follow::Encoder(e) => {
+                let (travel, speed) = self.cell.encoders[*e].at(t_s);
+                let direction = self.cell.encoders[*e].direction;
+                let motion = Motion { velocity: direction * speed, ..Motion::REST };
+                Source { pose: Pose::from_translation(direction * travel), motion, stamp_s: t_s }
+            }
+            Follow::Robot { robot, link, in_link } => {
+                let base = self.cell.robots[*robot].base_in_world;
+                let link_in_root = states[*robot].link_in_root(*link);
+                let offset = link_in_root.transform_vector(in_link.translation);
+                let m = states[*robot].link_motion(*link).shifted(offset);
+                let turn = |v: Vec3| base.transform_vector(v);
+                let motion = Motion {
+                    velocity: turn(m.velocity),
+                    angular_velocity: turn(m.angular_velocity),
+                    acceleration: turn(m.acceleration),
+                    angular_acceleration: turn(m.angular_acceleration),
+                };
+                Source { pose: base * link_in_root * *in_link, motion, stamp_s: t_s }
+            }
+        }
+    }
+
+    /// Tool centre point in the world (m) and its speed (m/s).
+    pub fn tcp(&self, robot: usize, state: &ChainState) -> (Vec3, f64) {
+        let r = &self.cell.robots[robot];
+        let flange_in_root = state.link_in_root(r.flange);
+        let offset = flange_in_root.transform_vector(r.tcp_in_flange.translation);
+        let tcp_in_root = flange_in_root * r.tcp_in_flange;
+        let speed = state.link_motion(r.flange).velocity_at(offset).length();
+        ((r.base_in_world * tcp_in_root).translation, speed)
+    }
+
+    /// True where an encoder moves that a region follows.
+    pub fn anything_travels(&self, t_s: f64) -> bool {
+        self.cell.regions.iter().any(|r| matches!(r.follow, Some(Follow::Encoder(e)) if self.cell.encoders[e].at(t_s).1 != 0.0))
+    }
+}
+
+impl Encoder {
+    /// Travel (m) and speed (m/s) at a time (s).
+    pub fn at(&self, t_s: f64) -> (f64, f64) {
+        let (travel, speed) = match &self.travel {
+            Travel::Constant { at_m, speed, start_s, end_s } => {
+                let moving = t_s >= *start_s && t_s < *end_s;
+                (at_m + speed * (t_s.min(*end_s) - start_s).max(0.0), if moving { *speed } else { 0.0 })
+            }
+            Travel::Table(rows) => table(rows, t_s),
+        };
+        (self.wrap_m.map_or(travel, |wrap| travel.rem_euclid(wrap)), speed)
+    }
+}
+
+fn table(rows: &[(f64, f64)], t_s: f64) -> (f64, f64) {
+    let next = rows.partition_point(|r| r.0 <= t_s);
+    match (next.checked_sub(1).map(|i| rows[i]), rows.get(next)) {
+        (None, Some(first)) => (first.1, 0.0),
+        (Some(last), None) => (last.1, 0.0),
+        (Some(a), Some(b)) => {
+            let speed = (b.1 - a.1) / (b.0 - a.0);
+            (a.1 + speed * (t_s - a.0), speed)
+        }
+        (None, None) => (0.0, 0.0),
+    }
+}

@@ -1,0 +1,349 @@
+//! A run: programs on one clock, in simulated time, under the monitor.
+
+mod ending;
+mod frames;
+mod regions;
+
+use std::time::Instant;
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{AccessClass, EventKind, Monitor, Reason, Snapshot};
+use elbowroom_scene::{Checker, Member};
+
+use crate::configure::{self, Setup};
+use crate::motion::{Clock, plan};
+use crate::{Cell, Collision, EventRow, Recording, RobotTrack, Sample, TickTimes};
+use ending::{Ending, Halt};
+use frames::Frames;
+use regions::Regions;
+
+/// How to run a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunOptions {
+    /// False: the monitor watches but nobody obeys it (`--no-monitor`).
+    pub monitored: bool,
+    /// Programs run this many times, times their own `repeat`.
+    pub repeat: u32,
+    /// Fault injection: robots (by index) whose controller falls silent at a time (s), standing where they are.
+    pub vanish: Vec<(usize, f64)>,
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        Self { monitored: true, repeat: 1, vanish: Vec::new() }
+    }
+}
+
+/// What a run gives.
+#[derive(Debug, Clone)]
+pub struct RunOutcome {
+    /// All that happened.
+    pub recording: Recording,
+    /// What the user should know of the programs: speeds that joints do not allow, and the like.
+    pub notes: Vec<Warning>,
+}
+
+impl RunOutcome {
+    /// True where something collided or a forbidden region was entered: exit status 1.
+    pub fn bad_news(&self) -> bool {
+        let r = &self.recording;
+        r.robots.iter().any(|r| !r.collisions.is_empty()) || r.regions.iter().any(|r| r.entered && r.kind != "monitored")
+    }
+}
+
+/// How far a run has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Simulated time, s.
+    pub t_s: f64,
+    /// Robots whose programs have finished.
+    pub finished: usize,
+    /// All robots.
+    pub robots: usize,
+}
+
+/// Runs the programs of a cell.
+///
+/// All robots' states of one instant are known before the first monitor looks, so frames that regions follow have no
+/// latency; the override of a tick acts on the motion from this tick to the next.
+///
+/// # Errors
+/// [`FormatError`] at the line of a step that cannot be done. Nothing has moved then.
+pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
+    simulate_with(cell, options, &mut |_| {})
+}
+
+/// [`simulate`], telling now and then how far it has come.
+///
+/// # Errors
+/// As for [`simulate`].
+pub fn simulate_with(
+    cell: &Cell,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<RunOutcome, FormatError> {
+    let mut notes = Vec::new();
+    let mut clocks = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        clocks.push(Clock::new(plan(cell, i, options.repeat, &mut notes)?, robot.limits.clone()));
+    }
+    let setups = configure::setups(cell)?;
+    let monitors = configure::monitors(cell, &setups)?;
+    let mut run = Run::new(cell, options, &setups, monitors, clocks);
+    let mut tick = 0_u64;
+    loop {
+        let t_s = tick as f64 * cell.tick_s;
+        if tick.is_multiple_of(256) {
+            let finished = run.clocks.iter().filter(|c| c.finished()).count();
+            progress(Progress { t_s, finished, robots: run.clocks.len() });
+        }
+        run.tick(t_s);
+        if run.ended(t_s) {
+            return Ok(RunOutcome { recording: run.finish(t_s), notes });
+        }
+        run.advance();
+        tick += 1;
+    }
+}
+
+struct Run<'a> {
+    cell: &'a Cell,
+    options: &'a RunOptions,
+    setups: &'a [Setup],
+    monitors: Vec<Monitor>,
+    clocks: Vec<Clock>,
+    states: Vec<ChainState>,
+    scratch: Vec<ChainState>,
+    frames: Frames<'a>,
+    regions: Regions<'a>,
+    checker: Checker<'a>,
+    tracks: Vec<RobotTrack>,
+    halts: Vec<Halt>,
+    /// Override that each robot obeys until the next tick.
+    obeyed: Vec<f64>,
+    events: Vec<EventRow>,
+    ending: Ending,
+    tick_ns: Vec<u64>,
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        cell: &'a Cell,
+        options: &'a RunOptions,
+        setups: &'a [Setup],
+        monitors: Vec<Monitor>,
+        clocks: Vec<Clock>,
+    ) -> Self {
+        let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
+        let track = |r: &crate::CellRobot| RobotTrack {
+            name: r.name.clone(),
+            joints: r.joint_names(),
+            samples: Vec::new(),
+            finished: false,
+            stopped_s: 0.0,
+            min_override: 1.0,
+            collisions: Vec::new(),
+        };
+        Self {
+            options,
+            setups,
+            scratch: states.clone(),
+            states,
+            frames: Frames::new(cell),
+            regions: Regions::new(cell, setups),
+            checker: Checker::new(cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(), &cell.objects),
+            tracks: cell.robots.iter().map(track).collect(),
+            halts: vec![Halt::default(); cell.robots.len()],
+            obeyed: vec![0.0; cell.robots.len()],
+            events: Vec::new(),
+            ending: Ending::new(cell),
+            tick_ns: Vec::new(),
+            monitors,
+            clocks,
+            cell,
+        }
+    }
+
+    fn vanished(&self, robot: usize, t_s: f64) -> bool {
+        self.options.vanish.iter().any(|(r, from)| *r == robot && t_s >= *from)
+    }
+
+    fn event(&mut self, t_s: f64, robot: usize, region: &str, event: &'static str) {
+        let robot = self.cell.robots[robot].name.clone();
+        self.events.push(EventRow { t_s, robot, region: region.to_owned(), event });
+    }
+
+    /// One instant: everything is looked at, nothing moves.
+    fn tick(&mut self, t_s: f64) {
+        self.apply_switches(t_s);
+        for (i, clock) in self.clocks.iter().enumerate() {
+            let state = &mut self.states[i];
+            state.q.copy_from_slice(&clock.point().q);
+            // Nobody knows more of a vanished robot than that it stands.
+            let gone = self.options.vanish.iter().any(|(r, from)| *r == i && t_s >= *from);
+            let scale = if gone { 0.0 } else { 1.0 };
+            state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
+            state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
+            self.cell.robots[i].robot.chain.forward_motion(state);
+        }
+        for i in 0..self.clocks.len() {
+            if self.vanished(i, t_s) { self.record_vanished(i, t_s) } else { self.monitor(i, t_s) }
+        }
+        self.regions.look(t_s, &self.monitors, &self.states, &self.frames);
+        self.collide(t_s);
+    }
+
+    fn apply_switches(&mut self, t_s: f64) {
+        for robot in 0..self.clocks.len() {
+            for (region, active) in self.clocks[robot].take_switches() {
+                if !self.regions.switch(region, t_s, active) {
+                    continue;
+                }
+                let cell = self.cell;
+                self.event(t_s, robot, &cell.regions[region].region.name, if active { "on" } else { "off" });
+                for (setup, monitor) in self.setups.iter().zip(&mut self.monitors) {
+                    let Some(local) = setup.regions.iter().position(|r| *r == region) else { continue };
+                    // The cell file let no permanent region be switched, so nothing can refuse.
+                    let _ = monitor.switch(elbowroom_monitor::RegionId(local), active, AccessClass::Programmer);
+                }
+            }
+        }
+    }
+
+    fn monitor(&mut self, i: usize, t_s: f64) {
+        let sources = self.frames.sources(&self.setups[i].sources, &self.states, t_s);
+        let clock = &self.clocks[i];
+        let state = &self.states[i];
+        let snapshot = Snapshot {
+            now_s: t_s,
+            stamp_s: t_s,
+            q: &state.q,
+            qd: &state.qd,
+            qdd: &state.qdd,
+            programmed_override: clock.programmed_override(),
+            intent: Some(&clock.point().first),
+            sources: &sources,
+        };
+        let begin = Instant::now();
+        let report = self.monitors[i].tick(&snapshot);
+        self.tick_ns.push(begin.elapsed().as_nanos() as u64);
+        let obeyed = if self.options.monitored { report.speed_override } else { clock.programmed_override() };
+        self.obeyed[i] = obeyed;
+        self.log_events(i, t_s);
+        // Governing is who makes the robot slower than its program asks.
+        let governs = self.options.monitored.then(|| report.reason.region()).flatten();
+        let region = governs.map(|r| self.setups[i].regions[r.0]);
+        let distance_m = region.and(report.governing).map(|g| g.distance_m);
+        let reason = if self.options.monitored { report.reason } else { Reason::Free };
+        self.record(i, t_s, obeyed, region, distance_m, reason);
+        if let Some(event) = self.halts[i].update(&self.clocks[i], obeyed) {
+            let region = region.map_or("", |r| self.cell.regions[r].region.name.as_str());
+            self.event(t_s, i, region, event);
+        }
+        if self.halts[i].stopped {
+            self.tracks[i].stopped_s += self.cell.tick_s;
+        }
+    }
+
+    fn log_events(&mut self, i: usize, t_s: f64) {
+        let robot = &self.cell.robots[i].name;
+        for e in self.monitors[i].events() {
+            // Switching is told once, by whoever switched.
+            if matches!(e.kind, EventKind::On | EventKind::Off) {
+                continue;
+            }
+            let region = e.region.map(|r| self.cell.regions[self.setups[i].regions[r.0]].region.name.clone());
+            let region = region.unwrap_or_default();
+            self.events.push(EventRow { t_s, robot: robot.clone(), region, event: e.kind.name() });
+        }
+    }
+
+    fn record_vanished(&mut self, i: usize, t_s: f64) {
+        self.obeyed[i] = 0.0;
+        self.record(i, t_s, 0.0, None, None, Reason::Fault(elbowroom_monitor::Fault::Stale));
+    }
+
+    fn record(&mut self, i: usize, t_s: f64, o: f64, region: Option<usize>, distance_m: Option<f64>, reason: Reason) {
+        let (tcp, tcp_speed) = self.frames.tcp(i, &self.states[i]);
+        let rate = self.clocks[i].rate();
+        let programmed_speed = if rate > 1e-3 {
+            tcp_speed / rate
+        } else {
+            let scratch = &mut self.scratch[i];
+            scratch.q.copy_from_slice(&self.states[i].q);
+            scratch.qd.copy_from_slice(&self.clocks[i].point().first);
+            self.cell.robots[i].robot.chain.forward_motion(scratch);
+            self.frames.tcp(i, &self.scratch[i]).1
+        };
+        let track = &mut self.tracks[i];
+        track.min_override = track.min_override.min(o);
+        let q = self.states[i].q.clone();
+        track.samples.push(Sample { t_s, q, tcp, tcp_speed, programmed_speed, speed_override: o, region, distance_m, reason });
+    }
+
+    fn collide(&mut self, t_s: f64) {
+        let Self { checker, states, tracks, cell, .. } = self;
+        let states: Vec<&ChainState> = states.iter().collect();
+        let name = |m: Member| match m {
+            Member::Object(o) => cell.objects[o].name.clone(),
+            Member::Link { robot, link } => {
+                let r = &cell.robots[robot];
+                format!("{}/{}", r.name, r.robot.chain.links()[link.0])
+            }
+        };
+        checker.check(&states, |a, b| {
+            let collision = Collision { t_s, a: name(a), b: name(b) };
+            let robot = |m: Member| if let Member::Link { robot, .. } = m { Some(robot) } else { None };
+            // Both robots of a pair touched: each one's list tells it.
+            let mut concerned: Vec<usize> = [robot(a), robot(b)].into_iter().flatten().collect();
+            concerned.dedup();
+            concerned.into_iter().for_each(|r| tracks[r].collisions.push(collision.clone()));
+        });
+    }
+
+    fn ended(&mut self, t_s: f64) -> bool {
+        let gone = |i: &usize| self.options.vanish.iter().any(|(r, from)| r == i && t_s >= *from);
+        let here: Vec<usize> = (0..self.clocks.len()).filter(|i| !gone(i)).collect();
+        if here.iter().all(|i| self.clocks[*i].finished()) || t_s >= self.cell.max_s {
+            return true;
+        }
+        let waiting = here.iter().any(|i| self.clocks[*i].waiting());
+        let carried = self.frames.anything_travels(t_s);
+        self.ending.nothing_moved(t_s, &self.states, waiting || carried)
+    }
+
+    fn advance(&mut self) {
+        let dt = self.cell.tick_s;
+        let t_s = self.tracks.first().and_then(|t| t.samples.last()).map_or(0.0, |s| s.t_s);
+        for i in 0..self.clocks.len() {
+            if !self.vanished(i, t_s) {
+                self.clocks[i].advance(dt, self.obeyed[i]);
+            }
+        }
+    }
+
+    fn finish(self, t_s: f64) -> Recording {
+        let mut robots = self.tracks;
+        for (track, clock) in robots.iter_mut().zip(&self.clocks) {
+            track.finished = clock.finished();
+        }
+        Recording {
+            cell: self.cell.name.clone(),
+            checksum: self.cell.checksum.clone(),
+            tick_s: self.cell.tick_s,
+            duration_s: t_s,
+            monitored: self.options.monitored,
+            robots,
+            regions: self.regions.finish(t_s),
+            events: self.events,
+            tick_ns: tick_times(self.tick_ns),
+        }
+    }
+}
+
+fn tick_times(mut ns: Vec<u64>) -> TickTimes {
+    ns.sort_unstable();
+    let at = |share: f64| ns.get(((ns.len() as f64 * share) as usize).min(ns.len().saturating_sub(1))).copied().unwrap_or(0);
+    TickTimes { p50: at(0.5), p99: at(0.99), max: ns.last().copied().unwrap_or(0), count: ns.len() }
+}
