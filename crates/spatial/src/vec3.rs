@@ -53,6 +53,7 @@ impl Vec3 {
     }
 
     /// Vector product.
+    #[must_use]
     #[inline]
     pub fn cross(self, o: Self) -> Self {
         Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
@@ -93,30 +94,35 @@ impl Vec3 {
     }
 
     /// Component-wise absolute value.
+    #[must_use]
     #[inline]
     pub fn abs(self) -> Self {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
     /// Component-wise minimum.
+    #[must_use]
     #[inline]
     pub fn min(self, o: Self) -> Self {
         Self::new(self.x.min(o.x), self.y.min(o.y), self.z.min(o.z))
     }
 
     /// Component-wise maximum.
+    #[must_use]
     #[inline]
     pub fn max(self, o: Self) -> Self {
         Self::new(self.x.max(o.x), self.y.max(o.y), self.z.max(o.z))
     }
 
     /// Component-wise clamp; `lo` must not exceed `hi`.
+    #[must_use]
     #[inline]
     pub fn clamp(self, lo: Self, hi: Self) -> Self {
         self.max(lo).min(hi)
     }
 
     /// Component-wise product.
+    #[must_use]
     #[inline]
     pub fn scale(self, o: Self) -> Self {
         Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
@@ -141,12 +147,14 @@ impl Vec3 {
     }
 
     /// The point a fraction `t` of the way to `o`.
+    #[must_use]
     #[inline]
     pub fn lerp(self, o: Self, t: f64) -> Self {
         self + (o - self) * t
     }
 
     /// Any unit vector perpendicular to this unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+    #[must_use]
     #[inline]
     pub fn any_perpendicular(self) -> Self {
         let sign = 1.0_f64.copysign(self.z);
