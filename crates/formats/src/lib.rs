@@ -47,5 +47,5 @@ pub mod urdf;
 mod xml;
 
 pub use error::{FormatError, Warning};
-pub use mesh::{LoadedMeshes, MeshData};
+pub use mesh::{LoadedMeshes, MeshData, units_suspicion};
 pub use robot::{LoadOptions, LoadedRobot};

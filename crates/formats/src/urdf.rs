@@ -185,14 +185,14 @@ fn check_root(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
 fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
     let is_macro = |n: &Node<'_, '_>| n.tag_name().namespace().is_some_and(|ns| ns.contains("xacro"));
     let has_expression =
-        |n: &Node<'_, '_>| n.attributes().any(|a| a.value().contains("${") || a.value().contains("$(arg "));
+        |n: &Node<'_, '_>| n.attributes().any(|a| a.value().contains("${") || a.value().contains("$("));
     let Some(node) = root.descendants().filter(Node::is_element).find(|n| is_macro(n) || has_expression(n)) else {
         return Ok(());
     };
     let sign = if is_macro(&node) {
         format!("<xacro:{}>", node.tag_name().name())
     } else {
-        "an expression in ${…}".to_owned()
+        "an expression, ${…} or $(…)".to_owned()
     };
     Err(FormatError::new(file, xml::line(node), format!("is a xacro file that is not expanded: {sign}"))
         .hint("run `xacro FILE > robot.urdf` and name its output"))

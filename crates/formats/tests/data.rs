@@ -91,3 +91,45 @@ fn every_file_loads_or_says_why_not() {
         }
     }
 }
+
+/// `triangles collision 6182, visual 0` of a row of SOURCES.md, counted there by another library.
+fn counted_elsewhere(sources: &str, name: &str) -> Option<(usize, usize)> {
+    let row = sources.lines().find(|l| l.starts_with(&format!("| urdf/{name} |")))?;
+    let counts = row.split("triangles collision ").nth(1)?;
+    let (collision, rest) = counts.split_once(", visual ")?;
+    let visual = rest.split(|c: char| !c.is_ascii_digit()).next()?;
+    Some((collision.parse().ok()?, visual.parse().ok()?))
+}
+
+/// Every robot: as many triangles as another library counts, the same by package as by relative paths, and an SRDF
+/// that knows its links.
+#[test]
+fn robots_are_complete() {
+    let Some(data) = common::data() else { return };
+    let sources = std::fs::read_to_string(data.join("SOURCES.md")).unwrap_or_default();
+    let mut compared = 0;
+    for directory in std::fs::read_dir(data.join("urdf")).unwrap().flatten() {
+        let name = directory.file_name().to_string_lossy().into_owned();
+        let path = directory.path().join(format!("{name}.urdf"));
+        let srdf = Some(directory.path().join(format!("{name}.srdf"))).filter(|p| p.exists());
+        let options = LoadOptions { load_visuals: true, srdf, unit: None };
+        let loaded = robot::load(&path, &options).unwrap_or_else(|e| panic!("{e}"));
+        let triangles = |bodies: &[Vec<elbowroom_scene::Body>]| -> usize {
+            bodies.iter().flatten().map(|b| if let Shape::Mesh(m) = &b.shape { m.triangles().len() } else { 0 }).sum()
+        };
+        let counts = (triangles(&loaded.robot.bodies), triangles(&loaded.robot.visuals));
+        if let Some(expected) = counted_elsewhere(&sources, &name) {
+            assert_eq!(counts, expected, "{name}");
+            compared += 1;
+        }
+        assert!(!loaded.warnings.iter().any(|w| w.what.contains("no link")), "{name}: {:?}", loaded.warnings);
+        let by_package = robot::load(&directory.path().join(format!("{name}.package.urdf")), &options);
+        if let Ok(by_package) = by_package {
+            let again = (triangles(&by_package.robot.bodies), triangles(&by_package.robot.visuals));
+            assert_eq!(again, counts, "{name} by package");
+        } else {
+            assert!(!directory.path().join(format!("{name}.package.urdf")).exists(), "{name}: {by_package:?}");
+        }
+    }
+    assert!(compared > 20, "only {compared} robots were compared");
+}

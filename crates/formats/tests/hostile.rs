@@ -119,3 +119,28 @@ fn nodes_that_double_are_refused() {
     let circle = text.replace("<node id=\"n40\"/>", "<node id=\"n40\"><instance_node url=\"#n0\"/></node>");
     assert!(run("dae", circle.as_bytes()).is_err());
 }
+
+/// Files that are small for what they ask: each must be refused or read within seconds.
+#[test]
+fn small_files_that_ask_for_much_are_quick() {
+    let started = std::time::Instant::now();
+    let attributes: Vec<String> = (0..20_000).map(|i| format!("a{i}=\"\" ")).collect();
+    drop(run("urdf", format!("<robot {}/>", attributes.concat()).as_bytes()));
+    let corners: Vec<String> = (0..20_000).map(|i| format!("v {} {} 0\n", i % 7, (i * i) % 11)).collect();
+    let face: Vec<String> = (1..=20_000).map(|i| format!(" {i}")).collect();
+    drop(run("obj", format!("{}f{}\n", corners.concat(), face.concat()).as_bytes()));
+    let zeros = "0 ".repeat(30_000);
+    let geometry = |i: usize| {
+        format!(
+            "<geometry id=\"g{i}\"><mesh><triangles><input semantic=\"POSITION\" source=\"#p\" offset=\"0\"/><p>0 1 2</p></triangles></mesh></geometry>"
+        )
+    };
+    let geometries: Vec<String> = (0..5000).map(geometry).collect();
+    let dae = format!(
+        "<COLLADA><library_geometries><geometry id=\"h\"><mesh><source id=\"p\"><float_array>{zeros}</float_array></source></mesh></geometry>{}\
+         </library_geometries></COLLADA>",
+        geometries.concat()
+    );
+    assert!(run("dae", dae.as_bytes()).unwrap_err().what.contains("together"));
+    assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
+}

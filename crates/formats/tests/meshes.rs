@@ -144,7 +144,7 @@ fn ply_is_the_same_in_all_three_encodings() {
         big.extend(
             f64::from(x).to_be_bytes().into_iter().chain([7]).chain(y.to_be_bytes()).chain((z as i16).to_be_bytes()),
         );
-        ascii += &format!("{x} 7 {y} {z}\n");
+        ascii.push_str(&[x.to_string(), " 7 ".into(), y.to_string(), " ".into(), z.to_string(), "\n".into()].concat());
     }
     let [a, b, c] = [ascii.into_bytes(), little, big].map(|bytes| parse("a.ply", &bytes, UpAxis::ToZ).meshes);
     assert_eq!(a[0].triangles.len(), 2);

@@ -8,7 +8,7 @@ use roxmltree::{Node, NodeId};
 
 use super::source::{indices, points, target};
 use crate::error::Warnings;
-use crate::mesh::MeshData;
+use crate::mesh::{MOST_ELEMENTS, MeshData};
 use crate::obj::keep_used_vertices;
 use crate::ply::strip;
 use crate::{FormatError, Warning, polygon, xml};
@@ -21,10 +21,18 @@ pub(super) fn read<'a, 'i>(
     ids: &Ids<'a, 'i>,
     file: &Path,
     warnings: &mut Warnings,
+    points_read: &mut usize,
 ) -> Result<MeshData, FormatError> {
     let name = geometry.attribute("name").or(geometry.attribute("id")).unwrap_or("geometry");
-    let mut reader =
-        Reader { ids, file, vertices: Vec::new(), first_of: HashMap::new(), triangles: Vec::new(), warnings };
+    let mut reader = Reader {
+        ids,
+        file,
+        vertices: Vec::new(),
+        first_of: HashMap::new(),
+        triangles: Vec::new(),
+        warnings,
+        points_read,
+    };
     let body = xml::child(geometry, "mesh").or_else(|| xml::child(geometry, "convex_mesh"));
     for primitive in body.iter().flat_map(Node::children).filter(Node::is_element) {
         match primitive.tag_name().name() {
@@ -47,6 +55,8 @@ struct Reader<'a, 'i, 'w> {
     first_of: HashMap<NodeId, (u32, u32)>,
     triangles: Vec<[u32; 3]>,
     warnings: &'w mut Warnings,
+    /// Of the whole file: thousands of geometries may share one source, and each reads it.
+    points_read: &'w mut usize,
 }
 
 /// Where a primitive's vertex numbers stand in its `<p>`, and which points they mean.
@@ -126,6 +136,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             return Ok(*known);
         }
         let points = points(source, self.file)?;
+        *self.points_read += points.len();
+        if *self.points_read > MOST_ELEMENTS {
+            let what = format!("the geometries together read more than {MOST_ELEMENTS} points");
+            return Err(FormatError::new(self.file, xml::line(source), what).hint("a coarser mesh"));
+        }
         let range = (self.vertices.len() as u32, points.len() as u32);
         self.vertices.extend(points);
         self.first_of.insert(source.id(), range);

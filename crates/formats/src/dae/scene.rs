@@ -24,6 +24,7 @@ pub(super) struct Scene<'a, 'i, 'w> {
     file: &'w Path,
     warnings: &'w mut Warnings,
     elements: usize,
+    points_read: usize,
 }
 
 /// All objects of the scene that the file shows; where it shows none, all its geometries as they are.
@@ -34,7 +35,7 @@ pub(super) fn meshes(
     warnings: &mut Warnings,
 ) -> Result<Vec<MeshData>, FormatError> {
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
-    let mut scene = Scene { ids, geometries: HashMap::new(), file, warnings, elements: 0 };
+    let mut scene = Scene { ids, geometries: HashMap::new(), file, warnings, elements: 0, points_read: 0 };
     let mut meshes = match scene.shown(root)? {
         Some(visual_scene) => scene.walk(visual_scene, to_metres)?,
         None => Vec::new(),
@@ -132,7 +133,7 @@ impl<'a, 'i> Scene<'a, 'i, '_> {
 
     fn instance(&mut self, geometry: Node<'a, 'i>) -> Result<MeshData, FormatError> {
         if !self.geometries.contains_key(&geometry.id()) {
-            let mesh = geometry::read(geometry, &self.ids, self.file, self.warnings)?;
+            let mesh = geometry::read(geometry, &self.ids, self.file, self.warnings, &mut self.points_read)?;
             self.geometries.insert(geometry.id(), Rc::new(mesh));
         }
         let mesh = &self.geometries[&geometry.id()];

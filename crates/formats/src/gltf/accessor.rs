@@ -74,6 +74,11 @@ impl Reader<'_> {
             }
         };
         if let Some(sparse) = accessor.sparse() {
+            if sparse.count() > count {
+                return Err(self
+                    .error(place, "replaces more sparse values than there are")
+                    .hint("export the file again"));
+            }
             use gltf::accessor::sparse::IndexType;
             let (indices, values) = (sparse.indices(), sparse.values());
             let index_kind = match indices.index_type() {
@@ -85,8 +90,10 @@ impl Reader<'_> {
             let new = self.read(&values.view(), values.offset(), sparse.count(), width, kind, place)?;
             for (i, row) in at.into_iter().zip(new.chunks_exact(width)) {
                 let slot = numbers.get_mut(i as usize * width..).and_then(|rest| rest.get_mut(..width));
-                slot.ok_or_else(|| self.error(place, "replaces a sparse value that does not exist"))?
-                    .copy_from_slice(row);
+                slot.ok_or_else(|| {
+                    self.error(place, "replaces a sparse value that does not exist").hint("export the file again")
+                })?
+                .copy_from_slice(row);
             }
         }
         Ok(numbers)
