@@ -1,0 +1,121 @@
+//! The page: everything in one file.
+
+use std::io::{self, Write};
+
+use plotly::Plot;
+use serde_json::{Value, json};
+
+use super::scene::ReportScene;
+use super::summary::duration;
+use super::tables::{self, escape, json_in_script};
+use super::{plots, view};
+use crate::recording::Recording;
+
+const THREE: &str = include_str!("../../assets/three/three.bundle.min.js");
+const STYLE: &str = include_str!("../../assets/report/report.css");
+const PAGE: &str = include_str!("../../assets/report/page.html");
+const SCRIPTS: [&str; 3] = [
+    include_str!("../../assets/report/figures.js"),
+    include_str!("../../assets/report/scene.js"),
+    include_str!("../../assets/report/player.js"),
+];
+
+/// Writes the report of one or several runs of the same cell, each with a label (`"control on"`).
+///
+/// Several runs are drawn over each other; the first is shown in the 3-D scene until another is chosen. The regions'
+/// outlines are those of the first run. See the module's text for the size.
+///
+/// # Errors
+///
+/// Whatever `out` answers.
+pub fn write_html(mut out: impl Write, scene: &ReportScene, runs: &[(&str, &Recording)]) -> io::Result<()> {
+    let figures = plots::all(scene, runs);
+    let plot_data = Value::from(figures.iter().map(figure_data).collect::<Vec<_>>());
+    for piece in PAGE.split("{{") {
+        let (key, rest) = piece.split_once("}}").unwrap_or(("", piece));
+        match key {
+            "" => {}
+            "title" => out.write_all(escape(runs.first().map_or("no run", |(_, r)| &r.cell)).as_bytes())?,
+            "style" => out.write_all(STYLE.as_bytes())?,
+            "facts" => out.write_all(facts(runs).as_bytes())?,
+            "options" => out.write_all(options(runs).as_bytes())?,
+            "figures" => out.write_all(placeholders(&figures).as_bytes())?,
+            "tables" => out.write_all(run_tables(runs).as_bytes())?,
+            "plot_data" => out.write_all(json_in_script(&plot_data.to_string()).as_bytes())?,
+            "scene_data" => out.write_all(json_in_script(&view::data(scene, runs).to_string()).as_bytes())?,
+            "plotly" => out.write_all(plotly_script(&Plot::offline_js_sources()).as_bytes())?,
+            "three" => out.write_all(THREE.as_bytes())?,
+            "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
+            unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
+        }
+        out.write_all(rest.as_bytes())?;
+    }
+    out.flush()
+}
+
+/// plotly.js alone: the crate also embeds a formula renderer of 2 MB, which no plot here uses.
+fn plotly_script(sources: &str) -> &str {
+    let from = sources.find('>').map_or(0, |i| i + 1);
+    let to = sources[from..].find("</script>").map_or(sources.len(), |i| from + i);
+    &sources[from..to]
+}
+
+fn figure_data(figure: &plots::Figure) -> Value {
+    let plot: Value = serde_json::from_str(&figure.plot.to_json()).unwrap_or_default();
+    json!({ "data": plot["data"], "layout": plot["layout"], "time": figure.over_time })
+}
+
+fn placeholders(figures: &[plots::Figure]) -> String {
+    let one = |(i, f): (usize, &plots::Figure)| {
+        let run = f.run.map_or(String::new(), |r| format!(" data-run=\"{r}\""));
+        let class = if f.wide { "card wide" } else { "card" };
+        format!(
+            "<section class=\"{class}\"{run}><h3>{}</h3><p class=\"note\">{}</p>\
+             <div class=\"plot\" data-figure=\"{i}\" style=\"height:{}px\"></div></section>\n",
+            escape(&f.title),
+            escape(&f.note),
+            f.height
+        )
+    };
+    figures.iter().enumerate().map(one).collect()
+}
+
+fn facts(runs: &[(&str, &Recording)]) -> String {
+    let mut out = String::new();
+    for (label, rec) in runs {
+        let control = if rec.monitored { "monitor on" } else { "monitor off" };
+        let t = rec.tick_ns;
+        let line = format!(
+            "{label}: {control} · {:.2} s simulated · tick {} ms, took {} median, {} p99, {} max ({} ticks)",
+            rec.duration_s,
+            1e3 * rec.tick_s,
+            duration(t.p50),
+            duration(t.p99),
+            duration(t.max),
+            t.count
+        );
+        out += &format!("<li>{}</li>", escape(line.trim_start_matches(": ")));
+    }
+    let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
+    format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))
+}
+
+fn options(runs: &[(&str, &Recording)]) -> String {
+    runs.iter().enumerate().map(|(i, (label, _))| format!("<option value=\"{i}\">{}</option>", escape(label))).collect()
+}
+
+fn run_tables(runs: &[(&str, &Recording)]) -> String {
+    let card = |i: usize, what: &str, label: &str, table: String| {
+        let heading = if runs.len() > 1 { format!("{what}: {label}") } else { what.to_owned() };
+        format!(
+            "<section class=\"card wide\" data-run=\"{i}\"><h3>{}</h3><div class=\"scroll\">{table}</div></section>\n",
+            escape(&heading)
+        )
+    };
+    let of_run = |(i, (label, rec)): (usize, &(&str, &Recording))| {
+        card(i, "Robots", label, tables::robots(rec))
+            + &card(i, "Regions", label, tables::regions(rec))
+            + &card(i, "Events", label, tables::events(rec))
+    };
+    runs.iter().enumerate().map(of_run).collect()
+}

@@ -1,0 +1,39 @@
+//! Colours, the same in plots and in the scene.
+
+/// Colour of a region of this kind.
+pub fn of_kind(kind: &str) -> &'static str {
+    match kind {
+        "monitored" => "#2f7ed8",
+        "exchange" => "#2ca02c",
+        _ => "#d62728",
+    }
+}
+
+/// Colour of warning zones in plots.
+pub const WARNING: &str = "#f2c230";
+
+/// Colour of a curve: with control red, without blue, as in the paper's figure 12; further robots have their own pair.
+pub fn of_run(robot: usize, monitored: bool) -> &'static str {
+    const PAIRS: [(&str, &str); 4] =
+        [("#d6203a", "#1f6fd6"), ("#ef8a17", "#12a5a5"), ("#9b51c9", "#5b6b7b"), ("#8c6d31", "#74c476")];
+    let (on, off) = PAIRS[robot % PAIRS.len()];
+    if monitored { on } else { off }
+}
+
+/// Colour of a thing among many.
+pub fn of_index(i: usize) -> &'static str {
+    const MANY: [&str; 10] =
+        ["#4c78a8", "#f58518", "#54a24b", "#e45756", "#72b7b2", "#b279a2", "#eeca3b", "#ff9da6", "#9d755d", "#8a8f98"];
+    MANY[i % MANY.len()]
+}
+
+/// Colour of a robot's links.
+pub fn of_robot(i: usize) -> &'static str {
+    const BODIES: [&str; 4] = ["#e2833b", "#b9c0c9", "#e0c34a", "#8f9fd6"];
+    BODIES[i % BODIES.len()]
+}
+
+/// Colour of tools.
+pub const TOOL: &str = "#59636f";
+/// Colour of objects.
+pub const OBJECT: &str = "#9aa3ad";
