@@ -259,6 +259,48 @@ fn failures_say_what_is_the_matter() {
 }
 
 #[test]
+fn absurd_numbers_neither_hang_nor_pass() {
+    let mut random = Random(21);
+    let wrist = disguised_wrist_arm(&mut random, PI);
+    let as_endless = |chain: &Chain, drop_wrist: bool| {
+        let mut joints = chain.joints().to_vec();
+        for joint in joints.iter_mut().filter(|j| j.kind != JointKind::Fixed) {
+            joint.kind = JointKind::Continuous;
+        }
+        if drop_wrist {
+            joints[4].origin = joints[4].origin * Pose::from_translation(Vec3::splat(0.1));
+        }
+        Chain::new("endless", chain.links().to_vec(), joints).unwrap()
+    };
+    for chain in [wrist.clone(), as_endless(&wrist, false), as_endless(&wrist, true)] {
+        let mut solver = solver(&chain);
+        for _ in 0..300 {
+            let odd = |random: &mut Random| {
+                [0.0, -0.0, 1e-300, 1.0, -3.0, 1e6, -1e16, 1e100, -1e300, f64::MAX, f64::NAN, f64::INFINITY]
+                    [random.below(12)]
+            };
+            let seed: [f64; 6] = std::array::from_fn(|_| odd(&mut random));
+            let target = if random.below(2) == 0 {
+                Pose::from_translation(Vec3::new(odd(&mut random), odd(&mut random), odd(&mut random)))
+            } else {
+                tip_at(&chain, &std::array::from_fn::<f64, 6, _>(|_| random.range(-PI, PI)))
+            };
+            if let Ok(answer) = solver.solve(&target, &seed) {
+                let (m, rad) = errors(&chain, &answer.q, &target);
+                assert!(m <= 1e-9 && rad <= 1e-9, "{seed:?} {target:?} {answer:?}");
+            }
+            for q in solver.solve_all(&target, &seed) {
+                assert!(errors(&chain, &q, &target).0 <= 1e-9);
+            }
+            let mut q = seed;
+            if solver.refine(&target, &mut q) {
+                assert!(errors(&chain, &q, &target).0 <= 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
 fn fewer_than_six_axes_reach_positions_and_what_poses_they_can() {
     let (y, z) = (Vec3::Y, Vec3::Z);
     let limits = Limits::symmetric(3.0);

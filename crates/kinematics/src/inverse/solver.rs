@@ -194,7 +194,8 @@ impl Solver {
     /// The `most` nearest closed-form answers within the limits, polished on the chain, nearest first.
     fn closed_form(&mut self, target: &Pose, start: &[f64], most: usize, outside: &mut Option<Outside>) -> Vec<Found> {
         let Some(wrist) = &self.wrist else { return Vec::new() };
-        let seed: [f64; 6] = std::array::from_fn(|i| start[i]);
+        // The library takes turns off one by one: hand it none.
+        let seed: [f64; 6] = std::array::from_fn(|i| start[i] % TAU);
         let mut within: Vec<[f64; 6]> = Vec::with_capacity(8);
         for mut x in wrist.candidates(target, &seed) {
             match self.unwind(&mut x, start) {
