@@ -33,6 +33,7 @@ pub mod csv;
 mod file;
 pub mod motion;
 mod recording;
+pub mod report;
 pub mod run;
 mod summary;
 
