@@ -3,6 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 use crate::shape::hull::farthest;
+use crate::triangle::nearest_on_triangle;
 use crate::{Cuboid, Cylinder, Shape};
 
 /// What is left of a convex shape when its rounding radius is taken off.
@@ -43,6 +44,18 @@ impl Core<'_> {
             Self::Points(p) => farthest(p, dir),
             Self::Triangle(t) => farthest(t, dir),
         }
+    }
+
+    /// The point of the core nearest to `p`, where there is a closed form, local frame.
+    pub fn nearest(&self, p: Vec3) -> Option<Vec3> {
+        Some(match self {
+            Self::Point => Vec3::ZERO,
+            Self::Segment(h) => Vec3::Z * p.z.max(-h).min(*h),
+            Self::Cylinder(c) => c.nearest(p),
+            Self::Cuboid(c) => c.nearest(p),
+            Self::Triangle(t) => nearest_on_triangle(p, *t),
+            Self::Points(_) => return None,
+        })
     }
 
     /// Some point of the core, near its middle where that is cheap, local frame.

@@ -10,6 +10,9 @@ use simplex::{Simplex, Vertex};
 /// More than any pair needs; reaching it ends with the bounds found so far.
 const MAX_ITERATIONS: usize = 100;
 
+/// Projections to and fro after a search that rounding ended early.
+const MAX_POLISH: usize = 300;
+
 /// Wanted difference of the bounds, as a fraction of the coordinates.
 const WANTED: f64 = 1e-13;
 
@@ -45,29 +48,63 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
         if upper - lower <= WANTED * scale || simplex.holds(next.w) {
             break;
         }
-        let mut grown = simplex;
-        grown.push(next);
-        if !grown.reduce() {
-            if lower > 0.0 {
-                break; // proven apart: rounding made the tetrahedron swallow the origin
-            }
-            return Some(overlap(&simplex));
-        }
-        let nearer = grown.blend(|x| x.w);
-        let length = nearer.length();
-        if !(length < upper) {
+        let Some((grown, nearer, length)) = grow(&simplex, next, upper, lower > 0.0) else {
             break;
+        };
+        if grown.len == 4 {
+            return Some(overlap(&grown));
         }
         (simplex, v, upper) = (grown, nearer, length);
     }
     if !(lower > 0.0) {
         return Some(overlap(&simplex)); // not proven apart
     }
-    Some(Gap {
-        distance: upper,
-        lower: lower.min(upper),
-        on_a: simplex.blend(|x| x.on_a),
-        on_b: simplex.blend(|x| x.on_b),
+    let gap = Gap { distance: upper, lower, on_a: simplex.blend(|x| x.on_a), on_b: simplex.blend(|x| x.on_b) };
+    let gap = if upper - lower <= WANTED * scale { gap } else { polish(a, b, a_in_b, gap, WANTED * scale, slack) };
+    Some(Gap { lower: gap.lower.min(gap.distance), ..gap })
+}
+
+/// Curved surfaces can leave the simplex too thin to go on. Then each witness is projected onto the other solid in turn
+/// (von Neumann's alternating projections), which never loses ground, and each direction gives a bound of its own.
+#[cold]
+fn polish(a: &Core, b: &Core, a_in_b: &Pose, mut gap: Gap, wanted: f64, slack: f64) -> Gap {
+    for _ in 0..MAX_POLISH {
+        let (Some(on_a), distance) = (a.nearest(a_in_b.inverse_transform_point(gap.on_b)), gap.distance) else { break };
+        let on_a = a_in_b.transform_point(on_a);
+        let Some(on_b) = b.nearest(on_a) else { break };
+        let Some(direction) = (on_a - on_b).try_normalize() else { break };
+        let low_a = a_in_b.transform_point(a.support(-a_in_b.inverse_transform_vector(direction)));
+        gap.lower = gap.lower.max((low_a - b.support(direction)).dot(direction) - slack);
+        let nearer = (on_a - on_b).length();
+        if nearer <= distance {
+            gap = Gap { distance: nearer, lower: gap.lower, on_a, on_b };
+        }
+        if nearer >= distance || gap.distance - gap.lower <= wanted {
+            break;
+        }
+    }
+    gap
+}
+
+/// The simplex with one vertex more, reduced to what holds its nearest point; `None` where that brings nothing nearer.
+///
+/// Where the vertices have come so close together that rounding decides, the simplex is folded into its nearest point,
+/// which is a point of `A - B` like any other, and the search goes on from there.
+fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool) -> Option<(Simplex, Vec3, f64)> {
+    let mut grown = *simplex;
+    grown.push(next);
+    if !grown.reduce(apart) {
+        return Some((grown, Vec3::ZERO, 0.0));
+    }
+    let folded = Vertex { w: simplex.blend(|x| x.w), on_a: simplex.blend(|x| x.on_a), on_b: simplex.blend(|x| x.on_b) };
+    let mut segment = Simplex::new(folded);
+    segment.push(next);
+    segment.reduce(true);
+    [grown, segment].into_iter().filter(|s| s.len < 4).find_map(|s| {
+        let nearer = s.blend(|x| x.w);
+        let length = nearer.length();
+        // Equal to the last place is progress too: a gap of g over an edge of length 1 shortens by g² only.
+        (length <= upper * (1.0 + 2.0 * f64::EPSILON)).then_some((s, nearer, length))
     })
 }
 

@@ -46,13 +46,14 @@ impl Simplex {
         (0..self.len).fold(Vec3::ZERO, |sum, i| sum + of(&self.vertices[i]) * self.weights[i])
     }
 
-    /// Keeps the smallest face that holds the point nearest to the origin. False where a tetrahedron holds the origin.
-    pub fn reduce(&mut self) -> bool {
+    /// Keeps the smallest face that holds the point nearest to the origin. False where a tetrahedron holds the origin;
+    /// where the origin is known to be `apart`, all faces are tried instead of trusting signs of flat tetrahedra.
+    pub fn reduce(&mut self, apart: bool) -> bool {
         let best = match self.len {
             1 => return true,
             2 => self.segment(0, 1),
             3 => self.triangle(0, 1, 2),
-            _ => match self.tetrahedron() {
+            _ => match self.tetrahedron(apart) {
                 Some(part) => part,
                 None => return false,
             },
@@ -102,14 +103,14 @@ impl Simplex {
     }
 
     /// The nearest of the faces that have the origin on their outer side; `None` where none has.
-    fn tetrahedron(&self) -> Option<Part> {
+    fn tetrahedron(&self, apart: bool) -> Option<Part> {
         let mut best: Option<Part> = None;
         for [i, j, k, opposite] in [[0, 1, 2, 3], [0, 1, 3, 2], [0, 2, 3, 1], [1, 2, 3, 0]] {
             let a = self.w(i);
             let n = (self.w(j) - a).cross(self.w(k) - a);
             let (origin, inner) = (-a.dot(n), (self.w(opposite) - a).dot(n));
             let flat = inner.abs() <= 1e-14 * n.length() * (self.w(opposite) - a).length();
-            if flat || !(origin * inner > 0.0) {
+            if apart || flat || !(origin * inner > 0.0) {
                 let part = self.triangle(i, j, k);
                 if best.is_none_or(|b| part.squared < b.squared) {
                     best = Some(part);
