@@ -122,7 +122,10 @@ const Stage = (() => {
   const { low, high } = extent();
   const center = low.clone().add(high).multiplyScalar(0.5);
   const size = Math.max(0.5, low.distanceTo(high));
-  camera.position.copy(center).add(new THREE.Vector3(0.78, -1.0, 0.62).multiplyScalar(size * 0.84));
+  // A tall picture sees less to the sides: stand back.
+  const shape = canvas.parentElement.clientWidth / Math.max(1, canvas.parentElement.clientHeight);
+  const away = size * 0.84 * Math.max(1, 1.15 / shape);
+  camera.position.copy(center).add(new THREE.Vector3(0.78, -1.0, 0.62).multiplyScalar(away));
   camera.near = size / 200; camera.far = size * 40;
   const cells = Math.max(4, Math.ceil(size) * 2);
   const grid = new THREE.GridHelper(cells * 0.5, cells);

@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn gaps_of_nan_neither_break_nor_hide_extremes() {
-        let value = |i: usize| if i % 3 == 0 { f64::NAN } else { i as f64 };
+        let value = |i: usize| if i.is_multiple_of(3) { f64::NAN } else { i as f64 };
         let kept = pick(9000, 100, &[&value, &|_| f64::NAN]);
         assert!(kept.len() <= 100 && kept.contains(&8999));
     }

@@ -1,5 +1,6 @@
 //! The page: everything in one file.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use plotly::Plot;
@@ -94,14 +95,18 @@ fn facts(runs: &[(&str, &Recording)]) -> String {
             duration(t.max),
             t.count
         );
-        out += &format!("<li>{}</li>", escape(line.trim_start_matches(": ")));
+        let _ = write!(out, "<li>{}</li>", escape(line.trim_start_matches(": ")));
     }
     let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
     format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))
 }
 
 fn options(runs: &[(&str, &Recording)]) -> String {
-    runs.iter().enumerate().map(|(i, (label, _))| format!("<option value=\"{i}\">{}</option>", escape(label))).collect()
+    let mut out = String::new();
+    for (i, (label, _)) in runs.iter().enumerate() {
+        let _ = write!(out, "<option value=\"{i}\">{}</option>", escape(label));
+    }
+    out
 }
 
 fn run_tables(runs: &[(&str, &Recording)]) -> String {

@@ -6,6 +6,9 @@ use std::f64::consts::{PI, TAU};
 use elbowroom_proximity::{Shape, Sphere, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 
+/// Two corners, the smaller index first.
+type Edge = (u32, u32);
+
 /// Corners and triangles.
 pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 
@@ -43,7 +46,9 @@ fn slab(z0: f64, z1: f64) -> Surface {
     let shape =
         Shape::Cuboid(elbowroom_proximity::Cuboid { half_extents: Vec3::new(PATCH_M, PATCH_M, 0.5 * (z1 - z0)) });
     let (mut vertices, triangles) = tessellate(&shape, CHORD_ERROR_M);
-    vertices.iter_mut().for_each(|v| v.z += 0.5 * (z0 + z1));
+    for v in &mut vertices {
+        v.z += 0.5 * (z0 + z1);
+    }
     (vertices, triangles)
 }
 
@@ -87,7 +92,9 @@ fn pushed_out(vertices: &[Vec3], triangles: &[[u32; 3]], margin: f64) -> Surface
     for t in triangles {
         let [a, b, c] = t.map(|i| vertices[i as usize]);
         let area_normal = (b - a).cross(c - a);
-        t.iter().for_each(|&i| normals[i as usize] += area_normal);
+        for &i in t {
+            normals[i as usize] += area_normal;
+        }
     }
     let moved = vertices.iter().zip(&normals).map(|(&v, n)| v + n.try_normalize().unwrap_or(Vec3::ZERO) * margin);
     (moved.collect(), triangles.to_vec())
@@ -100,11 +107,11 @@ pub fn section(surface: &Surface, in_world: &Pose, height_m: f64) -> Vec<Vec<[f6
     let welded = weld(&surface.0);
     let points: Vec<Vec3> = surface.0.iter().map(|&v| in_world.transform_point(v)).collect();
     let above = |i: u32| points[i as usize].z >= height_m;
-    let mut next: HashMap<(u32, u32), [Option<(u32, u32)>; 2]> = HashMap::new();
-    let mut at: HashMap<(u32, u32), [f64; 2]> = HashMap::new();
+    let mut next: HashMap<Edge, [Option<Edge>; 2]> = HashMap::new();
+    let mut at: HashMap<Edge, [f64; 2]> = HashMap::new();
     for t in &surface.1 {
         let t = t.map(|i| welded[i as usize]);
-        let crossed: Vec<(u32, u32)> = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
+        let crossed: Vec<Edge> = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
             .into_iter()
             .filter(|&(a, b)| above(a) != above(b))
             .map(|(a, b)| (a.min(b), a.max(b)))
@@ -132,8 +139,6 @@ fn weld(vertices: &[Vec3]) -> Vec<u32> {
     let key = |v: &Vec3| v.to_array().map(|c| (c * 1e9).round() as i64);
     vertices.iter().enumerate().map(|(i, v)| *first.entry(key(v)).or_insert(i as u32)).collect()
 }
-
-type Edge = (u32, u32);
 
 fn chains(mut next: HashMap<Edge, [Option<Edge>; 2]>, at: &HashMap<Edge, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     let mut starts: Vec<Edge> = next.keys().copied().collect();

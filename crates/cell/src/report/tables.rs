@@ -86,11 +86,10 @@ pub fn events(recording: &Recording) -> String {
 }
 
 fn header(names: &[&str]) -> String {
-    let cells: String = names.iter().map(|n| format!("<th>{n}</th>")).collect();
-    format!("<table><thead><tr>{cells}</tr></thead><tbody>")
+    format!("<table><thead><tr><th>{}</th></tr></thead><tbody>", names.join("</th><th>"))
 }
 
 fn row(out: &mut String, cells: &[String], class: &str) {
-    let cells: String = cells.iter().map(|c| format!("<td>{}</td>", escape(c))).collect();
-    let _ = writeln!(out, "<tr class=\"{class}\">{cells}</tr>");
+    let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
+    let _ = writeln!(out, "<tr class=\"{class}\"><td>{}</td></tr>", cells.join("</td><td>"));
 }

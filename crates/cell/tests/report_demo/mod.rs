@@ -86,6 +86,7 @@ fn path(s: f64) -> Vec3 {
     a + Vec3::Y * (s - 0.6).min(1.3)
 }
 
+#[allow(clippy::too_many_lines)] // a table of values
 /// A run of `ticks` ticks of 2 ms with the region's name given.
 pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
     let (shape, column_in_world) = column();

@@ -97,7 +97,7 @@ fn add_path(plot: &mut Plot, name: &str, color: &'static str, track: &RobotTrack
     let (x, y) = (|i: usize| samples[i].tcp.x, |i: usize| samples[i].tcp.y);
     let kept = pick(samples.len(), MAX_POINTS, &[&x, &y]);
     let column = |f: &dyn Fn(usize) -> f64| kept.iter().map(|&i| round(f(i))).collect::<Vec<_>>();
-    let curve = line(column(&x), column(&y), name, Line::new().color(color).width(2.5)).legend_group(name.to_owned());
+    let curve = line(column(&x), column(&y), name, Line::new().color(color).width(2.5)).legend_group(name);
     plot.add_trace(curve);
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return };
     let (end, symbol) = if track.finished { ("end", MarkerSymbol::Square) } else { ("stopped", MarkerSymbol::X) };
@@ -106,7 +106,7 @@ fn add_path(plot: &mut Plot, name: &str, color: &'static str, track: &RobotTrack
         plot.add_trace(
             Scatter::new(vec![round(sample.tcp.x)], vec![round(sample.tcp.y)])
                 .name(name)
-                .legend_group(name.to_owned())
+                .legend_group(name)
                 .show_legend(false)
                 .mode(Mode::MarkersText)
                 .marker(Marker::new().color(color).size(10).symbol(symbol))

@@ -14,8 +14,8 @@ use crate::report::spans::runs as equal_runs;
 /// More bands than this would hide each other, and make the file large.
 const MAX_BANDS: usize = 1000;
 
-pub fn all(runs: &[(&str, &Recording)]) -> [Figure; 2] {
-    [overrides(runs), distance(runs)]
+pub fn all(runs: &[(&str, &Recording)]) -> Vec<Figure> {
+    vec![overrides(runs), distance(runs)]
 }
 
 fn overrides(runs: &[(&str, &Recording)]) -> Figure {

@@ -77,9 +77,9 @@ fn rows_of(recording: &Recording, index: usize, region: &RegionTrack) -> Vec<Row
         let between = |on: &[&str], off: &[&str]| {
             let mine =
                 recording.events.iter().filter(|e| e.robot == track.name && e.region == recording.regions[index].name);
-            let edges = mine.filter_map(|e| {
-                (on.contains(&e.event) || off.contains(&e.event)).then(|| (e.t_s, on.contains(&e.event)))
-            });
+            let edges = mine
+                .filter(|e| on.contains(&e.event) || off.contains(&e.event))
+                .map(|e| (e.t_s, on.contains(&e.event)));
             pair(edges, recording.duration_s)
         };
         let candidates = [
