@@ -155,7 +155,8 @@ impl Scene<'_> {
             self.reader.error(&place, "has no POSITION").hint("the model exported with its positions, uncompressed")
         })?;
         let indices = primitive.indices();
-        self.elements += positions.count() + indices.as_ref().map_or(0, gltf::Accessor::count);
+        let corners = indices.as_ref().map_or(0, gltf::Accessor::count);
+        self.elements = self.elements.saturating_add(positions.count()).saturating_add(corners);
         if self.elements > MOST_ELEMENTS {
             let what = format!("the scene unfolds into more than {MOST_ELEMENTS} vertices and corners");
             return Err(self.reader.error(&place, &what).hint("a coarser mesh, or fewer instances"));

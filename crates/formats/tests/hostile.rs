@@ -144,3 +144,12 @@ fn small_files_that_ask_for_much_are_quick() {
     assert!(run("dae", dae.as_bytes()).unwrap_err().what.contains("together"));
     assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
+
+/// Counts near 2^64 must not overflow a sum.
+#[test]
+fn counts_at_the_edge_are_refused() {
+    let text = String::from_utf8(samples("gltf").remove(0)).unwrap();
+    for count in ["18446744073709551615", "9223372036854775808"] {
+        assert!(run("gltf", text.replace("\"count\":3", &format!("\"count\":{count}")).as_bytes()).is_err());
+    }
+}

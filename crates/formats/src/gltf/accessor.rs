@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
+use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
 
@@ -79,7 +80,6 @@ impl Reader<'_> {
                     .error(place, "replaces more sparse values than there are")
                     .hint("export the file again"));
             }
-            use gltf::accessor::sparse::IndexType;
             let (indices, values) = (sparse.indices(), sparse.values());
             let index_kind = match indices.index_type() {
                 IndexType::U8 => DataType::U8,
