@@ -27,9 +27,11 @@ const Figures = (() => {
     box.append(cursor);
     box.cursor = figure.time ? cursor : null;
     if (figure.time) {
-      box.on('plotly_hover', (event) => {
-        const t = Number(event.points[0].x);
-        if (Number.isFinite(t)) onTime(t);
+      // Anywhere over the plot, not only on a curve: plotly's own hover event needs a point nearby.
+      box.addEventListener('mousemove', (event) => {
+        const { xaxis } = box._fullLayout;
+        const x = event.clientX - box.getBoundingClientRect().left - xaxis._offset;
+        if (x >= 0 && x <= xaxis._length) onTime(xaxis.p2d(x));
       });
     }
     box.drawn = true;

@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 use plotly::common::{DashType, Fill, HoverInfo, Line, Marker, MarkerSymbol, Mode, Position};
+use plotly::layout::HoverMode;
 use plotly::{Plot, Scatter};
 
 use super::figure::{axis, layout, line, round};
@@ -133,7 +134,7 @@ fn over_time(
         let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
         plot.add_trace(line(t, y, &curve_name(label, recording, track), style));
     }
-    plot.set_layout(layout().x_axis(axis("time (s)")).y_axis(axis(unit)));
+    plot.set_layout(layout().hover_mode(HoverMode::X).x_axis(axis("time (s)")).y_axis(axis(unit)));
     Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, plot }
 }
 
