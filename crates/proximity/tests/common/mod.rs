@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, tessellate::tessellate};
+use elbowroom_proximity::{
+    Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, tessellate::tessellate,
+};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// SplitMix64.
