@@ -264,11 +264,6 @@ impl CellRobot {
 
     /// What the monitor keeps out of regions: the TCP, tool and load, and the links.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
-        let mut bare = self.robot.clone();
-        // Tool and load are bodies of the flange for collisions; the monitor wants them as parts of their own.
-        let carried = usize::from(self.tool.is_some()) + usize::from(self.load.is_some());
-        let bodies = &mut bare.bodies[self.flange.0];
-        bodies.truncate(bodies.len().saturating_sub(carried));
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
         let parts = [("tool", &self.tool), ("load", &self.load)];
         volumes.extend(parts.into_iter().filter_map(|(name, body)| {
@@ -280,7 +275,20 @@ impl CellRobot {
             let part = elbowroom_monitor::Part::Tool;
             Some(Volume { name: name.into(), part, link: self.flange, shape, in_link })
         }));
-        volumes.extend(arm_volumes(&bare, self.volumes));
+        volumes.extend(arm_volumes(&self.bare(), self.volumes));
         volumes
+    }
+
+    /// The robot without tool and load, which are bodies of its flange for collisions.
+    pub fn bare(&self) -> Robot {
+        let mut bare = self.robot.clone();
+        let bodies = &mut bare.bodies[self.flange.0];
+        bodies.truncate(bodies.len().saturating_sub(self.carried().count()));
+        bare
+    }
+
+    /// Tool and load, in the flange's frame.
+    pub fn carried(&self) -> impl Iterator<Item = &Body> {
+        [&self.tool, &self.load].into_iter().flatten()
     }
 }

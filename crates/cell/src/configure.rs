@@ -99,10 +99,10 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         regions.push(region);
         indices.push(i);
     }
-    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
-        reaction_s,
-        joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
-    });
+    let stopping_distance = cell
+        .laws
+        .stopping_reaction_s
+        .map(|reaction_s| Stopping { reaction_s, joint_deceleration: robot.limits.iter().map(|l| l.stop).collect() });
     let configuration = Configuration {
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,

@@ -95,7 +95,10 @@ fn states(table: &NumberTable, robots: &[(&str, &Chain)]) -> Result<Vec<Vec<Vec<
             let column = table.columns.iter().position(|c| *c == prefixed).or_else(bare);
             let Some(column) = column else {
                 let wanted = if robots.len() == 1 { joint } else { &prefixed };
-                return Err(table.column(wanted).err().unwrap_or_else(|| FormatError::new(&table.file, 1, "bad header")));
+                return Err(table
+                    .column(wanted)
+                    .err()
+                    .unwrap_or_else(|| FormatError::new(&table.file, 1, "bad header")));
             };
             used[column] = true;
             own.push(column);

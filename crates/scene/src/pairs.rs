@@ -30,7 +30,9 @@ pub fn pairs(robots: &[&Robot], objects: usize) -> Vec<(Member, Member)> {
     let members: Vec<(usize, LinkId)> = robots
         .iter()
         .enumerate()
-        .flat_map(|(r, robot)| (0..robot.bodies.len()).filter(|l| !robot.bodies[*l].is_empty()).map(move |l| (r, LinkId(l))))
+        .flat_map(|(r, robot)| {
+            (0..robot.bodies.len()).filter(|l| !robot.bodies[*l].is_empty()).map(move |l| (r, LinkId(l)))
+        })
         .collect();
     for (i, &(ra, a)) in members.iter().enumerate() {
         for &(rb, b) in &members[i + 1..] {
@@ -62,7 +64,8 @@ pub fn links_can_meet(robot: &Robot, a: LinkId, b: LinkId) -> bool {
         return false;
     }
     let ends = |l: &LinkId| *l == a || *l == b;
-    let mut inner = between.iter().flat_map(|j| [chain.joints()[j.0].parent, chain.joints()[j.0].child]).filter(|l| !ends(l));
+    let mut inner =
+        between.iter().flat_map(|j| [chain.joints()[j.0].parent, chain.joints()[j.0].child]).filter(|l| !ends(l));
     inner.any(|l| !robot.bodies[l.0].is_empty())
 }
 
@@ -141,10 +144,8 @@ impl<'a> Checker<'a> {
     /// For robots with their bases in the world, and objects.
     pub fn new(robots: Vec<(&'a Robot, Pose)>, objects: &'a [Object]) -> Self {
         let local = |b: &Body| b.shape.aabb(&Pose::IDENTITY);
-        let boxes = robots
-            .iter()
-            .map(|(r, _)| r.bodies.iter().map(|l| l.iter().map(local).collect()).collect())
-            .collect();
+        let boxes =
+            robots.iter().map(|(r, _)| r.bodies.iter().map(|l| l.iter().map(local).collect()).collect()).collect();
         let list = pairs(&robots.iter().map(|r| r.0).collect::<Vec<_>>(), objects.len());
         let pairs = list.into_iter().map(|(a, b)| watched(&robots, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&o.in_world)).collect();
@@ -166,7 +167,8 @@ impl<'a> Checker<'a> {
         let Self { robots, objects, boxes, object_boxes, pairs } = self;
         let world = World { robots, objects, boxes, object_boxes, states };
         for pair in pairs.iter_mut().filter(|p| !p.touched) {
-            let moved: f64 = pair.levers.iter().map(|(r, j, lever, then)| lever * (states[*r].q[*j] - then).abs()).sum();
+            let moved: f64 =
+                pair.levers.iter().map(|(r, j, lever, then)| lever * (states[*r].q[*j] - then).abs()).sum();
             // NaN (an unlimited stroke that did not move) must look again.
             if moved < pair.clear {
                 continue;

@@ -26,8 +26,8 @@ type Result<T> = std::result::Result<T, FormatError>;
 const MOST_BYTES: u64 = 64 << 20;
 
 const KEYS: &[&str] = &[
-    "version", "name", "units", "tick_ms", "max_s", "checksum", "robot", "object", "region", "encoder", "monitor", "map",
-    "program",
+    "version", "name", "units", "tick_ms", "max_s", "checksum", "robot", "object", "region", "encoder", "monitor",
+    "map", "program",
 ];
 
 /// A cell file, parsed but not yet resolved: every key and value with its line.
@@ -45,7 +45,8 @@ impl CellFile {
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let unreadable = |e: std::io::Error| {
-            FormatError::new(path, None, format!("cannot be read: {e}")).hint("the path of a cell file (see docs/cell-file.md)")
+            FormatError::new(path, None, format!("cannot be read: {e}"))
+                .hint("the path of a cell file (see docs/cell-file.md)")
         };
         if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
             return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
@@ -201,8 +202,12 @@ fn objects(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
         let (shape, in_world) = match word.word(&words)? {
             "box" => t.only(&["shape", "at", "rpy", "size"]).and_then(|()| units.cuboid(&t)),
             "sphere" => t.only(&["shape", "at", "rpy", "radius"]).and_then(|()| units.sphere(&t)),
-            "cylinder" => t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t)),
-            "capsule" => t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t)),
+            "cylinder" => {
+                t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t))
+            }
+            "capsule" => {
+                t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t))
+            }
             _ => t.only(&["shape", "at", "rpy", "mesh", "mesh_unit"]).and_then(|()| units.mesh(&t, "mesh")),
         }?;
         if cell.robots.iter().any(|r| r.name == name) {
@@ -253,7 +258,9 @@ fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
         let names = robot.joint_names();
         let joints = match t.get("joints") {
             None => (0..names.len().min(3)).collect(),
-            Some(v) => v.list("joints = [\"joint_1\"]")?.iter().map(|v| map_joint(v, &names)).collect::<Result<Vec<_>>>()?,
+            Some(v) => {
+                v.list("joints = [\"joint_1\"]")?.iter().map(|v| map_joint(v, &names)).collect::<Result<Vec<_>>>()?
+            }
         };
         let chain = &robot.robot.chain;
         let prismatic = |j: usize| {

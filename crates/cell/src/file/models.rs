@@ -52,7 +52,9 @@ pub(super) fn robot(v: &Value<'_>, srdf: Option<&Value<'_>>, warnings: &mut Vec<
     let loaded = robot_file::load(&path, &options)?;
     warnings.extend(loaded.warnings);
     if loaded.robot.chain.dof() == 0 {
-        return Err(v.error("names a model without a joint that moves").hint("a model of a robot; solid things go under [object.NAME]"));
+        return Err(v
+            .error("names a model without a joint that moves")
+            .hint("a model of a robot; solid things go under [object.NAME]"));
     }
     Ok(loaded.robot)
 }
@@ -109,7 +111,9 @@ impl NumberTable {
         };
         let columns: Vec<String> = header.split(',').map(|c| c.trim().trim_matches('"').to_owned()).collect();
         if let Some(c) = columns.iter().enumerate().find(|(i, c)| columns[..*i].contains(c)) {
-            return Err(FormatError::new(path, first, format!("two columns are named `{}`", c.1)).hint("each name once"));
+            return Err(
+                FormatError::new(path, first, format!("two columns are named `{}`", c.1)).hint("each name once")
+            );
         }
         let mut rows = Vec::new();
         for (line, text) in lines {
@@ -126,8 +130,12 @@ impl NumberTable {
         }
         let number = |(i, cell): (usize, &&str)| match cell.parse::<f64>() {
             Ok(v) if v.is_finite() => Ok(v),
-            _ => Err(FormatError::new(path, line, format!("column `{}` holds \"{cell}\", which is no finite number", columns[i]))
-                .hint("a number such as 0.25")),
+            _ => Err(FormatError::new(
+                path,
+                line,
+                format!("column `{}` holds \"{cell}\", which is no finite number", columns[i]),
+            )
+            .hint("a number such as 0.25")),
         };
         cells.iter().enumerate().map(number).collect()
     }

@@ -41,7 +41,8 @@ pub(super) fn read(
 
 fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) -> Result<Step> {
     const KINDS: [&str; 4] = ["move", "region", "wait", "override"];
-    const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 } or { override = 50 }";
+    const EXAMPLE: &str =
+        "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 } or { override = 50 }";
     let t = v.table(EXAMPLE)?;
     let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
     let action = match given.as_slice() {
@@ -67,7 +68,8 @@ fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) 
 fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Action> {
     t.only(&["move", "to", "speed"])?;
     let linear = t.need("move", "move = \"joint\"")?.word(&[("joint", false), ("linear", true)])?;
-    let example = if linear { "to = { at = [900, 600, 700], rpy = [180, 0, 0] }" } else { "to = [0, -20, 90, 0, 40, 0]" };
+    let example =
+        if linear { "to = { at = [900, 600, 700], rpy = [180, 0, 0] }" } else { "to = [0, -20, 90, 0, 40, 0]" };
     let to = t.need("to", example)?;
     let to = if to.is_table() {
         Target::Tcp(units.pose(&to)?)
@@ -99,7 +101,10 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<Action> {
             .hint(suggest::hint(name, known)));
     };
     if regions[region].region.life == Life::Permanent {
-        let what = format!("switches the region \"{name}\", which is permanent (line {}): no program may", regions[region].line);
+        let what = format!(
+            "switches the region \"{name}\", which is permanent (line {}): no program may",
+            regions[region].line
+        );
         return Err(v.error(what).hint(format!("life = \"temporary\" in [region.{name}], or leave the step out")));
     }
     let active = t.need("active", "active = true")?.flag()?;

@@ -13,7 +13,17 @@ use crate::{CellRegion, CellRobot, Encoder, Follow, Travel, Units};
 type Result<T> = std::result::Result<T, FormatError>;
 
 const COMMON: &[&str] = &[
-    "shape", "rpy", "kind", "life", "warning", "slow_to", "guards", "robots", "follow", "hysteresis", "output",
+    "shape",
+    "rpy",
+    "kind",
+    "life",
+    "warning",
+    "slow_to",
+    "guards",
+    "robots",
+    "follow",
+    "hysteresis",
+    "output",
     "warning_output",
 ];
 
@@ -32,9 +42,9 @@ pub(super) fn read(
 ) -> Result<CellRegion> {
     let mut region = solid(name, t, units)?;
     region.kind = kind(t)?;
-    region.life = t.get("life").map_or(Ok(Life::Permanent), |v| {
-        v.word(&[("permanent", Life::Permanent), ("temporary", Life::Temporary)])
-    })?;
+    region.life = t
+        .get("life")
+        .map_or(Ok(Life::Permanent), |v| v.word(&[("permanent", Life::Permanent), ("temporary", Life::Temporary)]))?;
     region.warning_m = t.get("warning").map_or(Ok(0.0), |v| units.not_negative_length(&v))?;
     region.guards = t.get("guards").map_or(Ok(Guards::ARM), |v| guards(&v))?;
     if let Some(v) = t.get("hysteresis") {
@@ -55,7 +65,9 @@ fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<
     }
     match region.kind {
         Kind::Exchange { .. } => Err(t
-            .error(format!("region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one"))
+            .error(format!(
+                "region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one"
+            ))
             .hint("warning = 250")),
         Kind::Forbidden => {
             let what = format!("region \"{name}\" has no warning zone: robots stop only when they touch it");
@@ -91,8 +103,9 @@ fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
         }
         "cylinder" => Ok(Region::cylinder(name, point("base")?, radius()?, height()?, rotation)),
         "plane" => {
-            let mut plane = Region::plane(name, point("origin")?, point("x")?, point("y")?)
-                .map_err(|e| t.error(format!("`{}`: {e}", t.name)).hint("origin, x and y: three points that are not on one line"))?;
+            let mut plane = Region::plane(name, point("origin")?, point("x")?, point("y")?).map_err(|e| {
+                t.error(format!("`{}`: {e}", t.name)).hint("origin, x and y: three points that are not on one line")
+            })?;
             plane.anchor.rotation = rotation * plane.anchor.rotation;
             Ok(plane)
         }
@@ -131,7 +144,9 @@ fn cuboid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     let mut region = Region::cuboid_from_corners(name, from, units.point(&to)?);
     let extent = (units.point(&to)? - from).abs();
     if extent.min_element() <= 0.0 {
-        return Err(to.error("lies on a face with `from`: the box has no volume").hint("two corners that differ in x, y and z"));
+        return Err(to
+            .error("lies on a face with `from`: the box has no volume")
+            .hint("two corners that differ in x, y and z"));
     }
     region.anchor.rotation = rotation;
     Ok(region)
@@ -146,7 +161,9 @@ fn kind(t: &Table<'_>) -> Result<Kind> {
     let Some(slow_to) = t.get("slow_to") else { return Ok(kind) };
     match kind {
         Kind::Monitored { .. } => Ok(Kind::Monitored { slow_to: Some(slow_to.percent()?) }),
-        _ => Err(slow_to.error("makes a speed zone of a monitored region; this one is not").hint("kind = \"monitored\"")),
+        _ => {
+            Err(slow_to.error("makes a speed zone of a monitored region; this one is not").hint("kind = \"monitored\""))
+        }
     }
 }
 
@@ -247,7 +264,9 @@ pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder
     })?;
     let wrap_m = t.get("wrap").map(|v| units.positive_length(&v)).transpose()?;
     let travel = match (t.get("file"), t.get("speed")) {
-        (Some(_), Some(speed)) => return Err(speed.error("stands beside `file`").hint("one of the two: speed or file")),
+        (Some(_), Some(speed)) => {
+            return Err(speed.error("stands beside `file`").hint("one of the two: speed or file"));
+        }
         (Some(file), None) => {
             if let Some(v) = ["at", "start", "end"].iter().find_map(|k| t.get(k)) {
                 return Err(v.error("goes with `speed`; the file says when and where").hint("leave it out"));
@@ -255,7 +274,10 @@ pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder
             Travel::Table(models::travel(&file)?)
         }
         (None, speed) => {
-            let speed = speed.map_or_else(|| t.need("speed", "speed = 200   (length units per second; or: file = \"belt.csv\")"), Ok)?;
+            let speed = speed.map_or_else(
+                || t.need("speed", "speed = 200   (length units per second; or: file = \"belt.csv\")"),
+                Ok,
+            )?;
             let start = t.get("start");
             let start_s = start.map_or(Ok(0.0), |v| v.not_negative())?;
             let end_s = t.get("end").map_or(Ok(f64::INFINITY), |v| v.not_negative())?;

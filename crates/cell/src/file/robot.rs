@@ -15,8 +15,21 @@ use crate::{CellRobot, JointLimits, Units};
 type Result<T> = std::result::Result<T, FormatError>;
 
 const KEYS: &[&str] = &[
-    "model", "srdf", "dh", "links", "foot", "base", "flange", "start", "tool", "load", "volumes", "speed",
-    "acceleration", "jerk", "stop_time",
+    "model",
+    "srdf",
+    "dh",
+    "links",
+    "foot",
+    "base",
+    "flange",
+    "start",
+    "tool",
+    "load",
+    "volumes",
+    "speed",
+    "acceleration",
+    "jerk",
+    "stop_time",
 ];
 
 /// Full speed to rest in this time, where `stop_time` does not say otherwise.
@@ -60,9 +73,10 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
 }
 
 fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Robot> {
-    let example = "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
+    let example =
+        "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
     match (t.get("model"), t.get("dh")) {
-        (Some(_), Some(dh)) => Err(dh.error("stands beside `model`").hint("one of the two: model or dh")),
+        (Some(model), Some(_)) => Err(model.error("stands beside `dh`").hint("one of the two: model or dh")),
         (Some(file), None) => {
             if let Some(v) = t.get("links").or_else(|| t.get("foot")) {
                 return Err(v.error("goes with `dh`; a model brings its own solids").hint("leave it out"));
@@ -120,15 +134,30 @@ fn dh_row(index: usize, v: &Value<'_>, units: Units) -> Result<ClassicalRow> {
         (true, Some(min), Some(max)) => (JointKind::Prismatic, min, max),
         (false, Some(min), Some(max)) => (JointKind::Revolute, min, max),
         (false, None, None) => (JointKind::Continuous, f64::NEG_INFINITY, f64::INFINITY),
-        (true, ..) => return Err(t.error(format!("`{}` slides: it needs min and max", t.name)).hint("min = 0, max = 1000")),
-        _ => return Err(t.error(format!("`{}` has one bound", t.name)).hint("both min and max, or neither for endless turning")),
+        (true, ..) => {
+            return Err(t.error(format!("`{}` slides: it needs min and max", t.name)).hint("min = 0, max = 1000"));
+        }
+        _ => {
+            return Err(t
+                .error(format!("`{}` has one bound", t.name))
+                .hint("both min and max, or neither for endless turning"));
+        }
     };
     let joint = match t.get("name") {
         Some(v) => v.text()?.to_owned(),
         None => format!("joint_{}", index + 1),
     };
-    let limits = Limits { velocity: rate("speed")?, acceleration: rate("acceleration")?, ..Limits::range(lower, upper) };
-    Ok(ClassicalRow { joint, kind, a: length("a")?, alpha: angle("alpha")?, d: length("d")?, theta: angle("theta")?, limits })
+    let limits =
+        Limits { velocity: rate("speed")?, acceleration: rate("acceleration")?, ..Limits::range(lower, upper) };
+    Ok(ClassicalRow {
+        joint,
+        kind,
+        a: length("a")?,
+        alpha: angle("alpha")?,
+        d: length("d")?,
+        theta: angle("theta")?,
+        limits,
+    })
 }
 
 fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Body>> {
@@ -206,7 +235,8 @@ fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
 pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     let zeros = vec!["0"; chain.dof()].join(", ");
     let raw = v.numbers(&format!("[{zeros}]"))?;
-    let names = || chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect::<Vec<_>>().join(", ");
+    let names =
+        || chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect::<Vec<_>>().join(", ");
     if raw.len() != chain.dof() {
         let what = format!("has {} values for the {} joints of \"{}\"", raw.len(), chain.dof(), chain.name());
         return Err(v.error(what).hint(format!("one value per joint, in this order: {}", names())));
@@ -217,7 +247,8 @@ pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result
         let prismatic = joint.kind == JointKind::Prismatic;
         let value = units.joint(prismatic, *raw);
         if !joint.limits.contains(value, 1e-9) {
-            let [is, low, high] = [value, joint.limits.lower, joint.limits.upper].map(|x| units.show_joint(prismatic, x));
+            let [is, low, high] =
+                [value, joint.limits.lower, joint.limits.upper].map(|x| units.show_joint(prismatic, x));
             let what = format!("brings joint \"{}\" to {is}, outside its limits", joint.name);
             return Err(v.error(what).hint(format!("a value from {low} to {high}")));
         }
@@ -232,8 +263,11 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
     }
     let clamped: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| 0.0_f64.max(*lo).min(hi)).collect();
     if clamped.iter().any(|v| *v != 0.0) {
-        let what = format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
-        warnings.push(Warning::new(t.file, t.line, what).hint(format!("start = [{}]", vec!["…"; clamped.len()].join(", "))));
+        let what =
+            format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
+        warnings.push(
+            Warning::new(t.file, t.line, what).hint(format!("start = [{}]", vec!["…"; clamped.len()].join(", "))),
+        );
     }
     Ok(clamped)
 }
@@ -262,7 +296,13 @@ fn with_speeds(t: &Table<'_>, chain: &Chain, limits: &[JointLimits]) -> Result<C
     Chain::new(chain.name(), chain.links().to_vec(), joints).map_err(|e| t.error(e.to_string()))
 }
 
-fn limits(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<JointLimits>> {
+fn limits(
+    name: &str,
+    t: &Table<'_>,
+    chain: &Chain,
+    units: Units,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<JointLimits>> {
     let given = |key: &str| t.get(key).map(|v| per_joint(&v, chain, units)).transpose();
     let (speed, acceleration, jerk) = (given("speed")?, given("acceleration")?, given("jerk")?);
     let stop_time = t.get("stop_time").map_or(Ok(STOP_TIME_S), |v| v.positive())?;
@@ -288,7 +328,8 @@ fn limits(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut
             "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s where sliding)",
             unknown.join(", ")
         );
-        warnings.push(Warning::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"));
+        warnings
+            .push(Warning::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"));
     }
     Ok(limits)
 }

@@ -94,7 +94,8 @@ impl Units {
     /// The frame of a solid that may be given by `from` and `to` along its z axis, and its length.
     fn along(self, t: &Table<'_>) -> Result<(Pose, f64)> {
         if t.get("from").is_none() && t.get("to").is_none() {
-            let height = self.positive_length(&t.need("height", "height = 400   (or: from = [0, 0, 0], to = [0, 0, 400])")?)?;
+            let height =
+                self.positive_length(&t.need("height", "height = 400   (or: from = [0, 0, 0], to = [0, 0, 400])")?)?;
             return Ok((self.place(t)?, height));
         }
         let from = self.point(&t.need("from", "from = [0, 0, 0]")?)?;

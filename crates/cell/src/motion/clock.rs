@@ -27,7 +27,8 @@ impl Clock {
     /// At the start of a plan.
     pub fn new(plan: Plan, limits: Vec<JointLimits>) -> Self {
         let programmed = plan.speed_override;
-        let here = Point { first: vec![0.0; plan.start.len()], second: vec![0.0; plan.start.len()], q: plan.start.clone() };
+        let here =
+            Point { first: vec![0.0; plan.start.len()], second: vec![0.0; plan.start.len()], q: plan.start.clone() };
         let mut clock = Self {
             plan,
             limits,

@@ -76,7 +76,11 @@ impl Line {
         let cells = (line.length() / KNOT_M).max(turn / KNOT_RAD).ceil().clamp(4.0, MOST_KNOTS) as usize;
         for i in 1..=cells {
             let s = i as f64 / cells as f64;
-            let next = line.step(chain, s, i).map_err(|why| Broken { at_m: s * line.length(), length_m: line.length(), why })?;
+            let next = line.step(chain, s, i).map_err(|why| Broken {
+                at_m: s * line.length(),
+                length_m: line.length(),
+                why,
+            })?;
             line.knots.push(next);
         }
         Ok(line)
@@ -172,8 +176,7 @@ impl Line {
         let h = STENCIL;
         let c = s.clamp(h, 1.0 - h);
         let [before, middle, after] = [self.q(c - h), self.q(c), self.q(c + h)];
-        let second: Vec<f64> =
-            (0..middle.len()).map(|j| (after[j] - 2.0 * middle[j] + before[j]) / (h * h)).collect();
+        let second: Vec<f64> = (0..middle.len()).map(|j| (after[j] - 2.0 * middle[j] + before[j]) / (h * h)).collect();
         let first = (0..middle.len()).map(|j| (after[j] - before[j]) / (2.0 * h) + second[j] * (s - c)).collect();
         let q = if c == s { middle } else { self.q(s) };
         Point { q, first, second }

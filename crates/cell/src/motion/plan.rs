@@ -126,7 +126,8 @@ impl Planner<'_> {
                 if segment.speed_share < 0.999 {
                     let share = segment.speed_share * 100.0;
                     let reached = self.cell.units.show_length(speed * segment.speed_share);
-                    let what = format!("the joints allow {share:.0} % of the programmed speed on this line: {reached}/s");
+                    let what =
+                        format!("the joints allow {share:.0} % of the programmed speed on this line: {reached}/s");
                     let note = self.error(index, step, &what);
                     self.notes.push(note.into());
                 }
@@ -168,7 +169,8 @@ impl Planner<'_> {
             Target::Tcp(in_world) => in_world,
         };
         let target = self.robot.base_in_world.inverse_mul(in_world);
-        let mut solver = Solver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, Options::default());
+        let mut solver =
+            Solver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, Options::default());
         match solver.solve(&target, &self.q) {
             Ok(solution) => Ok(solution.q),
             Err(e) => Err(self.error(index, step, &e.to_string()).hint("a pose within reach, or joint values")),
@@ -179,7 +181,10 @@ impl Planner<'_> {
         let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(Plan::default()) };
         let farthest = first.q.iter().zip(&self.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if self.robot.start_given && farthest > 1e-6 {
-            let what = format!("the trajectory of \"{}\" begins elsewhere than `start`: it begins at its first row", self.robot.name);
+            let what = format!(
+                "the trajectory of \"{}\" begins elsewhere than `start`: it begins at its first row",
+                self.robot.name
+            );
             self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
         }
         let mut plan = Plan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };

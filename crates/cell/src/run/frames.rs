@@ -59,7 +59,10 @@ impl<'a> Frames<'a> {
 
     /// True where an encoder moves that a region follows.
     pub fn anything_travels(&self, t_s: f64) -> bool {
-        self.cell.regions.iter().any(|r| matches!(r.follow, Some(Follow::Encoder(e)) if self.cell.encoders[e].at(t_s).1 != 0.0))
+        self.cell
+            .regions
+            .iter()
+            .any(|r| matches!(r.follow, Some(Follow::Encoder(e)) if self.cell.encoders[e].at(t_s).1 != 0.0))
     }
 }
 

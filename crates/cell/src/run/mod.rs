@@ -48,7 +48,8 @@ impl RunOutcome {
     /// True where something collided or a forbidden region was entered: exit status 1.
     pub fn bad_news(&self) -> bool {
         let r = &self.recording;
-        r.robots.iter().any(|r| !r.collisions.is_empty()) || r.regions.iter().any(|r| r.entered && r.kind != "monitored")
+        r.robots.iter().any(|r| !r.collisions.is_empty())
+            || r.regions.iter().any(|r| r.entered && r.kind != "monitored")
     }
 }
 
@@ -279,7 +280,17 @@ impl<'a> Run<'a> {
         let track = &mut self.tracks[i];
         track.min_override = track.min_override.min(o);
         let q = self.states[i].q.clone();
-        track.samples.push(Sample { t_s, q, tcp, tcp_speed, programmed_speed, speed_override: o, region, distance_m, reason });
+        track.samples.push(Sample {
+            t_s,
+            q,
+            tcp,
+            tcp_speed,
+            programmed_speed,
+            speed_override: o,
+            region,
+            distance_m,
+            reason,
+        });
     }
 
     fn collide(&mut self, t_s: f64) {
@@ -344,6 +355,7 @@ impl<'a> Run<'a> {
 
 fn tick_times(mut ns: Vec<u64>) -> TickTimes {
     ns.sort_unstable();
-    let at = |share: f64| ns.get(((ns.len() as f64 * share) as usize).min(ns.len().saturating_sub(1))).copied().unwrap_or(0);
+    let at =
+        |share: f64| ns.get(((ns.len() as f64 * share) as usize).min(ns.len().saturating_sub(1))).copied().unwrap_or(0);
     TickTimes { p50: at(0.5), p99: at(0.99), max: ns.last().copied().unwrap_or(0), count: ns.len() }
 }

@@ -1,0 +1,274 @@
+//! What a user gets for a wrong cell file: the line, what is wrong, what to write.
+
+mod common;
+
+use common::{ARM, HEAD, rail};
+use elbowroom_cell::{Cell, RunOptions, simulate};
+use proptest::prelude::*;
+
+/// A sound cell that uses every kind of table; each case below spoils one line of it.
+fn sound() -> String {
+    format!(
+        "{HEAD}name = \"test\"\nmax_s = 20\n{}{}\
+         [robot.c]\n{ARM}base = {{ at = [0, 3000, 0] }}\nstart = [0, 0, 0, 0, 40, 0]\nvolumes = \"capsule\"\n\
+         [robot.c.tool]\ntcp = {{ at = [0, 0, 250], rpy = [0, 0, 0] }}\nbox = {{ at = [0, 0, 125], size = [80, 80, 250] }}\n\
+         [object.table]\nshape = \"box\"\nat = [0, 0, -900]\nsize = [600, 400, 700]\n\
+         [encoder.belt]\ndirection = [1, 0, 0]\nspeed = 100\n\
+         [region.column]\nshape = \"cylinder\"\nbase = [900, 0, 0]\nradius = 150\nheight = 1200\nwarning = 250\n\
+         guards = [\"tcp\"]\nrobots = [\"a\"]\n\
+         [region.gate]\nshape = \"box\"\nfrom = [0, 5000, 0]\nto = [100, 5100, 100]\nlife = \"temporary\"\nwarning = 10\n\
+         [region.ride]\nshape = \"sphere\"\ncentre = [0, 9000, 0]\nradius = 100\nwarning = 10\nkind = \"monitored\"\nslow_to = 30\n\
+         follow = {{ encoder = \"belt\" }}\n\
+         [region.hand]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 100\nwarning = 10\nfollow = {{ robot = \"c\", frame = \"flange\" }}\n\
+         [monitor]\nstale_ms = 20\n\
+         [map.c]\njoints = [\"joint_1\"]\nstep = 2\n\
+         [program.a]\noverride = 100\nsteps = [\n{{ move = \"joint\", to = [500], speed = 50 }},\n\
+         {{ region = \"gate\", active = true }},\n{{ wait = 0.1 }},\n]\n",
+        rail("a", 0.0),
+        rail("b", 1000.0)
+    )
+}
+
+#[test]
+fn the_sound_cell_is_sound() {
+    let cell = Cell::parse("test.toml", &sound()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((cell.robots.len(), cell.regions.len(), cell.maps.len()), (3, 4, 1));
+    let warned: Vec<_> = cell.regions.iter().map(|r| r.robots.clone()).collect();
+    assert_eq!(
+        warned,
+        [vec![0], vec![0, 1, 2], vec![0, 1, 2], vec![0, 1]],
+        "a carrier is not guarded by what it carries"
+    );
+}
+
+/// (line to replace, by what, words of the message, words of the hint)
+const CASES: &[(&str, &str, &str, &str)] = &[
+    ("version = 1", "version = 2", "reads version 1", "version = 1"),
+    ("version = 1", "version = \"1\"", "must be a number", "version"),
+    ("tick_ms = 4", "tick_msec = 4", "no key `tick_msec`", "tick_ms"),
+    ("tick_ms = 4", "tick_ms = -4", "above 0", "tick_ms"),
+    ("tick_ms = 4", "tick_ms = nan", "NaN", "finite"),
+    ("tick_ms = 4", "tick_ms = ", "not TOML", "key = value"),
+    ("tick_ms = 4", "checksum = \"00\"", "is 00, but the configuration in this file has", "checksum ="),
+    (
+        "units = { length = \"mm\", angle = \"deg\" }",
+        "units = { length = \"feet\", angle = \"deg\" }",
+        "cannot be \"feet\"",
+        "mm",
+    ),
+    (
+        "units = { length = \"mm\", angle = \"deg\" }",
+        "units = { length = \"mm\" }",
+        "needs the key `angle`",
+        "angle = \"deg\"",
+    ),
+    ("volumes = \"capsule\"", "volumes = \"capsul\"", "cannot be \"capsul\"", "capsule"),
+    ("volumes = \"capsule\"", "flange = \"link_7\"", "link \"link_7\"", "link_6"),
+    ("volumes = \"capsule\"", "model = \"x.urdf\"", "beside `dh`", "model or dh"),
+    ("volumes = \"capsule\"", "acceleration = [1, 2]", "2 values for 6 joints", "one per joint"),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = [0, 0, 0, 0, 40]", "5 values for the 6 joints", "joint_1, joint_2"),
+    (
+        "start = [0, 0, 0, 0, 40, 0]",
+        "start = [0, 0, 0, 0, 140, 0]",
+        "joint \"joint_5\" to 140 deg",
+        "-120 deg to 120 deg",
+    ),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = [0, 0, 0, 0, \"x\", 0]", "must be a number, not a text", ""),
+    ("base = { at = [0, 3000, 0] }", "base = { at = [0, 3000] }", "needs 3 numbers, not 2", "[0, 0, 0]"),
+    ("base = { at = [0, 3000, 0] }", "base = { pos = [0, 3000, 0] }", "no key `pos`", "at"),
+    ("shape = \"cylinder\"", "shape = \"cilinder\"", "cannot be \"cilinder\"", "cylinder"),
+    ("shape = \"cylinder\"", "", "needs the key `shape`", "cylinder"),
+    ("radius = 150", "raduis = 150", "no key `raduis`", "radius"),
+    ("radius = 150", "radius = 0", "above 0", "radius"),
+    ("height = 1200", "", "needs the key `height`", "height = 1200"),
+    ("warning = 250", "warning = -1", "0 or more", "warning"),
+    ("warning = 250", "kind = \"exchange\"", "warning zone, so it needs one", "warning = 250"),
+    ("warning = 250", "slow_to = 30", "this one is not", "monitored"),
+    ("warning = 250", "output = 64", "0 to 63", "output"),
+    ("guards = [\"tcp\"]", "guards = []", "is empty", "arm"),
+    ("guards = [\"tcp\"]", "guards = [\"arms\"]", "cannot be \"arms\"", "arm"),
+    ("robots = [\"a\"]", "robots = [\"d\"]", "robot \"d\"", "a, b, c"),
+    ("robots = [\"a\"]", "robots = [\"a\", \"a\"]", "named twice", "once"),
+    ("life = \"temporary\"", "life = \"forever\"", "cannot be \"forever\"", "permanent"),
+    ("to = [100, 5100, 100]", "to = [100, 5000, 100]", "no volume", "differ"),
+    ("slow_to = 30", "slow_to = 130", "0 to 100", "slow_to"),
+    ("follow = { encoder = \"belt\" }", "follow = { encoder = \"best\" }", "[encoder.best]", "belt"),
+    ("follow = { encoder = \"belt\" }", "follow = { }", "nothing to follow", "encoder"),
+    (
+        "follow = { robot = \"c\", frame = \"flange\" }",
+        "follow = { robot = \"c\", frame = \"hand\" }",
+        "link \"hand\"",
+        "link_6",
+    ),
+    (
+        "follow = { robot = \"c\", frame = \"flange\" }",
+        "robots = [\"c\"]\nfollow = { robot = \"c\" }",
+        "stop itself",
+        "other robots",
+    ),
+    ("direction = [1, 0, 0]", "direction = [0, 0, 0]", "no length", "[1, 0, 0]"),
+    ("speed = 100", "", "needs the key `speed`", "speed = 200"),
+    ("stale_ms = 20", "stale_ms = 0", "above 0", "stale_ms"),
+    ("joints = [\"joint_1\"]", "joints = [\"joint_9\"]", "joint \"joint_9\"", "joint_1"),
+    ("override = 100", "override = 110", "0 to 100", "override"),
+    ("override = 100", "repeat = 1.5", "whole number", "repeat"),
+    ("override = 100", "trajectory = \"a.csv\"", "beside `steps`", "steps or trajectory"),
+    ("[program.a]", "[program.aa]", "robot \"aa\"", "a, b, c"),
+    (
+        "{ move = \"joint\", to = [500], speed = 50 },",
+        "{ move = \"joint\", to = [5000] },",
+        "to 5000 mm",
+        "-2000 mm to 2000 mm",
+    ),
+    (
+        "{ move = \"joint\", to = [500], speed = 50 },",
+        "{ move = \"jiont\", to = [500] },",
+        "cannot be \"jiont\"",
+        "joint",
+    ),
+    ("{ move = \"joint\", to = [500], speed = 50 },", "{ to = [500] },", "is no step", "move"),
+    ("{ region = \"gate\", active = true },", "{ region = \"column\", active = true },", "permanent", "temporary"),
+    ("{ region = \"gate\", active = true },", "{ region = \"gaat\", active = true },", "region \"gaat\"", "gate"),
+    ("{ wait = 0.1 },", "{ wait = -0.1 },", "0 or more", "wait"),
+    ("{ wait = 0.1 },", "{ wait = 0.1, speed = 3 },", "no key `speed`", "wait"),
+    ("[object.table]", "[object.a]", "both named \"a\"", "a_2"),
+    ("[object.table]", "[object.\"x,y\"]", "no name", "comma"),
+    ("shape = \"box\"", "shape = \"mesh\"\nmesh = \"missing.stl\"", "", ""),
+];
+
+#[test]
+fn every_mistake_is_told_with_its_line_and_what_to_write() {
+    let sound = sound();
+    for (line, by, what, hint) in CASES {
+        let text = sound.replacen(line, by, 1);
+        assert_ne!(text, sound, "the case `{line}` spoils nothing");
+        let at = sound[..sound.find(line).unwrap()].lines().count();
+        let Err(e) = Cell::parse("test.toml", &text) else { panic!("`{by}` passed") };
+        let told = e.to_string();
+        assert!(e.what.contains(what), "`{by}`: {told}");
+        let write = e.write_instead.clone().unwrap_or_default();
+        assert!(write.contains(hint) && !write.is_empty(), "`{by}`: {told}");
+        // Missing keys are told at the table's line, all else at its own; text before a find on the same line counts.
+        let near = e.line.unwrap().abs_diff(at + 1);
+        assert!(
+            near <= if what.contains("needs") || what.contains("no volume") { 6 } else { 1 },
+            "`{by}` at {at}: {told}"
+        );
+        assert!(told.starts_with("test.toml:"), "{told}");
+    }
+}
+
+#[test]
+fn missing_tables_and_doubled_names_are_told() {
+    let e = Cell::parse("t.toml", "version = 1\n").unwrap_err();
+    assert!(e.to_string().contains("units = { length"), "{e}");
+    let e = Cell::parse("t.toml", "units = { length = \"m\", angle = \"rad\" }\n").unwrap_err();
+    assert!(e.to_string().contains("version = 1"), "{e}");
+    let twice = format!("{HEAD}{}{}", rail("a", 0.0), rail("a", 0.0));
+    let e = Cell::parse("t.toml", &twice).unwrap_err();
+    assert!(e.to_string().contains("must differ"), "{e}");
+    assert_eq!(e.line, Some(8));
+    let e = Cell::load("/nonexistent/cell.toml").unwrap_err();
+    assert!(e.to_string().contains("cannot be read"), "{e}");
+    let e = Cell::parse("t.toml", &format!("{HEAD}[robot.r]\nmodel = \"arm.urdf\"\n")).unwrap_err();
+    assert_eq!(e.line, Some(5));
+    assert!(e.what.contains("does not exist"), "{e}");
+}
+
+#[test]
+fn three_d_models_say_when_they_come_and_what_to_do_now() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("arm.glb"), b"glTF").unwrap();
+    let e = Cell::parse(dir.path().join("cell.toml"), &format!("{HEAD}[robot.r]\nmodel = \"arm.glb\"\n")).unwrap_err();
+    assert!(e.what.contains("later version") && e.write_instead.unwrap().contains("dh"));
+}
+
+#[test]
+fn a_checksum_is_verified() {
+    let sum = Cell::parse("t.toml", &sound()).unwrap().checksum;
+    assert_eq!(sum.len(), 64);
+    let pinned = sound().replacen("tick_ms", &format!("checksum = \"{sum}\"\ntick_ms"), 1);
+    assert!(Cell::parse("t.toml", &pinned).is_ok());
+    let e = Cell::parse("t.toml", &pinned.replace("radius = 150", "radius = 149")).unwrap_err();
+    assert!(e.what.contains(&sum), "{e}");
+}
+
+#[test]
+fn unreachable_lines_say_where_they_break() {
+    let text = format!(
+        "{HEAD}[robot.arm]\n{ARM}start = [0, 0, 0, 0, 40, 0]\n[program.arm]\nsteps = [\n\
+         {{ move = \"linear\", to = {{ at = [4000, 0, 900], rpy = [180, 0, 0] }} }},\n]\n"
+    );
+    let cell = Cell::parse("t.toml", &text).unwrap();
+    let e = simulate(&cell, &RunOptions::default()).unwrap_err();
+    assert!(e.what.contains("step 1") && e.what.contains("beyond") && e.what.contains(" mm"), "{e}");
+    let line = text.lines().position(|l| l.contains("move = \"linear\"")).unwrap() + 1;
+    assert_eq!(e.line, Some(line));
+}
+
+#[test]
+fn trajectories_tell_their_lines() {
+    let dir = tempfile::tempdir().unwrap();
+    let cell = |csv: &str| {
+        std::fs::write(dir.path().join("t.csv"), csv).unwrap();
+        let text = format!("{HEAD}{}[program.r]\ntrajectory = \"t.csv\"\n", rail("r", 0.0));
+        Cell::parse(dir.path().join("cell.toml"), &text)
+    };
+    assert!(cell("joint_1,t_s\n0,0\n0.1,1\n").is_ok());
+    for (csv, line, what) in [
+        ("t_s,joint_2\n0,0\n", 1, "no column `joint_1`"),
+        ("t_s,joint_1\n0,0\n0,0.1\n", 3, "t_s is 0 after 0"),
+        ("t_s,joint_1\n0,0\n1,x\n", 3, "no finite number"),
+        ("t_s,joint_1\n0,0\n\n1,nan\n", 4, "no finite number"),
+        ("t_s,joint_1\n0,0\n1\n", 3, "1 values for 2 columns"),
+        ("t_s,joint_1\n0,0\n1,5\n", 3, "outside its limits"),
+        ("t_s,joint_1\n", 1, "no rows"),
+        ("", 1, "is empty"),
+    ] {
+        let e = cell(csv).unwrap_err();
+        assert_eq!(e.line, Some(line), "{e}");
+        assert!(e.what.contains(what), "{e}");
+    }
+}
+
+/// Never a panic; whatever still parses also runs a little.
+fn survives(text: &str) {
+    if let Ok(mut cell) = Cell::parse("fuzz.toml", text) {
+        cell.max_s = 0.02;
+        let _ = simulate(&cell, &RunOptions::default());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn spoiled_bytes_never_panic(at in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 1..6)) {
+        let mut bytes = sound().into_bytes();
+        for (share, byte) in at {
+            let i = (share * bytes.len() as f64) as usize;
+            bytes[i] = byte;
+        }
+        survives(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn shuffled_and_doubled_lines_never_panic(moves in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any::<bool>()), 1..5)) {
+        let text = sound();
+        let mut lines: Vec<&str> = text.lines().collect();
+        for (from, to, keep) in moves {
+            let line = if keep { lines[from.index(lines.len())] } else { lines.remove(from.index(lines.len())) };
+            lines.insert(to.index(lines.len()), line);
+        }
+        survives(&lines.join("\n"));
+    }
+
+    #[test]
+    fn extreme_numbers_never_panic(which in any::<prop::sample::Index>(), number in prop::sample::select(vec!["0", "-1", "1e308", "-1e308", "1e-320", "nan", "inf", "9223372036854775807", "1e20", "0x7fffffff", "-0.0"])) {
+        let text = sound();
+        let digits: Vec<(usize, &str)> = text.match_indices(|c: char| c.is_ascii_digit()).collect();
+        let (at, _) = digits[which.index(digits.len())];
+        let end = at + text[at..].find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(1);
+        survives(&format!("{}{number}{}", &text[..at], &text[end..]));
+    }
+}
