@@ -1,6 +1,7 @@
 //! Checks, generated files and benches of the workspace: `cargo xtask help` lists them.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
+mod figures;
 mod layers;
 mod models;
 mod python;
@@ -23,6 +24,8 @@ cargo xtask COMMAND
         who may depend on whom, and that every crate takes the workspace lints
   models [--check]
         writes the generated robots and tools under examples/models; --check compares instead
+  figures [--check]
+        writes the figures of docs/laws.md under docs/figures; --check compares instead
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
   bench [ARGS…]
@@ -72,6 +75,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["layers"] => Ok(layers::run(&root)?),
         ["models"] => Ok(models::write(&root)?),
         ["models", "--check"] => Ok(models::check(&root)?),
+        ["figures"] => Ok(figures::write(&root)?),
+        ["figures", "--check"] => Ok(figures::check(&root)?),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["bench", rest @ ..] => {

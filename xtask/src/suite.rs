@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::{Failure, layers, models, python, shell, snippets};
+use crate::{Failure, figures, layers, models, python, shell, snippets};
 
 type Check = fn(&Context) -> Result<(), String>;
 
@@ -27,13 +27,18 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first.
-const STEPS: [Step; 8] = [
+const STEPS: [Step; 9] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step { name: "layers", what: "who may depend on whom", check: |c| layers::run(c.root) },
     Step {
         name: "models",
         what: "committed robots and tools are what the generator writes",
         check: |c| models::check(c.root),
+    },
+    Step {
+        name: "figures",
+        what: "committed figures of docs/laws.md are what the laws give",
+        check: |c| figures::check(c.root),
     },
     Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
