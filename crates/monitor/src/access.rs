@@ -97,7 +97,11 @@ impl Configuration {
         let mut changed = self.clone();
         match edit {
             Edit::Add(region) => {
-                allow(who, AccessClass::needed_for(region.life), format!("adding {} region `{}`", region.life.name(), region.name))?;
+                allow(
+                    who,
+                    AccessClass::needed_for(region.life),
+                    format!("adding {} region `{}`", region.life.name(), region.name),
+                )?;
                 if changed.region(&region.name).is_some() {
                     return Err(EditError::Exists(region.name));
                 }
@@ -105,7 +109,11 @@ impl Configuration {
             }
             Edit::Change(region) => {
                 let old = changed.allowed_region(who, &region.name, "changing")?;
-                allow(who, AccessClass::needed_for(region.life), format!("making region `{}` {}", region.name, region.life.name()))?;
+                allow(
+                    who,
+                    AccessClass::needed_for(region.life),
+                    format!("making region `{}` {}", region.name, region.life.name()),
+                )?;
                 changed.regions[old] = *region;
             }
             Edit::Remove(name) => {

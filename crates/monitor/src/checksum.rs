@@ -19,7 +19,8 @@ impl Configuration {
         sink.list(&self.regions, Sink::region);
         sink.list(&self.sources, |s, name| s.text(name));
         sink.laws(&self.laws);
-        sink.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        let digits = sink.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        digits.filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
     }
 }
 

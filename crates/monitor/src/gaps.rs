@@ -34,7 +34,7 @@ pub(crate) struct Gaps {
     tree: RegionTree,
     /// Regions that the tree cannot hold: they move, or are unbounded.
     roaming: Vec<u32>,
-    gaps: Vec<Gap>,
+    of_region: Vec<Gap>,
     near: Vec<u32>,
     tick: u64,
     pub(crate) measured_pairs: u32,
@@ -50,7 +50,7 @@ impl Gaps {
         Self {
             tree: RegionTree::new(fixed.into_iter().map(|r| (r as u32, boxed(r))).collect()),
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
-            gaps: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, asking }; config.regions.len()],
+            of_region: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, asking }; config.regions.len()],
             near: Vec::with_capacity(config.regions.len()),
             tick: 0,
             measured_pairs: 0,
@@ -71,14 +71,14 @@ impl Gaps {
 
     /// The region's gap, where anything is near.
     pub(crate) fn get(&self, region: usize) -> Option<&Gap> {
-        let gap = &self.gaps[region];
+        let gap = &self.of_region[region];
         (gap.tick == self.tick && self.tick > 0).then_some(gap)
     }
 
     /// Measures every active region against the volumes it guards. `law` says which override a pair asks for, and how
     /// much farther than the warning zone a volume must be looked at.
     pub(crate) fn measure(&mut self, config: &Configuration, active: &[bool], now: &Placement, law: &impl PairLaw) {
-        let Self { tree, roaming, gaps, near, tick, measured_pairs } = self;
+        let Self { tree, roaming, of_region: gaps, near, tick, measured_pairs } = self;
         for (v, volume) in config.volumes.iter().enumerate() {
             let extra = law.extra_reach(v);
             let mut visit = |r: usize| {
@@ -113,7 +113,9 @@ impl Gaps {
                 gap.distance = gap.distance.min(separation.distance);
             };
             tree.visit(&now.volume_box[v].inflated(extra), &mut visit);
-            roaming.iter().for_each(|r| visit(*r as usize));
+            for r in roaming.iter() {
+                visit(*r as usize);
+            }
         }
     }
 }

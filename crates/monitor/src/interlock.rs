@@ -431,7 +431,9 @@ mod tests {
             })
         };
         let threads = [run(LEFT), run(RIGHT)];
-        threads.into_iter().for_each(|t| t.join().unwrap());
+        for thread in threads {
+            thread.join().unwrap();
+        }
     }
 
     #[test]

@@ -125,7 +125,13 @@ pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, T
 ///
 /// # Errors
 /// [`TeachError`] where the corners lie on a line or the height is zero.
-pub fn cuboid_from_base(name: &str, corner: Vec3, along: Vec3, across: Vec3, height: f64) -> Result<Region, TeachError> {
+pub fn cuboid_from_base(
+    name: &str,
+    corner: Vec3,
+    along: Vec3,
+    across: Vec3,
+    height: f64,
+) -> Result<Region, TeachError> {
     distinct([("the first corner", corner), ("the second corner", along), ("the third corner", across)])?;
     positive("height", height.abs())?;
     off_line(along - corner, across - corner, "the three base corners")?;
@@ -182,7 +188,9 @@ mod tests {
         let points = [Vec3::X, Vec3::Y, -Vec3::Z, Vec3::new(-0.6, 0.0, 0.8)].map(|d| center + d * 0.35);
         let region = sphere_from_points("s", points).unwrap();
         assert!((region.anchor.translation - center).length() < 1e-12);
-        points.iter().for_each(|p| assert!(on_surface(&region, *p) < 1e-12));
+        for p in points {
+            assert!(on_surface(&region, p) < 1e-12);
+        }
     }
 
     #[test]

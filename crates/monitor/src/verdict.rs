@@ -56,7 +56,7 @@ impl Judge<'_> {
         };
         let s = &pair.separation;
         let Some(towards) = (s.on_b - s.on_a).try_normalize() else {
-            return if self.is_still(intent) { f64::INFINITY } else { 0.0 };
+            return if Self::is_still(intent) { f64::INFINITY } else { 0.0 };
         };
         let region = &self.config.regions[pair.region];
         let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
@@ -66,7 +66,7 @@ impl Judge<'_> {
         stopping_factor(left, self.closing_speed(pair, intent, towards), self.deceleration, stopping.reaction_s)
     }
 
-    fn is_still(&self, intent: &ChainState) -> bool {
+    fn is_still(intent: &ChainState) -> bool {
         intent.qd.iter().all(|v| *v == 0.0)
     }
 
@@ -123,9 +123,7 @@ impl PairLaw for Judge<'_> {
         match region.kind {
             Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair),
             Kind::Monitored { slow_to: None } => v0,
-            Kind::Monitored { slow_to: Some(slow) } => {
-                speed_zone(pair.separation.distance, region.warning_m, slow, v0)
-            }
+            Kind::Monitored { slow_to: Some(slow) } => speed_zone(pair.separation.distance, region.warning_m, slow, v0),
         }
     }
 

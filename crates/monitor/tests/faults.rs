@@ -72,7 +72,8 @@ fn a_lost_source_stops_the_robot_while_its_region_is_active() {
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
     let config = Configuration { sources: vec!["belt".into()], ..configuration(gantry(), volumes, vec![region]) };
     let mut m = Monitor::new(config, None).unwrap();
-    let source = |stamp_s: f64, x: f64| Source { pose: Pose::from_translation(Vec3::X * x), motion: Motion::REST, stamp_s };
+    let source =
+        |stamp_s: f64, x: f64| Source { pose: Pose::from_translation(Vec3::X * x), motion: Motion::REST, stamp_s };
     let q = [0.0; 6];
     let lost = Reason::Fault(Fault::Source { region: RegionId(0) });
     let mut tick = |now_s: f64, s: Source| m.tick(&Snapshot { sources: &[s], ..Snapshot::still(now_s, &q) }).reason;

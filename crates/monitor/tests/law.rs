@@ -68,11 +68,8 @@ fn worst_deviation(sample: Sample, turned: bool, seed: u64) -> (f64, usize) {
     let mut r = Random(seed);
     let (mut worst, mut warned) = (0.0_f64, 0);
     for _ in 0..CASES / PER_MONITOR {
-        let rotation = if turned {
-            Rotation::from_axis_angle(r.direction(), r.between(-3.1, 3.1))
-        } else {
-            Rotation::IDENTITY
-        };
+        let rotation =
+            if turned { Rotation::from_axis_angle(r.direction(), r.between(-3.1, 3.1)) } else { Rotation::IDENTITY };
         let (region, oracle) = sample(&mut r, rotation);
         let warning = r.between(0.05, 2.0);
         let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
@@ -99,7 +96,9 @@ fn the_override_is_the_papers_law_for_every_shape_and_pose() {
     for (seed, (name, sample)) in shapes.into_iter().enumerate() {
         for turned in [false, true] {
             let (worst, warned) = worst_deviation(sample, turned, 1 + seed as u64);
-            println!("{name:15} turned {turned:5}: {CASES} points, {warned} in warning zones, worst deviation {worst:.1e}");
+            println!(
+                "{name:15} turned {turned:5}: {CASES} points, {warned} in warning zones, worst deviation {worst:.1e}"
+            );
             assert!(worst < 1e-12 && warned > CASES / 20, "{name} {turned}: {worst}");
         }
     }
