@@ -274,3 +274,41 @@ fn override_axis() -> Axis {
 fn over(from: f64, to: f64, y: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     (0..=200).map(|i| from + (to - from) * f64::from(i) / 200.0).map(|x| (x, y(x))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the robot stands at the end of a curve of [`overrun`], mm.
+    fn rest_mm(curve: usize) -> f64 {
+        overrun().curves[curve].points.last().unwrap().0
+    }
+
+    #[test]
+    fn the_overrun_is_what_the_document_says() {
+        // v = 1 m/s, δ = 250 mm: v²/(2a) − δ for a = 1.25 m/s², just no overrun for a = v²/(2δ).
+        assert!((rest_mm(3) + 150.0).abs() < 0.1, "{}", rest_mm(3));
+        assert!(rest_mm(2).abs() < 0.1, "{}", rest_mm(2));
+    }
+
+    #[test]
+    fn a_sufficient_deceleration_follows_the_law_and_stays_outside() {
+        for (d, v) in &overrun().curves[0].points {
+            assert!(*d > 0.0 && (v - warning_factor(d / MM, ZONE_M)).abs() < 1e-3, "{d} mm: {v} m/s");
+        }
+        // a = ¾ v²/δ: back on the law from d = δ·(2aδ/v² − 1) = 125 mm on, and faster before.
+        let back = |d: f64, v: f64| (v - warning_factor(d / MM, ZONE_M)).abs() < 1e-3;
+        let points = &overrun().curves[1].points;
+        assert!(points.iter().filter(|(d, _)| *d < 120.0).all(|(d, v)| back(*d, *v)));
+        assert!(points.iter().filter(|(d, _)| (150.0..230.0).contains(d)).all(|(d, v)| !back(*d, *v)));
+    }
+
+    #[test]
+    fn a_released_robot_is_faster_and_a_held_one_leaves_as_it_came() {
+        let plot = release().unwrap();
+        let at = |curve: usize, t: f64| plot.curves[curve].points.iter().find(|(time, _)| *time >= t).unwrap().1;
+        assert!((at(0, 1.0) - at(0, 3.0)).abs() < 1.0, "symmetrical: {} and {}", at(0, 1.0), at(0, 3.0));
+        assert_eq!(at(1, 2.1), 100.0);
+        assert!(at(0, 2.1) < 10.0);
+    }
+}
