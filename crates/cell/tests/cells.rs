@@ -153,9 +153,9 @@ fn collisions_are_told_once_per_pair_with_names() {
 #[test]
 fn recordings_play_back_on_their_rows_and_obey_the_override() {
     let dir = tempfile::tempdir().unwrap();
-    let rows: String =
+    let rows: Vec<String> =
         (0..=500).map(|i| format!("{},{}\n", f64::from(i) * 0.004, 0.5 * (f64::from(i) * 0.006).sin())).collect();
-    std::fs::write(dir.path().join("t.csv"), format!("t_s,joint_1\n{rows}")).unwrap();
+    std::fs::write(dir.path().join("t.csv"), format!("t_s,joint_1\n{}", rows.concat())).unwrap();
     let text = format!(
         "{HEAD}{}[region.z]\nshape = \"sphere\"\ncentre = [700, 0, 0]\nradius = 150\nwarning = 400\nguards = [\"tcp\"]\n[program.r]\ntrajectory = \"t.csv\"\n",
         rail("r", 0.0)
@@ -199,4 +199,18 @@ fn csv_files_have_a_row_per_robot_and_tick() {
     csv::write_events(&outcome.recording, &mut events).unwrap();
     let events = String::from_utf8(events).unwrap();
     assert!(events.starts_with("t_s,robot,region,event\n") && events.contains(",crossing,warn_in"), "{events}");
+}
+
+#[test]
+fn a_direction_aware_monitor_lets_a_robot_leave_a_region_that_was_switched_on_around_it() {
+    let text = |law: &str| {
+        format!(
+            "{HEAD}{}[monitor]\n{law}\n[region.gate]\nshape = \"sphere\"\ncentre = [800, 0, 0]\nradius = 100\nwarning = 200\nlife = \"temporary\"\nguards = [\"tcp\"]\n\
+             [program.r]\nsteps = [{{ move = \"joint\", to = [860] }}, {{ region = \"gate\", active = true }}, {{ move = \"joint\", to = [1500] }}]\n",
+            rail("r", 0.0)
+        )
+    };
+    assert!(!run(&text("")).recording.robots[0].finished, "the paper's law holds it for good");
+    let outcome = run(&text("direction_aware = true"));
+    assert!(outcome.recording.robots[0].finished && outcome.recording.regions[0].entered);
 }

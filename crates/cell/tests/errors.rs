@@ -107,7 +107,7 @@ const CASES: &[(&str, &str, &str, &str)] = &[
         "other robots",
     ),
     ("direction = [1, 0, 0]", "direction = [0, 0, 0]", "no length", "[1, 0, 0]"),
-    ("speed = 100", "", "needs the key `speed`", "speed = 200"),
+    ("speed = 100\n", "\n", "needs the key `speed`", "speed = 200"),
     ("stale_ms = 20", "stale_ms = 0", "above 0", "stale_ms"),
     ("joints = [\"joint_1\"]", "joints = [\"joint_9\"]", "joint \"joint_9\"", "joint_1"),
     ("override = 100", "override = 110", "0 to 100", "override"),
@@ -133,7 +133,6 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("{ wait = 0.1 },", "{ wait = 0.1, speed = 3 },", "no key `speed`", "wait"),
     ("[object.table]", "[object.a]", "both named \"a\"", "a_2"),
     ("[object.table]", "[object.\"x,y\"]", "no name", "comma"),
-    ("shape = \"box\"", "shape = \"mesh\"\nmesh = \"missing.stl\"", "", ""),
 ];
 
 #[test]

@@ -14,7 +14,7 @@ fn data() -> Option<PathBuf> {
     if dir.is_dir() {
         return Some(dir);
     }
-    println!("skipped: no data at {}", dir.display());
+    eprintln!("skipped: no data at {}", dir.display());
     None
 }
 
@@ -31,8 +31,13 @@ fn the_ns16_runs_guarded_with_its_meshes() {
     let begin = Instant::now();
     let outcome = simulate(&cell, &RunOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let r = &outcome.recording;
-    println!("NS16: loaded in {loaded:?}, {} s simulated in {:?}, tick {:?}", r.duration_s, begin.elapsed(), r.tick_ns);
-    println!("{:?} min distance {:?}", r.robots[0].collisions, r.regions[0].min_distance_m);
+    eprintln!(
+        "NS16: loaded in {loaded:?}, {} s simulated in {:?}, tick {:?}",
+        r.duration_s,
+        begin.elapsed(),
+        r.tick_ns
+    );
+    eprintln!("{:?} min distance {:?}", r.robots[0].collisions, r.regions[0].min_distance_m);
     assert!(!r.robots[0].finished && !r.regions[0].entered && r.robots[0].stopped_s > 0.5);
 }
 
@@ -63,14 +68,14 @@ fn the_tx40_recording_plays_under_whole_arm_guard_faster_than_real_time() {
     let outcome = simulate(&cell, &RunOptions::default()).unwrap();
     let r = &outcome.recording;
     let took = begin.elapsed().as_secs_f64();
-    println!(
+    eprintln!(
         "TX40: {} s recorded and {} s played in {took:.3} s: {:.0} times real time, tick {:?}",
         9.0,
         r.duration_s,
         r.duration_s / took,
         r.tick_ns
     );
-    println!(
+    eprintln!(
         "{:?} {:?}",
         r.robots[0].collisions,
         r.regions.iter().map(|g| (g.min_distance_m, g.entered)).collect::<Vec<_>>()

@@ -53,7 +53,7 @@ impl CellFile {
         }
         let bytes = std::fs::read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes).map_err(|e| {
-            let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count();
+            let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
             FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
         })?;
         Self::parse(path, &text)
@@ -102,22 +102,22 @@ impl CellFile {
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
-        self.check(&root, &mut cell)?;
+        check(&root, &mut cell)?;
         cell.warnings = warnings;
         Ok(cell)
     }
+}
 
-    /// Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
-    fn check(&self, root: &Table<'_>, cell: &mut Cell) -> Result<()> {
-        cell.checksum = configure::checksum(cell)?;
-        let Some(v) = root.get("checksum") else { return Ok(()) };
-        let expected = v.text()?;
-        if expected.eq_ignore_ascii_case(&cell.checksum) {
-            return Ok(());
-        }
-        let what = format!("is {expected}, but the configuration in this file has {}", cell.checksum);
-        Err(v.error(what).hint(format!("checksum = \"{}\", once the change has been checked", cell.checksum)))
+/// Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
+fn check(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    cell.checksum = configure::checksum(cell)?;
+    let Some(v) = root.get("checksum") else { return Ok(()) };
+    let expected = v.text()?;
+    if expected.eq_ignore_ascii_case(&cell.checksum) {
+        return Ok(());
     }
+    let what = format!("is {expected}, but the configuration in this file has {}", cell.checksum);
+    Err(v.error(what).hint(format!("checksum = \"{}\", once the change has been checked", cell.checksum)))
 }
 
 impl Cell {

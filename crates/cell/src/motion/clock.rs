@@ -5,6 +5,8 @@ use crate::JointLimits;
 
 /// Deceleration left for a stop even where following the curve takes more, as a share of it.
 const RESERVE: f64 = 0.1;
+/// In the first moments of a move its direction is taken from this time, s: at rest there is none.
+const AHEAD_S: f64 = 0.05;
 
 /// Where a robot is in its plan.
 #[derive(Debug)]
@@ -20,6 +22,7 @@ pub struct Clock {
     rate_change: f64,
     programmed: f64,
     here: Point,
+    intent: Vec<f64>,
     switches: Vec<(usize, bool)>,
 }
 
@@ -37,6 +40,7 @@ impl Clock {
             rate: 0.0,
             rate_change: 0.0,
             programmed,
+            intent: here.first.clone(),
             here,
             switches: Vec::new(),
         };
@@ -50,6 +54,12 @@ impl Clock {
     /// Joint values now, with derivatives by the program's time (that is, at override 1).
     pub fn point(&self) -> &Point {
         &self.here
+    }
+
+    /// Joint velocities that the program asks for at override 1, rad/s or m/s. Where a move is about to begin from rest,
+    /// those shortly after its begin: a monitor that knows directions must see where the robot wants to go.
+    pub fn intent(&self) -> &[f64] {
+        &self.intent
     }
 
     /// Joint velocities now, rad/s or m/s.
@@ -166,6 +176,19 @@ impl Clock {
             _ => {
                 self.here.first.fill(0.0);
                 self.here.second.fill(0.0);
+            }
+        }
+        let (duration, ahead) = match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => (m.duration(), AHEAD_S.min(m.duration() / 2.0)),
+            Some(PlanStep::Play(p)) => (p.duration(), AHEAD_S.min(p.duration() / 2.0)),
+            _ => (0.0, 0.0),
+        };
+        self.intent.clone_from(&self.here.first);
+        if self.time < ahead && duration > 0.0 {
+            match self.plan.steps.get(self.step) {
+                Some(PlanStep::Move(m)) => self.intent = m.at(ahead).first,
+                Some(PlanStep::Play(p)) => self.intent = p.at(ahead).first,
+                _ => {}
             }
         }
     }

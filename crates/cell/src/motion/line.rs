@@ -147,7 +147,7 @@ impl Line {
         }
         // Cubic through four knots (Catmull-Rom), so that few refinements are left to do.
         let knot = |k: isize, j: usize| {
-            let last = self.cells() as isize;
+            let last = self.cells().cast_signed();
             let inside = k.clamp(0, last) as usize;
             match k {
                 k if k < 0 => 2.0 * self.knots[0][j] - self.knots[1][j],
@@ -157,7 +157,7 @@ impl Line {
         };
         let mut q: Vec<f64> = (0..self.knots[0].len())
             .map(|j| {
-                let i = i as isize;
+                let i = i.cast_signed();
                 let [a, b, c, d] = [knot(i - 1, j), knot(i, j), knot(i + 1, j), knot(i + 2, j)];
                 let (m0, m1) = ((c - a) / 2.0, (d - b) / 2.0);
                 let (t2, t3) = (t * t, t * t * t);

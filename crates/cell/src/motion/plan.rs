@@ -1,6 +1,6 @@
 //! A program with every move worked out before anything moves.
 
-use std::sync::Arc;
+use std::rc::Rc;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
@@ -29,9 +29,9 @@ pub struct Plan {
 #[derive(Debug, Clone)]
 pub enum PlanStep {
     /// A timed move.
-    Move(Arc<Segment>),
+    Move(Rc<Segment>),
     /// A recording.
-    Play(Arc<Playback>),
+    Play(Rc<Playback>),
     /// Switches the region of this index.
     Switch {
         /// Index in the cell.
@@ -69,7 +69,7 @@ struct Planner<'a> {
     q: Vec<f64>,
     notes: &'a mut Vec<Warning>,
     /// Moves of earlier passes: index of the step, where it began, the move.
-    known: Vec<(usize, Vec<f64>, Arc<Segment>)>,
+    known: Vec<(usize, Vec<f64>, Rc<Segment>)>,
 }
 
 impl Planner<'_> {
@@ -91,15 +91,14 @@ impl Planner<'_> {
         Ok(plan)
     }
 
-    fn segment(&mut self, index: usize, step: &Step) -> Result<Arc<Segment>, FormatError> {
+    fn segment(&mut self, index: usize, step: &Step) -> Result<Rc<Segment>, FormatError> {
         let known = self.known.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
-        let segment = match known {
-            Some(segment) => segment,
-            None => {
-                let segment = Arc::new(self.timed(index, step)?);
-                self.known.push((index, self.q.clone(), segment.clone()));
-                segment
-            }
+        let segment = if let Some(segment) = known {
+            segment
+        } else {
+            let segment = Rc::new(self.timed(index, step)?);
+            self.known.push((index, self.q.clone(), segment.clone()));
+            segment
         };
         self.q = segment.end();
         Ok(segment)
@@ -188,11 +187,11 @@ impl Planner<'_> {
             self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
         }
         let mut plan = Plan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
-        let play = Arc::new(Playback::new(rows.to_vec(), WINDOW_S));
+        let play = Rc::new(Playback::new(rows.to_vec(), WINDOW_S));
         let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
-        let back = Arc::new(back);
+        let back = Rc::new(back);
         for pass in 0..passes {
             if pass > 0 {
                 plan.steps.push(PlanStep::Move(back.clone()));

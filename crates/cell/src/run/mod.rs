@@ -223,7 +223,7 @@ impl<'a> Run<'a> {
             qd: &state.qd,
             qdd: &state.qdd,
             programmed_override: clock.programmed_override(),
-            intent: Some(&clock.point().first),
+            intent: Some(clock.intent()),
             sources: &sources,
         };
         let begin = Instant::now();
@@ -309,7 +309,9 @@ impl<'a> Run<'a> {
             // Both robots of a pair touched: each one's list tells it.
             let mut concerned: Vec<usize> = [robot(a), robot(b)].into_iter().flatten().collect();
             concerned.dedup();
-            concerned.into_iter().for_each(|r| tracks[r].collisions.push(collision.clone()));
+            for robot in concerned {
+                tracks[robot].collisions.push(collision.clone());
+            }
         });
     }
 

@@ -4,7 +4,7 @@
 use elbowroom_cell::{Cell, RunOptions, RunOutcome, simulate};
 
 /// A six-axis arm of the NS16's proportions, with capsules for links.
-pub const ARM: &str = r#"
+pub const ARM: &str = r"
 dh = [
   { a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180, speed = 155 },
   { a = 700, alpha = 0, d = 0, theta = 90, min = -95, max = 95, speed = 155 },
@@ -21,7 +21,7 @@ links = [
   [],
   { cylinder = { from = [0, 0, -40], to = [0, 0, 0], radius = 40 } },
 ]
-"#;
+";
 
 pub const HEAD: &str = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\ntick_ms = 4\n";
 
