@@ -54,7 +54,7 @@ fn the_checker_finds_every_first_contact_at_the_step_where_it_begins() {
         (seed >> 40) as f64 / (1_u64 << 23) as f64 - 1.0
     };
     let mut contacts = 0;
-    for _ in 0..40 {
+    for _ in 0..150 {
         let mut checker = Checker::new(vec![(&robot, base[0]), (&robot, base[1])], &objects);
         let mut states = [ChainState::new(&robot.chain), ChainState::new(&robot.chain)];
         let goals: Vec<Vec<f64>> = (0..2).map(|_| (0..4).map(|_| random() * 2.4).collect()).collect();
