@@ -31,6 +31,7 @@ mod cell;
 pub mod configure;
 pub mod csv;
 mod file;
+pub mod inspect;
 pub mod motion;
 mod recording;
 pub mod report;
@@ -42,8 +43,6 @@ pub use cell::{
     Target, TrajectoryRow, Travel, Units,
 };
 pub use file::{CellFile, NumberTable};
-pub use recording::{
-    Collision, EventRow, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes,
-};
+pub use recording::{Collision, EventRow, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes};
 pub use run::{RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

@@ -1,2 +1,46 @@
-//! The `elbowroom` command.
-fn main() {}
+//! The `elbowroom` command: parse, call, print.
+//!
+//! Exit status: 0 done and free of trouble; 1 the answer is bad news; 2 the input or the call is wrong.
+
+mod args;
+mod example;
+mod inspect;
+mod output;
+mod run;
+mod teach;
+
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+use args::{Cli, Command};
+use output::{Failure, Verdict};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let answer = match cli.command {
+        None => example::figure_12(),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Inspect(args)) => inspect::inspect(&args),
+        Some(Command::Teach(args)) => teach::teach(&args),
+        Some(Command::Example(args)) => example::copy(&args),
+        Some(Command::Completions { shell }) => completions(shell),
+    };
+    match answer {
+        Ok(Verdict::Good) => ExitCode::SUCCESS,
+        Ok(Verdict::Bad) => ExitCode::from(1),
+        // Whoever reads our output has read enough: `elbowroom … | head` is no failure.
+        Err(Failure::Closed) => ExitCode::SUCCESS,
+        Err(Failure::Wrong(message)) => {
+            eprintln!("elbowroom: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<Verdict, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "elbowroom", &mut script);
+    output::print(&String::from_utf8_lossy(&script))?;
+    Ok(Verdict::Good)
+}

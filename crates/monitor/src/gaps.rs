@@ -89,6 +89,9 @@ impl Gaps {
                 let fresh = gaps[r].tick != *tick;
                 let mut limit = region.reach() + extra;
                 if !fresh && law.only_closest_matters() {
+                    if gaps[r].distance <= 0.0 {
+                        return;
+                    }
                     limit = limit.min(gaps[r].distance);
                 }
                 if now.region_box[r].distance_squared(&now.volume_box[v]) > limit * limit {

@@ -3,7 +3,8 @@
 //! Every controller publishes, each tick, where it is for every slot, and asks for the slots whose warning zone it is
 //! in. A slot is granted in the order of asking, to one robot at a time, and only while it is known where all its
 //! robots are: what is unknown counts as occupied. A robot that vanishes while it holds a slot keeps it until the
-//! integrator clears it. All operations are single atomic steps: no lock, no wait, no allocation after construction.
+//! integrator clears it; one that falls silent elsewhere blocks further grants until it speaks again or is cleared. All
+//! operations are single atomic steps: no lock, no wait, no allocation after construction.
 //!
 //! ```
 //! use elbowroom_monitor::{Board, Grant, RobotSlot, SlotId, Stay};
@@ -36,7 +37,7 @@ pub struct SlotId(pub usize);
 /// Where a robot is, seen from a slot's regions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stay {
-    /// Never said, or said too long ago.
+    /// Never said. What was said too long ago counts the same.
     Unknown,
     /// Beyond the warning zone.
     Outside,
@@ -75,7 +76,7 @@ pub enum Grant {
 pub struct Board {
     robots: Box<[Seat]>,
     slots: Box<[Slot]>,
-    /// A robot silent for longer than this (s) loses its place in the queues (never what it holds).
+    /// What a robot said longer ago than this (s) is not known any more.
     patience_s: f64,
 }
 
@@ -159,6 +160,7 @@ impl Board {
     /// Publishes where a robot is. A robot outside gives back what it holds and leaves the queue.
     pub fn publish(&self, slot: SlotId, robot: RobotSlot, stay: Stay, now_s: f64) {
         let entry = self.entry(slot, robot);
+        entry.expected.store(true, SeqCst);
         entry.seen_s.store(now_s.to_bits(), SeqCst);
         entry.stay.store(stay as u8, SeqCst);
         if stay == Stay::Outside {
@@ -184,12 +186,13 @@ impl Board {
         obstacle
     }
 
-    /// Frees a slot whose holder will not come back: the integrator has looked.
-    /// Returns false where the class may not.
+    /// Says that a silent robot is outside and stays there: the integrator has looked. It is not waited for until it
+    /// speaks again. Returns false where the class may not.
     pub fn clear(&self, slot: SlotId, robot: RobotSlot, who: AccessClass, now_s: f64) -> bool {
         let allowed = who >= AccessClass::Integrator;
         if allowed {
             self.publish(slot, robot, Stay::Outside, now_s);
+            self.entry(slot, robot).expected.store(false, SeqCst);
         }
         allowed
     }
@@ -216,9 +219,10 @@ impl Board {
             let ticket = entry.ticket.load(SeqCst);
             let silent = now_s - f64::from_bits(entry.seen_s.load(SeqCst)) > self.patience_s;
             match self.stay(slot, other) {
+                _ if silent => Some(Grant::Unknown(other)),
                 Stay::Unknown => Some(Grant::Unknown(other)),
                 Stay::Inside => Some(Grant::Waiting(other)),
-                _ if ticket > 0 && ticket < mine && !silent => Some(Grant::Waiting(other)),
+                _ if ticket > 0 && ticket < mine => Some(Grant::Waiting(other)),
                 _ => None,
             }
         })
@@ -349,8 +353,8 @@ mod tests {
         b.publish(A, RIGHT, Stay::Warning, 0.0);
         assert_eq!(b.request(A, RIGHT, 0.0), Grant::Held);
         assert_eq!(b.request(A, LEFT, 0.0), Grant::Waiting(RIGHT));
-        b.publish(A, RIGHT, Stay::Outside, 0.1);
-        assert_eq!(b.request(A, LEFT, 0.1), Grant::Held);
+        b.publish(A, RIGHT, Stay::Outside, 0.05);
+        assert_eq!(b.request(A, LEFT, 0.05), Grant::Held);
     }
 
     #[test]
@@ -368,15 +372,17 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_vanishes_in_the_queue_does_not_block_it() {
+    fn a_robot_that_falls_silent_is_unknown_until_it_speaks_or_is_cleared() {
         let b = board();
-        b.publish(A, LEFT, Stay::Inside, 0.0);
-        b.request(A, LEFT, 0.0);
-        b.publish(A, RIGHT, Stay::Warning, 0.0);
-        b.request(A, RIGHT, 0.0); // then silence
+        b.publish(A, RIGHT, Stay::Warning, 5.0);
+        assert_eq!(b.request(A, RIGHT, 5.0), Grant::Unknown(LEFT));
         b.publish(A, LEFT, Stay::Outside, 5.0);
-        b.publish(A, LEFT, Stay::Warning, 6.0);
-        assert_eq!(b.request(A, LEFT, 6.0), Grant::Held);
+        assert_eq!(b.request(A, RIGHT, 5.05), Grant::Held);
+        b.publish(A, RIGHT, Stay::Outside, 6.0);
+        b.publish(A, RIGHT, Stay::Warning, 9.0);
+        assert_eq!(b.request(A, RIGHT, 9.0), Grant::Unknown(LEFT));
+        assert!(b.clear(A, LEFT, AccessClass::Integrator, 9.0));
+        assert_eq!(b.request(A, RIGHT, 12.0), Grant::Held);
     }
 
     #[test]

@@ -88,6 +88,23 @@ pub fn stopping_factor(distance_m: f64, closing_speed: f64, rate: f64, reaction_
     if sigma.is_nan() { 0.0 } else { sigma }
 }
 
+/// The largest override from which braking alone still ends within `distance_m`: `σ²·v / (2·rate) ≤ d`. For a robot
+/// that obeys late, d is what is left once it obeys.
+///
+/// ```
+/// use elbowroom_monitor::laws::braking_factor;
+/// assert_eq!(braking_factor(0.1, 1.0, 5.0), 1.0);
+/// assert_eq!(braking_factor(-0.1, 1.0, 5.0), 0.0);
+/// ```
+#[inline]
+pub fn braking_factor(distance_m: f64, closing_speed: f64, rate: f64) -> f64 {
+    if closing_speed <= 0.0 {
+        return f64::INFINITY;
+    }
+    let sigma = (2.0 * rate * distance_m.max(0.0) / closing_speed).sqrt();
+    if sigma.is_nan() { 0.0 } else { sigma }
+}
+
 /// How fast the override can fall (1/s) when no joint may decelerate beyond its limit: `min aᵢ / |q̇ᵢ|` over the
 /// joints, q̇ being the joint velocities at override 1.
 ///

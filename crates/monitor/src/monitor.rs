@@ -88,11 +88,13 @@ impl Monitor {
     /// How fast may the robot go now, and why. Never allocates, locks or panics.
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
-        let dt_s = self.watchdog.since_last(s);
+        let since_last_s = self.watchdog.since_last(s);
         let trusted = self.watchdog.check(s, self.config.sources.len()).and_then(|()| self.check_sources(s));
         if let Err(fault) = trusted {
             return self.stop(s, fault);
         }
+        // After a fault the override rises from 0 at its largest rate, however long the fault lasted.
+        let dt_s = if self.fault.is_some() { 0.0 } else { since_last_s };
         if self.fault.take().is_some() {
             self.log.push(None, EventKind::Recovered);
         }
@@ -228,14 +230,14 @@ impl Monitor {
     }
 
     fn measure(&mut self, s: &Snapshot) {
-        let Self { config, active, now, soon, intent, gaps, .. } = self;
+        let Self { config, active, now, soon, intent, gaps, last_override, .. } = self;
         now.place(config, s);
         let mut deceleration = f64::INFINITY;
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
             match s.intent {
                 Some(wanted) => state.qd.copy_from_slice(wanted),
-                None => state.qd.copy_from_slice(&now.chain.qd),
+                None => at_full_override(&mut state.qd, &now.chain.qd, last_override.unwrap_or(1.0)),
             }
             config.chain.forward_motion(state);
             deceleration = Judge::override_deceleration(config, &state.qd);
@@ -243,7 +245,15 @@ impl Monitor {
                 soon.place_ahead(config, s, &state.qd, LOOKAHEAD_S);
             }
         }
-        let judge = Judge { config, snapshot: s, now, soon: soon.as_ref(), intent: intent.as_ref(), deceleration };
+        let judge = Judge {
+            config,
+            snapshot: s,
+            now,
+            soon: soon.as_ref(),
+            intent: intent.as_ref(),
+            deceleration,
+            last_override: last_override.unwrap_or(0.0),
+        };
         gaps.measure(config, active, now, &judge);
     }
 
@@ -326,6 +336,13 @@ impl Monitor {
             acceleration: acceleration - region_acceleration,
         }
     }
+}
+
+/// What the program asks for at override 1, guessed from the real velocities where it does not say: they are what the
+/// last override made of it.
+fn at_full_override(full: &mut [f64], real: &[f64], last_override: f64) {
+    let scale = 1.0 / last_override.max(0.01);
+    full.iter_mut().zip(real).for_each(|(f, v)| *f = v * scale);
 }
 
 impl Configuration {

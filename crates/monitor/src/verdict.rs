@@ -5,12 +5,14 @@ use elbowroom_proximity::escape;
 use elbowroom_spatial::Vec3;
 
 use crate::gaps::{Pair, PairLaw};
-use crate::laws::{override_deceleration, speed_zone, stopping_factor, warning_factor};
+use crate::laws::{braking_factor, override_deceleration, speed_zone, stopping_factor, warning_factor};
 use crate::placement::{Placement, region_point_motion};
 use crate::{Configuration, Kind, Snapshot};
 
 /// How far (s) the direction-aware law looks along the program's intent.
 pub(crate) const LOOKAHEAD_S: f64 = 0.01;
+/// The stopping law aims this far (m) short of the border, so that rounding never ends inside.
+const STOP_SHORT_M: f64 = 5e-4;
 /// A gap must grow by at least this speed (m/s) to count as growing.
 const LEAVING_SPEED: f64 = 5e-4;
 
@@ -25,6 +27,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) intent: Option<&'a ChainState>,
     /// How fast the override can fall, 1/s.
     pub(crate) deceleration: f64,
+    /// The override asked for in the last tick: what the robot may still be doing.
+    pub(crate) last_override: f64,
 }
 
 impl Judge<'_> {
@@ -62,21 +66,29 @@ impl Judge<'_> {
         let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
         let approach = (-region_velocity.dot(towards)).max(0.0);
         let braking_s = if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 };
-        let left = s.distance - approach * (stopping.reaction_s + braking_s);
-        stopping_factor(left, self.closing_speed(pair, intent, towards), self.deceleration, stopping.reaction_s)
+        let left = s.distance - STOP_SHORT_M - approach * (stopping.reaction_s + braking_s);
+        let at_full = self.closing_speed(pair, intent, towards);
+        // Until it obeys, the robot goes on as it does now, or as it was last told to.
+        let now = self.closing_speed(pair, &self.now.chain, towards).max(at_full * self.last_override);
+        let left_then = left - now.max(0.0) * stopping.reaction_s;
+        stopping_factor(left, at_full, self.deceleration, stopping.reaction_s).min(braking_factor(
+            left_then,
+            at_full,
+            self.deceleration,
+        ))
     }
 
     fn is_still(intent: &ChainState) -> bool {
         intent.qd.iter().all(|v| *v == 0.0)
     }
 
-    /// Largest speed (m/s) at override 1 with which any point of the volume moves along `towards`.
+    /// Largest speed (m/s) with which any point of the volume moves along `towards` when the chain moves as in `state`.
     /// A rigid body's velocity field is linear, so a support point of the volume has it.
-    fn closing_speed(&self, pair: &Pair, intent: &ChainState, towards: Vec3) -> f64 {
+    fn closing_speed(&self, pair: &Pair, state: &ChainState, towards: Vec3) -> f64 {
         let volume = &self.config.volumes[pair.volume];
         let base = &self.config.base_in_world;
-        let motion = intent.link_motion(volume.link);
-        let link_in_world = *base * intent.link_in_root(volume.link);
+        let motion = state.link_motion(volume.link);
+        let link_in_world = *base * state.link_in_root(volume.link);
         let velocity = base.transform_vector(motion.velocity);
         let turning = base.transform_vector(motion.angular_velocity);
         let lever = towards.cross(turning);
@@ -93,7 +105,8 @@ impl Judge<'_> {
         let (volume, region) = (&self.config.volumes[v].shape, &self.config.regions[r].shape);
         let (volume_soon, region_soon) = (&soon.volume_in_world[v], &soon.region_in_world[r]);
         let least = LEAVING_SPEED * LOOKAHEAD_S;
-        let Some(away) = (pair.separation.on_a - pair.separation.on_b).try_normalize() else {
+        let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
+        let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
             let depth = escape(volume, &self.now.volume_in_world[v], region, &self.now.region_in_world[r]);
             let depth_soon = escape(volume, volume_soon, region, region_soon);
             return depth_soon.map_or(0.0, |e| e.depth) + least < depth.map_or(0.0, |e| e.depth);

@@ -6,6 +6,7 @@ use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::palette;
+use crate::Cell;
 
 /// No point of a curved surface is farther than this (m) from the triangles that are drawn.
 const CHORD_ERROR_M: f64 = 1e-3;
@@ -68,6 +69,15 @@ impl ReportScene {
     /// A scene with nothing in it.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Everything that stands in a cell.
+    pub fn of_cell(cell: &Cell) -> Self {
+        let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
+            let carried: Vec<Body> = r.carried().cloned().collect();
+            scene.robot(&r.name, &r.bare(), r.base_in_world, r.flange, r.tcp_in_flange, &carried)
+        });
+        cell.objects.iter().fold(scene, Self::object)
     }
 
     /// Adds a robot, coloured by its place in the scene. Its visuals are drawn; links without any show their bodies.

@@ -1,0 +1,100 @@
+//! The inspection as a person reads it.
+
+use std::fmt;
+
+use super::Inspection;
+
+impl fmt::Display for Inspection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (links, joints, dof) = (self.links.len(), self.joints.len(), self.dof);
+        let triangles: usize = self.meshes.iter().map(|m| m.triangles).sum();
+        match self.what {
+            "robot" => writeln!(
+                f,
+                "{}: {links} links, {joints} joints, {dof} degrees of freedom, {triangles} triangles",
+                self.name
+            )?,
+            _ => writeln!(f, "{}: {links} objects, {triangles} triangles", self.name)?,
+        }
+        self.fmt_joints(f)?;
+        self.fmt_meshes(f)?;
+        self.fmt_levels(f)?;
+        self.fmt_dh(f)?;
+        if !self.warnings.is_empty() {
+            writeln!(f, "\nNote")?;
+        }
+        self.warnings.iter().try_for_each(|w| writeln!(f, "  {}", w.replace('\n', "\n  ")))
+    }
+}
+
+impl Inspection {
+    fn fmt_joints(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.joints.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\n{:24} {:10} {:>9} {:>9} {:>9}  moves", "Joint (deg, m)", "type", "lower", "upper", "speed")?;
+        for j in &self.joints {
+            let number = |v: Option<f64>| v.map_or("-".into(), |v| format!("{:.3}", in_user_units(v, j.kind)));
+            let follows = j.mimic.as_ref().map(|m| format!(", follows {m}")).unwrap_or_default();
+            let (lower, upper, speed) = (number(j.lower), number(j.upper), number(j.velocity));
+            writeln!(
+                f,
+                "{:24} {:10} {lower:>9} {upper:>9} {speed:>9}  {}{follows}",
+                shortened(&j.name, 24),
+                j.kind,
+                j.child
+            )?;
+        }
+        Ok(())
+    }
+
+    fn fmt_meshes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.meshes.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\n{:24} {:>9} {:>7} {:>10}  extent (m)", "Mesh of", "triangles", "closed", "degenerate")?;
+        for m in &self.meshes {
+            let [x, y, z] = m.extent_m;
+            let closed = if m.closed { "yes" } else { "open" };
+            let (link, n, bad) = (shortened(&m.link, 24), m.triangles, m.degenerate);
+            writeln!(f, "{link:24} {n:>9} {closed:>7} {bad:>10}  {x:.3} x {y:.3} x {z:.3}")?;
+        }
+        Ok(())
+    }
+
+    fn fmt_levels(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.levels.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\n{:24} {:10} times the hull's volume", "Level L2 of", "volume")?;
+        for l in &self.levels {
+            let ratio = l.ratio_to_hull.map_or("-".into(), |r| format!("{r:.2}"));
+            writeln!(f, "{:24} {:10} {ratio}", shortened(&l.link, 24), l.volume)?;
+        }
+        Ok(())
+    }
+
+    fn fmt_dh(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Some(tip), Some(residual)) = (&self.dh_tip, self.dh_residual) else { return Ok(()) };
+        writeln!(f, "\nGeneralized DH to {tip} (deg, m), residual {residual:.1e}")?;
+        writeln!(f, "{:24} {:>9} {:>9} {:>9} {:>9} {:>9}", "joint", "theta", "a", "b", "d", "alpha")?;
+        for row in &self.dh {
+            let name = shortened(row.joint.as_deref().unwrap_or("-"), 24);
+            let (theta, alpha) = (row.theta.to_degrees(), row.alpha.to_degrees());
+            writeln!(f, "{name:24} {theta:>9.3} {:>9.4} {:>9.4} {:>9.4} {alpha:>9.3}", row.a, row.b, row.d)?;
+        }
+        Ok(())
+    }
+}
+
+fn in_user_units(v: f64, kind: &str) -> f64 {
+    if kind == "prismatic" { v } else { v.to_degrees() }
+}
+
+fn shortened(name: &str, width: usize) -> String {
+    if name.chars().count() <= width {
+        return name.to_owned();
+    }
+    let tail: String = name.chars().skip(name.chars().count() - (width - 1)).collect();
+    format!("…{tail}")
+}

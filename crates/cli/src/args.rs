@@ -1,0 +1,148 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Collision awareness for industrial robot cells.
+///
+/// Without a command, the example cell of the interference-region paper's figure 12 runs and its report is written to
+/// elbowroom-out/figure12.
+///
+/// Exit status: 0 done and free of trouble; 1 the answer is bad news (a collision, a forbidden region entered);
+/// 2 the input or the call is wrong.
+#[derive(Debug, Parser)]
+#[command(name = "elbowroom", version, after_help = "Not a certified safety device.")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a cell's programs in simulated time under the monitor
+    Run(RunArgs),
+    /// Say what is in a robot or mesh file
+    Inspect(InspectArgs),
+    /// Turn points that the robot was driven to into a region for the cell file
+    Teach(TeachArgs),
+    /// List the example cells, or copy them to a folder to start from
+    Example(ExampleArgs),
+    /// Print a completion script for a shell
+    ///
+    /// For bash: elbowroom completions bash > ~/.local/share/bash-completion/completions/elbowroom
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom run cell.toml                     a summary on the screen
+  elbowroom run cell.toml --out out           and trace.csv, events.csv, report.html in out/
+  elbowroom run cell.toml --out out --compare the report shows the run without the monitor beside it
+  elbowroom run cell.toml --json | jq .regions")]
+pub(crate) struct RunArgs {
+    /// The cell file (docs/cell-file.md has every key)
+    pub(crate) cell: PathBuf,
+    /// Write trace.csv, events.csv and report.html to this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Let the monitor watch without slowing anything
+    #[arg(long)]
+    pub(crate) no_monitor: bool,
+    /// Also run without the monitor and show both in the report
+    #[arg(long, requires = "out", conflicts_with = "no_monitor")]
+    pub(crate) compare: bool,
+    /// Run the programs this many times in a row
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) repeat: u32,
+    /// Print one JSON document instead of the summary
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
+  elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
+  elbowroom inspect table.stl --unit mm --json")]
+pub(crate) struct InspectArgs {
+    /// URDF, STL, OBJ, DAE, glTF, GLB, PLY or OFF
+    pub(crate) model: PathBuf,
+    /// The SRDF that belongs to the URDF
+    #[arg(long, value_name = "FILE")]
+    pub(crate) srdf: Option<PathBuf>,
+    /// Unit of meshes whose format states none
+    #[arg(long, value_enum)]
+    pub(crate) unit: Option<Unit>,
+    /// The link at which the Denavit-Hartenberg table ends
+    #[arg(long, value_name = "LINK")]
+    pub(crate) tip: Option<String>,
+    /// Joint states (a header of joint names, a row of radians or metres each): print link poses instead
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) states: Option<PathBuf>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Unit {
+    M,
+    Cm,
+    Mm,
+    In,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "The points are where the robot's TCP is at the states, in this order:
+  sphere           centre, surface point          sphere4   four surface points
+  cylinder         base centre, rim point, a point at the height of the top
+  plane            origin, point on x, point in the xy plane (the region lies below)
+  box              two opposite corners           box3      three base corners, and --height
+
+Example:
+  elbowroom teach cell.toml --shape sphere --name lamp --states taught.csv >> cell.toml")]
+pub(crate) struct TeachArgs {
+    /// The cell file that has the robot
+    pub(crate) cell: PathBuf,
+    /// What the points determine
+    #[arg(long, value_enum)]
+    pub(crate) shape: TaughtShape,
+    /// Name of the region
+    #[arg(long)]
+    pub(crate) name: String,
+    /// Joint states of the taught points, one row each
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) states: PathBuf,
+    /// The robot that was driven; may be left out where there is one
+    #[arg(long)]
+    pub(crate) robot: Option<String>,
+    /// Teach with the flange instead of the TCP
+    #[arg(long)]
+    pub(crate) flange: bool,
+    /// Height of box3, in the cell file's unit of length
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) height: Option<f64>,
+    /// Thickness of the warning zone, in the cell file's unit of length
+    #[arg(long, default_value_t = 0.0)]
+    pub(crate) warning: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TaughtShape {
+    Sphere,
+    Sphere4,
+    Cylinder,
+    Plane,
+    Box,
+    Box3,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExampleArgs {
+    /// Copy all examples and their models here; without it they are listed
+    pub(crate) dir: Option<PathBuf>,
+}

@@ -1,0 +1,86 @@
+//! The examples that come with the program, and what it does without arguments.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom::cell::{Cell, RunOptions, report};
+use include_dir::{Dir, include_dir};
+
+use crate::args::ExampleArgs;
+use crate::output::{Failure, Verdict, cannot_write, color, note, print, width};
+use crate::run::{with_progress, write_files};
+
+static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
+/// Where everything goes that was not asked to go elsewhere.
+const OUT: &str = "elbowroom-out";
+
+/// Runs the cell of the paper's figure 12 (S1.13) with control on and off.
+pub(crate) fn figure_12() -> Result<Verdict, Failure> {
+    let out = PathBuf::from(OUT);
+    extract(&out)?;
+    let dir = out.join("figure12");
+    let file = dir.join("cell.toml");
+    let cell = Cell::load(&file)?;
+    let on = with_progress(&cell, &RunOptions::default())?;
+    let off = with_progress(&cell, &RunOptions { monitored: false, ..RunOptions::default() })?;
+    on.notes.iter().for_each(note);
+    write_files(&dir, &cell, &on.recording, Some(&off.recording))?;
+    print(&report::summary(&on.recording, width(), color()))?;
+    let passes =
+        if off.recording.regions.iter().any(|r| r.entered) { "passes through it" } else { "stays out as well" };
+    let report = dir.join("report.html");
+    print(
+        &format!(
+            "\nWithout the monitor the same program {passes}; the report shows both.\n\
+         Report:  {}\nCell:    {}   change it, then: elbowroom run {0}\n",
+            report.display(),
+            file.display(),
+        )
+        .replace("elbowroom run {0}", &format!("elbowroom run {} --out {OUT}", file.display())),
+    )?;
+    Ok(if on.bad_news() { Verdict::Bad } else { Verdict::Good })
+}
+
+/// Lists the examples or copies them.
+pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
+    if let Some(dir) = &args.dir {
+        extract(dir)?;
+        print(&format!(
+            "Copied to {}; try: elbowroom run {}\n",
+            dir.display(),
+            dir.join("figure12/cell.toml").display()
+        ))?;
+        return Ok(Verdict::Good);
+    }
+    for example in cells() {
+        let text = example.get_file(example.path().join("cell.toml")).and_then(|f| f.contents_utf8()).unwrap_or("");
+        let first = text.lines().next().unwrap_or("").trim_start_matches(['#', ' ']);
+        print(&format!("{:14} {first}\n", example.path().display()))?;
+    }
+    print("\nelbowroom example DIR copies them.\n")?;
+    Ok(Verdict::Good)
+}
+
+fn cells() -> impl Iterator<Item = &'static Dir<'static>> {
+    EXAMPLES.dirs().filter(|d| d.get_file(d.path().join("cell.toml")).is_some())
+}
+
+/// Writes the examples; files that are there and differ are the user's own and stay as they are.
+fn extract(to: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(to).map_err(cannot_write(to))?;
+    let mut dirs = vec![&EXAMPLES];
+    while let Some(dir) = dirs.pop() {
+        for file in dir.files() {
+            let path = to.join(file.path());
+            if let Some(parent) = path.parent() {
+                std::fs::create_dir_all(parent).map_err(cannot_write(parent))?;
+            }
+            match std::fs::read(&path) {
+                Ok(there) if there == file.contents() => {}
+                Ok(_) => note(format!("{}: kept, it is not the example's any more", path.display())),
+                Err(_) => std::fs::write(&path, file.contents()).map_err(cannot_write(&path))?,
+            }
+        }
+        dirs.extend(dir.dirs());
+    }
+    Ok(())
+}

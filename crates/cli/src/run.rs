@@ -1,0 +1,78 @@
+//! `elbowroom run`: a cell's programs in simulated time.
+
+use std::fs::File;
+use std::io::{BufWriter, IsTerminal};
+use std::path::Path;
+use std::time::Duration;
+
+use elbowroom::cell::report::{self, ReportScene};
+use elbowroom::cell::run::{Progress, simulate_with};
+use elbowroom::cell::{Cell, Recording, RunOptions, RunOutcome, Summary, csv};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::args::RunArgs;
+use crate::output::{Failure, Verdict, cannot_write, color, note, print, print_json, width};
+
+pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    cell.warnings.iter().for_each(note);
+    let options = RunOptions { monitored: !args.no_monitor, repeat: args.repeat, ..RunOptions::default() };
+    let outcome = with_progress(&cell, &options)?;
+    outcome.notes.iter().for_each(note);
+    if let Some(dir) = &args.out {
+        let without = if args.compare {
+            Some(with_progress(&cell, &RunOptions { monitored: false, ..options.clone() })?.recording)
+        } else {
+            None
+        };
+        write_files(dir, &cell, &outcome.recording, without.as_ref())?;
+    }
+    if args.json {
+        print_json(&Summary::from(&outcome.recording))?;
+    } else {
+        print(&report::summary(&outcome.recording, width(), color()))?;
+        if let Some(dir) = &args.out {
+            print(&format!("\nFiles: {}\n", dir.join("{report.html,trace.csv,events.csv}").display()))?;
+        }
+    }
+    Ok(if outcome.bad_news() { Verdict::Bad } else { Verdict::Good })
+}
+
+/// Runs the cell with a progress bar, which appears only where the run is long.
+pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} [{elapsed_precise}]") {
+        bar.set_style(style);
+    }
+    let begin = std::time::Instant::now();
+    let outcome = simulate_with(cell, options, &mut |p: Progress| {
+        if bar.is_hidden() && std::io::stderr().is_terminal() && begin.elapsed() > Duration::from_millis(700) {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        bar.set_message(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
+        bar.tick();
+    });
+    bar.finish_and_clear();
+    Ok(outcome?)
+}
+
+/// Writes trace, events and the report; `without` is the run without the monitor, shown beside.
+pub(crate) fn write_files(
+    dir: &Path,
+    cell: &Cell,
+    run: &Recording,
+    without: Option<&Recording>,
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
+    let create = |name: &str| {
+        let path = dir.join(name);
+        File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))
+    };
+    csv::write_trace(run, create("trace.csv")?).map_err(cannot_write(dir))?;
+    csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
+    let scene = ReportScene::of_cell(cell);
+    let label = if run.monitored { "control on" } else { "control off" };
+    let runs: Vec<(&str, &Recording)> =
+        std::iter::once((label, run)).chain(without.map(|w| ("control off", w))).collect();
+    report::write_html(create("report.html")?, &scene, &runs).map_err(cannot_write(dir))
+}

@@ -1,0 +1,132 @@
+//! `elbowroom teach`: points that the robot was driven to become a region.
+
+use std::fmt::Write;
+
+use elbowroom::cell::csv::read_states;
+use elbowroom::cell::{Cell, CellRobot};
+use elbowroom::kinematics::ChainState;
+use elbowroom::monitor::{Region, teach as taught};
+use elbowroom::proximity::Shape;
+use elbowroom::spatial::Vec3;
+
+use crate::args::{TaughtShape, TeachArgs};
+use crate::output::{Failure, Verdict, print};
+
+pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    let robot = robot(&cell, args)?;
+    let points = points(robot, args)?;
+    if cell.regions.iter().any(|r| r.region.name == args.name) {
+        return Err(Failure::Wrong(format!("{}: there is a region `{}` already", args.cell.display(), args.name)));
+    }
+    let length = |metres: f64| metres / cell.units.length.to_metres(1.0);
+    let angle = |radians: f64| radians / cell.units.angle.to_radians(1.0);
+    let height = args.height.map(|h| cell.units.length.to_metres(h));
+    let region = region(args, &points, height)?;
+    print(&toml(&region, args.warning, &length, &angle))?;
+    Ok(Verdict::Good)
+}
+
+fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure> {
+    let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+    let wrong = |what: String| {
+        Failure::Wrong(format!("{}: {what}\n  write: --robot with one of {}", args.cell.display(), names.join(", ")))
+    };
+    match (&args.robot, cell.robots.as_slice()) {
+        (Some(name), robots) => {
+            robots.iter().find(|r| r.name == *name).ok_or_else(|| wrong(format!("there is no robot `{name}`")))
+        }
+        (None, [only]) => Ok(only),
+        (None, _) => Err(wrong("has several robots".into())),
+    }
+}
+
+/// Where the TCP (or the flange) is at each state.
+fn points(robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>, Failure> {
+    let chain = &robot.robot.chain;
+    let mut state = ChainState::new(chain);
+    let states = read_states(&args.states, &[(&robot.name, chain)])?;
+    let point = |q: &Vec<Vec<f64>>| {
+        state.q.copy_from_slice(&q[0]);
+        chain.forward(&mut state);
+        let flange_in_world = robot.base_in_world * state.link_in_root(robot.flange);
+        if args.flange { flange_in_world.translation } else { (flange_in_world * robot.tcp_in_flange).translation }
+    };
+    Ok(states.iter().map(point).collect())
+}
+
+fn region(args: &TeachArgs, points: &[Vec3], height: Option<f64>) -> Result<Region, Failure> {
+    let name = args.name.as_str();
+    let result = match (args.shape, points, height) {
+        (TaughtShape::Sphere, [center, surface], None) => taught::sphere_from_center(name, *center, *surface),
+        (TaughtShape::Sphere4, [a, b, c, d], None) => taught::sphere_from_points(name, [*a, *b, *c, *d]),
+        (TaughtShape::Cylinder, [base, rim, top], None) => taught::cylinder(name, *base, *rim, *top),
+        (TaughtShape::Plane, [origin, x, xy], None) => taught::plane(name, *origin, *x, *xy),
+        (TaughtShape::Box, [from, to], None) => taught::cuboid_from_corners(name, *from, *to),
+        (TaughtShape::Box3, [corner, along, across], Some(height)) => {
+            taught::cuboid_from_base(name, *corner, *along, *across, height)
+        }
+        (shape, ..) => {
+            let needs = match shape {
+                TaughtShape::Sphere => "2 states and no --height",
+                TaughtShape::Sphere4 => "4 states and no --height",
+                TaughtShape::Cylinder | TaughtShape::Plane => "3 states and no --height",
+                TaughtShape::Box => "2 states and no --height",
+                TaughtShape::Box3 => "3 states and --height",
+            };
+            let message = format!("{}: {} states; {shape:?} needs {needs}", args.states.display(), points.len());
+            return Err(Failure::Wrong(message));
+        }
+    };
+    result.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
+}
+
+/// The region as it stands in a cell file.
+fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn Fn(f64) -> f64) -> String {
+    let mut text = format!("\n[region.{}]\n", key(&region.name));
+    let mut line = |key: &str, value: String| {
+        let _ = writeln!(text, "{key} = {value}");
+    };
+    // A tenth of a micrometre is beyond any robot.
+    let number = |v: f64| format!("{}", (v * 1e4).round() / 1e4 + 0.0);
+    let list = |v: [f64; 3]| format!("[{}]", v.map(number).join(", "));
+    let point = |p: Vec3| list(p.to_array().map(length));
+    let at = region.anchor.translation;
+    let rotation = region.anchor.rotation;
+    match &region.shape {
+        Shape::Sphere(s) => {
+            line("shape", "\"sphere\"".into());
+            line("centre", point(at));
+            line("radius", number(length(s.radius)));
+        }
+        Shape::Cylinder(c) => {
+            line("shape", "\"cylinder\"".into());
+            line("base", point(at));
+            line("radius", number(length(c.radius)));
+            line("height", number(length(2.0 * c.half_length)));
+        }
+        Shape::Cuboid(c) => {
+            line("shape", "\"box\"".into());
+            line("base", point(at));
+            line("size", point(c.half_extents * 2.0));
+            if rotation.angle() > 0.0 {
+                line("rpy", list(rotation.to_rpy().map(angle)));
+            }
+        }
+        _ => {
+            line("shape", "\"plane\"".into());
+            line("origin", point(at));
+            line("x", point(at + rotation.x_axis()));
+            line("y", point(at + rotation.y_axis()));
+        }
+    }
+    line("kind", "\"forbidden\"".into());
+    line("warning", number(warning));
+    text
+}
+
+/// A TOML key: bare where it may be.
+fn key(name: &str) -> String {
+    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare { name.to_owned() } else { format!("{name:?}") }
+}

@@ -1,0 +1,86 @@
+//! How long a tick takes: `cargo run --release -p elbowroom-monitor --example tick_time`.
+//!
+//! A six-axis arm with eight volumes moves among regions; each line is another set of regions.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use std::time::Instant;
+
+use common::{Random, arm, arm_volumes, configuration};
+use elbowroom_monitor::{Configuration, Laws, Monitor, Region, RegionId, Snapshot, Stopping};
+use elbowroom_spatial::{Rotation, Vec3};
+
+const TICKS: u32 = 200_000;
+
+/// The arm's motion.
+fn joints(t: f64) -> [f64; 6] {
+    [1.2 * (0.9 * t).sin(), 0.6 * (1.1 * t).sin(), 0.8 * (0.7 * t).cos(), (0.5 * t).sin(), t.cos(), t.sin()]
+}
+
+/// Of these regions those that the arm never touches while it moves: a cell that runs.
+fn untouched(regions: Vec<Region>, count: usize) -> Vec<Region> {
+    let mut m = Monitor::new(configuration(arm(), arm_volumes(), regions.clone()), None).expect("valid");
+    let mut touched = vec![false; regions.len()];
+    for i in 0..TICKS / 50 {
+        let t = 0.1 * f64::from(i);
+        m.tick(&Snapshot::still(t, &joints(t)));
+        let mut inside = |r: usize| touched[r] |= m.is_inside(RegionId(r));
+        (0..regions.len()).for_each(&mut inside);
+    }
+    let free = regions.into_iter().zip(touched).filter(|(_, touched)| !touched).map(|(r, _)| r);
+    free.take(count).collect()
+}
+
+/// Spheres, cylinders and boxes of 4 to 20 cm in a shell around the arm's base, each with a warning zone of 10 cm.
+fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
+    let mut r = Random(17);
+    let one = |i: usize| {
+        let at = r.direction() * r.between(nearest, farthest) + Vec3::Z * 0.6;
+        let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
+        let size = r.between(0.02, 0.1);
+        let region = match i % 3 {
+            0 => Region::sphere(format!("{i}"), at, size),
+            1 => Region::cylinder(format!("{i}"), at, size, 2.0 * size, turn),
+            _ => Region::cuboid(format!("{i}"), at, Vec3::splat(2.0 * size), turn),
+        };
+        region.warning(0.1)
+    };
+    (0..count).map(one).collect()
+}
+
+fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
+    let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions) };
+    let mut m = Monitor::new(config, None).expect("a valid configuration");
+    let (mut times, mut pairs) = (Vec::with_capacity(TICKS as usize), 0_u64);
+    for i in 0..TICKS {
+        let t = 0.002 * f64::from(i);
+        let q =
+            [1.2 * (0.9 * t).sin(), 0.6 * (1.1 * t).sin(), 0.8 * (0.7 * t).cos(), (0.5 * t).sin(), t.cos(), t.sin()];
+        let intent = [1.08 * (0.9 * t).cos(), 0.66 * (1.1 * t).cos(), -0.56 * (0.7 * t).sin(), 0.0, 0.0, 0.0];
+        let s = Snapshot { qd: &intent, intent: Some(&intent), ..Snapshot::still(t, &q) };
+        let begin = Instant::now();
+        let report = std::hint::black_box(m.tick(std::hint::black_box(&s)));
+        times.push(begin.elapsed().as_nanos());
+        pairs += u64::from(report.measured_pairs);
+    }
+    times.sort_unstable();
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize] as f64 / 1000.0;
+    let mean_pairs = pairs as f64 / f64::from(TICKS);
+    println!("{name:46} {:8.2} {:8.2} {:8.2} {:8.2} {mean_pairs:9.1}", at(0.5), at(0.99), at(0.999), at(1.0));
+}
+
+#[allow(clippy::print_stdout, reason = "an example prints")]
+fn main() {
+    println!("{:46} {:>8} {:>8} {:>8} {:>8} {:>9}", "regions (µs per tick)", "median", "p99", "p99.9", "max", "pairs");
+    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![30.0; 6] };
+    let all = Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() };
+    measure("none", vec![], Laws::default());
+    let free = untouched(regions(4000, 0.3, 1.8), 1000);
+    measure("100 around the arm, never touched", free[..100].to_vec(), Laws::default());
+    measure("1,000 around the arm, never touched", free.clone(), Laws::default());
+    measure("1,000 around the arm, never touched, all laws", free, all.clone());
+    measure("1,000 in the arm's way, often touched", regions(1000, 0.3, 1.6), Laws::default());
+    measure("1,000 in the arm's way, all laws", regions(1000, 0.3, 1.6), all);
+    measure("10,000 far (3 to 30 m)", regions(10_000, 3.0, 30.0), Laws::default());
+}

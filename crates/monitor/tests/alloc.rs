@@ -1,0 +1,50 @@
+//! The tick allocates nothing (P.6).
+
+mod common;
+
+use std::alloc::System;
+
+use common::{Random, arm, arm_volumes, configuration};
+use elbowroom_monitor::{AccessClass, Configuration, Kind, Laws, Life, Monitor, Region, Snapshot, Stopping};
+use elbowroom_spatial::{Rotation, Vec3};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+#[test]
+fn ticks_of_all_laws_over_a_thousand_regions_allocate_nothing() {
+    let mut r = Random(3);
+    let regions = (0..1000).map(|i| {
+        let at = r.vec3(1.5);
+        let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
+        let region = match i % 3 {
+            0 => Region::sphere(format!("{i}"), at, 0.05),
+            1 => Region::cylinder(format!("{i}"), at, 0.05, 0.1, turn),
+            _ => Region::cuboid(format!("{i}"), at, Vec3::splat(0.1), turn),
+        };
+        let region = region.warning(0.1).life(if i % 2 == 0 { Life::Permanent } else { Life::Temporary });
+        if i % 5 == 0 { region.kind(Kind::Monitored { slow_to: Some(0.5) }) } else { region }
+    });
+    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![10.0; 6] };
+    let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
+    let regions: Vec<Region> = regions.collect();
+    for laws in [Laws::default(), all] {
+        let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions.clone()) };
+        let mut m = Monitor::new(config, None).unwrap();
+        let switchable = m.region("1").unwrap();
+        let counter = Counter::new(ALLOCATOR);
+        let mut pairs = 0;
+        for i in 0..5000 {
+            let t = 0.002 * f64::from(i);
+            let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
+            let intent = [1.0, -0.5, 0.3, 0.0, 0.2, 0.1];
+            m.switch(switchable, i % 7 < 3, AccessClass::Programmer).unwrap();
+            pairs += m.tick(&Snapshot { intent: Some(&intent), ..Snapshot::still(t, &q) }).measured_pairs;
+            assert!(m.events().len() < 8000);
+        }
+        let change = counter.change();
+        assert!(pairs > 5000);
+        assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
+    }
+}
