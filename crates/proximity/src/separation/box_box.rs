@@ -2,8 +2,6 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::core::{Core, Gap, rounding};
-use super::gjk;
 use crate::Cuboid;
 
 /// Gap along one of the 15 axes; positive proves the boxes apart.
@@ -44,21 +42,4 @@ pub(crate) fn best_axis(a: &Cuboid, b: &Cuboid, a_in_b: &Pose) -> AxisGap {
         }
     }
     best
-}
-
-/// Distance of two boxes in the frame of the second; `None` where proven above `limit`.
-pub(super) fn distance(a: &Cuboid, b: &Cuboid, a_in_b: &Pose, limit: f64) -> Option<Gap> {
-    let t = a_in_b.translation.abs();
-    let (core_a, core_b) = (Core::Cuboid(*a), Core::Cuboid(*b));
-    let scale = t.x + t.y + t.z + core_a.size() + core_b.size();
-    let best = best_axis(a, b, a_in_b);
-    if best.gap - rounding(scale) > limit {
-        return None;
-    }
-    // Deeper than anything that a left-out axis could have told: no need to ask GJK.
-    if best.gap < -1e-5 * scale {
-        let common = b.nearest(a_in_b.translation);
-        return Some(Gap::touching(common, common));
-    }
-    gjk::distance(&core_a, &core_b, a_in_b, best.axis, limit)
 }

@@ -3,8 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 use crate::shape::hull::farthest;
-use crate::triangle::nearest_on_triangle;
-use crate::{Cuboid, Cylinder, Shape};
+use crate::{ConvexHull, Cuboid, Cylinder, Shape};
 
 /// What is left of a convex shape when its rounding radius is taken off.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +13,7 @@ pub(crate) enum Core<'a> {
     Segment(f64),
     Cylinder(Cylinder),
     Cuboid(Cuboid),
+    Hull(&'a ConvexHull),
     /// The convex hull of points.
     Points(&'a [Vec3]),
     Triangle([Vec3; 3]),
@@ -27,7 +27,7 @@ pub(crate) fn rounded(shape: &Shape) -> Option<(Core<'_>, f64)> {
         Shape::Capsule(c) => (Core::Segment(c.half_length), c.radius),
         Shape::Cylinder(c) => (Core::Cylinder(*c), 0.0),
         Shape::Cuboid(c) => (Core::Cuboid(*c), 0.0),
-        Shape::Hull(h) => (Core::Points(h.vertices()), 0.0),
+        Shape::Hull(h) => (Core::Hull(h), 0.0),
         Shape::HalfSpace(_) | Shape::Mesh(_) => return None,
     })
 }
@@ -41,27 +41,17 @@ impl Core<'_> {
             Self::Segment(h) => Vec3::Z * h.copysign(dir.z),
             Self::Cylinder(c) => c.support(dir),
             Self::Cuboid(c) => c.support(dir),
+            Self::Hull(h) => h.support(dir),
             Self::Points(p) => farthest(p, dir),
             Self::Triangle(t) => farthest(t, dir),
         }
-    }
-
-    /// The point of the core nearest to `p`, where there is a closed form, local frame.
-    pub fn nearest(&self, p: Vec3) -> Option<Vec3> {
-        Some(match self {
-            Self::Point => Vec3::ZERO,
-            Self::Segment(h) => Vec3::Z * p.z.max(-h).min(*h),
-            Self::Cylinder(c) => c.nearest(p),
-            Self::Cuboid(c) => c.nearest(p),
-            Self::Triangle(t) => nearest_on_triangle(p, *t),
-            Self::Points(_) => return None,
-        })
     }
 
     /// Some point of the core, near its middle where that is cheap, local frame.
     #[inline]
     pub fn middle(&self) -> Vec3 {
         match self {
+            Self::Hull(h) => h.aabb().center(),
             Self::Points(p) => p.first().copied().unwrap_or(Vec3::ZERO),
             Self::Triangle([a, b, c]) => (*a + *b + *c) / 3.0,
             _ => Vec3::ZERO,
@@ -76,6 +66,7 @@ impl Core<'_> {
             Self::Segment(h) => *h,
             Self::Cylinder(c) => c.half_length + c.radius,
             Self::Cuboid(c) => c.half_extents.x + c.half_extents.y + c.half_extents.z,
+            Self::Hull(h) => h.aabb().min.abs().max(h.aabb().max.abs()).max_element(),
             Self::Points(p) => p.iter().fold(0.0, |m: f64, v| m.max(v.abs().max_element())),
             Self::Triangle(t) => t.iter().fold(0.0, |m: f64, v| m.max(v.abs().max_element())),
         }

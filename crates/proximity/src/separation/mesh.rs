@@ -4,7 +4,7 @@
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use super::core::{Core, Gap, rounding};
-use super::gjk;
+use super::projections;
 use super::segment::{Segment, nearest_to_box};
 use crate::shape::Bvh;
 use crate::triangle::{nearest_on_triangle, segment_triangle, triangle_triangle, triangles_touch};
@@ -69,8 +69,7 @@ pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit:
             let mesh_in_core = core_in_mesh.inverse();
             let leaf = |i, limit| {
                 let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
-                let start = triangle.middle() - core.middle();
-                let gap = gjk::distance(&triangle, core, &Pose::IDENTITY, start, limit)?;
+                let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
                 let back = |p| core_in_mesh.transform_point(p);
                 Some(Gap {
                     on_a: back(gap.on_a),

@@ -5,6 +5,7 @@ pub(crate) mod core;
 pub(crate) mod gjk;
 mod half_space;
 mod mesh;
+mod projections;
 mod segment;
 
 use elbowroom_spatial::{Pose, Vec3};
@@ -222,13 +223,7 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
     }
     let (core_b, rb) = rounded(b)?;
     let limit = limit + ra + rb;
-    let gap = match (&core_a, &core_b) {
-        (Core::Cuboid(x), Core::Cuboid(y)) => box_box::distance(x, y, a_in_b, limit)?,
-        _ => {
-            let start = a_in_b.transform_point(core_a.middle()) - core_b.middle();
-            gjk::distance(&core_a, &core_b, a_in_b, start, limit)?
-        }
-    };
+    let gap = projections::distance(&core_a, &core_b, a_in_b, limit)?;
     Some((gap, [ra, rb]))
 }
 

@@ -93,18 +93,23 @@ impl ConvexHull {
 
     /// The point of the solid nearest to `p` (itself where inside), local frame: it lies on a face that `p` is above.
     pub fn nearest(&self, p: Vec3) -> Vec3 {
-        let mut best = (f64::INFINITY, p);
+        self.nearest_with_face(p).0
+    }
+
+    /// The nearest point, and a face that it lies on where `p` is outside.
+    pub(crate) fn nearest_with_face(&self, p: Vec3) -> (Vec3, Option<usize>) {
+        let mut best = (f64::INFINITY, p, None);
         for (i, (normal, offset)) in self.planes.iter().enumerate() {
             let height = normal.dot(p) - offset;
             if height > 0.0 && height * height < best.0 {
                 let q = nearest_on_triangle(p, self.corners(i));
                 let squared = (q - p).length_squared();
                 if squared < best.0 {
-                    best = (squared, q);
+                    best = (squared, q, Some(i));
                 }
             }
         }
-        best.1
+        (best.1, best.2)
     }
 
     pub(crate) fn planes(&self) -> &[(Vec3, f64)] {

@@ -5,16 +5,11 @@ mod simplex;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::core::{Core, Gap, rounding};
+use super::projections::WANTED;
 use simplex::{Simplex, Vertex};
 
 /// More than any pair needs; reaching it ends with the bounds found so far.
 const MAX_ITERATIONS: usize = 100;
-
-/// Projections to and fro after a search that rounding ended early.
-const MAX_POLISH: usize = 300;
-
-/// Wanted difference of the bounds, as a fraction of the coordinates.
-const WANTED: f64 = 1e-13;
 
 /// Distance of `a` and `b` in the frame of `b`, starting along `start`, a direction from `b` to `a`.
 /// `None` as soon as the distance is proven to be above `limit`.
@@ -59,31 +54,8 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
     if !(lower > 0.0) {
         return Some(overlap(&simplex)); // not proven apart
     }
-    let gap = Gap { distance: upper, lower, on_a: simplex.blend(|x| x.on_a), on_b: simplex.blend(|x| x.on_b) };
-    let gap = if upper - lower <= WANTED * scale { gap } else { polish(a, b, a_in_b, gap, WANTED * scale, slack) };
-    Some(Gap { lower: gap.lower.min(gap.distance), ..gap })
-}
-
-/// Curved surfaces can leave the simplex too thin to go on. Then each witness is projected onto the other solid in turn
-/// (von Neumann's alternating projections), which never loses ground, and each direction gives a bound of its own.
-#[cold]
-fn polish(a: &Core, b: &Core, a_in_b: &Pose, mut gap: Gap, wanted: f64, slack: f64) -> Gap {
-    for _ in 0..MAX_POLISH {
-        let (Some(on_a), distance) = (a.nearest(a_in_b.inverse_transform_point(gap.on_b)), gap.distance) else { break };
-        let on_a = a_in_b.transform_point(on_a);
-        let Some(on_b) = b.nearest(on_a) else { break };
-        let Some(direction) = (on_a - on_b).try_normalize() else { break };
-        let low_a = a_in_b.transform_point(a.support(-a_in_b.inverse_transform_vector(direction)));
-        gap.lower = gap.lower.max((low_a - b.support(direction)).dot(direction) - slack);
-        let nearer = (on_a - on_b).length();
-        if nearer <= distance {
-            gap = Gap { distance: nearer, lower: gap.lower, on_a, on_b };
-        }
-        if nearer >= distance || gap.distance - gap.lower <= wanted {
-            break;
-        }
-    }
-    gap
+    let (on_a, on_b) = (simplex.blend(|x| x.on_a), simplex.blend(|x| x.on_b));
+    Some(Gap { distance: upper, lower: lower.min(upper), on_a, on_b })
 }
 
 /// The simplex with one vertex more, reduced to what holds its nearest point; `None` where that brings nothing nearer.
