@@ -34,6 +34,9 @@ cargo xtask COMMAND
 Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
 
+/// The parsers that `fuzz` throws files at, besides the cell file's.
+const PARSERS: [&str; 9] = ["urdf", "srdf", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
+
 /// What went wrong, in the words to print.
 enum Failure {
     /// A check found something: exit 1.
@@ -91,7 +94,17 @@ fn fuzz(root: &Path, seconds: &str) -> Result<(), Failure> {
     if seconds.parse::<u64>().is_err() {
         return Err(Failure::Usage(format!("`fuzz {seconds}`: SECONDS is a whole number")));
     }
-    let args = ["run", "--release", "-p", "elbowroom-formats", "--example", "fuzz", "--", "all", seconds];
+    let example = |package, name| ["run", "--quiet", "--release", "-p", package, "--example", name, "--"];
+    for parser in PARSERS {
+        let mut args = example("elbowroom-formats", "fuzz").to_vec();
+        args.extend([parser, seconds]);
+        // Real files, where they are, damage more interestingly than the built-in samples.
+        let data = root.join("../shared/data").display().to_string();
+        args.push(&data);
+        shell::cargo(root, &args, &[])?;
+    }
+    let mut args = example("elbowroom-cell", "fuzz_cell").to_vec();
+    args.extend(["examples/figure12/cell.toml", seconds]);
     Ok(shell::cargo(root, &args, &[])?)
 }
 

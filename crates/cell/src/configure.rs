@@ -41,7 +41,9 @@ pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatErr
     let count = slots.iter().flatten().map(|s| s.0 + 1).max().unwrap_or(0);
     let slot_names: Vec<String> = (0..count).map(|i| format!("slot {i}")).collect();
     let slot_names: Vec<&str> = slot_names.iter().map(String::as_str).collect();
-    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names)));
+    // Five ticks of silence, or the board's own patience where that is longer.
+    let patience_s = (5.0 * cell.tick_s).max(0.1);
+    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names).patience(patience_s)));
     let monitor = |(i, s): (usize, &Setup)| {
         Monitor::new(s.configuration.clone(), board.clone().map(|b| (b, RobotSlot(i))))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))

@@ -120,6 +120,13 @@ impl Board {
         Self { robots: robots.iter().map(seat).collect(), slots: slots.iter().map(slot).collect(), patience_s: 0.1 }
     }
 
+    /// With another time (s) after which silence makes a robot's whereabouts unknown; the default is 0.1 s. It must be
+    /// longer than the robots' ticks.
+    #[must_use]
+    pub fn patience(self, patience_s: f64) -> Self {
+        Self { patience_s, ..self }
+    }
+
     /// Says that a robot can come to a slot: from now on the slot is granted only while its whereabouts are known.
     /// Monitors say it for themselves when they are built; say it for robots of other processes before the first tick.
     pub fn expect(&self, slot: SlotId, robot: RobotSlot) {
