@@ -70,11 +70,11 @@ fn certify(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, tolerance: f64) -> bool {
     let d = if matches!(b, Shape::HalfSpace(_)) { pb.rotation.z_axis() } else { d };
     let tolerance = tolerance + 4e-15 / s.distance;
     let proven = best_plane_gap(d, [pa.rotation, pb.rotation], s.distance - tolerance, |d| plane_gap(a, pa, b, pb, d));
-    // The uphill search sticks on the ridges of cylinders' support functions, by up to 2e-10 seen. The kernel's own
+    // The uphill search sticks on the ridges of cylinders' support functions, by up to 5e-9 seen for thin discs. The kernel's own
     // support planes (`lower_bound`) are held to the full tolerance below.
     let curved = matches!(a, Shape::Cylinder(_)) || matches!(b, Shape::Cylinder(_));
     assert!(
-        s.distance - proven <= if curved { tolerance.max(1e-9) } else { tolerance },
+        s.distance - proven <= if curved { tolerance.max(1e-8) } else { tolerance },
         "not the least: {proven} proven, {}",
         what()
     );

@@ -90,6 +90,38 @@ fn escaping_separates_and_half_the_way_does_not() {
     }
 }
 
+/// Overlap along a direction of the world: no translation along it is shorter.
+fn overlap_along(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
+    let low = pa.transform_point(a.support(pa.inverse_transform_vector(-d)));
+    let high = pb.transform_point(b.support(pb.inverse_transform_vector(d)));
+    (high - low).dot(d)
+}
+
+#[test]
+fn primitives_escape_the_shortest_way() {
+    let mut rng = Rng(28);
+    let kinds = ["sphere", "capsule", "cylinder", "box"];
+    for (first, second) in kinds.iter().flat_map(|a| kinds.map(|b| (*a, b))) {
+        let mut overlapping = 0;
+        while overlapping < cases(300) {
+            let (a, b, pa, pb) = (rng.shape(first), rng.shape(second), rng.pose(0.5), rng.pose(0.5));
+            let Some(out) = escape(&a, &pa, &b, &pb) else { continue };
+            overlapping += 1;
+            let said = || format!("{out:?}\n{a:?} {pa:?}\n{b:?} {pb:?}");
+            assert!(out.depth >= 0.0 && (out.direction.length() - 1.0).abs() < 1e-12, "{}", said());
+            let along = overlap_along(&a, &pa, &b, &pb, out.direction);
+            assert!(along <= out.depth + 1e-13, "{along} does not separate: {}", said());
+            // Brute force: anywhere on the sphere, and near the answer.
+            for k in 0..300 {
+                let near = if k % 2 == 0 { 10_f64.powf(rng.range(-6.0, 0.0)) } else { 100.0 };
+                let Some(d) = (out.direction + rng.vec(near)).try_normalize() else { continue };
+                let other = overlap_along(&a, &pa, &b, &pb, d);
+                assert!(out.depth <= other + 1e-9, "{first} {second}: {other} along {d:?} is shorter: {}", said());
+            }
+        }
+    }
+}
+
 fn holds(fit: &fit::Fit, points: &[Vec3]) {
     for &p in points {
         assert!(project_point(&fit.shape, &fit.in_frame, p).signed_distance <= 0.0, "{p:?} is outside {fit:?}");

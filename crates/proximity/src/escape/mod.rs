@@ -1,6 +1,7 @@
 //! The way out of an overlap.
 
 mod depth;
+mod directions;
 
 use std::sync::Arc;
 
@@ -22,11 +23,14 @@ pub struct Escape {
 /// The shortest translation of `a` that separates it from `b`; `None` where they are apart.
 ///
 /// Moving by `depth * direction` always separates (up to rounding). It is the shortest way
-/// - exactly, for spheres against all convex shapes, for half-spaces, for boxes (15 axes), and for capsules whose axis
-///   is outside the other's core;
-/// - within 1e-9 of the size where cylinders, hulls or deep capsules overlap and the difference of the two has
-///   flat faces there, within about 1e-4 where it is curved;
+/// - exactly, for spheres against all convex shapes, for half-spaces, for boxes (15 axes) and for capsules against
+///   capsules and boxes;
+/// - within 1e-9 of the size for cylinders, by a search that is tested against brute force but not proven;
+/// - for hulls, within 1e-9 of the size where the difference of the two has flat faces, within about 1e-4 where it is
+///   curved;
 /// - for meshes, of their convex hulls: a way out of a notch of a mesh may be shorter than the one returned.
+///
+/// Takes no memory for pairs of spheres, capsules, cylinders, boxes and half-spaces.
 ///
 /// ```
 /// use elbowroom_proximity::{Cuboid, Shape, Sphere, escape};
@@ -106,6 +110,10 @@ fn out(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Escape {
             let best = best_axis(&x, &y, &a_in_b);
             Escape { depth: (-best.gap).max(0.0), direction: b_in_world.transform_vector(best.axis) }
         }
+        _ if core_a.projects_fast() && core_b.projects_fast() => {
+            let (depth, direction) = directions::least_overlap(&core_a, &core_b, &a_in_b);
+            Escape { depth: (depth + ra + rb).max(0.0), direction: b_in_world.transform_vector(direction) }
+        }
         _ => {
             let (depth, direction) = depth::penetration(&core_a, &core_b, &a_in_b);
             Escape { depth: (depth + ra + rb).max(0.0), direction: b_in_world.transform_vector(direction) }
@@ -127,5 +135,9 @@ fn shallow(a: &Shape, b: &Shape, a_in_b: &Pose) -> Option<Escape> {
         return None;
     }
     let direction = (gap.on_a - gap.on_b).try_normalize()?;
-    Some(Escape { depth: (radii[0] + radii[1] - gap.distance).max(0.0), direction })
+    // Witnesses close to each other give a rough direction: what it takes along that direction decides.
+    let (core_a, core_b) = (core_of(a).0, core_of(b).0);
+    let low_of_a = a_in_b.transform_point(core_a.support(-a_in_b.inverse_transform_vector(direction)));
+    let overlap = (core_b.support(direction) - low_of_a).dot(direction);
+    Some(Escape { depth: (radii[0] + radii[1] + overlap.max(-gap.distance)).max(0.0), direction })
 }

@@ -149,7 +149,7 @@ fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f6
     match (a, b) {
         (Shape::Sphere(s), _) => point(s, a_in_world, b, b_in_world, limit),
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
-            Some(capsule(c, a_in_world, b, b_in_world))
+            capsule(c, a_in_world, b, b_in_world, limit)
         }
         (Shape::HalfSpace(_), _) => {
             Some(world(half_space::both(&b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
@@ -187,32 +187,54 @@ fn point(s: &Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64
             return Some(world(gap, [0.0, s.radius], b_in_world).swapped());
         }
     };
-    Some(world(Gap::closed(p, q, size + q.abs().max_element()), [s.radius, radius], b_in_world))
+    closed(p, q, size + q.abs().max_element(), [s.radius, radius], limit, b_in_world)
 }
 
-fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Separation {
+fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
     let axis = segment::Segment {
         middle: b_in_world.inverse_transform_point(a_in_world.translation),
         direction: b_in_world.inverse_transform_vector(a_in_world.rotation.z_axis()),
         half: c.half_length,
     };
+    let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element() + c.half_length;
+    // What a bounding box misses by must not be worth rounding.
+    let reach = limit + c.radius + rounding(2.0 * size);
     let (p, q, radius) = match b {
         Shape::Capsule(o) => {
-            let p = segment::nearest_to_box(&axis, &Cuboid { half_extents: Vec3::Z * o.half_length });
+            let solid = Cuboid { half_extents: Vec3::Z * o.half_length };
+            if axis.misses(solid.half_extents, reach + o.radius) {
+                return None;
+            }
+            let p = segment::nearest_to_box(&axis, &solid);
             (p, o.axis_point(p), o.radius)
         }
         Shape::Cuboid(o) => {
+            if axis.misses(o.half_extents, reach) {
+                return None;
+            }
             let p = segment::nearest_to_box(&axis, o);
             (p, o.nearest(p), 0.0)
         }
         Shape::Cylinder(o) => {
+            if axis.misses(Vec3::new(o.radius, o.radius, o.half_length), reach) {
+                return None;
+            }
             let p = segment::nearest_to_cylinder(&axis, o);
             (p, o.nearest(p), 0.0)
         }
         _ => (axis.middle, axis.middle, 0.0),
     };
-    let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element() + c.half_length;
-    world(Gap::closed(p, q, size + q.abs().max_element()), [c.radius, radius], b_in_world)
+    closed(p, q, size + q.abs().max_element(), [c.radius, radius], limit, b_in_world)
+}
+
+/// From exact witness points of the cores; `None`, without a root, where they are farther apart than the limit.
+#[inline]
+fn closed(p: Vec3, q: Vec3, scale: f64, radii: [f64; 2], limit: f64, b_in_world: &Pose) -> Option<Separation> {
+    let reach = limit + radii[0] + radii[1] + 2.0 * rounding(scale + radii[0] + radii[1]);
+    if (p - q).length_squared() > reach * reach && reach >= 0.0 {
+        return None;
+    }
+    Some(world(Gap::closed(p, q, scale), radii, b_in_world))
 }
 
 /// Two convex shapes of which the second may be a half-space: gap of the cores in the frame of the second, and radii.
@@ -223,8 +245,30 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
     }
     let (core_b, rb) = rounded(b)?;
     let limit = limit + ra + rb;
+    if bounds_miss(&core_a, &core_b, a_in_b, limit) {
+        return None;
+    }
     let gap = projections::distance(&core_a, &core_b, a_in_b, limit)?;
     Some((gap, [ra, rb]))
+}
+
+/// True where the second's bounding box, in its frame, proves the distance above the limit.
+#[inline]
+fn bounds_miss(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> bool {
+    let half_b = match b {
+        Core::Cuboid(c) => c.half_extents,
+        Core::Cylinder(c) => Vec3::new(c.radius, c.radius, c.half_length),
+        _ => return false,
+    };
+    let z = a_in_b.rotation.z_axis().abs();
+    let half_a = match a {
+        Core::Cuboid(c) => a_in_b.rotation.abs_mul(c.half_extents),
+        Core::Cylinder(c) => z * c.half_length + Vec3::splat(c.radius),
+        _ => return false,
+    };
+    let t = a_in_b.translation.abs();
+    let excess = (t - half_a - half_b).max_element();
+    excess - rounding(t.x + t.y + t.z + half_a.max_element() + half_b.max_element()) > limit
 }
 
 /// From the cores' gap in some frame to the shapes' separation in the world.

@@ -21,6 +21,12 @@ impl Segment {
     pub fn at(&self, t: f64) -> Vec3 {
         self.middle + self.direction * t
     }
+
+    /// True where a box around the frame's origin is farther than `reach` along one of its axes.
+    #[inline]
+    pub fn misses(&self, half_extents: Vec3, reach: f64) -> bool {
+        (self.middle.abs() - self.direction.abs() * self.half - half_extents).max_element() > reach
+    }
 }
 
 /// The bracket of the root of a monotone function.
@@ -100,14 +106,20 @@ pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
         Ok(bracket) => bracket,
         Err(t) => return s.at(t),
     };
+    // Most often a few steps from the place nearest to the axis are enough.
+    let across2 = d.x * d.x + d.y * d.y;
+    let crossing = if across2 > 0.0 { -(c.x * d.x + c.y * d.y) / across2 } else { 0.0 };
+    let start = crossing.max(-0.9 * s.half).min(0.9 * s.half);
+    if let Ok(t) = newton(s, solid, &mut bracket, start, QUICK) {
+        return s.at(t);
+    }
     if d.z != 0.0 {
         bracket.tighten((h - c.z) / d.z, g);
         bracket.tighten((-h - c.z) / d.z, g);
     }
-    let across2 = d.x * d.x + d.y * d.y;
     if across2 > 0.0 {
         // Nearest to the axis, and where the segment passes the lateral surface.
-        let t0 = -(c.x * d.x + c.y * d.y) / across2;
+        let t0 = crossing;
         bracket.tighten(t0, g);
         let across = across2.sqrt();
         let off_axis = (c.x * d.y - c.y * d.x).abs() / across;
@@ -117,19 +129,25 @@ pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
             bracket.tighten(t0 + half_chord, g);
         }
     }
-    s.at(newton(s, solid, &mut bracket))
+    let middle = 0.5 * (bracket.lo + bracket.hi);
+    let (Ok(t) | Err(t)) = newton(s, solid, &mut bracket, middle, 60);
+    s.at(t)
 }
 
-/// Newton steps on `g` inside the bracket, halving it where they leave.
-fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket) -> f64 {
+/// Steps before the bracket is tightened by the places where `g` changes form.
+const QUICK: usize = 8;
+
+/// Newton steps on `g` inside the bracket, halving it where they leave; the last place as an error if not at its end.
+#[inline]
+fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket, start: f64, steps: usize) -> Result<f64, f64> {
     let d = s.direction;
-    let mut t = 0.5 * (bracket.lo + bracket.hi);
-    for _ in 0..60 {
+    let mut t = start;
+    for _ in 0..steps {
         let p = s.at(t);
         let excess = p - solid.nearest(p);
         let value = excess.dot(d);
         if value == 0.0 {
-            return t;
+            return Ok(t);
         }
         if value > 0.0 {
             bracket.hi = t;
@@ -150,8 +168,8 @@ fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket) -> f64 {
         let done = (next - t).abs() <= 4.0 * f64::EPSILON * (s.half + t.abs());
         t = next;
         if done {
-            break;
+            return Ok(t);
         }
     }
-    t
+    Err(t)
 }
