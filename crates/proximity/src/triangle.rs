@@ -55,7 +55,7 @@ pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     }
     let candidates = [nearest_on_segment(p, a, b), nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)];
     let squared = candidates.map(|q| (q - p).length_squared());
-    let first = if squared[1] < squared[0] { 1 } else { 0 };
+    let first = usize::from(squared[1] < squared[0]);
     candidates[if squared[2] < squared[first] { 2 } else { first }]
 }
 

@@ -1,4 +1,4 @@
-//! Box against box: the separating axes of S1, eqs. 12-13 (Gottschalk, Lin, Manocha, "OBBTree", 1996).
+//! Box against box: the separating axes of S1, eqs. 12-13 (Gottschalk, Lin, Manocha, "`OBBTree`", 1996).
 
 use elbowroom_spatial::{Pose, Vec3};
 

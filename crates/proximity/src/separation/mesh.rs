@@ -135,10 +135,10 @@ fn descend(
 ) {
     if bvh.nodes[node].count > 0 {
         for &i in bvh.leaf(node) {
-            if let Some(gap) = leaf(i as usize, best.limit) {
-                if !(gap.lower > best.limit) {
-                    best.offer(gap);
-                }
+            if let Some(gap) = leaf(i as usize, best.limit)
+                && !(gap.lower > best.limit)
+            {
+                best.offer(gap);
             }
         }
         return;
@@ -159,14 +159,17 @@ pub(super) fn mesh_mesh(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, limit: f64) -> 
     let scale = 3.0 * (size(a) + size(b)) + b_in_a.translation.abs().max_element();
     let a_in_b = b_in_a.inverse();
     let mut search = Pair { a, b, b_in_a: *b_in_a, a_in_b, scale, best: Best::new(limit, 0.0) };
-    search.descend(0, 0, search.bound(0, 0));
-    if !search.best.done() {
-        let swallowed = b.parts.iter().map(|&p| b_in_a.transform_point(p)).find(|&p| a.contains(p));
-        let swallowing = || a.parts.iter().copied().find(|&p| b.contains(a_in_b.transform_point(p)));
-        if let Some(p) = swallowed.or_else(swallowing) {
-            return Some(Gap::touching(p, p));
-        }
+    let bound = search.bound(0, 0);
+    if bound > limit {
+        return None;
     }
+    // Parts that one solid swallows are found by a few rays; the search would not stop early for them.
+    let swallowed = b.parts.iter().map(|&p| b_in_a.transform_point(p)).find(|&p| a.contains(p));
+    let swallowing = || a.parts.iter().copied().find(|&p| b.contains(a_in_b.transform_point(p)));
+    if let Some(p) = swallowed.or_else(swallowing) {
+        return Some(Gap::touching(p, p));
+    }
+    search.descend(0, 0, bound);
     search.best.finish()
 }
 

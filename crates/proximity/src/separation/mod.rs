@@ -147,7 +147,7 @@ pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
 #[inline]
 fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
     match (a, b) {
-        (Shape::Sphere(s), _) => point(s, a_in_world, b, b_in_world, limit),
+        (Shape::Sphere(s), _) => point(*s, a_in_world, b, b_in_world, limit),
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
             capsule(c, a_in_world, b, b_in_world, limit)
         }
@@ -172,7 +172,7 @@ fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f6
 
 /// A sphere is its centre with a radius, and the centre's distance has a closed form.
 #[inline]
-fn point(s: &Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+fn point(s: Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
     let p = b_in_world.inverse_transform_point(a_in_world.translation);
     let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element();
     let (q, radius) = match b {

@@ -41,6 +41,9 @@ pub(super) fn quickhull(points: &[Vec3]) -> Result<Faces, HullError> {
     hull.finish(points)
 }
 
+/// Faces in sight of a point, and the directed edges around them.
+type Horizon = (Vec<u32>, Vec<(u32, u32)>);
+
 struct Builder<'a> {
     points: &'a [Vec3],
     tolerance: f64,
@@ -129,7 +132,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The connected faces that `eye` is above, and the directed edges around them.
-    fn horizon(&self, face: u32, eye: u32) -> Result<(Vec<u32>, Vec<(u32, u32)>), HullError> {
+    fn horizon(&self, face: u32, eye: u32) -> Result<Horizon, HullError> {
         let mut visible = vec![face];
         let mut seen = std::collections::HashSet::from([face]);
         let mut border = Vec::new();

@@ -16,6 +16,9 @@ pub(super) const WANTED: f64 = 1e-13;
 /// Rounds before the question goes to GJK.
 const ROUNDS: usize = 12;
 
+/// Bounds closer than this fraction of the distance are likely apart for a wrong direction only.
+const NEARLY: f64 = 1e-6;
+
 /// Rounds after it.
 const ROUNDS_AFTER: usize = 40;
 
@@ -89,6 +92,14 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<
 /// GJK from where the projections have stopped, then projections from where GJK has stopped.
 #[cold]
 fn finish(cores: &Cores, before: Option<Gap>, start: Vec3, limit: f64) -> Option<Gap> {
+    if let Some(mut gap) = before
+        && gap.distance - gap.lower <= NEARLY * gap.distance
+    {
+        gap.lower = gap.lower.max(features::lower_bound(cores, gap.on_a - gap.on_b)).min(gap.distance);
+        if gap.distance - gap.lower <= cores.wanted {
+            return (!(gap.lower > limit)).then_some(gap);
+        }
+    }
     let direction = before.map_or(start - cores.b.middle(), |g| g.on_a - g.on_b);
     let mut gap = gjk::distance(cores.a, cores.b, cores.a_in_b, direction, limit)?;
     if gap.distance - gap.lower <= cores.wanted && gap.lower > 0.0 {
@@ -124,7 +135,8 @@ fn finish(cores: &Cores, before: Option<Gap>, start: Vec3, limit: f64) -> Option
 #[inline]
 fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
     let mut best = Gap { distance: f64::INFINITY, lower: 0.0, on_a: start, on_b: start };
-    let (mut p, mut doubts) = (start, TRUST.len() - 1);
+    // The start is anywhere, so its step is not judged, and is a plain one.
+    let (mut p, mut doubts, mut judged) = (start, TRUST.len() - 1, false);
     for _ in 0..rounds {
         let onto_b = cores.b.project(p);
         let q = onto_b.point;
@@ -147,12 +159,15 @@ fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
             best.lower = best.lower.min(best.distance);
             return Outcome::Closed(best);
         }
-        if better || doubts == TRUST.len() - 1 {
-            p = p + newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, onto_a.point - p, TRUST[doubts]);
-            doubts = if better { 0 } else { doubts };
+        if better {
+            doubts = if judged { 0 } else { doubts };
+            let moved = onto_a.point - p;
+            p += newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, moved, TRUST[doubts]);
+            (doubts, judged) = (if doubts == TRUST.len() - 1 { 0 } else { doubts }, true);
+        } else if judged && doubts + 1 < TRUST.len() {
+            (p, doubts, judged) = (best.on_a, doubts + 1, false);
         } else {
-            doubts += 1;
-            p = best.on_a;
+            break;
         }
     }
     best.lower = best.lower.min(best.distance);
