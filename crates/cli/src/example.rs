@@ -6,7 +6,7 @@ use elbowroom::cell::{Cell, RunOptions, report};
 use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
-use crate::output::{Failure, Verdict, cannot_write, color, note, print, width};
+use crate::output::{Failure, Verdict, cannot_write, color, myself, note, print, width};
 use crate::run::{with_progress, write_files};
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
@@ -28,15 +28,16 @@ pub(crate) fn figure_12() -> Result<Verdict, Failure> {
     let passes =
         if off.recording.regions.iter().any(|r| r.entered) { "passes through it" } else { "stays out as well" };
     let report = dir.join("report.html");
-    print(
-        &format!(
-            "\nWithout the monitor the same program {passes}; the report shows both.\n\
-         Report:  {}\nCell:    {}   change it, then: elbowroom run {0}\n",
-            report.display(),
-            file.display(),
-        )
-        .replace("elbowroom run {0}", &format!("elbowroom run {} --out {OUT}", file.display())),
-    )?;
+    print(&format!(
+        "\nWithout the monitor the same program {passes}; the report shows both.\n\
+         Report:  {}   (open it in a browser)\n\
+         Cell:    {}\n\
+         Change the cell, then: {} run {1} --out {}\n",
+        report.display(),
+        file.display(),
+        myself(),
+        dir.display(),
+    ))?;
     Ok(if on.bad_news() { Verdict::Bad } else { Verdict::Good })
 }
 
@@ -45,8 +46,9 @@ pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
     if let Some(dir) = &args.dir {
         extract(dir)?;
         print(&format!(
-            "Copied to {}; try: elbowroom run {}\n",
+            "Copied to {}; try: {} run {}\n",
             dir.display(),
+            myself(),
             dir.join("figure12/cell.toml").display()
         ))?;
         return Ok(Verdict::Good);
@@ -56,7 +58,7 @@ pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
         let first = text.lines().next().unwrap_or("").trim_start_matches(['#', ' ']);
         print(&format!("{:14} {first}\n", example.path().display()))?;
     }
-    print("\nelbowroom example DIR copies them.\n")?;
+    print(&format!("\n{} example DIR copies them.\n", myself()))?;
     Ok(Verdict::Good)
 }
 

@@ -15,11 +15,11 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
         InspectOptions { srdf: args.srdf.clone(), unit: args.unit.map(LengthUnit::from), tip: args.tip.clone() };
     let inspection = Inspection::of(&args.model, &options)?;
     if let Some(states) = &args.states {
-        inspection.warnings.iter().for_each(note);
+        inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return poses(&inspection, states);
     }
     if args.json {
-        inspection.warnings.iter().for_each(note);
+        inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         print_json(&inspection)?;
     } else {
         print(&inspection.to_string())?;

@@ -27,12 +27,11 @@ fn main() -> ExitCode {
         Some(Command::Completions { shell }) => completions(shell),
     };
     match answer {
-        Ok(Verdict::Good) => ExitCode::SUCCESS,
+        // Whoever reads our output and leaves has read enough: `elbowroom … | head` is no failure.
+        Ok(Verdict::Good) | Err(Failure::Closed) => ExitCode::SUCCESS,
         Ok(Verdict::Bad) => ExitCode::from(1),
-        // Whoever reads our output has read enough: `elbowroom … | head` is no failure.
-        Err(Failure::Closed) => ExitCode::SUCCESS,
         Err(Failure::Wrong(message)) => {
-            eprintln!("elbowroom: {message}");
+            output::note(format_args!("elbowroom: {message}"));
             ExitCode::from(2)
         }
     }

@@ -42,9 +42,14 @@ pub(crate) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure
     print(&format!("{text}\n"))
 }
 
-/// Tells the user something beside the answer.
+/// Tells the user something beside the answer. Where nobody listens that is no failure.
 pub(crate) fn note(message: impl Display) {
-    eprintln!("{message}");
+    let _ = writeln!(io::stderr().lock(), "{message}");
+}
+
+/// What to type to call this program again: under `cargo run` it is on no search path.
+pub(crate) fn myself() -> &'static str {
+    if std::env::var_os("CARGO").is_some() { "cargo run --release --" } else { "elbowroom" }
 }
 
 /// Says which file could not be written.

@@ -15,7 +15,7 @@ use crate::output::{Failure, Verdict, cannot_write, color, note, print, print_js
 
 pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
     let cell = Cell::load(&args.cell)?;
-    cell.warnings.iter().for_each(note);
+    cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let options = RunOptions { monitored: !args.no_monitor, repeat: args.repeat, ..RunOptions::default() };
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(note);

@@ -23,7 +23,9 @@ pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
     let angle = |radians: f64| radians / cell.units.angle.to_radians(1.0);
     let height = args.height.map(|h| cell.units.length.to_metres(h));
     let region = region(args, &points, height)?;
-    print(&toml(&region, args.warning, &length, &angle))?;
+    let text = toml(&region, args.warning, &length, &angle);
+    accepted(&text, &cell, args)?;
+    print(&text)?;
     Ok(Verdict::Good)
 }
 
@@ -68,10 +70,9 @@ fn region(args: &TeachArgs, points: &[Vec3], height: Option<f64>) -> Result<Regi
         }
         (shape, ..) => {
             let needs = match shape {
-                TaughtShape::Sphere => "2 states and no --height",
                 TaughtShape::Sphere4 => "4 states and no --height",
                 TaughtShape::Cylinder | TaughtShape::Plane => "3 states and no --height",
-                TaughtShape::Box => "2 states and no --height",
+                TaughtShape::Sphere | TaughtShape::Box => "2 states and no --height",
                 TaughtShape::Box3 => "3 states and --height",
             };
             let message = format!("{}: {} states; {shape:?} needs {needs}", args.states.display(), points.len());
@@ -81,36 +82,46 @@ fn region(args: &TeachArgs, points: &[Vec3], height: Option<f64>) -> Result<Regi
     result.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
 }
 
+/// Nothing is printed that the cell file's reader would refuse.
+fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
+    let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
+    let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
+    let Err(e) = Cell::parse(&args.states, &(head + text)) else { return Ok(()) };
+    let hint = e.write_instead.map(|h| format!("\n  write: {h}")).unwrap_or_default();
+    Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.what)))
+}
+
 /// The region as it stands in a cell file.
 fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn Fn(f64) -> f64) -> String {
     let mut text = format!("\n[region.{}]\n", key(&region.name));
     let mut line = |key: &str, value: String| {
         let _ = writeln!(text, "{key} = {value}");
     };
-    // A tenth of a micrometre is beyond any robot.
-    let number = |v: f64| format!("{}", (v * 1e4).round() / 1e4 + 0.0);
-    let list = |v: [f64; 3]| format!("[{}]", v.map(number).join(", "));
-    let point = |p: Vec3| list(p.to_array().map(length));
+    // A tenth of a micrometre is beyond any robot; so are seven digits of an angle.
+    let rounded = |v: f64, per_unit: f64| format!("{}", (v * per_unit).round() / per_unit + 0.0);
+    let number = |metres: f64| rounded(length(metres), (1e7 / length(1.0)).round());
+    let point = |p: Vec3| format!("[{}]", p.to_array().map(number).join(", "));
+    let rpy = |r: [f64; 3]| format!("[{}]", r.map(|v| rounded(angle(v), 1e7)).join(", "));
     let at = region.anchor.translation;
     let rotation = region.anchor.rotation;
     match &region.shape {
         Shape::Sphere(s) => {
             line("shape", "\"sphere\"".into());
             line("centre", point(at));
-            line("radius", number(length(s.radius)));
+            line("radius", number(s.radius));
         }
         Shape::Cylinder(c) => {
             line("shape", "\"cylinder\"".into());
             line("base", point(at));
-            line("radius", number(length(c.radius)));
-            line("height", number(length(2.0 * c.half_length)));
+            line("radius", number(c.radius));
+            line("height", number(2.0 * c.half_length));
         }
         Shape::Cuboid(c) => {
             line("shape", "\"box\"".into());
             line("base", point(at));
             line("size", point(c.half_extents * 2.0));
             if rotation.angle() > 0.0 {
-                line("rpy", list(rotation.to_rpy().map(angle)));
+                line("rpy", rpy(rotation.to_rpy()));
             }
         }
         _ => {
@@ -121,7 +132,7 @@ fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn 
         }
     }
     line("kind", "\"forbidden\"".into());
-    line("warning", number(warning));
+    line("warning", warning.to_string());
     text
 }
 

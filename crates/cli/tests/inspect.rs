@@ -1,0 +1,99 @@
+//! `elbowroom inspect`: what it says about the example arm.
+
+mod common;
+
+use common::{elbowroom, examples, keys};
+
+fn ns16() -> String {
+    examples().join("models/ns16/ns16.urdf").to_str().unwrap().to_owned()
+}
+
+#[test]
+fn json_has_the_documented_keys_and_the_table_reproduces_the_chain() {
+    let json = elbowroom(&examples(), &["inspect", &ns16(), "--json"]).expect(0).json();
+    let keys_there = keys(&json);
+    for key in ["links", "joints", "meshes", "dh", "dh_residual", "dh_tip", "warnings"] {
+        assert!(keys_there.contains(&key), "{key} is missing: {keys_there:?}");
+    }
+    assert_eq!(json["links"].as_array().map(Vec::len), Some(8));
+    assert_eq!(json["dh_tip"], "tool0");
+    let residual = json["dh_residual"].as_f64().unwrap();
+    assert!((0.0..1e-9).contains(&residual), "{residual}");
+    let meshes = json["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 7);
+    for mesh in meshes {
+        assert_eq!((mesh["closed"].as_bool(), mesh["degenerate"].as_u64()), (Some(true), Some(0)), "{mesh}");
+        assert!(mesh["triangles"].as_u64().unwrap() > 100);
+        assert!(mesh["link"].is_string());
+        let extent: Vec<f64> =
+            mesh["extent_m"].as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect();
+        assert!(extent.len() == 3 && extent.iter().all(|e| (0.005..2.0).contains(e)), "metres: {extent:?}");
+    }
+    let rows = json["dh"].as_array().unwrap();
+    assert!(rows.iter().all(|r| keys(r) == ["a", "alpha", "b", "d", "joint", "theta"]));
+    let moving: Vec<&str> = rows.iter().filter_map(|r| r["joint"].as_str()).collect();
+    assert_eq!(moving, ["joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6"]);
+}
+
+#[test]
+fn states_give_a_row_per_state_and_link() {
+    let dir = tempfile::tempdir().unwrap();
+    // Columns in another order, and joint_1 a quarter turn in the second row.
+    let states = "joint_6,joint_5,joint_4,joint_3,joint_2,joint_1\n0,0,0,0,0,0\n0,0,0,0,0,1.5707963267948966\n";
+    std::fs::write(dir.path().join("q.csv"), states).unwrap();
+    let answer = elbowroom(dir.path(), &["inspect", &ns16(), "--states", "q.csv"]).expect(0);
+    let mut lines = answer.stdout.lines();
+    assert_eq!(lines.next(), Some("index,link,r11,r12,r13,r21,r22,r23,r31,r32,r33,x_m,y_m,z_m"));
+    let rows: Vec<Vec<&str>> = lines.map(|l| l.split(',').collect()).collect();
+    assert_eq!(rows.len(), 2 * 8);
+    assert!(rows.iter().all(|r| r.len() == 14));
+    let tool = |index: &str| {
+        let row = rows.iter().find(|r| r[0] == index && r[1] == "tool0").unwrap();
+        row[11..].iter().map(|v| v.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    let (straight, turned) = (tool("0"), tool("1"));
+    assert!((straight[0] - 1.044).abs() < 1e-9 && (straight[2] - 1.485).abs() < 1e-9, "{straight:?}");
+    assert!((turned[1] - 1.044).abs() < 1e-9 && turned[0].abs() < 1e-9, "{turned:?}");
+}
+
+#[test]
+fn states_with_a_wrong_column_or_number_name_the_line() {
+    let dir = tempfile::tempdir().unwrap();
+    for (states, part) in [
+        ("joint_1,joint_2,joint_3,joint_4,joint_5,elbow\n0,0,0,0,0,0\n", "joint_6"),
+        ("joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n0,0,x,0,0,0\n", "q.csv:3"),
+        ("joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0\n", "q.csv:2"),
+        ("joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,NaN,0,0,0\n", "q.csv:2"),
+        ("", "q.csv"),
+    ] {
+        std::fs::write(dir.path().join("q.csv"), states).unwrap();
+        let answer = elbowroom(dir.path(), &["inspect", &ns16(), "--states", "q.csv"]).expect(2);
+        assert!(answer.stderr.contains(part), "{states:?}: {}", answer.stderr);
+        assert_eq!(answer.stdout, "");
+    }
+}
+
+#[test]
+fn a_unit_scales_a_mesh_and_an_unknown_tip_is_refused() {
+    let torch = examples().join("models/tools/torch.stl");
+    let torch = torch.to_str().unwrap();
+    let extent = |args: &[&str]| {
+        let json = elbowroom(&examples(), args).expect(0).json();
+        json["meshes"][0]["extent_m"][2].as_f64().unwrap()
+    };
+    let metres = extent(&["inspect", torch, "--json"]);
+    let millimetres = extent(&["inspect", torch, "--json", "--unit", "mm"]);
+    assert!((metres - 1000.0 * millimetres).abs() < 1e-6 * metres, "{metres} {millimetres}");
+    let answer = elbowroom(&examples(), &["inspect", &ns16(), "--tip", "hand"]).expect(2);
+    assert!(answer.stderr.contains("hand"), "{}", answer.stderr);
+    let answer = elbowroom(&examples(), &["inspect", torch, "--states", torch]).expect(2);
+    assert!(answer.stderr.contains("no joints"), "{}", answer.stderr);
+}
+
+#[test]
+fn the_table_for_people_names_every_joint_and_mesh() {
+    let answer = elbowroom(&examples(), &["inspect", &ns16()]).expect(0);
+    for word in ["joint_1", "joint_6", "base_link", "link_6", "residual", "closed"] {
+        assert!(answer.stdout.contains(word), "{word}: {}", answer.stdout);
+    }
+}

@@ -1,0 +1,184 @@
+//! `elbowroom run`: exit status, JSON, files.
+
+mod common;
+
+use common::{SWING, elbowroom, examples, keys, swing, with_cell};
+
+#[test]
+fn a_guarded_arm_stops_before_the_region() {
+    let dir = swing();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
+    assert!(answer.stdout.contains("before post"), "{}", answer.stdout);
+    assert!(answer.stdout.contains("Not a certified safety device."));
+    assert_eq!(answer.stderr, "");
+}
+
+#[test]
+fn without_the_monitor_it_enters_and_that_is_bad_news() {
+    let dir = swing();
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--no-monitor", "--json"]).expect(1).json();
+    assert_eq!(json["regions"][0]["entered"], true);
+    assert_eq!(json["robots"][0]["finished"], true);
+}
+
+#[test]
+fn a_clear_way_is_finished() {
+    let dir = with_cell(&SWING.replace("[90, 0]", "[-90, 0]"));
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    assert_eq!(json["robots"][0]["finished"], true);
+    assert_eq!(json["robots"][0]["min_override"], 1.0);
+}
+
+#[test]
+fn a_collision_is_bad_news() {
+    let text = SWING.replace("guards", "kind = \"monitored\"\nguards")
+        + "\n[object.wall]\nshape = \"box\"\nat = [0, 650, 0]\nsize = [200, 400, 200]\n";
+    let links = "links = [[], { capsule = { from = [0, 0, 0], to = [-300, 0, 0], radius = 40 } }]\n";
+    let dir = with_cell(&text.replace("\n[region", &format!("{links}\n[region")));
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(1).json();
+    let collision = &json["robots"][0]["collisions"][0];
+    assert_eq!(keys(collision), ["a", "b", "t_s"]);
+    assert_eq!((collision["a"].as_str(), collision["b"].as_str()), (Some("arm/link_2"), Some("wall")));
+    assert!(collision["t_s"].as_f64().unwrap() > 0.5);
+}
+
+#[test]
+fn json_has_the_documented_keys_and_types() {
+    let dir = swing();
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    assert_eq!(keys(&json), ["cell", "checksum", "duration_s", "regions", "robots", "tick_ns", "ticks"]);
+    assert_eq!(json["cell"], "cell");
+    let checksum = json["checksum"].as_str().unwrap();
+    assert!(checksum.len() == 64 && checksum.chars().all(|c| c.is_ascii_hexdigit()), "{checksum}");
+    assert!(json["duration_s"].is_f64() && json["ticks"].is_u64());
+    assert_eq!(keys(&json["tick_ns"]), ["max", "p50", "p99"]);
+    assert!(json["tick_ns"]["p50"].as_u64() <= json["tick_ns"]["max"].as_u64());
+    let robot = &json["robots"][0];
+    assert_eq!(keys(robot), ["collisions", "finished", "min_override", "name", "stopped_s"]);
+    assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));
+    assert!(robot["stopped_s"].as_f64().unwrap() >= 1.0, "a run ends after a second of rest");
+    assert!(robot["min_override"].as_f64().unwrap() < 0.01);
+    assert_eq!(robot["collisions"].as_array().map(Vec::len), Some(0));
+    let region = &json["regions"][0];
+    assert_eq!(keys(region), ["entered", "kind", "min_distance_m", "name", "warned_s"]);
+    assert_eq!((region["kind"].as_str(), region["entered"].as_bool()), (Some("forbidden"), Some(false)));
+    let closest = region["min_distance_m"].as_f64().unwrap();
+    assert!((0.0..=0.002).contains(&closest), "{closest}");
+    assert!(region["warned_s"].as_f64().unwrap() > 1.0);
+}
+
+#[test]
+fn the_checksum_that_a_run_prints_is_the_one_the_cell_file_takes() {
+    let dir = swing();
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    let sum = json["checksum"].as_str().unwrap();
+    let sealed = format!("checksum = \"{sum}\"\n{SWING}");
+    std::fs::write(dir.path().join("cell.toml"), &sealed).unwrap();
+    elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
+    std::fs::write(dir.path().join("cell.toml"), sealed.replace("radius = 50", "radius = 51")).unwrap();
+    let refused = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2);
+    assert!(refused.stderr.contains("cell.toml:1:"), "{}", refused.stderr);
+}
+
+#[test]
+fn a_mistake_names_file_and_line_and_what_to_write() {
+    let dir = with_cell(&SWING.replace("radius = 50", "radios = 50"));
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(2);
+    assert_eq!(answer.stdout, "", "no half document");
+    assert!(answer.stderr.contains("cell.toml:10:"), "{}", answer.stderr);
+    assert!(answer.stderr.contains("radius"), "{}", answer.stderr);
+}
+
+#[test]
+fn files_have_the_documented_columns_and_a_row_per_tick() {
+    let dir = swing();
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"]).expect(0).json();
+    let read = |name: &str| std::fs::read_to_string(dir.path().join("out").join(name)).unwrap();
+    let trace = read("trace.csv");
+    let mut rows = trace.lines();
+    assert_eq!(rows.next(), Some("t_s,robot,q1,q2,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m"));
+    let rows: Vec<Vec<&str>> = rows.map(|r| r.split(',').collect()).collect();
+    assert_eq!(rows.len() as u64, json["ticks"].as_u64().unwrap());
+    assert!(rows.iter().all(|r| r.len() == 11 && r[1] == "arm"));
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    assert_eq!(number(rows[0][0]), 0.0);
+    let last = rows.last().unwrap();
+    assert!((number(last[0]) - json["duration_s"].as_f64().unwrap()).abs() < 1e-9);
+    // The columns belong together: radians, metres, and the TCP where the joints put it.
+    for row in rows.iter().step_by(50) {
+        let (q1, q2) = (number(row[2]), number(row[3]));
+        let x = 0.4 * q1.cos() + 0.3 * (q1 + q2).cos();
+        let y = 0.4 * q1.sin() + 0.3 * (q1 + q2).sin();
+        assert!((x - number(row[4])).abs() < 1e-9 && (y - number(row[5])).abs() < 1e-9, "{row:?}");
+        if row[9] == "post" {
+            let to_axis = (x - 0.495).hypot(y - 0.495);
+            assert!((to_axis - 0.05 - number(row[10])).abs() < 1e-9, "{row:?}");
+        } else {
+            assert_eq!((row[9], number(row[8])), ("", 1.0), "{row:?}");
+        }
+    }
+    let events = read("events.csv");
+    assert_eq!(events.lines().next(), Some("t_s,robot,region,event"));
+    let warned: Vec<&str> = events.lines().filter(|l| l.ends_with(",arm,post,warn_in")).collect();
+    assert_eq!(warned.len(), 1, "{events}");
+    assert!(!events.contains("inside_in"), "{events}");
+}
+
+#[test]
+fn the_report_needs_no_network() {
+    let dir = swing();
+    elbowroom(dir.path(), &["run", "cell.toml", "--out", "deep/er", "--compare"]).expect(0);
+    let html = std::fs::read_to_string(dir.path().join("deep/er/report.html")).unwrap();
+    assert!(html.starts_with("<!DOCTYPE html>") || html.starts_with("<!doctype html>"));
+    for (tag, attribute) in [("script", "src"), ("link", "href"), ("img", "src"), ("iframe", "src")] {
+        for element in html.split(&format!("<{tag} ")).skip(1) {
+            let element = element.split('>').next().unwrap();
+            for quote in ['"', '\''] {
+                let fetch = format!("{attribute}={quote}http");
+                assert!(!element.contains(&fetch), "<{tag} {element}>");
+            }
+        }
+    }
+    assert!(html.contains("control off"), "--compare shows the other run");
+    assert!(html.contains("not a certified safety device"));
+}
+
+#[test]
+fn options_that_contradict_are_refused() {
+    let dir = swing();
+    for args in [
+        &["run"][..],
+        &["run", "cell.toml", "--compare"],
+        &["run", "cell.toml", "--out", "o", "--compare", "--no-monitor"],
+        &["run", "cell.toml", "--repeat", "0"],
+        &["walk", "cell.toml"],
+    ] {
+        let answer = elbowroom(dir.path(), args).expect(2);
+        assert!(answer.stderr.contains("Usage") || answer.stderr.contains("--help"), "{}", answer.stderr);
+    }
+}
+
+#[test]
+fn repeating_takes_that_many_times_as_long() {
+    let dir = with_cell(&SWING.replace("{ move = \"joint\", to = [90, 0], speed = 50 }", "{ wait = 0.25 }"));
+    let time = |n: &str| {
+        let json = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--repeat", n]).expect(0).json();
+        json["duration_s"].as_f64().unwrap()
+    };
+    let (once, thrice) = (time("1"), time("3"));
+    assert!((thrice - once - 0.5).abs() < 0.05, "{once} {thrice}");
+}
+
+#[test]
+fn every_example_runs_free_of_trouble() {
+    for name in ["conveyor", "exchange", "figure12", "tool_box"] {
+        let cell = examples().join(name).join("cell.toml");
+        let answer = elbowroom(&examples(), &["run", cell.to_str().unwrap(), "--json"]).expect(0);
+        let json = answer.json();
+        for region in json["regions"].as_array().unwrap().iter().filter(|r| r["kind"] != "monitored") {
+            assert_eq!(region["entered"], false, "{name}: {region}");
+        }
+        let finished = json["robots"].as_array().unwrap().iter().all(|r| r["finished"] == true);
+        assert_eq!(finished, name != "figure12", "{name}: {json}");
+    }
+}
