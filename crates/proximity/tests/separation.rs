@@ -4,7 +4,7 @@
 mod common;
 
 use common::{CONVEX, Rng, cases};
-use elbowroom_proximity::{Shape, collides, project_point, separation, separation_within, within};
+use elbowroom_proximity::{Cuboid, Shape, Sphere, collides, project_point, separation, separation_within, within};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// Distance of the two support planes perpendicular to `d`, which points from b to a.
@@ -39,7 +39,7 @@ fn uphill(mut d: Vec3, mut best: f64, wanted: f64, gap: impl Fn(Vec3) -> f64) ->
         let (x, y) = (d.any_perpendicular(), d.cross(d.any_perpendicular()));
         let mut improved = false;
         for k in 0..8 {
-            let (sin, cos) = (phase + k as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
+            let (sin, cos) = (phase + f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
             let turned = (d + (x * cos + y * sin) * step).try_normalize().unwrap();
             let value = gap(turned);
             if value > best {
@@ -200,7 +200,7 @@ fn a_limit_changes_nothing_but_what_is_too_far() {
 
 #[test]
 fn growing_a_shape_never_increases_the_distance() {
-    use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Sphere};
+    use elbowroom_proximity::{Capsule, Cylinder};
     let mut rng = Rng(11);
     for _ in 0..cases(3_000) {
         let grow = 1.0 + rng.unit();
@@ -237,7 +237,7 @@ fn degenerate_sizes_and_places_answer() {
     let places = [0.0, 1e-9, 2.0, 3.0, 2e6];
     let turns = [Rotation::IDENTITY, Rotation::from_rpy(0.0, 1e-9, 0.0), Rotation::from_rpy(1.0, 2.0, 3.0)];
     let all = |r: f64| {
-        use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Sphere};
+        use elbowroom_proximity::{Capsule, Cylinder};
         [
             Shape::Sphere(Sphere { radius: r }),
             Shape::Capsule(Capsule { half_length: r, radius: 0.5 * r }),
@@ -264,7 +264,7 @@ fn degenerate_sizes_and_places_answer() {
 
 #[test]
 fn touching_counts_as_contact() {
-    use elbowroom_proximity::{Cuboid, Cylinder};
+    use elbowroom_proximity::Cylinder;
     let cube = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) });
     let can = Shape::Cylinder(Cylinder { half_length: 0.5, radius: 0.5 });
     for direction in [Vec3::X, -Vec3::Y, Vec3::Z] {
@@ -301,7 +301,6 @@ fn what_is_not_a_number_is_never_free() {
                 }
             }
         }
-        use elbowroom_proximity::{Cuboid, Sphere};
         let far = Pose::from_translation(Vec3::splat(9.0));
         for broken in
             [Shape::Sphere(Sphere { radius: bad }), Shape::Cuboid(Cuboid { half_extents: Vec3::new(1.0, bad, 1.0) })]

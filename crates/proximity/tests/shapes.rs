@@ -138,7 +138,9 @@ fn fits_enclose_every_point_and_are_tight() {
         let hull = ConvexHull::from_points(&points).unwrap();
         let fits = [fit::capsule(&points), fit::cuboid(&points), fit::sphere(&points), fit::tightest(&points)];
         let fits = fits.map(Option::unwrap);
-        fits.iter().for_each(|f| holds(f, &points));
+        for fit in &fits {
+            holds(fit, &points);
+        }
         let ratio = fits.each_ref().map(|f| f.volume / hull.volume());
         println!("cloud {case}: capsule {:.2}, box {:.2}, sphere {:.2} times the hull", ratio[0], ratio[1], ratio[2]);
         assert!(ratio[1] < 1.6, "a cloud filled evenly from a box is {} times looser", ratio[1]);

@@ -125,23 +125,26 @@ fn rank(s: &Shape) -> u8 {
     }
 }
 
-/// True where no number of shape or pose is NaN or infinite, and no dimension is negative.
+/// Lengths from here on are as good as infinite: their squares would overflow.
+const TOO_LARGE: f64 = 1e150;
+
+/// True where no number of shape or pose is NaN, infinite or too large, and no dimension is negative.
 #[inline]
 pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
-    let (t, r) = (pose.translation, pose.rotation);
-    let sum = t + r.x_axis() + r.y_axis() + r.z_axis();
+    let (t, r) = (pose.translation.abs(), pose.rotation);
+    let axes = r.x_axis() + r.y_axis() + r.z_axis();
     let dimensions = match s {
-        Shape::Sphere(s) => s.radius >= 0.0 && s.radius.is_finite(),
-        Shape::Capsule(Capsule { half_length: h, radius: r }) => *h >= 0.0 && *r >= 0.0 && (h + r).is_finite(),
-        Shape::Cylinder(c) => c.half_length >= 0.0 && c.radius >= 0.0 && (c.half_length + c.radius).is_finite(),
+        Shape::Sphere(s) => s.radius >= 0.0 && s.radius < TOO_LARGE,
+        Shape::Capsule(Capsule { half_length: h, radius: r }) => *h >= 0.0 && *r >= 0.0 && h + r < TOO_LARGE,
+        Shape::Cylinder(c) => c.half_length >= 0.0 && c.radius >= 0.0 && c.half_length + c.radius < TOO_LARGE,
         Shape::Cuboid(c) => {
             let h = c.half_extents;
-            h.x >= 0.0 && h.y >= 0.0 && h.z >= 0.0 && (h.x + h.y + h.z).is_finite()
+            h.x >= 0.0 && h.y >= 0.0 && h.z >= 0.0 && h.x + h.y + h.z < TOO_LARGE
         }
         Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => true,
     };
     // A NaN or an infinity in any term makes the sum one.
-    dimensions && (sum.x + sum.y + sum.z).is_finite()
+    dimensions && t.x + t.y + t.z < TOO_LARGE && (axes.x + axes.y + axes.z).is_finite()
 }
 
 #[inline]

@@ -8,7 +8,7 @@ use elbowroom_proximity::{
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// SplitMix64.
+/// The `SplitMix64` generator.
 pub struct Rng(pub u64);
 
 impl Rng {

@@ -162,7 +162,9 @@ fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
         if better {
             doubts = if judged { 0 } else { doubts };
             let moved = onto_a.point - p;
-            p += newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, moved, TRUST[doubts]);
+            let step = newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, moved, TRUST[doubts]);
+            // Long steps along nearly parallel faces end at the rim.
+            p = cores.onto_a(p + step).point;
             (doubts, judged) = (if doubts == TRUST.len() - 1 { 0 } else { doubts }, true);
         } else if judged && doubts + 1 < TRUST.len() {
             (p, doubts, judged) = (best.on_a, doubts + 1, false);
