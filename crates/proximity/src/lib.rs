@@ -26,8 +26,7 @@
 //! primitives, 1e-12 m for boxes and hulls, 1e-11 m for cylinders. It is also told per answer: `lower_bound <= exact <=
 //! distance`. Nothing allocates but [`escape`] of hulls and meshes, [`fit`],
 //! [`tessellate`] and the making of hulls and meshes. Nothing panics; a NaN, an infinity or a length of 1e150 m in a pose
-//! or a dimension
-//! answers as contact (distance 0), because what is unknown must not read as free.
+//! or a dimension answers as contact (distance 0), because what is unknown must not read as free.
 //!
 //! ```
 //! use elbowroom_proximity::{Capsule, Cylinder, Shape, separation};
