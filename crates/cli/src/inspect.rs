@@ -47,8 +47,9 @@ fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<Verdict, F
             let rotation = pose.rotation.rows().into_iter().flatten();
             // Writing to a String cannot fail.
             let _ = write!(text, "{index},{name}");
+            // As Debug, so that 6e-17 does not become twenty digits.
             rotation.chain(pose.translation.to_array()).for_each(|v| {
-                let _ = write!(text, ",{v}");
+                let _ = write!(text, ",{v:?}");
             });
             text.push('\n');
         }
