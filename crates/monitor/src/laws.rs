@@ -105,6 +105,29 @@ pub fn braking_factor(distance_m: f64, closing_speed: f64, rate: f64) -> f64 {
     if sigma.is_nan() { 0.0 } else { sigma }
 }
 
+/// Time (s, at override 1) until a gap of `distance_m` may be closed by something that closes at `closing_speed` (m/s,
+/// negative for leaving) and whose points accelerate by no more than `acceleration` (m/s², in any direction):
+/// the largest τ with `v·τ + a·τ²/2 ≤ d`.
+///
+/// ```
+/// use elbowroom_monitor::laws::time_to_close;
+/// assert_eq!(time_to_close(0.1, 2.0, 0.0), 0.05);
+/// assert_eq!(time_to_close(0.1, -2.0, 0.0), f64::INFINITY);
+/// let tau = time_to_close(0.1, -0.2, 3.0);
+/// assert!((-0.2 * tau + 1.5 * tau * tau - 0.1).abs() < 1e-12);
+/// ```
+#[inline]
+pub fn time_to_close(distance_m: f64, closing_speed: f64, acceleration: f64) -> f64 {
+    let (d, v, a) = (distance_m.max(0.0), closing_speed, acceleration.max(0.0));
+    if a < 1e-9 {
+        return if v > 0.0 { d / v } else { f64::INFINITY };
+    }
+    let root = (v * v + 2.0 * a * d).sqrt();
+    // Each form where it does not cancel.
+    let time = if v > 0.0 { 2.0 * d / (v + root) } else { (root - v) / a };
+    if time.is_nan() { 0.0 } else { time }
+}
+
 /// How fast the override can fall (1/s) when no joint may decelerate beyond its limit: `min aᵢ / |q̇ᵢ|` over the
 /// joints, q̇ being the joint velocities at override 1.
 ///
@@ -119,6 +142,19 @@ pub fn override_deceleration(intent: &[f64], joint_deceleration: &[f64]) -> f64 
         .zip(joint_deceleration)
         .filter(|(v, _)| **v != 0.0)
         .fold(f64::INFINITY, |rate, (v, a)| rate.min(a / v.abs()))
+}
+
+/// [`override_deceleration`] along a program that accelerates by itself: what following it takes is not left for the
+/// stop, `min (aᵢ − |q̈ᵢ|) / |q̇ᵢ|`, but at least a tenth of aᵢ is.
+///
+/// ```
+/// use elbowroom_monitor::laws::deceleration_left;
+/// assert_eq!(deceleration_left(&[2.0, -1.0], &[0.0, -1.0], &[10.0, 3.0]), 2.0);
+/// ```
+#[inline]
+pub fn deceleration_left(velocity: &[f64], acceleration: &[f64], joint_deceleration: &[f64]) -> f64 {
+    let moving = velocity.iter().zip(acceleration).zip(joint_deceleration).filter(|((v, _), _)| **v != 0.0);
+    moving.fold(f64::INFINITY, |rate, ((v, q), a)| rate.min((a - q.abs()).max(0.1 * a) / v.abs()))
 }
 
 /// The override moved from `previous` towards `wanted` by at most `rate` per second; `rate` 0 is unlimited.

@@ -28,6 +28,8 @@ pub struct Monitor {
     soon: Option<Placement>,
     /// At the program's own speed, for the laws that need it.
     intent: Option<ChainState>,
+    /// Joint velocities of the last intent.
+    intent_before: Vec<f64>,
     gaps: Gaps,
     presence: Vec<Presence>,
     /// Regions in whose warning zone the robot is.
@@ -69,6 +71,7 @@ impl Monitor {
             active: config.regions.iter().map(|r| r.life == Life::Permanent).collect(),
             soon: laws.direction_aware.then(|| Placement::new(&config)),
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
+            intent_before: vec![0.0; config.chain.dof()],
             gaps: Gaps::new(&config, &now),
             presence: vec![Presence::default(); regions],
             warned: Vec::with_capacity(regions),
@@ -98,7 +101,7 @@ impl Monitor {
         if self.fault.take().is_some() {
             self.log.push(None, EventKind::Recovered);
         }
-        self.measure(s);
+        self.measure(s, dt_s);
         self.update_presence();
         if let Some(seat) = &mut self.seat {
             seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
@@ -229,18 +232,23 @@ impl Monitor {
         }
     }
 
-    fn measure(&mut self, s: &Snapshot) {
+    fn measure(&mut self, s: &Snapshot, dt_s: f64) {
         let Self { config, active, now, soon, intent, gaps, last_override, .. } = self;
         now.place(config, s);
         let mut deceleration = f64::INFINITY;
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
+            let before = &mut self.intent_before;
+            before.copy_from_slice(&state.qd);
             match s.intent {
                 Some(wanted) => state.qd.copy_from_slice(wanted),
                 None => at_full_override(&mut state.qd, &now.chain.qd, last_override.unwrap_or(1.0)),
             }
+            if let Some(stopping) = &config.laws.stopping_distance {
+                guess_acceleration(state, before, dt_s * last_override.unwrap_or(0.0), &stopping.joint_deceleration);
+            }
             config.chain.forward_motion(state);
-            deceleration = Judge::override_deceleration(config, &state.qd);
+            deceleration = Judge::override_deceleration(config, state);
             if let Some(soon) = soon {
                 soon.place_ahead(config, s, &state.qd, LOOKAHEAD_S);
             }
@@ -343,6 +351,18 @@ impl Monitor {
 fn at_full_override(full: &mut [f64], real: &[f64], last_override: f64) {
     let scale = 1.0 / last_override.max(0.01);
     full.iter_mut().zip(real).for_each(|(f, v)| *f = v * scale);
+}
+
+/// How the program's velocities change by its own time, from one tick to the next. Where the program stood still, what
+/// was known last stays true. A jump between two moves counts as the most that a joint can do.
+fn guess_acceleration(intent: &mut ChainState, before: &[f64], program_s: f64, most: &[f64]) {
+    if program_s < 1e-6 {
+        return;
+    }
+    let (qd, qdd) = (&intent.qd, &mut intent.qdd);
+    for (((guess, v), before), most) in qdd.iter_mut().zip(qd).zip(before).zip(most) {
+        *guess = ((v - before) / program_s).clamp(-most.abs(), most.abs());
+    }
 }
 
 impl Configuration {

@@ -5,7 +5,7 @@ use elbowroom_proximity::escape;
 use elbowroom_spatial::Vec3;
 
 use crate::gaps::{Pair, PairLaw};
-use crate::laws::{braking_factor, override_deceleration, speed_zone, stopping_factor, warning_factor};
+use crate::laws::{braking_factor, deceleration_left, speed_zone, stopping_factor, time_to_close, warning_factor};
 use crate::placement::{Placement, region_point_motion};
 use crate::{Configuration, Kind, Snapshot};
 
@@ -13,6 +13,8 @@ use crate::{Configuration, Kind, Snapshot};
 pub(crate) const LOOKAHEAD_S: f64 = 0.01;
 /// The stopping law aims this far (m) short of the border, so that rounding never ends inside.
 const STOP_SHORT_M: f64 = 5e-4;
+/// Accelerations are taken this much larger than they are now: they may grow while the robot brakes.
+const ACCELERATION_MARGIN: f64 = 1.2;
 /// A gap must grow by at least this speed (m/s) to count as growing.
 const LEAVING_SPEED: f64 = 5e-4;
 
@@ -33,9 +35,9 @@ pub(crate) struct Judge<'a> {
 
 impl Judge<'_> {
     /// How fast the override can fall without asking more of a joint than it can give, 1/s.
-    pub(crate) fn override_deceleration(config: &Configuration, intent: &[f64]) -> f64 {
+    pub(crate) fn override_deceleration(config: &Configuration, intent: &ChainState) -> f64 {
         let stopping = config.laws.stopping_distance.as_ref();
-        stopping.map_or(f64::INFINITY, |s| override_deceleration(intent, &s.joint_deceleration))
+        stopping.map_or(f64::INFINITY, |s| deceleration_left(&intent.qd, &intent.qdd, &s.joint_deceleration))
     }
 
     fn forbidden(&self, pair: &Pair) -> f64 {
@@ -59,23 +61,34 @@ impl Judge<'_> {
             return f64::INFINITY;
         };
         let s = &pair.separation;
-        let Some(towards) = (s.on_b - s.on_a).try_normalize() else {
-            return if Self::is_still(intent) { f64::INFINITY } else { 0.0 };
-        };
+        if Self::is_still(intent) {
+            return f64::INFINITY;
+        }
+        let Some(towards) = (s.on_b - s.on_a).try_normalize() else { return 0.0 };
         let region = &self.config.regions[pair.region];
         let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
         let approach = (-region_velocity.dot(towards)).max(0.0);
-        let braking_s = if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 };
-        let left = s.distance - STOP_SHORT_M - approach * (stopping.reaction_s + braking_s);
+        let reaction_s = stopping.reaction_s;
+        let left = s.distance - STOP_SHORT_M - approach * (reaction_s + self.braking_s());
         let at_full = self.closing_speed(pair, intent, towards);
+        // A path that bends towards the region closes faster and faster.
+        let bend = ACCELERATION_MARGIN * boxed_acceleration(self, intent, pair.volume);
         // Until it obeys, the robot goes on as it does now, or as it was last told to.
         let now = self.closing_speed(pair, &self.now.chain, towards).max(at_full * self.last_override);
-        let left_then = left - now.max(0.0) * stopping.reaction_s;
-        stopping_factor(left, at_full, self.deceleration, stopping.reaction_s).min(braking_factor(
-            left_then,
-            at_full,
+        let moved_s = self.last_override * reaction_s;
+        let left_then = left - now.max(0.0) * reaction_s - 0.5 * bend * moved_s * moved_s;
+        let time_s = time_to_close(left, at_full, bend);
+        let time_then_s = time_to_close(left_then, at_full, bend);
+        stopping_factor(time_s, 1.0, self.deceleration, reaction_s).min(braking_factor(
+            time_then_s,
+            1.0,
             self.deceleration,
         ))
+    }
+
+    /// From full override to rest, s.
+    fn braking_s(&self) -> f64 {
+        if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 }
     }
 
     fn is_still(intent: &ChainState) -> bool {
@@ -144,8 +157,8 @@ impl PairLaw for Judge<'_> {
         let (Some(stopping), Some(intent)) = (&self.config.laws.stopping_distance, self.intent) else { return 0.0 };
         let boxed = &self.now.volume_box[volume];
         let fastest = boxed_speed(self, intent, volume, boxed.center()) + region_speed(self.snapshot);
-        let braking_s = if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 };
-        fastest * (stopping.reaction_s + braking_s)
+        let stop_s = stopping.reaction_s + self.braking_s();
+        (fastest + 0.5 * ACCELERATION_MARGIN * boxed_acceleration(self, intent, volume) * stop_s) * stop_s
     }
 
     fn only_closest_matters(&self) -> bool {
@@ -158,6 +171,18 @@ fn boxed_speed(judge: &Judge, intent: &ChainState, volume: usize, center: Vec3) 
     let link = judge.config.volumes[volume].link;
     let radius = judge.now.volume_box[volume].extent().length() * 0.5;
     judge.velocity_of(intent, volume, center).length() + intent.link_motion(link).angular_velocity.length() * radius
+}
+
+/// Bound on the acceleration of every point of a volume at override 1, m/s².
+fn boxed_acceleration(judge: &Judge, intent: &ChainState, volume: usize) -> f64 {
+    let link = judge.config.volumes[volume].link;
+    let boxed = &judge.now.volume_box[volume];
+    let base = &judge.config.base_in_world;
+    let motion = intent.link_motion(link);
+    let origin = base.transform_point(intent.link_in_root(link).translation);
+    let offset = base.inverse_transform_vector(boxed.center() - origin);
+    let turning = motion.angular_velocity.length_squared() + motion.angular_acceleration.length();
+    motion.acceleration_at(offset).length() + turning * boxed.extent().length() * 0.5
 }
 
 /// Speed of the fastest source, m/s; regions are near their sources, so their turning is left to the warning zone.
