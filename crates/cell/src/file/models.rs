@@ -128,7 +128,7 @@ impl NumberTable {
             let what = format!("has {} values for {} columns", cells.len(), columns.len());
             return Err(FormatError::new(path, line, what).hint(columns.join(",")));
         }
-        let number = |(i, cell): (usize, &&str)| match cell.parse::<f64>() {
+        let number = |(i, cell): (usize, &&str)| match unquoted(cell).parse::<f64>() {
             Ok(v) if v.is_finite() => Ok(v),
             _ => Err(FormatError::new(
                 path,
@@ -181,4 +181,9 @@ pub(super) fn travel(v: &Value<'_>) -> Result<Vec<(f64, f64)>> {
     let table = number_table(v)?;
     let column = table.column("travel_m")?;
     Ok(table.timed(&[column])?.into_iter().map(|(_, t, row)| (t, row[0])).collect())
+}
+
+/// A cell without the quotation marks that some programs put around everything.
+fn unquoted(cell: &str) -> &str {
+    cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')).map_or(cell, str::trim)
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{AccessClass, EventKind, Monitor, Reason, Snapshot};
+use elbowroom_monitor::{AccessClass, EventKind, Kind, Monitor, Reason, Snapshot, Source};
 use elbowroom_scene::{Checker, Member};
 
 use crate::configure::{self, Setup};
@@ -99,6 +99,9 @@ pub fn simulate_with(
             let finished = run.clocks.iter().filter(|c| c.finished()).count();
             progress(Progress { t_s, finished, robots: run.clocks.len() });
         }
+        if tick == 0 {
+            run.announce();
+        }
         run.tick(t_s);
         if run.ended(t_s) {
             return Ok(RunOutcome { recording: run.finish(t_s), notes });
@@ -175,9 +178,48 @@ impl<'a> Run<'a> {
         self.events.push(EventRow { t_s, robot, region: region.to_owned(), event });
     }
 
+    /// Every robot says where it stands before the first looks at a region that they exchange: one that starts inside
+    /// would otherwise wait for robots that have not spoken yet, and count as having entered.
+    fn announce(&mut self) {
+        if !self.cell.regions.iter().any(|r| matches!(r.region.kind, Kind::Exchange { .. })) {
+            return;
+        }
+        self.look_at_robots(0.0);
+        for i in 0..self.clocks.len() {
+            if self.vanished(i, 0.0) {
+                continue;
+            }
+            let sources = self.frames.sources(&self.setups[i].sources, &self.states, 0.0);
+            let before = -self.cell.tick_s;
+            let sources: Vec<_> = sources.into_iter().map(|s| Source { stamp_s: before, ..s }).collect();
+            let (state, clock) = (&self.states[i], &self.clocks[i]);
+            let snapshot = Snapshot {
+                now_s: before,
+                stamp_s: before,
+                q: &state.q,
+                qd: &state.qd,
+                qdd: &state.qdd,
+                programmed_override: clock.programmed_override(),
+                intent: Some(clock.intent()),
+                sources: &sources,
+            };
+            self.monitors[i].tick(&snapshot);
+            self.log_events(i, 0.0);
+        }
+    }
+
     /// One instant: everything is looked at, nothing moves.
     fn tick(&mut self, t_s: f64) {
         self.apply_switches(t_s);
+        self.look_at_robots(t_s);
+        for i in 0..self.clocks.len() {
+            if self.vanished(i, t_s) { self.record_vanished(i, t_s) } else { self.monitor(i, t_s) }
+        }
+        self.regions.look(t_s, &self.monitors, &self.states, &self.frames);
+        self.collide(t_s);
+    }
+
+    fn look_at_robots(&mut self, t_s: f64) {
         for (i, clock) in self.clocks.iter().enumerate() {
             let state = &mut self.states[i];
             state.q.copy_from_slice(&clock.point().q);
@@ -188,11 +230,6 @@ impl<'a> Run<'a> {
             state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
             self.cell.robots[i].robot.chain.forward_motion(state);
         }
-        for i in 0..self.clocks.len() {
-            if self.vanished(i, t_s) { self.record_vanished(i, t_s) } else { self.monitor(i, t_s) }
-        }
-        self.regions.look(t_s, &self.monitors, &self.states, &self.frames);
-        self.collide(t_s);
     }
 
     fn apply_switches(&mut self, t_s: f64) {
