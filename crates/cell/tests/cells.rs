@@ -202,7 +202,6 @@ fn csv_files_have_a_row_per_robot_and_tick() {
 }
 
 #[test]
-#[ignore = "the law takes witness points for a direction where the distance is 0 and they differ by rounding"]
 fn a_direction_aware_monitor_lets_a_robot_leave_a_region_that_was_switched_on_around_it() {
     let text = |law: &str| {
         format!(

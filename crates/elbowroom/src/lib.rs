@@ -57,6 +57,11 @@
 //!
 //! This is not a certified safety device.
 
+/// The README's examples must compile.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
+
 pub use elbowroom_cell as cell;
 pub use elbowroom_formats as formats;
 pub use elbowroom_kinematics as kinematics;

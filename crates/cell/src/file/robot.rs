@@ -198,7 +198,12 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
 
 fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Body>)> {
     let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
-    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "load"])?;
+    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy"])?;
+    if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "mesh_unit"].iter().find_map(|k| t.get(k))) {
+        return Err(v
+            .error("says where a tool's mesh is, and there is none")
+            .hint("box = { at = [0, 0, 125], size = [80, 80, 250] }"));
+    }
     let tcp = t.get("tcp").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let body = |(shape, in_link)| Some(Body { name: "tool".into(), shape, in_link });
     match (t.get("box"), t.get("mesh")) {

@@ -18,7 +18,9 @@ pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
 
 /// The known word that was probably meant.
 pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (word.chars().count() / 3).clamp(1, 3);
+    let length = word.chars().count();
+    // Two swapped letters are two replacements.
+    let limit = if length < 4 { 1 } else { (length / 3).clamp(2, 3) };
     known.map(|k| (edit_distance(word, k), k)).filter(|k| k.0 <= limit).min().map(|k| k.1)
 }
 
@@ -65,6 +67,7 @@ mod tests {
     fn near_words_are_proposed_and_far_ones_are_not() {
         let known = ["radius", "height", "warning"];
         assert_eq!(nearest("raduis", known.into_iter()), Some("radius"));
+        assert_eq!(nearest("modle", ["model", "srdf", "base"].into_iter()), Some("model"));
         assert_eq!(nearest("colour", known.into_iter()), None);
         assert_eq!(quoted(known.into_iter()), "\"radius\", \"height\" or \"warning\"");
     }

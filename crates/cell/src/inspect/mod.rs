@@ -1,5 +1,6 @@
 //! What is in a model: joints and limits, meshes and their faults, the generalized DH table, resolution levels.
 
+mod frames;
 mod levels;
 mod table;
 
@@ -146,7 +147,7 @@ impl Inspection {
     }
 
     fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
-        let load = robot::LoadOptions { srdf: options.srdf.clone(), load_visuals: false, unit: options.unit };
+        let load = robot::LoadOptions { srdf: options.srdf.clone(), load_visuals: true, unit: options.unit };
         let loaded = robot::load(path, &load)?;
         let chain = &loaded.robot.chain;
         let tip = tip(chain, path, options.tip.as_deref())?;
@@ -162,6 +163,7 @@ impl Inspection {
         inspection.dh_residual = Some(table.residual);
         inspection.levels = levels::of_robot(&loaded.robot);
         inspection.doubt_meshes();
+        inspection.warnings.extend(frames::doubts(&loaded.robot));
         inspection.robot = Some(loaded.robot);
         Ok(inspection)
     }

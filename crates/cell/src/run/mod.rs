@@ -94,7 +94,7 @@ pub fn simulate_with(
     let mut run = Run::new(cell, options, &setups, monitors, clocks);
     let mut tick = 0_u64;
     loop {
-        let t_s = tick as f64 * cell.tick_s;
+        let t_s = instant(tick, cell.tick_s);
         if tick.is_multiple_of(256) {
             let finished = run.clocks.iter().filter(|c| c.finished()).count();
             progress(Progress { t_s, finished, robots: run.clocks.len() });
@@ -390,6 +390,11 @@ impl<'a> Run<'a> {
             tick_ns: tick_times(self.tick_ns),
         }
     }
+}
+
+/// Time of a tick, s, without the digits that only rounding put there.
+fn instant(tick: u64, tick_s: f64) -> f64 {
+    (tick as f64 * tick_s * 1e9).round() / 1e9
 }
 
 fn tick_times(mut ns: Vec<u64>) -> TickTimes {

@@ -17,14 +17,15 @@ pub(super) fn examine(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
     let welded = weld(vertices);
     let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| welded[i as usize])).collect();
     let part_of = parts(vertices.len(), &faces);
-    let open = open_parts(&faces, &part_of);
+    let uses = edge_uses(&faces);
+    let open = open_parts(&faces, &uses, &part_of);
     let in_closed_part: Vec<bool> = faces.iter().map(|f| !open[part_of[f[0] as usize] as usize]).collect();
-    let closed = in_closed_part.iter().all(|&c| c);
-    let signed = if closed { enclosed_volume(vertices, triangles) } else { 0.0 };
+    let encloses = in_closed_part.iter().all(|&c| c);
+    let signed = if encloses { enclosed_volume(vertices, triangles) } else { 0.0 };
     let report = MeshReport {
         triangles: triangles.len(),
         vertices: vertices.len(),
-        closed,
+        closed: encloses && uses.values().all(|count| *count == 2),
         degenerate: triangles.iter().filter(|t| is_degenerate(t.map(|i| vertices[i as usize]))).count(),
         duplicate: duplicates(&faces),
         inside_out: signed < 0.0,
@@ -72,22 +73,30 @@ fn root(parent: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
-/// Per part: true where some edge is used by an odd number of triangles, or where no triangle has three corners.
-fn open_parts(faces: &[[u32; 3]], part_of: &[u32]) -> Vec<bool> {
-    let mut uses: HashMap<(u32, u32), u32> = HashMap::with_capacity(faces.len() * 3 / 2);
-    let mut open = vec![true; part_of.len()];
-    for f in faces.iter().filter(|f| f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) {
-        open[part_of[f[0] as usize] as usize] = false;
+/// Faces with three corners.
+fn proper(faces: &[[u32; 3]]) -> impl Iterator<Item = &[u32; 3]> {
+    faces.iter().filter(|f| f[0] != f[1] && f[1] != f[2] && f[2] != f[0])
+}
+
+/// How many faces use each edge.
+fn edge_uses(faces: &[[u32; 3]]) -> HashMap<(u32, u32), u32> {
+    let mut uses = HashMap::with_capacity(faces.len() * 3 / 2);
+    for f in proper(faces) {
         for k in 0..3 {
             let (a, b) = (f[k], f[(k + 1) % 3]);
             *uses.entry((a.min(b), a.max(b))).or_insert(0) += 1;
         }
     }
-    for ((a, _), count) in uses {
-        if count % 2 == 1 {
-            open[part_of[a as usize] as usize] = true;
-        }
-    }
+    uses
+}
+
+/// Per part: true where some edge is used by an odd number of triangles, or where no triangle has three corners.
+/// A part whose edges are used two or four times still has an inside.
+fn open_parts(faces: &[[u32; 3]], uses: &HashMap<(u32, u32), u32>, part_of: &[u32]) -> Vec<bool> {
+    let mut open = vec![true; part_of.len()];
+    proper(faces).for_each(|f| open[part_of[f[0] as usize] as usize] = false);
+    let odd = uses.iter().filter(|(_, count)| *count % 2 == 1);
+    odd.for_each(|((a, _), _)| open[part_of[*a as usize] as usize] = true);
     open
 }
 
