@@ -11,8 +11,9 @@ use gltf::buffer::View;
 use super::point;
 use crate::FormatError;
 
-/// An accessor without data is all zeros by the specification; more of them than this is no mesh.
-const MOST_ZEROS: usize = 1_000_000;
+/// An accessor without data is all zeros but for its sparse values; more zeros for each of these than this is no mesh,
+/// and memory that the file does not justify.
+const MOST_ZEROS_PER_VALUE: usize = 100;
 
 pub(super) struct Reader<'a> {
     pub(super) buffers: &'a [Cow<'a, [u8]>],
@@ -65,38 +66,46 @@ impl Reader<'_> {
     /// `count × width` numbers, sparse replacements applied.
     fn rows(&self, accessor: &gltf::Accessor<'_>, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
         let (count, kind) = (accessor.count(), accessor.data_type());
+        // Read first: what is really there bounds the zeros that are made below.
+        let sparse = accessor.sparse().map(|s| self.sparse_rows(&s, kind, place, width)).transpose()?;
+        let replaced = sparse.as_ref().map_or(0, |(at, _)| at.len());
         let mut numbers = match accessor.view() {
             Some(view) => self.read(&view, accessor.offset(), count, width, kind, place)?,
-            None if accessor.sparse().is_some() && count <= MOST_ZEROS => vec![0.0; count * width],
+            None if replaced > 0 && count / MOST_ZEROS_PER_VALUE <= replaced => vec![0.0; count * width],
             None => {
                 return Err(self
                     .error(place, "has an accessor without data")
                     .hint("\"bufferView\": …; or export without compression"));
             }
         };
-        if let Some(sparse) = accessor.sparse() {
-            if sparse.count() > count {
-                return Err(self
-                    .error(place, "replaces more sparse values than there are")
-                    .hint("export the file again"));
-            }
-            let (indices, values) = (sparse.indices(), sparse.values());
-            let index_kind = match indices.index_type() {
-                IndexType::U8 => DataType::U8,
-                IndexType::U16 => DataType::U16,
-                IndexType::U32 => DataType::U32,
-            };
-            let at = self.read(&indices.view(), indices.offset(), sparse.count(), 1, index_kind, place)?;
-            let new = self.read(&values.view(), values.offset(), sparse.count(), width, kind, place)?;
-            for (i, row) in at.into_iter().zip(new.chunks_exact(width)) {
-                let slot = numbers.get_mut(i as usize * width..).and_then(|rest| rest.get_mut(..width));
-                slot.ok_or_else(|| {
-                    self.error(place, "replaces a sparse value that does not exist").hint("export the file again")
-                })?
-                .copy_from_slice(row);
-            }
+        let (at, new) = sparse.unwrap_or_default();
+        for (i, row) in at.into_iter().zip(new.chunks_exact(width)) {
+            let slot = numbers.get_mut((i as usize).saturating_mul(width)..).and_then(|rest| rest.get_mut(..width));
+            slot.ok_or_else(|| {
+                self.error(place, "replaces a sparse value that does not exist").hint("export the file again")
+            })?
+            .copy_from_slice(row);
         }
         Ok(numbers)
+    }
+
+    /// Which rows are replaced, and by what.
+    fn sparse_rows(
+        &self,
+        sparse: &gltf::accessor::sparse::Sparse<'_>,
+        kind: DataType,
+        place: &str,
+        width: usize,
+    ) -> Result<(Vec<f64>, Vec<f64>), FormatError> {
+        let (indices, values) = (sparse.indices(), sparse.values());
+        let index_kind = match indices.index_type() {
+            IndexType::U8 => DataType::U8,
+            IndexType::U16 => DataType::U16,
+            IndexType::U32 => DataType::U32,
+        };
+        let at = self.read(&indices.view(), indices.offset(), sparse.count(), 1, index_kind, place)?;
+        let new = self.read(&values.view(), values.offset(), sparse.count(), width, kind, place)?;
+        Ok((at, new))
     }
 
     fn read(
