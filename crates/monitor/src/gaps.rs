@@ -3,6 +3,7 @@
 use elbowroom_proximity::{Separation, separation_within};
 use elbowroom_spatial::Vec3;
 
+use crate::bound::RoundedBox;
 use crate::broad::RegionTree;
 use crate::placement::Placement;
 use crate::{Configuration, RegionId};
@@ -32,6 +33,9 @@ pub(crate) struct Gap {
 #[derive(Debug)]
 pub(crate) struct Gaps {
     tree: RegionTree,
+    /// For cheap bounds, where a shape has one.
+    region_bounds: Vec<Option<RoundedBox>>,
+    volume_bounds: Vec<Option<RoundedBox>>,
     /// Regions that the tree cannot hold: they move, or are unbounded.
     roaming: Vec<u32>,
     of_region: Vec<Gap>,
@@ -49,6 +53,8 @@ impl Gaps {
         let asking = Pair { region: 0, volume: 0, separation: nowhere };
         Self {
             tree: RegionTree::new(fixed.into_iter().map(|r| (r as u32, boxed(r))).collect()),
+            region_bounds: config.regions.iter().map(|r| RoundedBox::around(&r.shape)).collect(),
+            volume_bounds: config.volumes.iter().map(|v| RoundedBox::around(&v.shape)).collect(),
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
             of_region: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, asking }; config.regions.len()],
             near: Vec::with_capacity(config.regions.len()),
@@ -78,48 +84,86 @@ impl Gaps {
     /// Measures every active region against the volumes it guards. `law` says which override a pair asks for, and how
     /// much farther than the warning zone a volume must be looked at.
     pub(crate) fn measure(&mut self, config: &Configuration, active: &[bool], now: &Placement, law: &impl PairLaw) {
-        let Self { tree, roaming, of_region: gaps, near, tick, measured_pairs } = self;
-        for (v, volume) in config.volumes.iter().enumerate() {
-            let extra = law.extra_reach(v);
-            let mut visit = |r: usize| {
-                let region = &config.regions[r];
-                if !active[r] || !volume.part.counts_for(region.guards) {
-                    return;
-                }
-                let fresh = gaps[r].tick != *tick;
-                let mut limit = region.reach() + extra;
-                if !fresh && law.only_closest_matters() {
-                    if gaps[r].distance <= 0.0 {
-                        return;
-                    }
-                    limit = limit.min(gaps[r].distance);
-                }
-                if now.region_box[r].distance_squared(&now.volume_box[v]) > limit * limit {
-                    return;
-                }
-                *measured_pairs += 1;
-                let (in_world, region_in_world) = (&now.volume_in_world[v], &now.region_in_world[r]);
-                let found = separation_within(&volume.shape, in_world, &region.shape, region_in_world, limit);
-                let Some(separation) = found else { return };
-                let pair = Pair { region: r, volume: v, separation };
-                if fresh {
-                    near.push(r as u32);
-                    gaps[r] = Gap { tick: *tick, distance: separation.distance, asks: law.asks(&pair), asking: pair };
-                    return;
-                }
-                let gap = &mut gaps[r];
-                let asks = law.asks(&pair);
-                let closer = separation.distance < gap.distance;
-                if asks < gap.asks || (asks == gap.asks && closer) {
-                    (gap.asks, gap.asking) = (asks, pair);
-                }
-                gap.distance = gap.distance.min(separation.distance);
-            };
-            tree.visit(&now.volume_box[v].inflated(extra), &mut visit);
+        let Self { tree, region_bounds, volume_bounds, roaming, of_region, near, tick, measured_pairs } = self;
+        let bounds = (region_bounds.as_slice(), volume_bounds.as_slice());
+        let mut measuring = Measuring { config, active, now, law, bounds, of_region, near, tick: *tick, pairs: 0 };
+        for volume in 0..config.volumes.len() {
+            let extra_reach = law.extra_reach(volume);
+            tree.visit(&now.volume_box[volume].inflated(extra_reach), |r| measuring.visit(r, volume, extra_reach));
             for r in roaming.iter() {
-                visit(*r as usize);
+                measuring.visit(*r as usize, volume, extra_reach);
             }
         }
+        *measured_pairs = measuring.pairs;
+    }
+}
+
+/// A tick's measuring under way.
+struct Measuring<'a, L> {
+    config: &'a Configuration,
+    active: &'a [bool],
+    now: &'a Placement,
+    law: &'a L,
+    /// Of the regions and of the volumes.
+    bounds: (&'a [Option<RoundedBox>], &'a [Option<RoundedBox>]),
+    of_region: &'a mut [Gap],
+    near: &'a mut Vec<u32>,
+    tick: u64,
+    pairs: u32,
+}
+
+impl<L: PairLaw> Measuring<'_, L> {
+    /// Measures one pair where it can matter.
+    #[inline]
+    fn visit(&mut self, r: usize, v: usize, extra_reach: f64) {
+        let (region, volume) = (&self.config.regions[r], &self.config.volumes[v]);
+        if !self.active[r] || !volume.part.counts_for(region.guards) {
+            return;
+        }
+        let gap = &self.of_region[r];
+        let fresh = gap.tick != self.tick;
+        let mut limit = region.reach() + extra_reach;
+        if !fresh && self.law.only_closest_matters() {
+            if gap.distance <= 0.0 {
+                return;
+            }
+            limit = limit.min(gap.distance);
+        }
+        if self.is_beyond(r, v, limit) {
+            return;
+        }
+        self.pairs += 1;
+        let (in_world, region_in_world) = (&self.now.volume_in_world[v], &self.now.region_in_world[r]);
+        let found = separation_within(&volume.shape, in_world, &region.shape, region_in_world, limit);
+        let Some(separation) = found else { return };
+        self.note(Pair { region: r, volume: v, separation }, fresh);
+    }
+
+    /// True where cheap bounds prove that the pair is farther apart than `limit`.
+    #[inline]
+    fn is_beyond(&self, r: usize, v: usize, limit: f64) -> bool {
+        let now = self.now;
+        if now.region_box[r].distance_squared(&now.volume_box[v]) > limit * limit {
+            return true;
+        }
+        let (Some(region), Some(volume)) = (&self.bounds.0[r], &self.bounds.1[v]) else { return false };
+        let (in_world, region_in_world) = (&now.volume_in_world[v], &now.region_in_world[r]);
+        volume.distance_bound(in_world, region, region_in_world) > limit
+            || region.distance_bound(region_in_world, volume, in_world) > limit
+    }
+
+    fn note(&mut self, pair: Pair, fresh: bool) {
+        let (asks, distance) = (self.law.asks(&pair), pair.separation.distance);
+        let gap = &mut self.of_region[pair.region];
+        if fresh {
+            self.near.push(pair.region as u32);
+            *gap = Gap { tick: self.tick, distance, asks, asking: pair };
+            return;
+        }
+        if asks < gap.asks || (asks == gap.asks && distance < gap.distance) {
+            (gap.asks, gap.asking) = (asks, pair);
+        }
+        gap.distance = gap.distance.min(distance);
     }
 }
 

@@ -43,6 +43,7 @@
 //! is override 0 with a [`Reason`]. This is not a certified safety device.
 
 mod access;
+mod bound;
 mod broad;
 mod checksum;
 mod config;

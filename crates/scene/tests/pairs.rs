@@ -14,7 +14,7 @@ fn snake() -> Robot {
         parent: LinkId(i),
         child: LinkId(i + 1),
         origin: Pose::from_translation(Vec3::Z * 0.3),
-        axis: if i % 2 == 0 { Vec3::Y } else { Vec3::X },
+        axis: if i.is_multiple_of(2) { Vec3::Y } else { Vec3::X },
         limits: Limits::range(-2.5, 2.5),
         mimic: None,
     };

@@ -47,7 +47,7 @@ impl Line {
     /// The line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`.
     ///
     /// # Errors
-    /// [`Broken`] says where along the line the robot cannot follow, and why.
+    /// `Broken` says where along the line the robot cannot follow, and why.
     pub fn new(robot: &CellRobot, q: &[f64], to: Pose) -> Result<Self, Broken> {
         let whole = Self::with_task(robot, q, to, Task::Pose);
         let few = robot.robot.chain.path(robot.flange).len() < 6 || robot.robot.chain.dof() < 6;
