@@ -212,10 +212,15 @@ fn region_line(region: &RegionTrack, rec: &Recording, names: usize) -> Line {
         (false, true) => Style::Warn,
         (false, false) => Style::Plain,
     };
+    let entered = match (region.entered, bad) {
+        (true, true) => "YES",
+        (true, false) => "yes",
+        (false, _) => "no",
+    };
     vec![
         (format!("  {} ", pad(&region.name, names)), Style::Bold),
         (format!("{:<10}{:>11}  ", region.kind, millimetres(region.min_distance_m)), Style::Plain),
-        (format!("{:<8}", if region.entered { "YES" } else { "no" }), if bad { Style::Bad } else { Style::Good }),
+        (format!("{entered:<8}"), if bad { Style::Bad } else { Style::Good }),
         (format!("{:>7.2} s  ", region.warned_s), style),
         (output, Style::Plain),
     ]
