@@ -1,6 +1,5 @@
 //! What is in a model: joints and limits, meshes and their faults, the generalized DH table, resolution levels.
 
-mod frames;
 mod levels;
 mod table;
 
@@ -163,7 +162,6 @@ impl Inspection {
         inspection.dh_residual = Some(table.residual);
         inspection.levels = levels::of_robot(&loaded.robot);
         inspection.doubt_meshes();
-        inspection.warnings.extend(frames::doubts(&loaded.robot));
         inspection.robot = Some(loaded.robot);
         Ok(inspection)
     }
