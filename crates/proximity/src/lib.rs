@@ -46,6 +46,7 @@ mod separation;
 mod shape;
 pub mod tessellate;
 mod triangle;
+pub mod wide;
 
 pub use escape::{Escape, escape};
 pub use project::{SurfacePoint, project_point};

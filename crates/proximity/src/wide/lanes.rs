@@ -1,0 +1,105 @@
+//! Vectors of lanes: three coordinates, each a SIMD register.
+//!
+//! No fused multiply-add anywhere: every instruction set rounds alike, so all of them walk the same path.
+
+use std::ops::{Add, Mul, Sub};
+
+use fearless_simd::{Simd, f32x8, f32x16, prelude::*};
+
+/// Arithmetic of one register.
+pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Lanes for T {}
+
+/// Three coordinates of many points.
+#[derive(Clone, Copy)]
+pub(super) struct V3<T>(pub T, pub T, pub T);
+
+impl<T: Lanes> V3<T> {
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> T {
+        self.0 * o.0 + self.1 * o.1 + self.2 * o.2
+    }
+
+    #[inline(always)]
+    pub fn minus(self, o: Self) -> Self {
+        Self(self.0 - o.0, self.1 - o.1, self.2 - o.2)
+    }
+
+    #[inline(always)]
+    pub fn plus(self, o: Self) -> Self {
+        Self(self.0 + o.0, self.1 + o.1, self.2 + o.2)
+    }
+
+    #[inline(always)]
+    pub fn times(self, k: T) -> Self {
+        Self(self.0 * k, self.1 * k, self.2 * k)
+    }
+
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self(self.1 * o.2 - self.2 * o.1, self.2 * o.0 - self.0 * o.2, self.0 * o.1 - self.1 * o.0)
+    }
+
+    /// `[rows]·self`, each row given as three broadcast numbers.
+    #[inline(always)]
+    pub fn mapped(self, rows: &[[T; 3]; 3]) -> Self {
+        let row = |r: &[T; 3]| r[0] * self.0 + r[1] * self.1 + r[2] * self.2;
+        Self(row(&rows[0]), row(&rows[1]), row(&rows[2]))
+    }
+}
+
+pub(super) type W16<S> = f32x16<S>;
+pub(super) type W8<S> = f32x8<S>;
+
+#[inline(always)]
+pub(super) fn load16<S: Simd>(simd: S, p: &[[f32; 16]; 3]) -> V3<W16<S>> {
+    let at = |x: &[f32; 16]| W16::load_array_ref(simd, x);
+    V3(at(&p[0]), at(&p[1]), at(&p[2]))
+}
+
+#[inline(always)]
+pub(super) fn splat16<S: Simd>(simd: S, p: [f32; 3]) -> V3<W16<S>> {
+    V3(W16::splat(simd, p[0]), W16::splat(simd, p[1]), W16::splat(simd, p[2]))
+}
+
+#[inline(always)]
+pub(super) fn rows16<S: Simd>(simd: S, m: &[[f32; 3]; 3]) -> [[W16<S>; 3]; 3] {
+    m.map(|row| row.map(|x| W16::splat(simd, x)))
+}
+
+#[inline(always)]
+pub(super) fn abs16<S: Simd>(v: V3<W16<S>>) -> V3<W16<S>> {
+    V3(v.0.abs(), v.1.abs(), v.2.abs())
+}
+
+#[inline(always)]
+pub(super) fn store16<S: Simd>(v: V3<W16<S>>) -> [[f32; 16]; 3] {
+    let mut out = [[0.0; 16]; 3];
+    v.0.store_slice(&mut out[0]);
+    v.1.store_slice(&mut out[1]);
+    v.2.store_slice(&mut out[2]);
+    out
+}
+
+#[inline(always)]
+pub(super) fn load8<S: Simd>(simd: S, p: &[[f32; 8]; 3]) -> V3<W8<S>> {
+    let at = |x: &[f32; 8]| W8::load_array_ref(simd, x);
+    V3(at(&p[0]), at(&p[1]), at(&p[2]))
+}
+
+#[inline(always)]
+pub(super) fn splat8<S: Simd>(simd: S, p: [f32; 3]) -> V3<W8<S>> {
+    V3(W8::splat(simd, p[0]), W8::splat(simd, p[1]), W8::splat(simd, p[2]))
+}
+
+/// The set bits, lowest first.
+#[inline(always)]
+pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let i = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            i
+        })
+    })
+}
