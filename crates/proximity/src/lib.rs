@@ -41,12 +41,12 @@
 
 mod escape;
 pub mod fit;
+pub mod mesh;
 mod project;
 mod separation;
 mod shape;
 pub mod tessellate;
 mod triangle;
-pub mod wide;
 
 pub use escape::{Escape, escape};
 pub use project::{SurfacePoint, project_point};

@@ -4,6 +4,8 @@ use std::sync::OnceLock;
 
 use elbowroom_spatial::{Aabb, Vec3};
 
+use crate::mesh::Tree;
+
 use super::bvh::Bvh;
 use super::{ConvexHull, topology};
 
@@ -25,6 +27,9 @@ pub struct TriMesh {
     aabb: Aabb,
     report: MeshReport,
     pub(crate) bvh: Bvh,
+    pub(crate) tree: Tree,
+    /// Vertices that reach farthest along each axis: if one is outside a box, so is part of the mesh.
+    pub(crate) extremes: [Vec3; 6],
     /// One vertex of every connected part.
     pub(crate) parts: Vec<Vec3>,
     /// Triangles that belong to a closed part, by index.
@@ -90,9 +95,13 @@ impl TriMesh {
         let topology = topology::examine(&vertices, &triangles);
         let aabb = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize]));
         let bvh = Bvh::build(&vertices, &triangles);
+        let tree = Tree::build(&vertices, &triangles, 2);
+        let extremes = extremes(&vertices, &triangles);
         Ok(Self {
             aabb,
             bvh,
+            tree,
+            extremes,
             report: topology.report,
             parts: topology.parts,
             in_closed_part: topology.in_closed_part,
@@ -127,6 +136,11 @@ impl TriMesh {
         self.hull.get_or_init(|| ConvexHull::from_points(&self.vertices).ok()).as_ref()
     }
 
+    /// Bytes of the tree that answers queries, beside vertices and triangles.
+    pub fn tree_bytes(&self) -> usize {
+        self.tree.bytes()
+    }
+
     pub(crate) fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.vertices[i as usize])
     }
@@ -154,4 +168,13 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
         }
     }
     Ok(())
+}
+
+fn extremes(vertices: &[Vec3], triangles: &[[u32; 3]]) -> [Vec3; 6] {
+    let used = || triangles.iter().flatten().map(|&v| vertices[v as usize]);
+    std::array::from_fn(|n| {
+        let sign = if n < 3 { -1.0 } else { 1.0 };
+        let farther = |best: Vec3, v: Vec3| if v[n % 3] * sign > best[n % 3] * sign { v } else { best };
+        used().reduce(farther).unwrap_or_default()
+    })
 }

@@ -5,13 +5,15 @@ use fearless_simd::{Simd, dispatch};
 
 use super::leaf::{along_direction, along_normals, filled};
 use super::limit::Limit;
-use super::mesh::{WideMesh, settle, swallowed};
 use super::node::{NEAREST, step};
 use super::placement::{Pairing, offset};
+use super::search::settle;
 use super::search::{Entry, Queue, Scratch, Visits, filling, side};
+use super::swallowed::swallowed;
 use super::toward::{Spot, nearest_child, nearest_leaf, spot_of};
 use super::tree::LEAF;
 use super::within::Pair;
+use crate::TriMesh;
 use crate::triangle::Near;
 
 /// How far apart two meshes are, and where.
@@ -41,17 +43,17 @@ pub struct Hint {
 /// Distance of two meshes.
 ///
 /// ```
-/// use elbowroom_proximity::{TriMesh, wide::{Scratch, WideMesh, distance}};
+/// use elbowroom_proximity::{TriMesh, wide::{Scratch, TriMesh, distance}};
 /// use elbowroom_spatial::{Pose, Vec3};
 /// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-/// let wide = WideMesh::new(mesh.into());
+/// let wide = TriMesh::new(mesh.into());
 /// let there = Pose::from_translation(Vec3::X * 1.5);
 /// let near = distance(&wide, &Pose::IDENTITY, &wide, &there, &mut Scratch::new());
 /// assert!((near.distance - 0.5).abs() < 1e-12 && near.lower_bound <= near.distance);
 /// assert!((near.on_a - Vec3::X).length() < 1e-12);
 /// ```
-pub fn distance(a: &WideMesh, a_in_world: &Pose, b: &WideMesh, b_in_world: &Pose, scratch: &mut Scratch) -> Nearest {
+pub fn distance(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> Nearest {
     let found = distance_at(a, a_in_world, b, b_in_world, f64::INFINITY, None, scratch);
     found.unwrap_or_else(|| unknown(a_in_world, b_in_world))
 }
@@ -59,9 +61,9 @@ pub fn distance(a: &WideMesh, a_in_world: &Pose, b: &WideMesh, b_in_world: &Pose
 /// Like [`distance`], or `None` where the meshes are certainly farther apart than `limit` metres; `hint` is the
 /// [`Nearest::hint`] of an earlier answer for the same meshes and changes the time only, never the answer.
 pub fn distance_at(
-    a: &WideMesh,
+    a: &TriMesh,
     a_in_world: &Pose,
-    b: &WideMesh,
+    b: &TriMesh,
     b_in_world: &Pose,
     limit: f64,
     hint: Option<Hint>,
@@ -125,8 +127,8 @@ struct Best {
 }
 
 struct Search<'a> {
-    a: &'a WideMesh,
-    b: &'a WideMesh,
+    a: &'a TriMesh,
+    b: &'a TriMesh,
     pairing: &'a Pairing,
     limit: Limit,
     radius: f64,
@@ -139,8 +141,8 @@ struct Search<'a> {
 #[inline(always)]
 fn search<S: Simd>(
     simd: S,
-    a: &WideMesh,
-    b: &WideMesh,
+    a: &TriMesh,
+    b: &TriMesh,
     pairing: &Pairing,
     radius: f64,
     hint: Option<Hint>,
@@ -230,7 +232,7 @@ impl Search<'_> {
 
     /// Measures one pair at once.
     fn settle_slots(&mut self, slot_a: u32, slot_b: u32) {
-        let (ta, tb) = (self.a.triangle(slot_a), self.b.triangle(slot_b));
+        let (ta, tb) = (self.a.tree.triangle(slot_a), self.b.tree.triangle(slot_b));
         let near = settle(self.a, ta, self.b, tb, self.pairing);
         self.offer(near.squared.sqrt(), Some(near), (ta as u32, tb as u32), Hint { a: slot_a, b: slot_b });
     }

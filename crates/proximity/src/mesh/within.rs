@@ -5,11 +5,13 @@ use fearless_simd::{Simd, dispatch};
 
 use super::leaf::{along_normals, filled};
 use super::limit::Limit;
-use super::mesh::{WideMesh, settle, swallowed};
 use super::node::{NEAR, TOUCH, step};
 use super::placement::{Pairing, offset};
+use super::search::settle;
 use super::search::{Entry, Scratch, Visits, filling, side};
+use super::swallowed::swallowed;
 use super::tree::LEAF;
+use crate::TriMesh;
 
 /// Why two meshes are close.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,13 +28,7 @@ pub enum Pair {
 ///
 /// Touching is contact, and so is being closer than f64 can tell: 2⁻⁴⁰ of the sizes and distance of the meshes.
 /// A mesh wholly inside a closed one is in contact. Which pair is found is unspecified but reproducible.
-pub fn collide(
-    a: &WideMesh,
-    a_in_world: &Pose,
-    b: &WideMesh,
-    b_in_world: &Pose,
-    scratch: &mut Scratch,
-) -> Option<Pair> {
+pub fn collide(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> Option<Pair> {
     close::<TOUCH>(a, a_in_world, b, b_in_world, 0.0, scratch)
 }
 
@@ -40,9 +36,9 @@ pub fn collide(
 ///
 /// A NaN or negative tolerance counts as 0.
 pub fn within(
-    a: &WideMesh,
+    a: &TriMesh,
     a_in_world: &Pose,
-    b: &WideMesh,
+    b: &TriMesh,
     b_in_world: &Pose,
     tolerance: f64,
     scratch: &mut Scratch,
@@ -55,9 +51,9 @@ pub fn within(
 }
 
 fn close<const MODE: u8>(
-    a: &WideMesh,
+    a: &TriMesh,
     a_in_world: &Pose,
-    b: &WideMesh,
+    b: &TriMesh,
     b_in_world: &Pose,
     tolerance: f64,
     scratch: &mut Scratch,
@@ -84,8 +80,8 @@ fn close<const MODE: u8>(
 #[inline(always)]
 fn search<S: Simd, const MODE: u8>(
     simd: S,
-    a: &WideMesh,
-    b: &WideMesh,
+    a: &TriMesh,
+    b: &TriMesh,
     pairing: &Pairing,
     radius: f64,
     scratch: &mut Scratch,
@@ -142,8 +138,8 @@ fn search<S: Simd, const MODE: u8>(
 #[inline(always)]
 fn any_close<S: Simd>(
     simd: S,
-    a: &WideMesh,
-    b: &WideMesh,
+    a: &TriMesh,
+    b: &TriMesh,
     pairing: &Pairing,
     radius: f64,
     queue: &mut super::search::Queue,

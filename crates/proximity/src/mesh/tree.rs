@@ -127,6 +127,12 @@ impl Tree {
         (1u32 << count) - 1
     }
 
+    /// Triangle number in a slot.
+    #[inline]
+    pub(super) fn triangle(&self, slot: u32) -> usize {
+        self.order[slot as usize] as usize
+    }
+
     /// Bytes held, beside the vertices and indices of the mesh.
     pub fn bytes(&self) -> usize {
         let nodes: usize = self.levels.iter().map(Vec::len).sum();

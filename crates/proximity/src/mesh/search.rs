@@ -3,10 +3,12 @@
 use fearless_simd::{Level, Simd};
 
 use super::exact::{BATCH, Corners, Distances, distances};
-use super::mesh::WideMesh;
 use super::node::Side;
 use super::placement::Pairing;
 use super::tree::{FAN, LEAF, Tree};
+use crate::TriMesh;
+use crate::triangle::{Near, triangle_triangle};
+use elbowroom_spatial::Vec3;
 
 /// Work done by one query.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -129,14 +131,14 @@ impl Queue {
 
     /// Adds a pair of slots; true where the batch is full.
     #[inline(always)]
-    pub fn push(&mut self, a: &WideMesh, slot_a: u32, b: &WideMesh, slot_b: u32) -> bool {
-        let (ta, tb) = (a.triangle(slot_a), b.triangle(slot_b));
+    pub fn push(&mut self, a: &TriMesh, slot_a: u32, b: &TriMesh, slot_b: u32) -> bool {
+        let (ta, tb) = (a.tree.triangle(slot_a), b.tree.triangle(slot_b));
         let lane = self.len;
         self.triangles[lane] = (ta as u32, tb as u32);
-        for (k, p) in a.corners(ta).into_iter().enumerate() {
+        for (k, p) in units(a, ta).into_iter().enumerate() {
             (self.corners.a[k][0][lane], self.corners.a[k][1][lane], self.corners.a[k][2][lane]) = (p.x, p.y, p.z);
         }
-        for (k, p) in b.corners(tb).into_iter().enumerate() {
+        for (k, p) in units(b, tb).into_iter().enumerate() {
             (self.corners.b[k][0][lane], self.corners.b[k][1][lane], self.corners.b[k][2][lane]) = (p.x, p.y, p.z);
         }
         self.len += 1;
@@ -149,4 +151,15 @@ impl Queue {
         let len = std::mem::take(&mut self.len);
         (distances(simd, &self.corners, &pairing.exact), len)
     }
+}
+
+/// Corners of a triangle in its tree's frame.
+#[inline]
+fn units(mesh: &TriMesh, triangle: usize) -> [Vec3; 3] {
+    mesh.corners(triangle).map(|p| mesh.tree.frame.to_units(p))
+}
+
+/// Nearest points of two triangles, robustly, in units and axes of A's tree.
+pub(super) fn settle(a: &TriMesh, ta: usize, b: &TriMesh, tb: usize, pairing: &Pairing) -> Near {
+    triangle_triangle(units(a, ta), units(b, tb).map(|p| pairing.to_a(p)))
 }
