@@ -22,12 +22,12 @@ pub(super) struct Placement {
 pub(super) struct Pairing {
     pub ab: Placement,
     pub ba: Placement,
+    pub frame_a: Frame,
+    pub frame_b: Frame,
     /// Rows of the map from units of B to units of A, translation last.
     pub exact: [[f64; 4]; 3],
     /// Units of A per unit of B.
     pub scale: f64,
-    /// `1 + scale + max |t|`: bounds every coordinate in units of A, up to √3.
-    pub extent: f64,
     /// No f32 gap of boxes, slabs or triangles is off by more, in units of A. See README.md, "Error bounds".
     pub doubt: f64,
     /// No f64 distance of two triangles is off by more, in units of A; nearer than this is contact.
@@ -44,6 +44,7 @@ impl Pairing {
         let columns: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
         let back =
             std::array::from_fn(|i| -(columns[i][0] * t[0] + columns[i][1] * t[1] + columns[i][2] * t[2]) / scale);
+        // Bounds every coordinate in units of A, up to √3.
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
         let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
         let far = (reach(a_in_world, &a.frame) + reach(b_in_world, &b.frame)) / a.frame.unit;
@@ -52,7 +53,8 @@ impl Pairing {
             ba: placement(columns, back, 1.0 / scale),
             exact,
             scale,
-            extent,
+            frame_a: a.frame,
+            frame_b: b.frame,
             doubt: extent * F32_DOUBT,
             slack: extent * F64_SLACK + far * 16.0 * f64::EPSILON,
         }

@@ -61,8 +61,8 @@ impl Scratch {
 pub(super) struct Entry {
     pub a: u32,
     pub b: u32,
-    /// Largest gap known, units of A; negative where boxes overlap.
-    pub gap: f32,
+    /// What is known of the distance (see [`super::node::step`]).
+    pub key: f32,
     pub height_a: u8,
     pub height_b: u8,
 }
@@ -70,7 +70,7 @@ pub(super) struct Entry {
 impl Entry {
     #[inline(always)]
     pub fn root(a: &Tree, b: &Tree) -> Self {
-        Self { a: 0, b: 0, gap: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
+        Self { a: 0, b: 0, key: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
     }
 
     #[inline(always)]
@@ -86,13 +86,13 @@ impl Entry {
 
     /// The pair of children `i` and `j` as numbered by [`side`].
     #[inline(always)]
-    pub fn child(&self, i: usize, j: usize, gap: f32) -> Self {
+    pub fn child(&self, i: usize, j: usize, key: f32) -> Self {
         let (open_a, open_b) = self.opens();
         let (a, height_a) =
             if open_a { (self.a * FAN as u32 + i as u32, self.height_a - 1) } else { (self.a, self.height_a) };
         let (b, height_b) =
             if open_b { (self.b * FAN as u32 + j as u32, self.height_b - 1) } else { (self.b, self.height_b) };
-        Self { a, b, gap, height_a, height_b }
+        Self { a, b, key, height_a, height_b }
     }
 }
 
@@ -135,11 +135,12 @@ impl Queue {
         let (ta, tb) = (a.tree.triangle(slot_a), b.tree.triangle(slot_b));
         let lane = self.len;
         self.triangles[lane] = (ta as u32, tb as u32);
-        for (k, p) in units(a, ta).into_iter().enumerate() {
-            (self.corners.a[k][0][lane], self.corners.a[k][1][lane], self.corners.a[k][2][lane]) = (p.x, p.y, p.z);
-        }
-        for (k, p) in units(b, tb).into_iter().enumerate() {
-            (self.corners.b[k][0][lane], self.corners.b[k][1][lane], self.corners.b[k][2][lane]) = (p.x, p.y, p.z);
+        let (pa, pb) = (a.triangles()[ta], b.triangles()[tb]);
+        for k in 0..3 {
+            let (p, q) = (a.vertices()[pa[k] as usize], b.vertices()[pb[k] as usize]);
+            let (to_a, to_b) = (&mut self.corners.a[k], &mut self.corners.b[k]);
+            (to_a[0][lane], to_a[1][lane], to_a[2][lane]) = (p.x, p.y, p.z);
+            (to_b[0][lane], to_b[1][lane], to_b[2][lane]) = (q.x, q.y, q.z);
         }
         self.len += 1;
         self.len == BATCH
@@ -149,7 +150,7 @@ impl Queue {
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, pairing: &Pairing) -> (Distances, usize) {
         let len = std::mem::take(&mut self.len);
-        (distances(simd, &self.corners, &pairing.exact), len)
+        (distances(simd, &self.corners, pairing), len)
     }
 }
 

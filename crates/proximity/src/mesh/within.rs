@@ -107,7 +107,7 @@ fn search<S: Simd, const MODE: u8>(
             }
             // With boxes this deep in each other the answer is near: look at once.
             if queue.len > 0
-                && pair.gap <= 0.0
+                && pair.key <= 0.0
                 && let Some(found) = any_close(simd, a, b, pairing, radius, queue, visits)
             {
                 return Some(found);
@@ -120,11 +120,11 @@ fn search<S: Simd, const MODE: u8>(
         let (side_a, side_b) =
             (side(&a.tree, pair.a, pair.height_a, open_a), side(&b.tree, pair.b, pair.height_b, open_b));
         let mut deepest = (f32::INFINITY, first);
-        visits.boxes += step::<S, MODE>(simd, side_a, side_b, pairing, &limit, |i, j, gap| {
-            if gap < deepest.0 {
-                deepest = (gap, stack.len());
+        visits.boxes += step::<S, MODE>(simd, side_a, side_b, pairing, &limit, |i, j, key| {
+            if key < deepest.0 {
+                deepest = (key, stack.len());
             }
-            stack.push(pair.child(i, j, gap));
+            stack.push(pair.child(i, j, key));
         });
         if stack.len() > first {
             let last = stack.len() - 1;
