@@ -31,6 +31,16 @@ impl<S: Simd> Intervals<S> {
         Self::along(simd, leaf, &sight.of_a, [0.0; 3])
     }
 
+    /// Along the axes of the leaf's own mesh.
+    #[inline(always)]
+    pub fn own(simd: S, leaf: &Leaf) -> Self {
+        let [p, q, r] = load_corners(simd, &leaf.corner);
+        Self {
+            low: V3(p.0.min(q.0).min(r.0), p.1.min(q.1).min(r.1), p.2.min(q.2).min(r.2)),
+            high: V3(p.0.max(q.0).max(r.0), p.1.max(q.1).max(r.1), p.2.max(q.2).max(r.2)),
+        }
+    }
+
     #[inline(always)]
     pub fn of_b(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
         Self::along(simd, leaf, &sight.of_b, sight.shift)
@@ -103,6 +113,32 @@ impl<S: Simd> Facing<S> {
             let i = rows.trailing_zeros() as usize;
             rows &= rows - 1;
             let out = self.square(simd, &ends, i).simd_gt(limit.squared).to_bitmask();
+            left |= (!out & 0xff) << (8 * i);
+        }
+        Pairs(left & pairs.0)
+    }
+
+    /// Leaves out pairs that some axis keeps farther apart than the limit.
+    #[inline(always)]
+    pub fn touching(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
+        let (low, high) = &self.whole;
+        let n = (W8::splat(simd, low[0]) - a.high.0).max(a.low.0 - high[0]);
+        let u = (W8::splat(simd, low[1]) - a.high.1).max(a.low.1 - high[1]);
+        let v = (W8::splat(simd, low[2]) - a.high.2).max(a.low.2 - high[2]);
+        let mut rows = !n.max(u).max(v).simd_gt(limit.gap).to_bitmask() & 0xff;
+        if rows == 0 {
+            return Pairs(0);
+        }
+        let (low, high) = (stored(a.low), stored(a.high));
+        let mut left = 0;
+        while rows != 0 {
+            let i = rows.trailing_zeros() as usize;
+            rows &= rows - 1;
+            let b = &self.each;
+            let n = (b.low.0 - high[0][i]).max(W8::splat(simd, low[0][i]) - b.high.0);
+            let u = (b.low.1 - high[1][i]).max(W8::splat(simd, low[1][i]) - b.high.1);
+            let v = (b.low.2 - high[2][i]).max(W8::splat(simd, low[2][i]) - b.high.2);
+            let out = n.max(u).max(v).simd_gt(limit.gap).to_bitmask();
             left |= (!out & 0xff) << (8 * i);
         }
         Pairs(left & pairs.0)

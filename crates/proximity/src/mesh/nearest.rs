@@ -3,17 +3,17 @@
 use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::{Simd, dispatch};
 
-use super::exact::BATCH;
+use super::exact::{BATCH, Distances};
 use super::leaf::{Facing, Intervals, along_normals, filled};
 use super::limit::Limit;
 use super::node::{NEAR, step};
-use super::placement::{Pairing, offset};
+use super::placement::{Pairing, apart};
 use super::search::settle;
-use super::search::{Entry, Queue, Scratch, Visits, filling, side};
+use super::search::{Entry, Queue, Scratch, Stack, Visits, filling, side};
 use super::swallowed::swallowed;
 use super::toward::{Spot, nearest_leaf};
 use super::tree::LEAF;
-use super::within::Pair;
+use super::touch::{Pair, collide};
 use crate::TriMesh;
 use crate::triangle::Near;
 
@@ -71,23 +71,20 @@ pub fn distance_at(
     scratch: &mut Scratch,
 ) -> Option<Nearest> {
     scratch.visits = Visits::default();
-    if !(a_in_world.is_finite() && b_in_world.is_finite()) {
-        return Some(unknown(a_in_world, b_in_world));
-    }
-    let between = offset(&a.tree.frame, a_in_world, &b.tree.frame, b_in_world);
-    let far = between.abs().max_element() + a_in_world.translation.abs().max_element();
-    let reach = (a.tree.radius + b.tree.radius + limit) * (1.0 + 1e-12) + far * 1e-12;
-    if between.length_squared() > reach * reach {
+    if apart(&a.tree, a_in_world, &b.tree, b_in_world, limit) {
         return None;
     }
     let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
-    if !pairing.slack.is_finite() {
+    if !pairing.is_usable() {
         return Some(unknown(a_in_world, b_in_world));
     }
     let unit = a.tree.frame.unit;
     let radius = limit.max(0.0) / unit + pairing.slack;
-    let level = scratch.level;
-    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, hint, scratch));
+    let level = scratch.level();
+    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, pairing.slack, hint, scratch));
+    if scratch.stack.overflown() {
+        return Some(unknown(a_in_world, b_in_world));
+    }
     let touching = found.is_some_and(|f| f.distance <= pairing.slack);
     if !touching && let Some(p) = swallowed(a, a_in_world, b, b_in_world) {
         let hint = found.map_or(Hint::default(), |f| f.hint);
@@ -104,6 +101,50 @@ pub fn distance_at(
         pair: Pair::Triangles(found.triangles.0, found.triangles.1),
         hint: found.hint,
     })
+}
+
+/// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
+///
+/// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified but
+/// reproducible.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, within}};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 1.5));
+/// assert!(within(&mesh, &here, &mesh, &there, 0.51, &mut Scratch::new()).is_some());
+/// assert!(within(&mesh, &here, &mesh, &there, 0.49, &mut Scratch::new()).is_none());
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn within(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    tolerance: f64,
+    scratch: &mut Scratch,
+) -> Option<Pair> {
+    if !(tolerance > 0.0) {
+        return collide(a, a_in_world, b, b_in_world, scratch);
+    }
+    scratch.visits = Visits::default();
+    if apart(&a.tree, a_in_world, &b.tree, b_in_world, tolerance) {
+        return None;
+    }
+    let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
+    if !pairing.is_usable() {
+        return Some(Pair::Unknown);
+    }
+    let radius = tolerance / a.tree.frame.unit + pairing.slack;
+    let level = scratch.level();
+    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, radius, None, scratch));
+    match found {
+        Some(best) => Some(Pair::Triangles(best.triangles.0, best.triangles.1)),
+        None if scratch.stack.overflown() => Some(Pair::Unknown),
+        None => swallowed(a, a_in_world, b, b_in_world).map(|_| Pair::Inside),
+    }
 }
 
 fn unknown(a_in_world: &Pose, b_in_world: &Pose) -> Nearest {
@@ -132,6 +173,10 @@ struct Search<'a> {
     pairing: &'a Pairing,
     limit: Limit,
     radius: f64,
+    /// Nearer makes no difference: the search ends.
+    enough: f64,
+    /// Distance of the pair along which gaps are measured.
+    seen: f64,
     best: Option<Best>,
     queue: &'a mut Queue,
     slots: [(u32, u32); LEAF],
@@ -145,16 +190,19 @@ fn search<S: Simd>(
     b: &TriMesh,
     pairing: &Pairing,
     radius: f64,
+    enough: f64,
     hint: Option<Hint>,
     scratch: &mut Scratch,
 ) -> Option<Best> {
     let Scratch { stack, queue, visits, .. } = scratch;
-    queue.len = 0;
+    queue.clear();
     stack.clear();
     let mut limit = Limit::new(radius, pairing);
     limit.look_along(pairing.to_a(Vec3::ZERO), pairing);
     let slots = [(0, 0); LEAF];
-    let mut s = Search { a, b, pairing, limit, radius, best: None, queue, slots, visits: Visits::default() };
+    let seen = f64::INFINITY;
+    let visits_now = Visits::default();
+    let mut s = Search { a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits: visits_now };
     stack.push(Entry::root(&a.tree, &b.tree));
     s.begin(simd, hint, stack);
     s.prove(simd, stack);
@@ -166,7 +214,7 @@ impl Search<'_> {
     /// Looks for a good upper bound: the hint, else the first leaves that the descent meets; then from side to side as
     /// long as it helps.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, hint: Option<Hint>, stack: &mut Vec<Entry>) {
+    fn begin<S: Simd>(&mut self, simd: S, hint: Option<Hint>, stack: &mut Stack) {
         let (ab, ba) = (self.pairing.ab, self.pairing.ba);
         match hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
             Some(h) => self.measure_slots(simd, h.a, h.b),
@@ -178,7 +226,7 @@ impl Search<'_> {
         self.flush(simd);
         for round in 0..8 {
             let Some(best) = self.best else { return };
-            if best.distance <= self.pairing.slack {
+            if best.distance <= self.enough {
                 return;
             }
             let next = if round % 2 == 0 {
@@ -202,7 +250,7 @@ impl Search<'_> {
 
     /// Opens what looks nearest until a leaf of each is reached, and measures the pair of triangles that looks nearest.
     #[inline(always)]
-    fn dive<S: Simd>(&mut self, simd: S, stack: &mut Vec<Entry>) {
+    fn dive<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
             if !pair.is_leaves() {
                 self.open(simd, pair, stack);
@@ -219,10 +267,13 @@ impl Search<'_> {
                 None => 0,
             };
             self.measure_slots(simd, pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
-            if self.best.is_some() {
-                return;
-            }
+            return;
         }
+    }
+
+    #[inline(always)]
+    fn done(&self) -> bool {
+        self.best.is_some_and(|b| b.distance <= self.enough)
     }
 
     fn to_b(&self, p: Vec3) -> Vec3 {
@@ -234,7 +285,7 @@ impl Search<'_> {
     /// Measures one pair at once.
     #[inline(always)]
     fn measure_slots<S: Simd>(&mut self, simd: S, slot_a: u32, slot_b: u32) {
-        self.slots[self.queue.len] = (slot_a, slot_b);
+        self.slots[self.queue.len()] = (slot_a, slot_b);
         self.queue.push(self.a, slot_a, self.b, slot_b);
         self.flush(simd);
     }
@@ -261,12 +312,16 @@ impl Search<'_> {
     /// Measures the queue.
     #[inline(always)]
     fn flush<S: Simd>(&mut self, simd: S) {
-        if self.queue.len == 0 {
+        if self.queue.is_empty() {
             return;
         }
         let (mut found, len) = self.queue.measure(simd, self.pairing);
         self.visits.triangles += len as u32;
+        self.visits.batches += 1;
         // The nearest first: it may spare the others.
+        if self.best.is_none() {
+            self.look(&found, len);
+        }
         while let Some(lane) = least(&found.at_least, len, self.radius) {
             let triangles = self.queue.triangles[lane];
             let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1 };
@@ -278,6 +333,16 @@ impl Search<'_> {
             };
             self.offer(if certain { found.distance[lane] } else { near.squared.sqrt() }, near, triangles, hint);
             found.at_least[lane] = f64::INFINITY;
+        }
+    }
+
+    /// Turns the line of sight to the nearest pair measured, though it is not near enough.
+    #[inline(always)]
+    fn look(&mut self, found: &Distances, len: usize) {
+        if let Some(lane) = least(&found.distance, len, self.seen) {
+            let near = found.near(lane);
+            self.seen = found.distance[lane];
+            self.limit.look_along(near.on_b - near.on_a, self.pairing);
         }
     }
 
@@ -299,7 +364,7 @@ impl Search<'_> {
             let bit = left.trailing_zeros();
             left &= left - 1;
             let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
-            self.slots[self.queue.len] = (slot_a, slot_b);
+            self.slots[self.queue.len()] = (slot_a, slot_b);
             if self.queue.push(self.a, slot_a, self.b, slot_b) {
                 self.flush(simd);
             }
@@ -307,7 +372,7 @@ impl Search<'_> {
     }
 
     #[inline(always)]
-    fn open<S: Simd>(&mut self, simd: S, pair: Entry, stack: &mut Vec<Entry>) {
+    fn open<S: Simd>(&mut self, simd: S, pair: Entry, stack: &mut Stack) {
         self.visits.nodes += 1;
         let (open_a, open_b) = pair.opens();
         let side_a = side(&self.a.tree, pair.a, pair.height_a, open_a);
@@ -320,17 +385,14 @@ impl Search<'_> {
             }
             stack.push(pair.child(i, j, key));
         });
-        if stack.len() > first {
-            let last = stack.len() - 1;
-            stack.swap(nearest.1, last);
-        }
+        stack.bring_to_top(nearest.1);
     }
 
     /// Opens every pair of nodes that may be nearer than the best.
     #[inline(always)]
-    fn prove<S: Simd>(&mut self, simd: S, stack: &mut Vec<Entry>) {
+    fn prove<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
-            if self.best.is_some_and(|b| b.distance <= self.pairing.slack) {
+            if self.done() {
                 return;
             }
             if pair.key > self.limit.squared {

@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::limit::Sight;
 use super::tree::{Frame, Tree};
 
 /// One mesh (Y) seen from the other (X), in units of X: `x = m·y + t`.
@@ -24,6 +25,8 @@ pub(super) struct Pairing {
     pub ba: Placement,
     pub frame_a: Frame,
     pub frame_b: Frame,
+    /// A's own axes, with B seen along them.
+    pub axes: Sight,
     /// Rows of the map from units of B to units of A, translation last.
     pub exact: [[f64; 4]; 3],
     /// Units of A per unit of B.
@@ -48,8 +51,10 @@ impl Pairing {
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
         let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
         let far = (reach(a_in_world, &a.frame) + reach(b_in_world, &b.frame)) / a.frame.unit;
+        let ab = placement(rows, t, scale);
         Self {
-            ab: placement(rows, t, scale),
+            ab,
+            axes: Sight { of_a: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], of_b: ab.m, shift: ab.t },
             ba: placement(columns, back, 1.0 / scale),
             exact,
             scale,
@@ -58,6 +63,12 @@ impl Pairing {
             doubt: extent * F32_DOUBT,
             slack: extent * F64_SLACK + far * 16.0 * f64::EPSILON,
         }
+    }
+
+    /// False where numbers are NaN, infinite or so large that their products are.
+    #[inline]
+    pub fn is_usable(&self) -> bool {
+        self.slack.is_finite() && self.doubt.is_finite()
     }
 
     /// A point of B's tree frame in A's.
@@ -75,9 +86,20 @@ const F64_SLACK: f64 = 1.0 / 1_099_511_627_776.0;
 
 /// From centre to centre, metres, world axes.
 #[inline]
-pub(super) fn offset(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> Vec3 {
+fn offset(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> Vec3 {
     let apart = b_in_world.translation - a_in_world.translation;
     apart + b_in_world.rotation * b.center - a_in_world.rotation * a.center
+}
+
+/// True where the balls around two meshes are certainly farther apart than `limit` metres.
+#[inline]
+pub(super) fn apart(a: &Tree, a_in_world: &Pose, b: &Tree, b_in_world: &Pose, limit: f64) -> bool {
+    let between = offset(&a.frame, a_in_world, &b.frame, b_in_world);
+    let far = between.abs().max_element() + a_in_world.translation.abs().max_element();
+    let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + far * 1e-12;
+    // Infinite and NaN are left to those who can say so.
+    let squared = between.length_squared();
+    squared.is_finite() && squared > reach * reach && a_in_world.is_finite() && b_in_world.is_finite()
 }
 
 fn placement(rows: [[f64; 3]; 3], t: [f64; 3], scale: f64) -> Placement {
