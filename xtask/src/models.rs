@@ -79,7 +79,7 @@ mod tests {
         for (name, bytes) in files().unwrap() {
             if name.contains("/meshes/") {
                 let triangles = (bytes.len() - 84) / 50;
-                assert!((300..=3000).contains(&triangles), "{name}: {triangles} triangles");
+                assert!((300..=6000).contains(&triangles), "{name}: {triangles} triangles");
             }
         }
     }

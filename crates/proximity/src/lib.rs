@@ -8,6 +8,7 @@
 //! | yes or no | [`collides`], [`within`] |
 //! | nearest surface point, signed distance | [`project_point`] |
 //! | how far and which way to separate | [`escape`] |
+//! | when two moving shapes first touch | [`impact`] |
 //! | a simple shape around points | [`fit`] |
 //! | triangles for a picture | [`tessellate`] |
 //!
@@ -41,6 +42,7 @@
 
 mod escape;
 pub mod fit;
+pub mod impact;
 pub mod mesh;
 mod project;
 mod separation;

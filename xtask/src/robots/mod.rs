@@ -1,6 +1,7 @@
 //! Example robots of our own: figures in, URDF, SRDF and meshes out. One file per robot.
 
 mod ns16;
+mod rx60b;
 mod srdf;
 pub mod tools;
 mod urdf;
@@ -62,7 +63,7 @@ pub type File = (String, Vec<u8>);
 
 /// Every robot we generate.
 pub fn all() -> Vec<Robot> {
-    vec![ns16::robot()]
+    vec![ns16::robot(), rx60b::robot()]
 }
 
 impl Robot {
