@@ -44,13 +44,12 @@ pub struct Hint {
 /// Distance of two meshes.
 ///
 /// ```
-/// use elbowroom_proximity::{TriMesh, wide::{Scratch, TriMesh, distance}};
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, distance}};
 /// use elbowroom_spatial::{Pose, Vec3};
 /// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-/// let wide = TriMesh::new(mesh.into());
 /// let there = Pose::from_translation(Vec3::X * 1.5);
-/// let near = distance(&wide, &Pose::IDENTITY, &wide, &there, &mut Scratch::new());
+/// let near = distance(&mesh, &Pose::IDENTITY, &mesh, &there, &mut Scratch::new());
 /// assert!((near.distance - 0.5).abs() < 1e-12 && near.lower_bound <= near.distance);
 /// assert!((near.on_a - Vec3::X).length() < 1e-12);
 /// ```

@@ -68,7 +68,7 @@ pub fn collide(
 /// let there = Pose::from_translation(Vec3::new(0.3, 0.3, -0.5));
 /// contacts(&mesh, &Pose::IDENTITY, &mesh, &there, &mut Scratch::new(), |pair| pairs.push(pair));
 /// // The tip of the second one comes out through the floor of the first.
-/// assert!(pairs.contains(&Pair::Triangles(0, 3)));
+/// assert!(pairs.iter().any(|p| matches!(p, Pair::Triangles(0, _))));
 /// # Ok::<(), elbowroom_proximity::MeshError>(())
 /// ```
 pub fn contacts(
