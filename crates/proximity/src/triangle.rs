@@ -155,32 +155,3 @@ pub(crate) fn triangle_triangle(s: [Vec3; 3], t: [Vec3; 3]) -> Near {
     }
     best
 }
-
-/// False only where a plane certainly separates the triangles: 2 normals, 9 edge pairs, and 6 in-plane normals for
-/// coplanar ones. `slack` is the rounding error of a coordinate, metres.
-pub(crate) fn triangles_touch(s: [Vec3; 3], t: [Vec3; 3], slack: f64) -> bool {
-    let edges = |x: [Vec3; 3]| [x[1] - x[0], x[2] - x[1], x[0] - x[2]];
-    let (es, et) = (edges(s), edges(t));
-    let (ns, nt) = (es[0].cross(es[1]), et[0].cross(et[1]));
-    if apart_along(ns, &s, &t, slack) || apart_along(nt, &s, &t, slack) {
-        return false;
-    }
-    for u in es {
-        for v in et {
-            if apart_along(u.cross(v), &s, &t, slack) {
-                return false;
-            }
-        }
-    }
-    !es.iter().any(|&e| apart_along(ns.cross(e), &s, &t, slack))
-        && !et.iter().any(|&e| apart_along(nt.cross(e), &s, &t, slack))
-}
-
-#[inline]
-fn apart_along(axis: Vec3, s: &[Vec3; 3], t: &[Vec3; 3], slack: f64) -> bool {
-    let (a, b) = (s.map(|p| p.dot(axis)), t.map(|p| p.dot(axis)));
-    let low = |x: [f64; 3]| x[0].min(x[1]).min(x[2]);
-    let high = |x: [f64; 3]| x[0].max(x[1]).max(x[2]);
-    let gap = (low(a) - high(b)).max(low(b) - high(a));
-    gap > slack * (axis.x.abs() + axis.y.abs() + axis.z.abs())
-}

@@ -134,12 +134,8 @@ pub(super) fn distances<S: Simd>(simd: S, corners: &Corners, pairing: &Pairing) 
     let margin = a.longest.max(b.longest).sqrt() * share;
     // A crossing of slender triangles is no proof either.
     let at_least = (crossed & slender).select(zero - 1.0, distance - margin);
-    let mut out = Distances {
-        distance: [0.0; BATCH],
-        at_least: [0.0; BATCH],
-        on_a: [[0.0; BATCH]; 3],
-        apart: [[0.0; BATCH]; 3],
-    };
+    let mut out =
+        Distances { distance: [0.0; BATCH], at_least: [0.0; BATCH], on_a: [[0.0; BATCH]; 3], apart: [[0.0; BATCH]; 3] };
     distance.store_slice(&mut out.distance);
     at_least.store_slice(&mut out.at_least);
     store(best.on_a, &mut out.on_a);
@@ -288,13 +284,7 @@ fn cut<S: Simd>(zero: W<S>, h: &[W<S>; 3]) -> M<S> {
 
 /// Where edge `k` of `t`, whose corners have these heights over `f`, passes through `f`.
 #[inline(always)]
-fn pierced<S: Simd>(
-    simd: S,
-    t: &Prepared<S>,
-    f: &Prepared<S>,
-    heights: &[W<S>; 3],
-    k: usize,
-) -> (M<S>, V3<W<S>>) {
+fn pierced<S: Simd>(simd: S, t: &Prepared<S>, f: &Prepared<S>, heights: &[W<S>; 3], k: usize) -> (M<S>, V3<W<S>>) {
     let zero = W::splat(simd, 0.0);
     let (p, q) = (heights[k], heights[(k + 1) % 3]);
     let apart = !(p.simd_gt(zero).simd_eq(q.simd_gt(zero)));

@@ -52,7 +52,7 @@ impl<T: Lanes> V3<T> {
     }
 }
 
-pub(super) type W16<S> = f32x16<S>;
+pub(crate) type W16<S> = f32x16<S>;
 pub(super) type W8<S> = f32x8<S>;
 
 #[inline(always)]

@@ -11,9 +11,9 @@ use super::placement::{Pairing, apart};
 use super::search::settle;
 use super::search::{Entry, Queue, Scratch, Stack, Visits, filling, side};
 use super::swallowed::swallowed;
+use super::touch::{Pair, collide};
 use super::toward::{Spot, nearest_leaf};
 use super::tree::LEAF;
-use super::touch::{Pair, collide};
 use crate::TriMesh;
 use crate::triangle::Near;
 

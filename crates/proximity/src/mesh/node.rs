@@ -176,8 +176,7 @@ impl<S: Simd> SlabsOfA<S> {
     fn new(simd: S, node: &Node, ab: &Placement) -> Self {
         let normal = load16(simd, &node.normal);
         let m = &ab.m;
-        let transposed =
-            [[m[0][0], m[1][0], m[2][0]], [m[0][1], m[1][1], m[2][1]], [m[0][2], m[1][2], m[2][2]]];
+        let transposed = [[m[0][0], m[1][0], m[2][0]], [m[0][1], m[1][1], m[2][1]], [m[0][2], m[1][2], m[2][2]]];
         let spread = abs16(normal.mapped(&rows16(simd, &transposed)));
         let (low, high) = (W16::load_array_ref(simd, &node.low), W16::load_array_ref(simd, &node.high));
         Self { normal, spread, low, high }
@@ -284,7 +283,8 @@ fn reach<S: Simd>(simd: S, node: &Node, c: V3<W16<S>>, h: V3<W16<S>>, d: [f32; 3
     let normal = load16(simd, &node.normal);
     let zero = W16::splat(simd, 0.0);
     let facing = normal.dot(d);
-    let limit = facing.simd_ge(zero).select(W16::load_array_ref(simd, &node.high), W16::load_array_ref(simd, &node.low));
+    let limit =
+        facing.simd_ge(zero).select(W16::load_array_ref(simd, &node.high), W16::load_array_ref(simd, &node.low));
     let rest = d.minus(normal.times(facing));
     let by_slab = facing * limit + c.dot(rest) + h.dot(abs16(rest));
     let by_box = c.dot(d) + h.dot(abs16(d));

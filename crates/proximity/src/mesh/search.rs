@@ -63,9 +63,15 @@ impl Scratch {
 
     #[inline]
     pub(super) fn level(&self) -> Level {
-        static DETECTED: OnceLock<Level> = OnceLock::new();
-        self.level.unwrap_or_else(|| *DETECTED.get_or_init(Level::new))
+        self.level.unwrap_or_else(detected_level)
     }
+}
+
+/// The best instruction set of this processor, asked for once.
+#[inline]
+pub(super) fn detected_level() -> Level {
+    static DETECTED: OnceLock<Level> = OnceLock::new();
+    *DETECTED.get_or_init(Level::new)
 }
 
 /// Runs a query with this thread's own memory, which is static: the first use does not allocate either.

@@ -40,13 +40,7 @@ pub enum Pair {
 /// assert!(collide(&mesh, &Pose::IDENTITY, &mesh, &far, &mut scratch).is_none());
 /// # Ok::<(), elbowroom_proximity::MeshError>(())
 /// ```
-pub fn collide(
-    a: &TriMesh,
-    a_in_world: &Pose,
-    b: &TriMesh,
-    b_in_world: &Pose,
-    scratch: &mut Scratch,
-) -> Option<Pair> {
+pub fn collide(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> Option<Pair> {
     let mut first = None;
     traverse(a, a_in_world, b, b_in_world, scratch, |pair| {
         first = Some(pair);

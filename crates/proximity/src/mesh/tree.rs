@@ -36,7 +36,7 @@ impl Frame {
 /// Up to sixteen children, structure of arrays, in units of the mesh's [`Frame`].
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub center: [[f32; FAN]; 3],
     /// Half extents, rounded outwards.
     pub half: [[f32; FAN]; 3],
@@ -47,7 +47,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    const EMPTY: Self = Self {
+    pub const EMPTY: Self = Self {
         center: [[0.0; FAN]; 3],
         half: [[0.0; FAN]; 3],
         normal: [[0.0; FAN]; 3],
@@ -70,8 +70,6 @@ pub(crate) struct Tree {
     pub(super) frame: Frame,
     /// Farthest vertex from the centre, metres, rounded up.
     pub(super) radius: f64,
-    /// Half extents of the whole, metres, rounded up.
-    pub(super) half: Vec3,
     pub(super) order: Vec<u32>,
     pub(super) leaves: Vec<Leaf>,
     /// `levels[h - 1]` holds the nodes of height `h`.
@@ -109,8 +107,7 @@ impl Tree {
         }
         let radius = triangles.iter().flatten().map(|&v| vertices[v as usize].distance(frame.center));
         let radius = radius.fold(0.0, f64::max) * (1.0 + 1e-12);
-        let half = bounds.extent() * 0.5 * (1.0 + 1e-12) + bounds.center().abs() * 1e-15;
-        Self { frame, radius, half, order, leaves, levels }
+        Self { frame, radius, order, leaves, levels }
     }
 
     /// Height of the root: 0 where it is a leaf.

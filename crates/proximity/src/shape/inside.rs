@@ -1,9 +1,10 @@
 //! Is a point inside a mesh? Rays that pass an edge too closely are thrown away, not trusted.
 
-use elbowroom_spatial::{Aabb, Vec3};
+use elbowroom_spatial::Vec3;
 
 use super::TriMesh;
 use super::topology::is_degenerate;
+use crate::mesh::Ray;
 
 /// Directions without a pattern that a drawn model could share.
 const RAYS: [Vec3; 6] = [
@@ -50,37 +51,13 @@ impl TriMesh {
 
     fn cast(&self, p: Vec3, direction: Vec3) -> Crossings {
         let mut found = Crossings { count: 0, signed: 0, unsure: false };
-        let inverse = Vec3::new(1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z);
-        let size = self.aabb().extent().max_element();
-        let mut node = 0;
-        // Depth-first order: a missed box is skipped by jumping behind its subtree, whose end a small stack keeps.
-        let mut stack = [0usize; 64];
-        let mut depth = 0;
-        loop {
-            if ray_meets(&self.bvh.nodes[node].aabb.inflated(1e-9 * size), p, inverse) {
-                let leaf = self.bvh.leaf(node);
-                for &t in leaf {
-                    if self.in_closed_part[t as usize] {
-                        cross(self.corners(t as usize), p, direction, &mut found);
-                    }
-                }
-                if found.unsure {
-                    return found;
-                }
-                if leaf.is_empty() {
-                    let (left, right) = self.bvh.children(node);
-                    stack[depth] = right;
-                    depth += 1;
-                    node = left;
-                    continue;
-                }
+        self.tree.visit(&Ray::new(&self.tree, p, direction), 0.0, |triangle| {
+            if self.in_closed_part[triangle] {
+                cross(self.corners(triangle), p, direction, &mut found);
             }
-            if depth == 0 {
-                return found;
-            }
-            depth -= 1;
-            node = stack[depth];
-        }
+            if found.unsure { f32::NEG_INFINITY } else { 0.0 }
+        });
+        found
     }
 
     /// Sum of the solid angles of all closed parts over 4π (Van Oosterom and Strackee, 1983).
@@ -94,11 +71,6 @@ impl TriMesh {
         let closed = (0..self.triangles().len()).filter(|&t| self.in_closed_part[t]);
         closed.map(|t| angle(self.corners(t))).sum::<f64>() / (4.0 * std::f64::consts::PI)
     }
-}
-
-fn ray_meets(b: &Aabb, p: Vec3, inverse: Vec3) -> bool {
-    let (t0, t1) = ((b.min - p).scale(inverse), (b.max - p).scale(inverse));
-    t0.max(t1).min_element() >= t0.min(t1).max_element().max(0.0)
 }
 
 /// Möller and Trumbore (1997), with a band of doubt around the border.

@@ -6,7 +6,6 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::mesh::Tree;
 
-use super::bvh::Bvh;
 use super::{ConvexHull, topology};
 
 /// A surface of triangles. Where it is closed it bounds a solid.
@@ -26,7 +25,6 @@ pub struct TriMesh {
     triangles: Vec<[u32; 3]>,
     aabb: Aabb,
     report: MeshReport,
-    pub(crate) bvh: Bvh,
     pub(crate) tree: Tree,
     /// Vertices that reach farthest along each axis: if one is outside a box, so is part of the mesh.
     pub(crate) extremes: [Vec3; 6],
@@ -94,12 +92,10 @@ impl TriMesh {
         check(&vertices, &triangles)?;
         let topology = topology::examine(&vertices, &triangles);
         let aabb = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize]));
-        let bvh = Bvh::build(&vertices, &triangles);
         let tree = Tree::build(&vertices, &triangles, 2);
         let extremes = extremes(&vertices, &triangles);
         Ok(Self {
             aabb,
-            bvh,
             tree,
             extremes,
             report: topology.report,

@@ -1,6 +1,5 @@
 //! The solids that questions are asked about.
 
-mod bvh;
 mod capsule;
 mod cuboid;
 mod cylinder;
@@ -23,8 +22,6 @@ pub use half_space::HalfSpace;
 pub use hull::{ConvexHull, HullError};
 pub use mesh::{MeshError, MeshReport, TriMesh};
 pub use sphere::Sphere;
-
-pub(crate) use bvh::Bvh;
 
 /// A solid in its own frame.
 ///
