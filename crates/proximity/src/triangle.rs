@@ -109,6 +109,22 @@ fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     inside.then_some(x)
 }
 
+/// True where an edge of one passes through the other, by f64 signs alone: nearly touching ones may go either way.
+pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
+    edges_cross(&s, &t) || edges_cross(&t, &s)
+}
+
+#[inline]
+fn edges_cross(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
+    let n = (t[1] - t[0]).cross(t[2] - t[0]);
+    let h = [n.dot(s[0] - t[0]), n.dot(s[1] - t[0]), n.dot(s[2] - t[0])];
+    let above = [h[0] > 0.0, h[1] > 0.0, h[2] > 0.0];
+    if above[0] == above[1] && above[1] == above[2] {
+        return false;
+    }
+    (0..3).any(|k| above[k] != above[(k + 1) % 3] && segment_crosses(s[k], s[(k + 1) % 3], *t).is_some())
+}
+
 /// Nearest points of a segment (first) and a triangle.
 pub(crate) fn segment_triangle(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Near {
     if let Some(x) = segment_crosses(p, q, t) {

@@ -2,9 +2,9 @@
 
 use elbowroom_spatial::Pose;
 
-use super::nearest::{Hint, distance_at};
+use super::nearest::{Hint, distance_at, within};
 use super::search::Scratch;
-use super::within::{collide, within};
+use super::touch::collide;
 use crate::{Separation, Shape, separation_within};
 
 impl Scratch {

@@ -1,15 +1,18 @@
 //! Distances of eight pairs of triangles at once, in f64. README.md, "Triangles in f64".
 
-use std::array::from_fn;
-
 use fearless_simd::{Simd, f64x8, prelude::*};
 
+use elbowroom_spatial::Vec3;
+
 use super::lanes::V3;
+use super::placement::Pairing;
+use super::tree::Frame;
+use crate::triangle::Near;
 
 /// Pairs of one batch.
 pub(super) const BATCH: usize = 8;
 
-/// Corners of up to eight pairs, `[corner][axis][lane]`: A in its tree frame, B in its own.
+/// Corners of up to eight pairs, `[corner][axis][lane]`, each mesh in its own frame, metres.
 #[derive(Debug, Clone)]
 pub(super) struct Corners {
     pub a: [[[f64; BATCH]; 3]; 3],
@@ -25,8 +28,20 @@ impl Corners {
 pub(super) struct Distances {
     /// Right to within the slack, where not doubtful.
     pub distance: [f64; BATCH],
-    /// Where doubtful: the distance is not below this.
+    /// Where smaller than `distance`, that is doubtful, and the true one is not below this.
     pub at_least: [f64; BATCH],
+    on_a: [[f64; BATCH]; 3],
+    apart: [[f64; BATCH]; 3],
+}
+
+impl Distances {
+    /// Nearest points of one pair, where not doubtful.
+    #[inline(always)]
+    pub fn near(&self, lane: usize) -> Near {
+        let on_a = Vec3::new(self.on_a[0][lane], self.on_a[1][lane], self.on_a[2][lane]);
+        let apart = Vec3::new(self.apart[0][lane], self.apart[1][lane], self.apart[2][lane]);
+        Near { squared: self.distance[lane] * self.distance[lane], on_a, on_b: on_a - apart }
+    }
 }
 
 type W<S> = f64x8<S>;
@@ -48,13 +63,9 @@ struct Prepared<S: Simd> {
 impl<S: Simd> Prepared<S> {
     #[inline(always)]
     fn new(simd: S, corner: Triangle<S>) -> Self {
-        let edge: Triangle<S> = from_fn(|k| corner[(k + 1) % 3].minus(corner[k]));
-        let square: [W<S>; 3] = from_fn(|k| edge[k].dot(edge[k]));
-        let tiny = W::splat(simd, f64::MIN_POSITIVE);
-        let inverse = from_fn(|k| {
-            let usable = square[k].simd_gt(tiny);
-            usable.select(W::splat(simd, 1.0) / square[k].max(tiny), W::splat(simd, 0.0))
-        });
+        let edge: Triangle<S> = [corner[1].minus(corner[0]), corner[2].minus(corner[1]), corner[0].minus(corner[2])];
+        let square = [edge[0].dot(edge[0]), edge[1].dot(edge[1]), edge[2].dot(edge[2])];
+        let inverse = [reciprocal(simd, square[0]), reciprocal(simd, square[1]), reciprocal(simd, square[2])];
         let normal = edge[0].cross(edge[1]);
         let longest = square[0].max(square[1]).max(square[2]);
         Self { corner, edge, square, inverse, normal, normal_square: normal.dot(normal), longest }
@@ -62,80 +73,135 @@ impl<S: Simd> Prepared<S> {
 
     #[inline(always)]
     fn heights(&self, points: &Triangle<S>) -> [W<S>; 3] {
-        from_fn(|k| self.normal.dot(points[k].minus(self.corner[0])))
+        let one = self.normal.dot(points[0].minus(self.corner[0]));
+        let two = self.normal.dot(points[1].minus(self.corner[0]));
+        [one, two, self.normal.dot(points[2].minus(self.corner[0]))]
     }
 }
 
-/// All distances of a batch; `exact` maps B's frame to A's.
+/// 1/x, or 0 where x is too small for it.
 #[inline(always)]
-pub(super) fn distances<S: Simd>(simd: S, corners: &Corners, exact: &[[f64; 4]; 3]) -> Distances {
-    let load = |p: &[[f64; BATCH]; 3]| {
-        V3(W::load_array_ref(simd, &p[0]), W::load_array_ref(simd, &p[1]), W::load_array_ref(simd, &p[2]))
-    };
-    let rotation = exact.map(|row| [row[0], row[1], row[2]].map(|x| W::splat(simd, x)));
-    let shift = V3(W::splat(simd, exact[0][3]), W::splat(simd, exact[1][3]), W::splat(simd, exact[2][3]));
-    let a = Prepared::new(simd, from_fn(|k| load(&corners.a[k])));
-    let b = Prepared::new(simd, from_fn(|k| load(&corners.b[k]).mapped(&rotation).plus(shift)));
-    let between: [[V3<W<S>>; 3]; 3] = from_fn(|i| from_fn(|j| a.corner[i].minus(b.corner[j])));
+fn reciprocal<S: Simd>(simd: S, x: W<S>) -> W<S> {
+    let tiny = W::splat(simd, f64::MIN_POSITIVE);
+    x.simd_gt(tiny).select(W::splat(simd, 1.0) / x.max(tiny), W::splat(simd, 0.0))
+}
+
+/// A corner in its tree's frame, rounded as [`Frame::to_units`] does.
+#[inline(always)]
+fn load<S: Simd>(simd: S, p: &[[f64; BATCH]; 3], frame: &Frame) -> V3<W<S>> {
+    V3(
+        (W::load_array_ref(simd, &p[0]) - frame.center.x) * frame.inverse,
+        (W::load_array_ref(simd, &p[1]) - frame.center.y) * frame.inverse,
+        (W::load_array_ref(simd, &p[2]) - frame.center.z) * frame.inverse,
+    )
+}
+
+/// All distances of a batch.
+#[inline(always)]
+pub(super) fn distances<S: Simd>(simd: S, corners: &Corners, pairing: &Pairing) -> Distances {
+    let (fa, fb) = (&pairing.frame_a, &pairing.frame_b);
+    let a = Prepared::new(
+        simd,
+        [load(simd, &corners.a[0], fa), load(simd, &corners.a[1], fa), load(simd, &corners.a[2], fa)],
+    );
+    let [x, y, z] = &pairing.exact;
+    let rows = [row(simd, x), row(simd, y), row(simd, z)];
+    let shift = V3(W::splat(simd, x[3]), W::splat(simd, y[3]), W::splat(simd, z[3]));
+    let b = Prepared::new(
+        simd,
+        [
+            load(simd, &corners.b[0], fb).mapped(&rows).plus(shift),
+            load(simd, &corners.b[1], fb).mapped(&rows).plus(shift),
+            load(simd, &corners.b[2], fb).mapped(&rows).plus(shift),
+        ],
+    );
     let zero = W::splat(simd, 0.0);
-    let (mut best, mut doubt) = edges(simd, &a, &b, &between);
+    let mut best = Best { square: W::splat(simd, f64::INFINITY), on_a: a.corner[0], apart: a.corner[0] };
+    let spread = edges(simd, &a, &b, &mut best);
     let (heights_a, heights_b) = (b.heights(&a.corner), a.heights(&b.corner));
-    // Along edges and normals, of corners of A over B and of B over A.
-    let below = |x: &Prepared<S>, k: usize, r: [V3<W<S>>; 3], sign: f64| {
-        // r[j] runs from corner j of x to the point (times sign).
-        let s = W::splat(simd, sign);
-        (x.edge[0].dot(r[0]) * s, x.edge[2].dot(r[0]) * s, k)
-    };
     for k in 0..3 {
-        let (d0, d2, _) = below(&b, k, between[k], 1.0);
-        best = best.min(over_face(simd, &b, d0, d2, heights_a[k]));
-        let (d0, d2, _) = below(&a, k, from_fn(|j| between[j][k]), -1.0);
-        best = best.min(over_face(simd, &a, d0, d2, heights_b[k]));
+        let foot = over_face(simd, &b, a.corner[k], heights_a[k]);
+        best.keep(foot.square, a.corner[k], foot.offset);
+        let foot = over_face(simd, &a, b.corner[k], heights_b[k]);
+        let apart = V3(zero - foot.offset.0, zero - foot.offset.1, zero - foot.offset.2);
+        best.keep(foot.square, b.corner[k].plus(apart), apart);
     }
     let slender = slender(simd, &a) | slender(simd, &b);
-    let crossed = crossing(simd, &a, &b, &heights_a, &heights_b);
-    // What slender triangles cross is looked at again.
-    doubt = doubt | slender;
-    best = crossed.select(zero, best);
-    let distance = best.sqrt();
-    let margin = a.longest.max(b.longest).sqrt() * DOUBTFUL_SHARE;
-    let at_least = (crossed & slender).select(zero, doubt.select(distance - margin, distance));
-    let mut out = Distances { distance: [0.0; BATCH], at_least: [0.0; BATCH] };
+    let crossed = crossing(simd, &a, &b, &heights_a, &heights_b, &mut best);
+    let distance = best.square.sqrt();
+    // The width of a slender triangle (1e-2), or what nearly parallel edges diverge by over their length; doubled.
+    let share = slender.select(W::splat(simd, 0.022), spread.sqrt() * 2.0);
+    let margin = a.longest.max(b.longest).sqrt() * share;
+    // A crossing of slender triangles is no proof either.
+    let at_least = (crossed & slender).select(zero - 1.0, distance - margin);
+    let mut out = Distances {
+        distance: [0.0; BATCH],
+        at_least: [0.0; BATCH],
+        on_a: [[0.0; BATCH]; 3],
+        apart: [[0.0; BATCH]; 3],
+    };
     distance.store_slice(&mut out.distance);
     at_least.store_slice(&mut out.at_least);
-    // A crossing of slender triangles is no proof: infinite until settled.
-    let claimed = (crossed & slender).select(W::splat(simd, f64::INFINITY), distance);
-    claimed.store_slice(&mut out.distance);
+    store(best.on_a, &mut out.on_a);
+    store(best.apart, &mut out.apart);
     out
+}
+
+/// The nearest points so far.
+struct Best<S: Simd> {
+    square: W<S>,
+    on_a: V3<W<S>>,
+    /// From the point of B to that of A.
+    apart: V3<W<S>>,
+}
+
+impl<S: Simd> Best<S> {
+    #[inline(always)]
+    fn keep(&mut self, square: W<S>, on_a: V3<W<S>>, apart: V3<W<S>>) {
+        let nearer = square.simd_lt(self.square);
+        self.square = nearer.select(square, self.square);
+        self.on_a = select(nearer, on_a, self.on_a);
+        self.apart = select(nearer, apart, self.apart);
+    }
+}
+
+type M<S> = <W<S> as SimdBase<S>>::Mask;
+
+#[inline(always)]
+fn select<S: Simd>(mask: M<S>, a: V3<W<S>>, b: V3<W<S>>) -> V3<W<S>> {
+    V3(mask.select(a.0, b.0), mask.select(a.1, b.1), mask.select(a.2, b.2))
+}
+
+#[inline(always)]
+fn store<S: Simd>(v: V3<W<S>>, to: &mut [[f64; BATCH]; 3]) {
+    v.0.store_slice(&mut to[0]);
+    v.1.store_slice(&mut to[1]);
+    v.2.store_slice(&mut to[2]);
+}
+
+#[inline(always)]
+fn row<S: Simd>(simd: S, r: &[f64; 4]) -> [W<S>; 3] {
+    [W::splat(simd, r[0]), W::splat(simd, r[1]), W::splat(simd, r[2])]
 }
 
 /// Squared sine below which two edges count as nearly parallel.
 const PARALLEL: f64 = 1e-6;
 /// Squared ratio of height to longest edge below which a triangle is slender.
 const SLENDER: f64 = 1e-4;
-/// What a doubtful distance may be too large by, as a share of the longest edge: the width of a slender triangle (1e-2)
-/// or what nearly parallel edges diverge over their length (1e-3), doubled.
-const DOUBTFUL_SHARE: f64 = 0.022;
-
 #[inline(always)]
 fn slender<S: Simd>(simd: S, t: &Prepared<S>) -> <W<S> as SimdBase<S>>::Mask {
     !(t.normal_square.simd_gt(t.longest * t.longest * SLENDER)) | t.longest.simd_le(W::splat(simd, 1e-140))
 }
 
-/// Smallest squared distance of the nine pairs of edges (Ericson, 2005, 5.1.9), and where it is doubtful.
+/// Nearest points of the nine pairs of edges (Ericson, 2005, 5.1.9). Returns the largest squared sine among pairs that
+/// are nearly parallel, where the parameters are not to be trusted; 0 where there are none.
 #[inline(always)]
-fn edges<S: Simd>(
-    simd: S,
-    a: &Prepared<S>,
-    b: &Prepared<S>,
-    between: &[[V3<W<S>>; 3]; 3],
-) -> (W<S>, <W<S> as SimdBase<S>>::Mask) {
+fn edges<S: Simd>(simd: S, a: &Prepared<S>, b: &Prepared<S>, best: &mut Best<S>) -> W<S> {
     let (zero, one) = (W::splat(simd, 0.0), W::splat(simd, 1.0));
-    let mut best = W::splat(simd, f64::INFINITY);
-    let mut doubt = one.simd_lt(zero);
+    let mut spread = zero;
     for i in 0..3 {
         for j in 0..3 {
-            let r = between[i][j];
+            let r = a.corner[i].minus(b.corner[j]);
             let (u, v) = (a.edge[i], b.edge[j]);
             let along = u.dot(v);
             let c = u.dot(r);
@@ -143,36 +209,48 @@ fn edges<S: Simd>(
             let full = a.square[i] * b.square[j];
             let across = full - along * along;
             let parallel = across.simd_le(full * PARALLEL);
-            doubt = doubt | parallel;
+            // What cancellation hides is counted as well.
+            let sine = across.max(zero) * a.inverse[i] * b.inverse[j] + 1e-15;
+            spread = spread.max(parallel.select(sine, zero));
             let s = (along * f - c * b.square[j]) / parallel.select(one, across);
             let s = parallel.select(zero, s).max(zero).min(one);
             let t = ((along * s + f) * b.inverse[j]).max(zero).min(one);
             let s = ((along * t - c) * a.inverse[i]).max(zero).min(one);
-            let gap = r.plus(u.times(s)).minus(v.times(t));
-            best = best.min(gap.dot(gap));
+            let step = u.times(s);
+            let gap = r.plus(step).minus(v.times(t));
+            best.keep(gap.dot(gap), a.corner[i].plus(step), gap);
         }
     }
-    (best, doubt)
+    spread
 }
 
-/// Squared height of a point where its foot is inside the triangle, else infinite. `d0`, `d2` are products of the
-/// vector from corner 0 with the first and the last edge.
+/// A point over a triangle.
+struct Foot<S: Simd> {
+    /// Squared height where the foot is inside the triangle, else infinite.
+    square: W<S>,
+    /// From the foot to the point.
+    offset: V3<W<S>>,
+}
+
+/// `height` is the product of the normal with the point less a corner.
 #[inline(always)]
-fn over_face<S: Simd>(simd: S, t: &Prepared<S>, d0: W<S>, d2: W<S>, height: W<S>) -> W<S> {
-    let zero = W::splat(simd, 0.0);
+fn over_face<S: Simd>(simd: S, t: &Prepared<S>, point: V3<W<S>>, height: W<S>) -> Foot<S> {
+    let (zero, r) = (W::splat(simd, 0.0), point.minus(t.corner[0]));
     // The sides at corner 0 are edge 0 and minus edge 2.
     let mixed = zero - t.edge[0].dot(t.edge[2]);
-    let d2 = zero - d2;
+    let (d0, d2) = (t.edge[0].dot(r), zero - t.edge[2].dot(r));
     let u = t.square[2] * d0 - mixed * d2;
     let w = t.square[0] * d2 - mixed * d0;
     let whole = t.square[0] * t.square[2] - mixed * mixed;
     let inside = u.simd_gt(zero) & w.simd_gt(zero) & (u + w).simd_lt(whole);
     let tiny = W::splat(simd, f64::MIN_POSITIVE);
     let flat = t.normal_square.simd_gt(t.longest * t.longest * SLENDER);
-    (inside & flat).select(height * height / t.normal_square.max(tiny), W::splat(simd, f64::INFINITY))
+    let share = height / t.normal_square.max(tiny);
+    let square = (inside & flat).select(height * share, W::splat(simd, f64::INFINITY));
+    Foot { square, offset: t.normal.times(share) }
 }
 
-/// Where an edge of one triangle passes through the other.
+/// Where an edge of one triangle passes through the other; the point of passage is kept.
 #[inline(always)]
 fn crossing<S: Simd>(
     simd: S,
@@ -180,36 +258,52 @@ fn crossing<S: Simd>(
     b: &Prepared<S>,
     heights_a: &[W<S>; 3],
     heights_b: &[W<S>; 3],
-) -> <W<S> as SimdBase<S>>::Mask {
+    best: &mut Best<S>,
+) -> M<S> {
     let zero = W::splat(simd, 0.0);
-    let cut = |h: &[W<S>; 3]| {
-        let low = h[0].min(h[1]).min(h[2]);
-        let high = h[0].max(h[1]).max(h[2]);
-        low.simd_le(zero) & high.simd_ge(zero)
-    };
-    let both = cut(heights_a) & cut(heights_b);
+    let both = cut(zero, heights_a) & cut(zero, heights_b);
     if !both.any_true() {
         return both;
     }
-    (pierced(simd, a, b, heights_a) | pierced(simd, b, a, heights_b)) & both
-}
-
-/// Where an edge of `t`, whose corners have these heights over `f`, passes through `f`.
-#[inline(always)]
-fn pierced<S: Simd>(simd: S, t: &Prepared<S>, f: &Prepared<S>, heights: &[W<S>; 3]) -> <W<S> as SimdBase<S>>::Mask {
-    let zero = W::splat(simd, 0.0);
     let mut any = zero.simd_lt(zero);
     for k in 0..3 {
-        let (p, q) = (heights[k], heights[(k + 1) % 3]);
-        let apart = !(p.simd_gt(zero).simd_eq(q.simd_gt(zero)));
-        let share = p / apart.select(p - q, W::splat(simd, 1.0));
-        let x = t.corner[k].plus(t.edge[k].times(share));
-        let mut inside = apart;
-        for l in 0..3 {
-            let side = f.normal.dot(f.edge[l].cross(x.minus(f.corner[l])));
-            inside = inside & side.simd_ge(zero);
+        let through_b = pierced(simd, a, b, heights_a, k);
+        let through_a = pierced(simd, b, a, heights_b, k);
+        for (mask, point) in [through_b, through_a] {
+            let mask = mask & both;
+            any = any | mask;
+            best.square = mask.select(zero, best.square);
+            best.on_a = select(mask, point, best.on_a);
+            best.apart = select(mask, V3(zero, zero, zero), best.apart);
         }
-        any = any | inside;
     }
     any
+}
+
+/// Where heights of both signs (or none) occur.
+#[inline(always)]
+fn cut<S: Simd>(zero: W<S>, h: &[W<S>; 3]) -> M<S> {
+    h[0].min(h[1]).min(h[2]).simd_le(zero) & h[0].max(h[1]).max(h[2]).simd_ge(zero)
+}
+
+/// Where edge `k` of `t`, whose corners have these heights over `f`, passes through `f`.
+#[inline(always)]
+fn pierced<S: Simd>(
+    simd: S,
+    t: &Prepared<S>,
+    f: &Prepared<S>,
+    heights: &[W<S>; 3],
+    k: usize,
+) -> (M<S>, V3<W<S>>) {
+    let zero = W::splat(simd, 0.0);
+    let (p, q) = (heights[k], heights[(k + 1) % 3]);
+    let apart = !(p.simd_gt(zero).simd_eq(q.simd_gt(zero)));
+    let share = p / apart.select(p - q, W::splat(simd, 1.0));
+    let x = t.corner[k].plus(t.edge[k].times(share));
+    let mut inside = apart;
+    for l in 0..3 {
+        let side = f.normal.dot(f.edge[l].cross(x.minus(f.corner[l])));
+        inside = inside & side.simd_ge(zero);
+    }
+    (inside, x)
 }

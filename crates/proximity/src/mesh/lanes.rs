@@ -43,8 +43,12 @@ impl<T: Lanes> V3<T> {
     /// `[rows]·self`, each row given as three broadcast numbers.
     #[inline(always)]
     pub fn mapped(self, rows: &[[T; 3]; 3]) -> Self {
-        let row = |r: &[T; 3]| r[0] * self.0 + r[1] * self.1 + r[2] * self.2;
-        Self(row(&rows[0]), row(&rows[1]), row(&rows[2]))
+        Self(self.along(&rows[0]), self.along(&rows[1]), self.along(&rows[2]))
+    }
+
+    #[inline(always)]
+    fn along(self, r: &[T; 3]) -> T {
+        r[0] * self.0 + r[1] * self.1 + r[2] * self.2
     }
 }
 
@@ -53,8 +57,7 @@ pub(super) type W8<S> = f32x8<S>;
 
 #[inline(always)]
 pub(super) fn load16<S: Simd>(simd: S, p: &[[f32; 16]; 3]) -> V3<W16<S>> {
-    let at = |x: &[f32; 16]| W16::load_array_ref(simd, x);
-    V3(at(&p[0]), at(&p[1]), at(&p[2]))
+    V3(W16::load_array_ref(simd, &p[0]), W16::load_array_ref(simd, &p[1]), W16::load_array_ref(simd, &p[2]))
 }
 
 #[inline(always)]
@@ -62,9 +65,15 @@ pub(super) fn splat16<S: Simd>(simd: S, p: [f32; 3]) -> V3<W16<S>> {
     V3(W16::splat(simd, p[0]), W16::splat(simd, p[1]), W16::splat(simd, p[2]))
 }
 
+/// A row of three numbers, each in all lanes.
+#[inline(always)]
+pub(super) fn row16<S: Simd>(simd: S, r: [f32; 3]) -> [W16<S>; 3] {
+    [W16::splat(simd, r[0]), W16::splat(simd, r[1]), W16::splat(simd, r[2])]
+}
+
 #[inline(always)]
 pub(super) fn rows16<S: Simd>(simd: S, m: &[[f32; 3]; 3]) -> [[W16<S>; 3]; 3] {
-    m.map(|row| row.map(|x| W16::splat(simd, x)))
+    [row16(simd, m[0]), row16(simd, m[1]), row16(simd, m[2])]
 }
 
 #[inline(always)]
@@ -83,23 +92,25 @@ pub(super) fn store16<S: Simd>(v: V3<W16<S>>) -> [[f32; 16]; 3] {
 
 #[inline(always)]
 pub(super) fn load8<S: Simd>(simd: S, p: &[[f32; 8]; 3]) -> V3<W8<S>> {
-    let at = |x: &[f32; 8]| W8::load_array_ref(simd, x);
-    V3(at(&p[0]), at(&p[1]), at(&p[2]))
+    V3(W8::load_array_ref(simd, &p[0]), W8::load_array_ref(simd, &p[1]), W8::load_array_ref(simd, &p[2]))
+}
+
+#[inline(always)]
+pub(super) fn load_corners<S: Simd>(simd: S, p: &[[[f32; 8]; 3]; 3]) -> [V3<W8<S>>; 3] {
+    [load8(simd, &p[0]), load8(simd, &p[1]), load8(simd, &p[2])]
+}
+
+#[inline(always)]
+pub(super) fn rows8<S: Simd>(simd: S, m: &[[f32; 3]; 3]) -> [[W8<S>; 3]; 3] {
+    [row8(simd, m[0]), row8(simd, m[1]), row8(simd, m[2])]
+}
+
+#[inline(always)]
+fn row8<S: Simd>(simd: S, r: [f32; 3]) -> [W8<S>; 3] {
+    [W8::splat(simd, r[0]), W8::splat(simd, r[1]), W8::splat(simd, r[2])]
 }
 
 #[inline(always)]
 pub(super) fn splat8<S: Simd>(simd: S, p: [f32; 3]) -> V3<W8<S>> {
     V3(W8::splat(simd, p[0]), W8::splat(simd, p[1]), W8::splat(simd, p[2]))
-}
-
-/// The set bits, lowest first.
-#[inline(always)]
-pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let i = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            i
-        })
-    })
 }

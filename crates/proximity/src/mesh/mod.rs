@@ -13,9 +13,10 @@ mod search;
 mod swallowed;
 mod toward;
 mod tree;
-mod within;
+mod touch;
 
-pub use nearest::{Hint, Nearest, distance, distance_at};
+pub use nearest::{Hint, Nearest, distance, distance_at, within};
 pub use search::{Scratch, Visits};
+pub(crate) use search::with_scratch;
 pub(crate) use tree::Tree;
-pub use within::{Pair, collide, within};
+pub use touch::{Pair, collide, contacts};

@@ -3,16 +3,17 @@
 use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::{Simd, dispatch};
 
-use super::leaf::{along_direction, along_normals, filled};
+use super::exact::{BATCH, Distances};
+use super::leaf::{Facing, Intervals, along_normals, filled};
 use super::limit::Limit;
-use super::node::{NEAREST, step};
-use super::placement::{Pairing, offset};
+use super::node::{NEAR, step};
+use super::placement::{Pairing, apart};
 use super::search::settle;
-use super::search::{Entry, Queue, Scratch, Visits, filling, side};
+use super::search::{Entry, Queue, Scratch, Stack, Visits, filling, side};
 use super::swallowed::swallowed;
-use super::toward::{Spot, nearest_child, nearest_leaf, spot_of};
+use super::toward::{Spot, nearest_leaf};
 use super::tree::LEAF;
-use super::within::Pair;
+use super::touch::{Pair, collide};
 use crate::TriMesh;
 use crate::triangle::Near;
 
@@ -43,13 +44,12 @@ pub struct Hint {
 /// Distance of two meshes.
 ///
 /// ```
-/// use elbowroom_proximity::{TriMesh, wide::{Scratch, TriMesh, distance}};
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, distance}};
 /// use elbowroom_spatial::{Pose, Vec3};
 /// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-/// let wide = TriMesh::new(mesh.into());
 /// let there = Pose::from_translation(Vec3::X * 1.5);
-/// let near = distance(&wide, &Pose::IDENTITY, &wide, &there, &mut Scratch::new());
+/// let near = distance(&mesh, &Pose::IDENTITY, &mesh, &there, &mut Scratch::new());
 /// assert!((near.distance - 0.5).abs() < 1e-12 && near.lower_bound <= near.distance);
 /// assert!((near.on_a - Vec3::X).length() < 1e-12);
 /// ```
@@ -70,23 +70,20 @@ pub fn distance_at(
     scratch: &mut Scratch,
 ) -> Option<Nearest> {
     scratch.visits = Visits::default();
-    if !(a_in_world.is_finite() && b_in_world.is_finite()) {
-        return Some(unknown(a_in_world, b_in_world));
-    }
-    let between = offset(&a.tree.frame, a_in_world, &b.tree.frame, b_in_world);
-    let far = between.abs().max_element() + a_in_world.translation.abs().max_element();
-    let reach = (a.tree.radius + b.tree.radius + limit) * (1.0 + 1e-12) + far * 1e-12;
-    if between.length_squared() > reach * reach {
+    if apart(&a.tree, a_in_world, &b.tree, b_in_world, limit) {
         return None;
     }
     let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
-    if !pairing.slack.is_finite() {
+    if !pairing.is_usable() {
         return Some(unknown(a_in_world, b_in_world));
     }
     let unit = a.tree.frame.unit;
     let radius = limit.max(0.0) / unit + pairing.slack;
-    let level = scratch.level;
-    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, hint, scratch));
+    let level = scratch.level();
+    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, pairing.slack, hint, scratch));
+    if scratch.stack.overflown() {
+        return Some(unknown(a_in_world, b_in_world));
+    }
     let touching = found.is_some_and(|f| f.distance <= pairing.slack);
     if !touching && let Some(p) = swallowed(a, a_in_world, b, b_in_world) {
         let hint = found.map_or(Hint::default(), |f| f.hint);
@@ -94,8 +91,7 @@ pub fn distance_at(
     }
     let found = found?;
     let to_world = |p: Vec3| a_in_world.transform_point(p * unit + a.tree.frame.center);
-    let exact = found.near.squared.sqrt();
-    let measured = if touching || exact <= pairing.slack { 0.0 } else { exact * unit };
+    let measured = if touching { 0.0 } else { found.distance * unit };
     Some(Nearest {
         distance: measured,
         lower_bound: (measured - 2.0 * pairing.slack * unit).max(0.0),
@@ -104,6 +100,50 @@ pub fn distance_at(
         pair: Pair::Triangles(found.triangles.0, found.triangles.1),
         hint: found.hint,
     })
+}
+
+/// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
+///
+/// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified but
+/// reproducible.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, within}};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 1.5));
+/// assert!(within(&mesh, &here, &mesh, &there, 0.51, &mut Scratch::new()).is_some());
+/// assert!(within(&mesh, &here, &mesh, &there, 0.49, &mut Scratch::new()).is_none());
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn within(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    tolerance: f64,
+    scratch: &mut Scratch,
+) -> Option<Pair> {
+    if !(tolerance > 0.0) {
+        return collide(a, a_in_world, b, b_in_world, scratch);
+    }
+    scratch.visits = Visits::default();
+    if apart(&a.tree, a_in_world, &b.tree, b_in_world, tolerance) {
+        return None;
+    }
+    let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
+    if !pairing.is_usable() {
+        return Some(Pair::Unknown);
+    }
+    let radius = tolerance / a.tree.frame.unit + pairing.slack;
+    let level = scratch.level();
+    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, radius, None, scratch));
+    match found {
+        Some(best) => Some(Pair::Triangles(best.triangles.0, best.triangles.1)),
+        None if scratch.stack.overflown() => Some(Pair::Unknown),
+        None => swallowed(a, a_in_world, b, b_in_world).map(|_| Pair::Inside),
+    }
 }
 
 fn unknown(a_in_world: &Pose, b_in_world: &Pose) -> Nearest {
@@ -132,6 +172,10 @@ struct Search<'a> {
     pairing: &'a Pairing,
     limit: Limit,
     radius: f64,
+    /// Nearer makes no difference: the search ends.
+    enough: f64,
+    /// Distance of the pair along which gaps are measured.
+    seen: f64,
     best: Option<Best>,
     queue: &'a mut Queue,
     slots: [(u32, u32); LEAF],
@@ -145,52 +189,50 @@ fn search<S: Simd>(
     b: &TriMesh,
     pairing: &Pairing,
     radius: f64,
+    enough: f64,
     hint: Option<Hint>,
     scratch: &mut Scratch,
 ) -> Option<Best> {
     let Scratch { stack, queue, visits, .. } = scratch;
-    queue.len = 0;
+    queue.clear();
     stack.clear();
     let mut limit = Limit::new(radius, pairing);
-    if radius.is_finite() {
-        limit.tighten(radius, Vec3::ZERO, pairing.to_a(Vec3::ZERO), pairing);
-    }
+    limit.look_along(pairing.to_a(Vec3::ZERO), pairing);
     let slots = [(0, 0); LEAF];
-    let mut s = Search { a, b, pairing, limit, radius, best: None, queue, slots, visits: Visits::default() };
-    s.open(simd, Entry::root(&a.tree, &b.tree), stack);
-    if !stack.is_empty() {
-        s.begin(simd, hint);
-        s.prove(simd, stack);
-    }
+    let seen = f64::INFINITY;
+    let visits_now = Visits::default();
+    let mut s = Search { a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits: visits_now };
+    stack.push(Entry::root(&a.tree, &b.tree));
+    s.begin(simd, hint, stack);
+    s.prove(simd, stack);
     *visits = s.visits;
     s.best
 }
 
 impl Search<'_> {
-    /// Looks for a good upper bound: the hint, else a greedy descent; then from side to side as long as it helps.
+    /// Looks for a good upper bound: the hint, else the first leaves that the descent meets; then from side to side as
+    /// long as it helps.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, hint: Option<Hint>) {
+    fn begin<S: Simd>(&mut self, simd: S, hint: Option<Hint>, stack: &mut Stack) {
         let (ab, ba) = (self.pairing.ab, self.pairing.ba);
-        let start = hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32);
-        let start = start.unwrap_or_else(|| {
-            let (la, lb) = self.descend(simd);
-            Hint { a: (la * LEAF) as u32, b: (lb * LEAF) as u32 }
-        });
-        let (mut leaf_a, mut leaf_b) = (start.a as usize / LEAF, start.b as usize / LEAF);
-        self.settle_slots(start.a, start.b);
+        match hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
+            Some(h) => self.measure_slots(simd, h.a, h.b),
+            None => self.dive(simd, stack),
+        }
+        let Some(best) = self.best else { return };
+        let (mut leaf_a, mut leaf_b) = (best.hint.a as usize / LEAF, best.hint.b as usize / LEAF);
         self.leaves(simd, leaf_a, leaf_b);
         self.flush(simd);
         for round in 0..8 {
             let Some(best) = self.best else { return };
-            if best.distance <= self.pairing.slack {
+            if best.distance <= self.enough {
                 return;
             }
             let next = if round % 2 == 0 {
-                let spot = Spot { center: best.near.on_a.to_array().map(|x| x as f32), half: [0.0; 3] };
+                let spot = Spot { center: narrowed(best.near.on_a), half: [0.0; 3] };
                 (best.hint.a as usize / LEAF, nearest_leaf(simd, &self.b.tree, &ab, &spot))
             } else {
-                let p = self.to_b(best.near.on_b);
-                let spot = Spot { center: p.to_array().map(|x| x as f32), half: [0.0; 3] };
+                let spot = Spot { center: narrowed(self.to_b(best.near.on_b)), half: [0.0; 3] };
                 (nearest_leaf(simd, &self.a.tree, &ba, &spot), best.hint.b as usize / LEAF)
             };
             if next == (leaf_a, leaf_b) {
@@ -205,41 +247,51 @@ impl Search<'_> {
         }
     }
 
+    /// Opens what looks nearest until a leaf of each is reached, and measures the pair of triangles that looks nearest.
+    #[inline(always)]
+    fn dive<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
+        while let Some(pair) = stack.pop() {
+            if !pair.is_leaves() {
+                self.open(simd, pair, stack);
+                continue;
+            }
+            let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
+            let (a, b) = (&self.a.tree, &self.b.tree);
+            let all = filled(filling(a, leaf_a), filling(b, leaf_b));
+            let bit = match &self.limit.sight {
+                Some(sight) => {
+                    let of_a = Intervals::of_a(simd, &a.leaves[leaf_a], sight);
+                    Facing::new(simd, &b.leaves[leaf_b], sight).nearest(simd, &of_a, all)
+                }
+                None => 0,
+            };
+            self.measure_slots(simd, pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
+            return;
+        }
+    }
+
+    #[inline(always)]
+    fn done(&self) -> bool {
+        self.best.is_some_and(|b| b.distance <= self.enough)
+    }
+
     fn to_b(&self, p: Vec3) -> Vec3 {
         let (m, s) = (&self.pairing.exact, 1.0 / (self.pairing.scale * self.pairing.scale));
         let q = [p.x - m[0][3], p.y - m[1][3], p.z - m[2][3]];
         Vec3::from(std::array::from_fn::<f64, 3, _>(|k| (m[0][k] * q[0] + m[1][k] * q[1] + m[2][k] * q[2]) * s))
     }
 
-    /// A leaf of each tree, reached by turns.
-    #[inline(always)]
-    fn descend<S: Simd>(&self, simd: S) -> (usize, usize) {
-        let (a, b) = (&self.a.tree, &self.b.tree);
-        let (ab, ba) = (&self.pairing.ab, &self.pairing.ba);
-        let (mut ha, mut na, mut hb, mut nb) = (a.height(), 0, b.height(), 0);
-        while ha > 0 || hb > 0 {
-            if hb > 0 && hb >= ha {
-                nb = nearest_child(simd, b, hb, nb, ab, &spot_of(a, ha, na));
-                hb -= 1;
-            }
-            if ha > 0 && ha > hb {
-                na = nearest_child(simd, a, ha, na, ba, &spot_of(b, hb, nb));
-                ha -= 1;
-            }
-        }
-        (na, nb)
-    }
-
     /// Measures one pair at once.
-    fn settle_slots(&mut self, slot_a: u32, slot_b: u32) {
-        let (ta, tb) = (self.a.tree.triangle(slot_a), self.b.tree.triangle(slot_b));
-        let near = settle(self.a, ta, self.b, tb, self.pairing);
-        self.offer(near.squared.sqrt(), Some(near), (ta as u32, tb as u32), Hint { a: slot_a, b: slot_b });
+    #[inline(always)]
+    fn measure_slots<S: Simd>(&mut self, simd: S, slot_a: u32, slot_b: u32) {
+        self.slots[self.queue.len()] = (slot_a, slot_b);
+        self.queue.push(self.a, slot_a, self.b, slot_b);
+        self.flush(simd);
     }
 
     /// Keeps the nearer; of equals the one with the smaller numbers, so that no order of tests shows.
     #[inline(always)]
-    fn offer(&mut self, distance: f64, near: Option<Near>, triangles: (u32, u32), hint: Hint) {
+    fn offer(&mut self, distance: f64, near: Near, triangles: (u32, u32), hint: Hint) {
         if !(distance <= self.radius) {
             return;
         }
@@ -248,8 +300,6 @@ impl Search<'_> {
         {
             return;
         }
-        let near =
-            near.unwrap_or_else(|| settle(self.a, triangles.0 as usize, self.b, triangles.1 as usize, self.pairing));
         let nearer = self.best.is_none_or(|b| distance < b.distance);
         self.best = Some(Best { distance, near, triangles, hint });
         if nearer {
@@ -261,26 +311,37 @@ impl Search<'_> {
     /// Measures the queue.
     #[inline(always)]
     fn flush<S: Simd>(&mut self, simd: S) {
-        if self.queue.len == 0 {
+        if self.queue.is_empty() {
             return;
         }
-        let (found, len) = self.queue.measure(simd, self.pairing);
+        let (mut found, len) = self.queue.measure(simd, self.pairing);
         self.visits.triangles += len as u32;
-        // Doubtless lanes first: they may spare the doubtful ones.
-        for doubtful in [false, true] {
-            for lane in 0..len {
-                if (found.at_least[lane] < found.distance[lane]) != doubtful || found.at_least[lane] > self.radius {
-                    continue;
-                }
-                let triangles = self.queue.triangles[lane];
-                let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1 };
-                if doubtful {
-                    let near = settle(self.a, triangles.0 as usize, self.b, triangles.1 as usize, self.pairing);
-                    self.offer(near.squared.sqrt(), Some(near), triangles, hint);
-                } else {
-                    self.offer(found.distance[lane], None, triangles, hint);
-                }
-            }
+        self.visits.batches += 1;
+        // The nearest first: it may spare the others.
+        if self.best.is_none() {
+            self.look(&found, len);
+        }
+        while let Some(lane) = least(&found.at_least, len, self.radius) {
+            let triangles = self.queue.triangles[lane];
+            let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1 };
+            let certain = found.at_least[lane] >= found.distance[lane];
+            let near = if certain {
+                found.near(lane)
+            } else {
+                settle(self.a, triangles.0 as usize, self.b, triangles.1 as usize, self.pairing)
+            };
+            self.offer(if certain { found.distance[lane] } else { near.squared.sqrt() }, near, triangles, hint);
+            found.at_least[lane] = f64::INFINITY;
+        }
+    }
+
+    /// Turns the line of sight to the nearest pair measured, though it is not near enough.
+    #[inline(always)]
+    fn look(&mut self, found: &Distances, len: usize) {
+        if let Some(lane) = least(&found.distance, len, self.seen) {
+            let near = found.near(lane);
+            self.seen = found.distance[lane];
+            self.limit.look_along(near.on_b - near.on_a, self.pairing);
         }
     }
 
@@ -289,7 +350,11 @@ impl Search<'_> {
         self.visits.leaves += 1;
         let (a, b) = (&self.a.tree, &self.b.tree);
         let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-        let mut left = along_direction(simd, &a.leaves[leaf_a], &b.leaves[leaf_b], &self.limit, all);
+        let mut left = all;
+        if let Some(sight) = &self.limit.sight {
+            let of_a = Intervals::of_a(simd, &a.leaves[leaf_a], sight);
+            left = Facing::new(simd, &b.leaves[leaf_b], sight).near(simd, &of_a, &self.limit, left);
+        }
         if left.0 != 0 {
             left = along_normals(simd, &a.leaves[leaf_a], &b.leaves[leaf_b], self.pairing, &self.limit, left);
         }
@@ -298,7 +363,7 @@ impl Search<'_> {
             let bit = left.trailing_zeros();
             left &= left - 1;
             let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
-            self.slots[self.queue.len] = (slot_a, slot_b);
+            self.slots[self.queue.len()] = (slot_a, slot_b);
             if self.queue.push(self.a, slot_a, self.b, slot_b) {
                 self.flush(simd);
             }
@@ -306,31 +371,30 @@ impl Search<'_> {
     }
 
     #[inline(always)]
-    fn open<S: Simd>(&mut self, simd: S, pair: Entry, stack: &mut Vec<Entry>) {
-        if pair.is_leaves() {
-            stack.push(pair);
-            return;
-        }
+    fn open<S: Simd>(&mut self, simd: S, pair: Entry, stack: &mut Stack) {
         self.visits.nodes += 1;
         let (open_a, open_b) = pair.opens();
         let side_a = side(&self.a.tree, pair.a, pair.height_a, open_a);
         let side_b = side(&self.b.tree, pair.b, pair.height_b, open_b);
-        self.visits.boxes += step::<S, NEAREST>(simd, side_a, side_b, self.pairing, &self.limit, |i, j, gap| {
-            stack.push(pair.child(i, j, gap));
+        let first = stack.len();
+        let mut nearest = (f32::INFINITY, first);
+        self.visits.boxes += step::<S, NEAR>(simd, side_a, side_b, self.pairing, &self.limit, |i, j, key| {
+            if key < nearest.0 {
+                nearest = (key, stack.len());
+            }
+            stack.push(pair.child(i, j, key));
         });
+        stack.bring_to_top(nearest.1);
     }
 
     /// Opens every pair of nodes that may be nearer than the best.
     #[inline(always)]
-    fn prove<S: Simd>(&mut self, simd: S, stack: &mut Vec<Entry>) {
-        // What the first step left was found without an upper bound: begin again.
-        stack.clear();
-        stack.push(Entry::root(&self.a.tree, &self.b.tree));
+    fn prove<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
-            if self.best.is_some_and(|b| b.distance <= self.pairing.slack) {
+            if self.done() {
                 return;
             }
-            if pair.gap > self.limit.gap {
+            if pair.key > self.limit.squared {
                 continue;
             }
             if pair.is_leaves() {
@@ -341,4 +405,22 @@ impl Search<'_> {
         }
         self.flush(simd);
     }
+}
+
+/// The lane of the smallest number no larger than `limit`.
+#[inline(always)]
+fn least(numbers: &[f64; BATCH], len: usize, limit: f64) -> Option<usize> {
+    let mut best = None;
+    let mut smallest = limit;
+    for (lane, &x) in numbers.iter().enumerate().take(len) {
+        if x < smallest || (x == smallest && best.is_none()) {
+            (best, smallest) = (Some(lane), x);
+        }
+    }
+    best
+}
+
+#[inline]
+fn narrowed(p: Vec3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
 }

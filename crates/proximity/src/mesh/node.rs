@@ -2,15 +2,15 @@
 
 use fearless_simd::{Simd, prelude::*};
 
-use super::lanes::{V3, W16, abs16, bits, load16, rows16, splat16, store16};
-use super::limit::Limit;
+use super::lanes::{V3, W16, abs16, load16, rows16, splat16, store16};
+use super::limit::{Limit, Sight};
 use super::placement::{Pairing, Placement};
 use super::tree::Node;
 
-/// Which tests decide.
+/// Is anything in contact: gaps along single axes decide.
 pub(super) const TOUCH: u8 = 0;
+/// Is anything this near: squared distances decide.
 pub(super) const NEAR: u8 = 1;
-pub(super) const NEAREST: u8 = 2;
 
 /// A node of which the children in `mask` are asked about.
 #[derive(Clone, Copy)]
@@ -21,8 +21,9 @@ pub(super) struct Side<'a> {
     pub own: ([f32; 3], [f32; 3]),
 }
 
-/// Calls `emit(i, j, gap)` for every pair of children that may be within the limit; `gap` (units of A) is the largest
-/// separation found along any axis, negative where the boxes overlap. Returns the number of 16-lane tests.
+/// Calls `emit(i, j, key)` for every pair of children that may be within the limit, and returns the number of 16-lane
+/// tests. A negative key is the least depth of overlap along any axis tried; others are the gap ([`TOUCH`]) or a lower
+/// bound of the squared distance, in units of A.
 #[inline(always)]
 pub(super) fn step<S: Simd, const MODE: u8>(
     simd: S,
@@ -36,21 +37,9 @@ pub(super) fn step<S: Simd, const MODE: u8>(
     let (ca, ha) = (load16(simd, &a.node.center), load16(simd, &a.node.half));
     let (cb, hb) = (load16(simd, &b.node.center), load16(simd, &b.node.half));
     let (mut rows, mut columns) = (b.mask, a.mask);
-    let mut reach_a = W16::splat(simd, 0.0);
-    let mut reach_b = [0.0f32; 16];
-    if MODE == NEAREST {
-        reach_a = support(simd, ca, ha, limit.direction_a);
-        let far = reach_a.reduce_max();
-        let reach = support(simd, V3(-cb.0, -cb.1, -cb.2), hb, limit.direction_b);
-        rows &= !((reach + far).simd_lt(limit.reach).to_bitmask() as u32);
-        reach.store_slice(&mut reach_b);
-        if rows == 0 {
-            return 1;
-        }
-    }
     let (cb_in_a, hb_in_a) = seen(simd, cb, hb, ab);
     if rows & (rows - 1) != 0 {
-        rows &= !beyond::<S, MODE>(simd, cb_in_a, hb_in_a, a.own, limit.gap, limit.squared_a);
+        rows &= !beyond::<S, MODE>(simd, cb_in_a, hb_in_a, a.own, limit.gap, limit.squared);
     }
     if rows == 0 {
         return 1;
@@ -59,47 +48,70 @@ pub(super) fn step<S: Simd, const MODE: u8>(
     if columns & (columns - 1) != 0 {
         // In units of B, rounded up once more.
         let gap = limit.gap * ba.scale * 1.000_001;
-        columns &= !beyond::<S, MODE>(simd, ca_in_b, ha_in_b, b.own, gap, limit.squared_b);
+        let squared = limit.squared * (ba.scale * ba.scale) * 1.000_001;
+        columns &= !beyond::<S, MODE>(simd, ca_in_b, ha_in_b, b.own, gap, squared);
     }
     if columns == 0 {
         return 2;
     }
+    let sight = match &limit.sight {
+        Some(sight) if MODE != TOUCH => Some(Sighted::new(simd, a.node, b.node, sight)),
+        _ => None,
+    };
     let lanes_a = LanesOfA { ca, ha, ca_in_b, ha_in_b, slab: SlabsOfA::new(simd, a.node, ab) };
     let (cb_in_a, hb_in_a) = (store16(cb_in_a), store16(hb_in_a));
     let slabs_b = SlabsOfB::new(simd, b.node, ab);
     let mut keys = [0.0f32; 16];
+    let zero = W16::splat(simd, 0.0);
+    let square_scale = ab.scale * ab.scale;
     let mut tests = 2;
-    for j in bits(rows) {
-        let mut out = W16::splat(simd, 0.0).simd_lt(0.0);
-        if MODE == NEAREST {
-            let left = columns & !((reach_a + reach_b[j]).simd_lt(limit.reach).to_bitmask() as u32);
-            if left == 0 {
+    while rows != 0 {
+        let j = rows.trailing_zeros() as usize;
+        rows &= rows - 1;
+        tests += 1;
+        let mut square = W16::splat(simd, 0.0);
+        if MODE != TOUCH
+            && let Some(sight) = &sight
+        {
+            square = sight.square(simd, j);
+            if columns & !(square.simd_gt(limit.squared).to_bitmask() as u32) == 0 {
                 continue;
             }
         }
-        tests += 1;
-        let at = |p: &[[f32; 16]; 3]| [p[0][j], p[1][j], p[2][j]];
-        let (gap_a, square_a) = gaps::<S, MODE>(simd, lanes_a.ca, lanes_a.ha, at(&cb_in_a), at(&hb_in_a));
+        let (gap_a, square_a) = gaps::<S, MODE>(simd, lanes_a.ca, lanes_a.ha, lane(&cb_in_a, j), lane(&hb_in_a, j));
         let (gap_b, square_b) =
-            gaps::<S, MODE>(simd, lanes_a.ca_in_b, lanes_a.ha_in_b, at(&b.node.center), at(&b.node.half));
-        let slab = lanes_a.slab.gap(simd, at(&cb_in_a), at(&b.node.half)).max(slabs_b.gap(simd, j, ca, ha));
+            gaps::<S, MODE>(simd, lanes_a.ca_in_b, lanes_a.ha_in_b, lane(&b.node.center, j), lane(&b.node.half, j));
+        let slab = lanes_a.slab.gap(simd, lane(&cb_in_a, j), lane(&b.node.half, j)).max(slabs_b.gap(simd, j, ca, ha));
         let gap = gap_a.max(gap_b * ab.scale).max(slab);
-        out = out | gap.simd_gt(limit.gap);
-        if MODE != TOUCH {
-            out = out | square_a.simd_gt(limit.squared_a) | square_b.simd_gt(limit.squared_b);
-        }
-        if MODE == NEAREST {
-            out = out | (reach_a + reach_b[j]).simd_lt(limit.reach);
-        }
+        let (key, out) = if MODE == TOUCH {
+            (gap, gap.simd_gt(limit.gap))
+        } else {
+            let apart = gap.max(zero);
+            let square = square.max(square_a).max(square_b * square_scale).max(apart * apart);
+            (gap.simd_lt(zero).select(gap, square), square.simd_gt(limit.squared))
+        };
         let left = columns & !(out.to_bitmask() as u32);
         if left != 0 {
-            gap.store_slice(&mut keys);
-            for i in bits(left) {
+            key.store_slice(&mut keys);
+            let mut left = left;
+            while left != 0 {
+                let i = left.trailing_zeros() as usize;
+                left &= left - 1;
                 emit(i, j, keys[i]);
             }
         }
     }
     tests
+}
+
+#[inline(always)]
+fn lane(p: &[[f32; 16]; 3], j: usize) -> [f32; 3] {
+    [p[0][j], p[1][j], p[2][j]]
+}
+
+#[inline(always)]
+fn absolute(v: [f32; 3]) -> [f32; 3] {
+    [v[0].abs(), v[1].abs(), v[2].abs()]
 }
 
 struct LanesOfA<S: Simd> {
@@ -108,12 +120,6 @@ struct LanesOfA<S: Simd> {
     ca_in_b: V3<W16<S>>,
     ha_in_b: V3<W16<S>>,
     slab: SlabsOfA<S>,
-}
-
-/// Farthest reach of each box along a direction.
-#[inline(always)]
-fn support<S: Simd>(simd: S, center: V3<W16<S>>, half: V3<W16<S>>, direction: [f32; 3]) -> W16<S> {
-    center.dot(splat16(simd, direction)) + half.dot(splat16(simd, direction.map(f32::abs)))
 }
 
 /// Boxes of one frame as boxes of the other.
@@ -131,8 +137,9 @@ fn gaps<S: Simd, const MODE: u8>(
     center: [f32; 3],
     half: [f32; 3],
 ) -> (W16<S>, W16<S>) {
-    let one = |c: W16<S>, h: W16<S>, k: usize| (c - center[k]).abs() - (h + half[k]);
-    let (x, y, z) = (one(c.0, h.0, 0), one(c.1, h.1, 1), one(c.2, h.2, 2));
+    let x = (c.0 - center[0]).abs() - (h.0 + half[0]);
+    let y = (c.1 - center[1]).abs() - (h.1 + half[1]);
+    let z = (c.2 - center[2]).abs() - (h.2 + half[2]);
     let zero = W16::splat(simd, 0.0);
     let mut square = zero;
     if MODE != TOUCH {
@@ -169,10 +176,11 @@ impl<S: Simd> SlabsOfA<S> {
     fn new(simd: S, node: &Node, ab: &Placement) -> Self {
         let normal = load16(simd, &node.normal);
         let m = &ab.m;
-        let transposed = std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]));
+        let transposed =
+            [[m[0][0], m[1][0], m[2][0]], [m[0][1], m[1][1], m[2][1]], [m[0][2], m[1][2], m[2][2]]];
         let spread = abs16(normal.mapped(&rows16(simd, &transposed)));
-        let at = |x: &[f32; 16]| W16::load_array_ref(simd, x);
-        Self { normal, spread, low: at(&node.low), high: at(&node.high) }
+        let (low, high) = (W16::load_array_ref(simd, &node.low), W16::load_array_ref(simd, &node.high));
+        Self { normal, spread, low, high }
     }
 
     #[inline(always)]
@@ -205,7 +213,80 @@ impl SlabsOfB {
     fn gap<S: Simd>(&self, simd: S, j: usize, center: V3<W16<S>>, half: V3<W16<S>>) -> W16<S> {
         let n = [self.normal[0][j], self.normal[1][j], self.normal[2][j]];
         let p = center.dot(splat16(simd, n));
-        let reach = half.dot(splat16(simd, n.map(f32::abs)));
+        let reach = half.dot(splat16(simd, absolute(n)));
         (p - self.high[j]).max(W16::splat(simd, self.low[j]) - p) - reach
     }
+}
+
+/// Both nodes' children as intervals along the axes of a [`Sight`].
+struct Sighted<S: Simd> {
+    /// A: upper end along the line; middle and half width along the two others.
+    far: W16<S>,
+    middle: (W16<S>, W16<S>),
+    half: (W16<S>, W16<S>),
+    /// B: lower end along the line; the same.
+    near_b: [f32; 16],
+    middle_b: ([f32; 16], [f32; 16]),
+    half_b: ([f32; 16], [f32; 16]),
+}
+
+impl<S: Simd> Sighted<S> {
+    #[inline(always)]
+    fn new(simd: S, a: &Node, b: &Node, sight: &Sight) -> Self {
+        let (ca, ha) = (load16(simd, &a.center), load16(simd, &a.half));
+        let (cb, hb) = (load16(simd, &b.center), load16(simd, &b.half));
+        let far = reach(simd, a, ca, ha, sight.of_a[0]);
+        let [x, y, z] = sight.of_b[0];
+        let near = W16::splat(simd, sight.shift[0]) - reach(simd, b, cb, hb, [-x, -y, -z]);
+        let (mu, hu) = across(simd, ca, ha, sight.of_a[1]);
+        let (mv, hv) = across(simd, ca, ha, sight.of_a[2]);
+        let (bu, ku) = across(simd, cb, hb, sight.of_b[1]);
+        let (bv, kv) = across(simd, cb, hb, sight.of_b[2]);
+        Self {
+            far,
+            middle: (mu, mv),
+            half: (hu, hv),
+            near_b: stored(near),
+            middle_b: (stored(bu + sight.shift[1]), stored(bv + sight.shift[2])),
+            half_b: (stored(ku), stored(kv)),
+        }
+    }
+
+    /// Squared distance of A's children from child `j` of B, at least.
+    #[inline(always)]
+    fn square(&self, simd: S, j: usize) -> W16<S> {
+        let zero = W16::splat(simd, 0.0);
+        let n = (W16::splat(simd, self.near_b[j]) - self.far).max(zero);
+        let u = ((self.middle.0 - self.middle_b.0[j]).abs() - (self.half.0 + self.half_b.0[j])).max(zero);
+        let v = ((self.middle.1 - self.middle_b.1[j]).abs() - (self.half.1 + self.half_b.1[j])).max(zero);
+        n * n + u * u + v * v
+    }
+}
+
+/// Middle and half width of boxes along an axis.
+#[inline(always)]
+fn across<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, axis: [f32; 3]) -> (W16<S>, W16<S>) {
+    (c.dot(splat16(simd, axis)), h.dot(splat16(simd, absolute(axis))))
+}
+
+#[inline(always)]
+fn stored<S: Simd>(x: W16<S>) -> [f32; 16] {
+    let mut out = [0.0; 16];
+    x.store_slice(&mut out);
+    out
+}
+
+/// Farthest reach of each child along `d`: of its box, or of its slab as far as the slab faces that way and of its box
+/// for the rest.
+#[inline(always)]
+fn reach<S: Simd>(simd: S, node: &Node, c: V3<W16<S>>, h: V3<W16<S>>, d: [f32; 3]) -> W16<S> {
+    let d = splat16(simd, d);
+    let normal = load16(simd, &node.normal);
+    let zero = W16::splat(simd, 0.0);
+    let facing = normal.dot(d);
+    let limit = facing.simd_ge(zero).select(W16::load_array_ref(simd, &node.high), W16::load_array_ref(simd, &node.low));
+    let rest = d.minus(normal.times(facing));
+    let by_slab = facing * limit + c.dot(rest) + h.dot(abs16(rest));
+    let by_box = c.dot(d) + h.dot(abs16(d));
+    by_box.min(by_slab)
 }

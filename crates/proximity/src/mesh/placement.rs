@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::limit::Sight;
 use super::tree::{Frame, Tree};
 
 /// One mesh (Y) seen from the other (X), in units of X: `x = m·y + t`.
@@ -22,12 +23,14 @@ pub(super) struct Placement {
 pub(super) struct Pairing {
     pub ab: Placement,
     pub ba: Placement,
+    pub frame_a: Frame,
+    pub frame_b: Frame,
+    /// A's own axes, with B seen along them.
+    pub axes: Sight,
     /// Rows of the map from units of B to units of A, translation last.
     pub exact: [[f64; 4]; 3],
     /// Units of A per unit of B.
     pub scale: f64,
-    /// `1 + scale + max |t|`: bounds every coordinate in units of A, up to √3.
-    pub extent: f64,
     /// No f32 gap of boxes, slabs or triangles is off by more, in units of A. See README.md, "Error bounds".
     pub doubt: f64,
     /// No f64 distance of two triangles is off by more, in units of A; nearer than this is contact.
@@ -44,18 +47,28 @@ impl Pairing {
         let columns: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
         let back =
             std::array::from_fn(|i| -(columns[i][0] * t[0] + columns[i][1] * t[1] + columns[i][2] * t[2]) / scale);
+        // Bounds every coordinate in units of A, up to √3.
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
         let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
         let far = (reach(a_in_world, &a.frame) + reach(b_in_world, &b.frame)) / a.frame.unit;
+        let ab = placement(rows, t, scale);
         Self {
-            ab: placement(rows, t, scale),
+            ab,
+            axes: Sight { of_a: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], of_b: ab.m, shift: ab.t },
             ba: placement(columns, back, 1.0 / scale),
             exact,
             scale,
-            extent,
+            frame_a: a.frame,
+            frame_b: b.frame,
             doubt: extent * F32_DOUBT,
             slack: extent * F64_SLACK + far * 16.0 * f64::EPSILON,
         }
+    }
+
+    /// False where numbers are NaN, infinite or so large that their products are.
+    #[inline]
+    pub fn is_usable(&self) -> bool {
+        self.slack.is_finite() && self.doubt.is_finite()
     }
 
     /// A point of B's tree frame in A's.
@@ -73,9 +86,20 @@ const F64_SLACK: f64 = 1.0 / 1_099_511_627_776.0;
 
 /// From centre to centre, metres, world axes.
 #[inline]
-pub(super) fn offset(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> Vec3 {
+fn offset(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> Vec3 {
     let apart = b_in_world.translation - a_in_world.translation;
     apart + b_in_world.rotation * b.center - a_in_world.rotation * a.center
+}
+
+/// True where the balls around two meshes are certainly farther apart than `limit` metres.
+#[inline]
+pub(super) fn apart(a: &Tree, a_in_world: &Pose, b: &Tree, b_in_world: &Pose, limit: f64) -> bool {
+    let between = offset(&a.frame, a_in_world, &b.frame, b_in_world);
+    let far = between.abs().max_element() + a_in_world.translation.abs().max_element();
+    let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + far * 1e-12;
+    // Infinite and NaN are left to those who can say so.
+    let squared = between.length_squared();
+    squared.is_finite() && squared > reach * reach && a_in_world.is_finite() && b_in_world.is_finite()
 }
 
 fn placement(rows: [[f64; 3]; 3], t: [f64; 3], scale: f64) -> Placement {

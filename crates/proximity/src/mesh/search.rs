@@ -1,5 +1,8 @@
 //! What every traversal shares: the stack, the queue of triangle pairs, the counts.
 
+use std::cell::RefCell;
+use std::sync::OnceLock;
+
 use fearless_simd::{Level, Simd};
 
 use super::exact::{BATCH, Corners, Distances, distances};
@@ -17,18 +20,21 @@ pub struct Visits {
     pub nodes: u32,
     /// Tests of one box against sixteen.
     pub boxes: u32,
-    /// Pairs of leaves opened.
+    /// Pairs of leaves opened, each of up to eight triangles.
     pub leaves: u32,
-    /// Pairs of triangles measured in f64.
+    /// Pairs of triangles that f32 could not decide.
     pub triangles: u32,
+    /// Batches of up to eight such pairs measured in f64.
+    pub batches: u32,
 }
 
-/// Memory that queries use again: one per thread. Nothing of an answer depends on what was asked before.
+/// Memory that queries use again: one per thread. It never allocates, and nothing of an answer depends on what was
+/// asked before.
 #[derive(Debug)]
 pub struct Scratch {
-    pub(super) stack: Vec<Entry>,
+    pub(super) stack: Stack,
     pub(super) queue: Queue,
-    pub(super) level: Level,
+    level: Option<Level>,
     pub(super) visits: Visits,
 }
 
@@ -40,19 +46,89 @@ impl Default for Scratch {
 
 impl Scratch {
     /// For the best instruction set of this processor.
-    pub fn new() -> Self {
-        Self::with_level(Level::new())
+    pub const fn new() -> Self {
+        Self { stack: Stack::new(), queue: Queue::new(), level: None, visits: Visits::ZERO }
     }
 
     /// For a given instruction set.
     #[doc(hidden)]
-    pub fn with_level(level: Level) -> Self {
-        Self { stack: Vec::with_capacity(1024), queue: Queue::new(), level, visits: Visits::default() }
+    pub const fn with_level(level: Level) -> Self {
+        Self { level: Some(level), ..Self::new() }
     }
 
-    /// Work done by the last query.
+    /// Work done by the last query on two meshes.
     pub fn visits(&self) -> Visits {
         self.visits
+    }
+
+    #[inline]
+    pub(super) fn level(&self) -> Level {
+        static DETECTED: OnceLock<Level> = OnceLock::new();
+        self.level.unwrap_or_else(|| *DETECTED.get_or_init(Level::new))
+    }
+}
+
+/// Runs a query with this thread's own memory, which is static: the first use does not allocate either.
+pub(crate) fn with_scratch<T>(query: impl FnOnce(&mut Scratch) -> T) -> T {
+    thread_local! { static SCRATCH: RefCell<Scratch> = const { RefCell::new(Scratch::new()) } }
+    SCRATCH.with_borrow_mut(query)
+}
+
+impl Visits {
+    const ZERO: Self = Self { nodes: 0, boxes: 0, leaves: 0, triangles: 0, batches: 0 };
+}
+
+/// Each step down pushes at most 256 pairs and takes one away; trees over 2³² triangles in leaves of 8 are 8 high, and
+/// pairs of unequal height push 16 a step until they are equal.
+const DEPTH: usize = 8 * 256 + 8 * 16;
+
+/// Pairs of nodes still to be opened, last in first out.
+#[derive(Debug)]
+pub(super) struct Stack {
+    entries: [Entry; DEPTH],
+    len: usize,
+    overflown: bool,
+}
+
+impl Stack {
+    const fn new() -> Self {
+        let blank = Entry { a: 0, b: 0, key: 0.0, height_a: 0, height_b: 0 };
+        Self { entries: [blank; DEPTH], len: 0, overflown: false }
+    }
+
+    pub fn clear(&mut self) {
+        (self.len, self.overflown) = (0, false);
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True where a pair was lost: an answer of "apart" would prove nothing.
+    pub fn overflown(&self) -> bool {
+        self.overflown
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, entry: Entry) {
+        match self.entries.get_mut(self.len) {
+            Some(slot) => (*slot, self.len) = (entry, self.len + 1),
+            None => self.overflown = true,
+        }
+    }
+
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<Entry> {
+        self.len = self.len.checked_sub(1)?;
+        self.entries.get(self.len).copied()
+    }
+
+    /// Makes this entry the next.
+    #[inline(always)]
+    pub fn bring_to_top(&mut self, number: usize) {
+        if number < self.len && self.len <= DEPTH {
+            self.entries.swap(number, self.len - 1);
+        }
     }
 }
 
@@ -61,8 +137,8 @@ impl Scratch {
 pub(super) struct Entry {
     pub a: u32,
     pub b: u32,
-    /// Largest gap known, units of A; negative where boxes overlap.
-    pub gap: f32,
+    /// What is known of the distance (see [`super::node::step`]).
+    pub key: f32,
     pub height_a: u8,
     pub height_b: u8,
 }
@@ -70,7 +146,7 @@ pub(super) struct Entry {
 impl Entry {
     #[inline(always)]
     pub fn root(a: &Tree, b: &Tree) -> Self {
-        Self { a: 0, b: 0, gap: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
+        Self { a: 0, b: 0, key: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
     }
 
     #[inline(always)]
@@ -86,13 +162,13 @@ impl Entry {
 
     /// The pair of children `i` and `j` as numbered by [`side`].
     #[inline(always)]
-    pub fn child(&self, i: usize, j: usize, gap: f32) -> Self {
+    pub fn child(&self, i: usize, j: usize, key: f32) -> Self {
         let (open_a, open_b) = self.opens();
         let (a, height_a) =
             if open_a { (self.a * FAN as u32 + i as u32, self.height_a - 1) } else { (self.a, self.height_a) };
         let (b, height_b) =
             if open_b { (self.b * FAN as u32 + j as u32, self.height_b - 1) } else { (self.b, self.height_b) };
-        Self { a, b, gap, height_a, height_b }
+        Self { a, b, key, height_a, height_b }
     }
 }
 
@@ -120,13 +196,25 @@ pub(super) fn filling(tree: &Tree, leaf: usize) -> usize {
 #[derive(Debug)]
 pub(super) struct Queue {
     pub triangles: [(u32, u32); BATCH],
-    pub len: usize,
+    len: usize,
     corners: Corners,
 }
 
 impl Queue {
-    fn new() -> Self {
+    const fn new() -> Self {
         Self { triangles: [(0, 0); BATCH], len: 0, corners: Corners::ZERO }
+    }
+
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
     }
 
     /// Adds a pair of slots; true where the batch is full.
@@ -135,11 +223,12 @@ impl Queue {
         let (ta, tb) = (a.tree.triangle(slot_a), b.tree.triangle(slot_b));
         let lane = self.len;
         self.triangles[lane] = (ta as u32, tb as u32);
-        for (k, p) in units(a, ta).into_iter().enumerate() {
-            (self.corners.a[k][0][lane], self.corners.a[k][1][lane], self.corners.a[k][2][lane]) = (p.x, p.y, p.z);
-        }
-        for (k, p) in units(b, tb).into_iter().enumerate() {
-            (self.corners.b[k][0][lane], self.corners.b[k][1][lane], self.corners.b[k][2][lane]) = (p.x, p.y, p.z);
+        let (pa, pb) = (a.triangles()[ta], b.triangles()[tb]);
+        for k in 0..3 {
+            let (p, q) = (a.vertices()[pa[k] as usize], b.vertices()[pb[k] as usize]);
+            let (to_a, to_b) = (&mut self.corners.a[k], &mut self.corners.b[k]);
+            (to_a[0][lane], to_a[1][lane], to_a[2][lane]) = (p.x, p.y, p.z);
+            (to_b[0][lane], to_b[1][lane], to_b[2][lane]) = (q.x, q.y, q.z);
         }
         self.len += 1;
         self.len == BATCH
@@ -149,17 +238,33 @@ impl Queue {
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, pairing: &Pairing) -> (Distances, usize) {
         let len = std::mem::take(&mut self.len);
-        (distances(simd, &self.corners, &pairing.exact), len)
+        (distances(simd, &self.corners, pairing), len)
     }
 }
 
 /// Corners of a triangle in its tree's frame.
-#[inline]
+#[inline(always)]
 fn units(mesh: &TriMesh, triangle: usize) -> [Vec3; 3] {
-    mesh.corners(triangle).map(|p| mesh.tree.frame.to_units(p))
+    let [p, q, r] = mesh.triangles()[triangle];
+    let at = |i: u32| mesh.tree.frame.to_units(mesh.vertices()[i as usize]);
+    [at(p), at(q), at(r)]
+}
+
+/// Corners of a triangle of each, in units and axes of A's tree.
+#[inline(always)]
+pub(super) fn corners_in_a(
+    a: &TriMesh,
+    ta: usize,
+    b: &TriMesh,
+    tb: usize,
+    pairing: &Pairing,
+) -> ([Vec3; 3], [Vec3; 3]) {
+    let [p, q, r] = units(b, tb);
+    (units(a, ta), [pairing.to_a(p), pairing.to_a(q), pairing.to_a(r)])
 }
 
 /// Nearest points of two triangles, robustly, in units and axes of A's tree.
 pub(super) fn settle(a: &TriMesh, ta: usize, b: &TriMesh, tb: usize, pairing: &Pairing) -> Near {
-    triangle_triangle(units(a, ta), units(b, tb).map(|p| pairing.to_a(p)))
+    let (s, t) = corners_in_a(a, ta, b, tb, pairing);
+    triangle_triangle(s, t)
 }

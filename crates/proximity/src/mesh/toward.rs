@@ -52,11 +52,3 @@ pub(super) fn nearest_leaf<S: Simd>(simd: S, tree: &Tree, seen: &Placement, spot
     }
     number
 }
-
-/// The box of a node.
-#[inline(always)]
-pub(super) fn spot_of(tree: &Tree, height: usize, number: usize) -> Spot {
-    let (parent, lane) = (&tree.levels[height][number / FAN], number % FAN);
-    let at = |p: &[[f32; FAN]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
-    Spot { center: at(&parent.center), half: at(&parent.half) }
-}

@@ -15,7 +15,7 @@ pub(super) struct Frame {
     pub center: Vec3,
     /// Metres per unit, a power of two.
     pub unit: f64,
-    inverse: f64,
+    pub inverse: f64,
 }
 
 impl Frame {

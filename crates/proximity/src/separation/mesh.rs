@@ -7,7 +7,7 @@ use super::core::{Core, Gap, rounding};
 use super::projections;
 use super::segment::{Segment, nearest_to_box};
 use crate::shape::Bvh;
-use crate::triangle::{nearest_on_triangle, segment_triangle, triangle_triangle, triangles_touch};
+use crate::triangle::{nearest_on_triangle, segment_triangle};
 use crate::{Cuboid, TriMesh};
 
 /// The best answer so far.
@@ -149,93 +149,6 @@ fn descend(
     for (near, child) in order {
         if !(near > best.limit) && !best.done() {
             descend(bvh, child, bound, leaf, best);
-        }
-    }
-}
-
-/// Distance of two meshes in the frame of the first.
-pub(super) fn mesh_mesh(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, limit: f64) -> Option<Gap> {
-    let size = |m: &TriMesh| m.aabb().min.abs().max(m.aabb().max.abs()).max_element();
-    let scale = 3.0 * (size(a) + size(b)) + b_in_a.translation.abs().max_element();
-    let a_in_b = b_in_a.inverse();
-    let mut search = Pair { a, b, b_in_a: *b_in_a, a_in_b, scale, best: Best::new(limit, 0.0) };
-    let bound = search.bound(0, 0);
-    if bound > limit {
-        return None;
-    }
-    // Parts that one solid swallows are found by a few rays; the search would not stop early for them.
-    let swallowed = b.parts.iter().map(|&p| b_in_a.transform_point(p)).find(|&p| a.contains(p));
-    let swallowing = || a.parts.iter().copied().find(|&p| b.contains(a_in_b.transform_point(p)));
-    if let Some(p) = swallowed.or_else(swallowing) {
-        return Some(Gap::touching(p, p));
-    }
-    search.descend(0, 0, bound);
-    search.best.finish()
-}
-
-struct Pair<'a> {
-    a: &'a TriMesh,
-    b: &'a TriMesh,
-    b_in_a: Pose,
-    a_in_b: Pose,
-    scale: f64,
-    best: Best,
-}
-
-impl Pair<'_> {
-    /// Distance of two boxes, seen along the axes of either tree: both are bounds from below.
-    fn bound(&self, i: usize, j: usize) -> f64 {
-        let (box_a, box_b) = (&self.a.bvh.nodes[i].aabb, &self.b.bvh.nodes[j].aabb);
-        let in_a = box_a.distance_squared(&box_b.transformed(&self.b_in_a));
-        let squared = if in_a > self.best.limit * self.best.limit {
-            in_a
-        } else {
-            in_a.max(box_b.distance_squared(&box_a.transformed(&self.a_in_b)))
-        };
-        squared.sqrt() - rounding(self.scale)
-    }
-
-    fn descend(&mut self, i: usize, j: usize, bound: f64) {
-        if bound > self.best.limit || self.best.done() {
-            return;
-        }
-        let (na, nb) = (self.a.bvh.nodes[i], self.b.bvh.nodes[j]);
-        if na.count > 0 && nb.count > 0 {
-            return self.leaves(i, j);
-        }
-        let larger_a = na.aabb.extent().length_squared() >= nb.aabb.extent().length_squared();
-        let split_a = nb.count > 0 || (na.count == 0 && larger_a);
-        let [x, y] = if split_a {
-            let (l, r) = self.a.bvh.children(i);
-            [(l, j), (r, j)]
-        } else {
-            let (l, r) = self.b.bvh.children(j);
-            [(i, l), (i, r)]
-        };
-        let (bx, by) = (self.bound(x.0, x.1), self.bound(y.0, y.1));
-        if by < bx {
-            self.descend(y.0, y.1, by);
-            self.descend(x.0, x.1, bx);
-        } else {
-            self.descend(x.0, x.1, bx);
-            self.descend(y.0, y.1, by);
-        }
-    }
-
-    fn leaves(&mut self, i: usize, j: usize) {
-        for k in 0..self.b.bvh.leaf(j).len() {
-            let t = self.b.corners(self.b.bvh.leaf(j)[k] as usize).map(|p| self.b_in_a.transform_point(p));
-            for l in 0..self.a.bvh.leaf(i).len() {
-                let s = self.a.corners(self.a.bvh.leaf(i)[l] as usize);
-                if self.best.limit <= 0.0 && !triangles_touch(s, t, rounding(self.scale)) {
-                    continue;
-                }
-                let near = triangle_triangle(s, t);
-                let gap = Gap::closed(near.on_a, near.on_b, self.scale);
-                if !(gap.lower > self.best.limit) {
-                    self.best.offer(gap);
-                }
-            }
         }
     }
 }

@@ -11,6 +11,7 @@ mod segment;
 use elbowroom_spatial::{Pose, Vec3};
 
 use self::core::{Core, Gap, rounded, rounding};
+use crate::mesh::distance_at;
 use crate::{Capsule, Cuboid, Shape, Sphere};
 
 pub(crate) use box_box::best_axis;
@@ -95,7 +96,12 @@ pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &P
 /// assert!(!collides(&gun, &Pose::from_translation(Vec3::Z * 0.11), &floor, &Pose::IDENTITY));
 /// ```
 pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
-    within(a, a_in_world, b, b_in_world, 0.0)
+    match (a, b) {
+        (Shape::Mesh(m), Shape::Mesh(n)) => {
+            crate::mesh::with_scratch(|s| crate::mesh::collide(m, a_in_world, n, b_in_world, s)).is_some()
+        }
+        _ => within(a, a_in_world, b, b_in_world, 0.0),
+    }
 }
 
 /// True where the shapes are not proven to be farther apart than `tolerance` metres.
@@ -108,7 +114,13 @@ pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> b
 /// assert!(!within(&ball, &Pose::IDENTITY, &ball, &there, 0.79));
 /// ```
 pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
-    separation_within(a, a_in_world, b, b_in_world, tolerance).is_some()
+    match (a, b) {
+        (Shape::Mesh(m), Shape::Mesh(n)) => {
+            let query = |s: &mut _| crate::mesh::within(m, a_in_world, n, b_in_world, tolerance, s);
+            crate::mesh::with_scratch(query).is_some()
+        }
+        _ => separation_within(a, a_in_world, b, b_in_world, tolerance).is_some(),
+    }
 }
 
 /// Simple before complex, so that each pair is written once.
@@ -161,8 +173,9 @@ fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f6
             Some(world(mesh::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
         }
         (Shape::Mesh(m), Shape::Mesh(n)) => {
-            let gap = mesh::mesh_mesh(m, n, &a_in_world.inverse_mul(b_in_world), limit)?;
-            Some(world(gap, [0.0; 2], a_in_world))
+            let found = crate::mesh::with_scratch(|s| distance_at(m, a_in_world, n, b_in_world, limit, None, s))?;
+            let (on_a, on_b) = (found.on_a, found.on_b);
+            Some(Separation { distance: found.distance, lower_bound: found.lower_bound, on_a, on_b })
         }
         (_, Shape::Mesh(m)) => {
             let (core, radius) = rounded(a)?;
