@@ -4,8 +4,11 @@
 mod figures;
 mod layers;
 mod models;
+mod peers;
 mod python;
+mod release;
 mod robots;
+mod rpq;
 mod shell;
 mod snippets;
 mod solid;
@@ -28,6 +31,13 @@ cargo xtask COMMAND
         writes the figures of docs/laws.md under docs/figures; --check compares instead
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
+  rpq [--states N] [--out DIR] [--json]
+        the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
+        resolution level, pair matrix and weight matrix; --out writes the figures of docs/rpq.md
+  peers [--data DIR] [--json]
+        elbowroom beside Coal, FCL and parry on one workload: installs them in target/peers, compares every answer, and
+        prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
+        (default 0.5); ONLY: part of `lib|set|query`
   bench [ARGS…]
         cargo bench, with ARGS
 
@@ -82,6 +92,10 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["figures", "--check"] => Ok(figures::check(&root)?),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
+        ["rpq", rest @ ..] => rpq::run(&root, rest),
+        ["peers", options @ ..] => {
+            Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?)
+        }
         ["bench", rest @ ..] => {
             let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
             Ok(shell::cargo(&root, &args, &[])?)

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use elbowroom::cell::query::{Ask, Level};
 
 /// Collision awareness for industrial robot cells.
 ///
@@ -22,6 +23,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Run a cell's programs in simulated time under the monitor
     Run(RunArgs),
+    /// Ask for collisions, distances or tolerances of a cell or a robot, one answer per joint state
+    Query(QueryArgs),
     /// Say what is in a robot or mesh file
     Inspect(InspectArgs),
     /// Turn points that the robot was driven to into a region for the cell file
@@ -65,6 +68,42 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
+  elbowroom query cell.toml --ask collision                         the cell as it starts
+  elbowroom query cell.toml --ask distance --states q.csv           a row per state, as CSV
+  elbowroom query --urdf arm.urdf --srdf arm.srdf --ask tolerance=0.02 --states q.csv --json
+  elbowroom query cell.toml --ask collision --level L2              with a box around each link
+
+Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (docs/query.md says what is in them).
+Exit status: 1 where --ask collision finds one.")]
+pub(crate) struct QueryArgs {
+    /// The cell file; or --urdf
+    #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
+    pub(crate) cell: Option<PathBuf>,
+    /// One robot alone, its root link being the world
+    #[arg(long, value_name = "FILE")]
+    pub(crate) urdf: Option<PathBuf>,
+    /// The SRDF that belongs to the URDF: the pairs that it disables are not looked at
+    #[arg(long, value_name = "FILE", requires = "urdf")]
+    pub(crate) srdf: Option<PathBuf>,
+    /// Unit of the URDF's meshes whose format states none
+    #[arg(long, value_enum, requires = "urdf")]
+    pub(crate) unit: Option<Unit>,
+    /// What to ask: collision, distance, or tolerance=METRES
+    #[arg(long, value_name = "WHAT")]
+    pub(crate) ask: Ask,
+    /// Joint states (a header of joint names, a row of radians or metres each); default: the start
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) states: Option<PathBuf>,
+    /// How closely to look: auto, L1, L2, L3, capsule or hull. All but auto and L3 err on the safe side
+    #[arg(long, default_value = "auto")]
+    pub(crate) level: Level,
+    /// Print one JSON document instead of CSV
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
@@ -83,6 +122,12 @@ pub(crate) struct InspectArgs {
     /// Joint states (a header of joint names, a row of radians or metres each): print link poses instead
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
+    /// Also write a picture of the model: a PNG, or a page with four views
+    #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Also write hull, middle and coarse triangles of each link as STL (metres, link's frame) to this folder
+    #[arg(long, value_name = "DIR", conflicts_with = "states")]
+    pub(crate) models: Option<PathBuf>,
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub(crate) json: bool,

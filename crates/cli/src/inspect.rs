@@ -1,22 +1,36 @@
 //! `elbowroom inspect`: what is in a model.
 
 use std::fmt::Write;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
 
 use elbowroom::cell::csv::read_states;
 use elbowroom::cell::inspect::{InspectOptions, Inspection};
+use elbowroom::formats::stl::write_binary;
 use elbowroom::kinematics::{ChainState, LinkId};
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::{InspectArgs, Unit};
-use crate::output::{Failure, Verdict, note, print, print_json};
+use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
-    let options =
-        InspectOptions { srdf: args.srdf.clone(), unit: args.unit.map(LengthUnit::from), tip: args.tip.clone() };
+    let options = InspectOptions {
+        srdf: args.srdf.clone(),
+        unit: args.unit.map(LengthUnit::from),
+        tip: args.tip.clone(),
+        brief: args.states.is_some(),
+    };
     let inspection = Inspection::of(&args.model, &options)?;
     if let Some(states) = &args.states {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return poses(&inspection, states);
+    }
+    if let Some(path) = &args.picture {
+        picture(&inspection, path)?;
+    }
+    if let Some(dir) = &args.models {
+        models(&inspection, dir)?;
     }
     if args.json {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
@@ -25,6 +39,38 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
         print(&inspection.to_string())?;
     }
     Ok(Verdict::Good)
+}
+
+/// A picture, or a page with four.
+fn picture(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
+    let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    if !(ends("png") || ends("html")) {
+        let what = format!("{}: pictures are png or html\n  write: --picture model.png", path.display());
+        return Err(Failure::Wrong(what));
+    }
+    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+    let written = if ends("png") { inspection.write_png(file) } else { inspection.write_page(file) };
+    written.map_err(cannot_write(path))?;
+    note(format_args!("wrote {}", path.display()));
+    Ok(())
+}
+
+/// Hull, middle and coarse triangles of every link, a file each.
+fn models(inspection: &Inspection, dir: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
+    let mut files = 0;
+    for (index, levels) in inspection.resolution.iter().enumerate() {
+        for mesh in &levels.meshes {
+            let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
+            let link: String = levels.link.chars().map(plain).collect();
+            let path = dir.join(format!("{index:02}_{link}.{}.stl", mesh.name));
+            let mut out = File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))?;
+            write_binary(&mut out, std::slice::from_ref(mesh)).map_err(cannot_write(&path))?;
+            files += 1;
+        }
+    }
+    note(format_args!("wrote {files} files to {}", dir.display()));
+    Ok(())
 }
 
 /// The pose of every link in the root link, a row per state and link.

@@ -6,6 +6,7 @@ mod args;
 mod example;
 mod inspect;
 mod output;
+mod query;
 mod run;
 mod teach;
 
@@ -21,6 +22,7 @@ fn main() -> ExitCode {
     let answer = match cli.command {
         None => example::figure_12(),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Query(args)) => query::query(&args),
         Some(Command::Inspect(args)) => inspect::inspect(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Example(args)) => example::copy(&args),

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Capsule, Shape, Sphere, collides};
-use elbowroom_scene::pairs::{Checker, Member, links_can_meet, pairs};
+use elbowroom_scene::pairs::{FirstContacts, Member, links_can_meet, pairs};
 use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -55,7 +55,7 @@ fn the_checker_finds_every_first_contact_at_the_step_where_it_begins() {
     };
     let mut contacts = 0;
     for _ in 0..150 {
-        let mut checker = Checker::new(vec![(&robot, base[0]), (&robot, base[1])], &objects);
+        let mut checker = FirstContacts::new(vec![(&robot, base[0]), (&robot, base[1])], &objects);
         let mut states = [ChainState::new(&robot.chain), ChainState::new(&robot.chain)];
         let goals: Vec<Vec<f64>> = (0..2).map(|_| (0..4).map(|_| random() * 2.4).collect()).collect();
         let mut known: Vec<(Member, Member)> = Vec::new();

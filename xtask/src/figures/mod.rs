@@ -2,7 +2,7 @@
 
 mod plots;
 mod rail;
-mod svg;
+pub mod svg;
 
 use std::path::Path;
 

@@ -58,14 +58,7 @@ fn joints() -> Vec<Joint> {
         turning("joint_4", "link_3", "link_4", [0.0, 0.0, 0.100], Z, [-270.0, 270.0], 410.0),
         turning("joint_5", "link_4", "link_5", [0.0, 0.0, 0.210], Y, [-109.5, 120.5], 320.0),
         turning("joint_6", "link_5", "link_6", [0.0; 3], Z, [-270.0, 270.0], 700.0),
-        Joint {
-            name: "flange",
-            parent: "link_6",
-            child: "tool0",
-            xyz: [0.0, 0.0, 0.065],
-            rpy: [0.0; 3],
-            turns: None,
-        },
+        Joint { name: "flange", parent: "link_6", child: "tool0", xyz: [0.0, 0.0, 0.065], rpy: [0.0; 3], turns: None },
     ]
 }
 

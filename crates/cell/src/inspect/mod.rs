@@ -1,20 +1,34 @@
 //! What is in a model: joints and limits, meshes and their faults, the generalized DH table, resolution levels.
 
+mod deviation;
+mod edges;
 mod levels;
+mod picture;
+mod png;
+mod quadric;
+mod resolution;
+mod rows;
+mod simplify;
 mod table;
+mod units;
 
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::{FormatError, Warning, mesh, robot};
 use elbowroom_kinematics::dh::Table;
-use elbowroom_kinematics::{Chain, JointKind, LinkId};
-use elbowroom_proximity::{Shape, TriMesh};
-use elbowroom_scene::Robot;
+use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_proximity::Shape;
+use elbowroom_scene::{Body, Robot};
+use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::LengthUnit;
-use elbowroom_spatial::{Pose, Vec3};
 use serde::Serialize;
 
 pub use levels::Level2;
+pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
+pub use rows::{DhRow, JointRow, MeshRow};
+pub use units::UnitDoubt;
+
+use rows::{dh_row, joint_row, mesh_row, mesh_rows};
 
 /// How to look at a model.
 #[derive(Debug, Clone, Default)]
@@ -25,6 +39,8 @@ pub struct InspectOptions {
     pub unit: Option<LengthUnit>,
     /// The link that the DH table ends at; default: the leaf with the most independent joints above it.
     pub tip: Option<String>,
+    /// Leave out what takes time: resolution levels and pairs.
+    pub brief: bool,
 }
 
 /// What is in a model. Lengths are metres, angles radians; what is unlimited or unknown is `null` in JSON.
@@ -68,72 +84,17 @@ pub struct Inspection {
     pub dh_residual: Option<f64>,
     /// Resolution level L2: the volume that stands for each solid when the whole arm is guarded.
     pub levels: Vec<Level2>,
+    /// The same levels and more, per link, with coarse, middle and fine triangles. Empty where they were left out.
+    pub resolution: Vec<LinkLevels>,
+    /// Units suspected wrong.
+    pub unit_doubts: Vec<UnitDoubt>,
     /// What the user should know.
     pub warnings: Vec<String>,
     #[serde(skip)]
     robot: Option<Robot>,
-}
-
-/// A joint.
-#[derive(Debug, Clone, Serialize)]
-pub struct JointRow {
-    /// Its name.
-    pub name: String,
-    /// `fixed`, `revolute`, `continuous` or `prismatic`.
-    #[serde(rename = "type")]
-    pub kind: &'static str,
-    /// Parent link.
-    pub parent: String,
-    /// Child link.
-    pub child: String,
-    /// Lower limit, rad or m.
-    pub lower: Option<f64>,
-    /// Upper limit, rad or m.
-    pub upper: Option<f64>,
-    /// Largest speed, rad/s or m/s.
-    pub velocity: Option<f64>,
-    /// The joint that it follows.
-    pub mimic: Option<String>,
-}
-
-/// A solid of triangles.
-#[derive(Debug, Clone, Serialize)]
-pub struct MeshRow {
-    /// Its link; of a mesh file, its object.
-    pub link: String,
-    /// The object's name.
-    pub name: String,
-    /// Number of triangles.
-    pub triangles: usize,
-    /// Number of distinct vertices.
-    pub vertices: usize,
-    /// True where every edge is shared by two faces of opposite direction.
-    pub closed: bool,
-    /// Faces without area.
-    pub degenerate: usize,
-    /// Faces that are there twice.
-    pub duplicate: usize,
-    /// True where a closed mesh has its faces turned inwards.
-    pub inside_out: bool,
-    /// Edge lengths of its box, in its own frame.
-    pub extent_m: [f64; 3],
-}
-
-/// A row of the generalized DH table.
-#[derive(Debug, Clone, Serialize)]
-pub struct DhRow {
-    /// The joint whose value is added to θ (turning) or d (sliding); null in fixed and auxiliary rows.
-    pub joint: Option<String>,
-    /// Turn about z, rad.
-    pub theta: f64,
-    /// Along x, m.
-    pub a: f64,
-    /// Along y, m.
-    pub b: f64,
-    /// Along z, m.
-    pub d: f64,
-    /// Turn about x, rad.
-    pub alpha: f64,
+    /// The objects of a mesh file.
+    #[serde(skip)]
+    solids: Vec<(String, Vec<Body>)>,
 }
 
 impl Inspection {
@@ -160,8 +121,13 @@ impl Inspection {
         inspection.dh_tip = Some(chain.links()[tip.0].clone());
         inspection.dh = table.rows.iter().map(dh_row).collect();
         inspection.dh_residual = Some(table.residual);
-        inspection.levels = levels::of_robot(&loaded.robot);
+        inspection.doubt_units(units::of_robot(&loaded.robot));
         inspection.doubt_meshes();
+        if !options.brief {
+            inspection.levels = levels::of_robot(&loaded.robot);
+            let links = chain.links().iter().cloned().zip(loaded.robot.bodies.iter().cloned());
+            inspection.resolution = resolution::of_links(&links.collect::<Vec<_>>());
+        }
         inspection.robot = Some(loaded.robot);
         Ok(inspection)
     }
@@ -174,13 +140,22 @@ impl Inspection {
         let loaded = mesh::load(path, options.unit)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut inspection = Self::empty(path, &stem, "mesh", &loaded.warnings);
+        let format = std::fs::read(path).ok().and_then(|bytes| mesh::detect(&bytes, path).ok());
+        let mut solids = Vec::new();
         for object in loaded.meshes {
             let name = object.name.clone();
             let solid = object.into_trimesh(path)?;
             inspection.meshes.push(mesh_row(&name, &name, &solid));
-            inspection.levels.push(levels::of_solid(&name, &Shape::Mesh(solid.into())));
+            inspection.doubt_units(units::of_mesh(&name, solid.aabb().extent().max_element(), format));
+            let body = Body { name: name.clone(), shape: Shape::Mesh(solid.into()), in_link: Pose::IDENTITY };
+            solids.push((name.clone(), vec![body]));
             inspection.links.push(name);
         }
+        if !options.brief {
+            inspection.levels = solids.iter().map(|(name, s)| levels::of_solid(name, &s[0].shape)).collect();
+            inspection.resolution = resolution::of_links(&solids);
+        }
+        inspection.solids = solids;
         inspection.doubt_meshes();
         Ok(inspection)
     }
@@ -199,8 +174,22 @@ impl Inspection {
             dh: vec![],
             dh_residual: None,
             levels: vec![],
+            resolution: vec![],
+            unit_doubts: vec![],
             warnings: warnings.iter().map(ToString::to_string).collect(),
             robot: None,
+            solids: vec![],
+        }
+    }
+
+    fn doubt_units(&mut self, doubts: impl IntoIterator<Item = UnitDoubt>) {
+        // The reader doubts what is large beyond any chain, at the line of the file.
+        let said = self.warnings.iter().any(|w| w.contains("looks like"));
+        for doubt in doubts {
+            if !said {
+                self.warnings.push(doubt.reason.clone());
+            }
+            self.unit_doubts.push(doubt);
         }
     }
 
@@ -244,56 +233,4 @@ fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, FormatE
         FormatError::new(path, None, format!("there is no link `{name}`"))
             .hint(format!("--tip with one of {}", chain.links().join(", ")))
     })
-}
-
-fn joint_row(chain: &Chain, joint: &elbowroom_kinematics::Joint) -> JointRow {
-    let bound = |v: f64| (v.is_finite() && joint.kind.moves() && joint.kind != JointKind::Continuous).then_some(v);
-    JointRow {
-        name: joint.name.clone(),
-        kind: kind_name(joint.kind),
-        parent: chain.links()[joint.parent.0].clone(),
-        child: chain.links()[joint.child.0].clone(),
-        lower: bound(joint.limits.lower),
-        upper: bound(joint.limits.upper),
-        velocity: joint.limits.velocity,
-        mimic: joint.mimic.as_ref().map(|m| chain.joints()[m.joint.0].name.clone()),
-    }
-}
-
-fn kind_name(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Fixed => "fixed",
-        JointKind::Revolute => "revolute",
-        JointKind::Continuous => "continuous",
-        JointKind::Prismatic => "prismatic",
-    }
-}
-
-fn dh_row(row: &elbowroom_kinematics::dh::Row) -> DhRow {
-    DhRow { joint: row.joint.clone(), theta: row.theta, a: row.a, b: row.b, d: row.d, alpha: row.alpha }
-}
-
-fn mesh_rows(robot: &Robot) -> Vec<MeshRow> {
-    let bodies = robot.chain.links().iter().zip(&robot.bodies);
-    let row = |link: &String, body: &elbowroom_scene::Body| match &body.shape {
-        Shape::Mesh(solid) => Some(mesh_row(link, &body.name, solid)),
-        _ => None,
-    };
-    bodies.flat_map(|(link, bodies)| bodies.iter().filter_map(|b| row(link, b)).collect::<Vec<_>>()).collect()
-}
-
-fn mesh_row(link: &str, name: &str, solid: &TriMesh) -> MeshRow {
-    let report = solid.report();
-    let extent: Vec3 = Shape::Mesh(solid.clone().into()).aabb(&Pose::IDENTITY).extent();
-    MeshRow {
-        link: link.to_owned(),
-        name: name.to_owned(),
-        triangles: report.triangles,
-        vertices: report.vertices,
-        closed: report.closed,
-        degenerate: report.degenerate,
-        duplicate: report.duplicate,
-        inside_out: report.inside_out,
-        extent_m: extent.to_array(),
-    }
 }

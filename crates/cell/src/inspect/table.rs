@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::Inspection;
+use super::{Inspection, TrianglesRow};
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -19,6 +19,7 @@ impl fmt::Display for Inspection {
         self.fmt_joints(f)?;
         self.fmt_meshes(f)?;
         self.fmt_levels(f)?;
+        self.fmt_resolution(f)?;
         self.fmt_dh(f)?;
         if !self.warnings.is_empty() {
             writeln!(f, "\nNote")?;
@@ -52,12 +53,16 @@ impl Inspection {
         if self.meshes.is_empty() {
             return Ok(());
         }
-        writeln!(f, "\n{:24} {:>9} {:>7} {:>10}  extent (m)", "Mesh of", "triangles", "closed", "degenerate")?;
+        writeln!(f, "\n{:24} {:>9} {:>10} {:>10}  extent (m)", "Mesh of", "triangles", "closed", "degenerate")?;
         for m in &self.meshes {
             let [x, y, z] = m.extent_m;
-            let closed = if m.closed { "yes" } else { "open" };
+            let closed = match (m.closed, m.open_edges) {
+                (true, _) => "yes".into(),
+                (false, 0) => "crowded".into(),
+                (false, edges) => format!("open {edges}"),
+            };
             let (link, n, bad) = (shortened(&m.link, 24), m.triangles, m.degenerate);
-            writeln!(f, "{link:24} {n:>9} {closed:>7} {bad:>10}  {x:.3} x {y:.3} x {z:.3}")?;
+            writeln!(f, "{link:24} {n:>9} {closed:>10} {bad:>10}  {x:.3} x {y:.3} x {z:.3}")?;
         }
         Ok(())
     }
@@ -74,6 +79,21 @@ impl Inspection {
         Ok(())
     }
 
+    fn fmt_resolution(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let with_triangles = || self.resolution.iter().filter(|l| l.fine.is_some());
+        if with_triangles().next().is_none() {
+            return Ok(());
+        }
+        writeln!(f, "\n{:24} {:>8} {:>20} {:>20} {:>8}", "Triangles of", "fine", "middle", "coarse", "hull")?;
+        for l in with_triangles() {
+            let fine = l.fine.as_ref().map_or(0, |r| r.triangles);
+            let hull = l.hull.as_ref().map_or("flat".into(), |h| h.triangles.to_string());
+            let (link, middle, coarse) = (shortened(&l.link, 24), off(l.middle.as_ref()), off(l.coarse.as_ref()));
+            writeln!(f, "{link:24} {fine:>8} {middle:>20} {coarse:>20} {hull:>8}")?;
+        }
+        Ok(())
+    }
+
     fn fmt_dh(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Some(tip), Some(residual)) = (&self.dh_tip, self.dh_residual) else { return Ok(()) };
         writeln!(f, "\nGeneralized DH to {tip} (deg, m), residual {residual:.1e}")?;
@@ -85,6 +105,13 @@ impl Inspection {
         }
         Ok(())
     }
+}
+
+/// Number of triangles and how far they are off, in millimetres.
+fn off(row: Option<&TrianglesRow>) -> String {
+    let Some(row) = row else { return "-".into() };
+    let off = row.deviation_m.map_or("?".into(), |d| format!("{:.2}", 1000.0 * d));
+    format!("{} (off {off} mm)", row.triangles)
 }
 
 fn in_user_units(v: f64, kind: &str) -> f64 {

@@ -9,7 +9,7 @@ use std::time::Instant;
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{AccessClass, EventKind, Kind, Monitor, Reason, Snapshot, Source};
-use elbowroom_scene::{Checker, Member};
+use elbowroom_scene::{FirstContacts, Member};
 
 use crate::configure::{self, Setup};
 use crate::motion::{Clock, plan};
@@ -121,7 +121,7 @@ struct Run<'a> {
     scratch: Vec<ChainState>,
     frames: Frames<'a>,
     regions: Regions<'a>,
-    checker: Checker<'a>,
+    checker: FirstContacts<'a>,
     tracks: Vec<RobotTrack>,
     halts: Vec<Halt>,
     /// Override that each robot obeys until the next tick.
@@ -156,7 +156,7 @@ impl<'a> Run<'a> {
             states,
             frames: Frames::new(cell),
             regions: Regions::new(cell, setups),
-            checker: Checker::new(cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(), &cell.objects),
+            checker: FirstContacts::new(cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(), &cell.objects),
             tracks: cell.robots.iter().map(track).collect(),
             halts: vec![Halt::default(); cell.robots.len()],
             obeyed: vec![0.0; cell.robots.len()],

@@ -1,11 +1,19 @@
 //! How the triangles of a mesh hang together.
 
-use std::collections::HashMap;
+mod edges;
+mod equal;
+mod parts;
+#[cfg(test)]
+mod tests;
 
 use elbowroom_spatial::Vec3;
 
 use super::hull::enclosed_volume;
 use super::mesh::MeshReport;
+
+pub(crate) use edges::{Edges, is_proper};
+pub(crate) use equal::first_of_equal;
+pub(crate) use parts::parts;
 
 pub(super) struct Topology {
     pub report: MeshReport,
@@ -14,106 +22,85 @@ pub(super) struct Topology {
 }
 
 pub(super) fn examine(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
-    let welded = weld(vertices);
+    let welded = first_of_equal(vertices);
     let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| welded[i as usize])).collect();
     let part_of = parts(vertices.len(), &faces);
-    let uses = edge_uses(&faces);
-    let open = open_parts(&faces, &uses, &part_of);
-    let in_closed_part: Vec<bool> = faces.iter().map(|f| !open[part_of[f[0] as usize] as usize]).collect();
+    let edges = examine_edges(vertices.len(), &faces, &part_of);
+    let in_closed_part: Vec<bool> = faces.iter().map(|f| !edges.open[part_of[f[0] as usize] as usize]).collect();
     let encloses = in_closed_part.iter().all(|&c| c);
     let signed = if encloses { enclosed_volume(vertices, triangles) } else { 0.0 };
     let report = MeshReport {
         triangles: triangles.len(),
         vertices: vertices.len(),
-        closed: encloses && uses.values().all(|count| *count == 2),
+        closed: encloses && edges.all_twice,
         degenerate: triangles.iter().filter(|t| is_degenerate(t.map(|i| vertices[i as usize]))).count(),
-        duplicate: duplicates(&faces),
+        duplicate: edges.duplicates + repeated(&faces),
         inside_out: signed < 0.0,
         volume: signed.abs(),
     };
+    Topology { report, parts: representatives(vertices, &faces, &part_of), in_closed_part }
+}
+
+struct EdgeReport {
+    /// Per part: true where some edge is used by an odd number of triangles, or where no triangle has three corners.
+    /// A part whose edges are used two or four times still has an inside.
+    open: Vec<bool>,
+    /// Every edge has two uses.
+    all_twice: bool,
+    /// Triangles of three corners that another has already.
+    duplicates: usize,
+}
+
+fn examine_edges(vertices: usize, faces: &[[u32; 3]], part_of: &[u32]) -> EdgeReport {
+    let mut report = EdgeReport { open: vec![true; vertices], all_twice: true, duplicates: 0 };
+    for f in faces.iter().filter(|f| is_proper(f)) {
+        report.open[part_of[f[0] as usize] as usize] = false;
+    }
+    // With the third corner as the label, uses that are equal are the same triangle.
+    let edges = Edges::new(vertices, faces, |triangle, corner| faces[triangle][(corner + 2) % 3]);
+    edges.for_each(|low, high, uses| {
+        report.all_twice &= uses.len() == 2;
+        if uses.len() % 2 == 1 {
+            report.open[part_of[low as usize] as usize] = true;
+        }
+        // Counted at one of its three edges, that between its two smaller corners.
+        let same = uses.windows(2).filter(|u| u[0] == u[1] && u[0] as u32 > high);
+        report.duplicates += same.count();
+    });
+    report
+}
+
+/// Duplicates among the faces with fewer than three corners.
+fn repeated(faces: &[[u32; 3]]) -> usize {
+    let sorted = |mut f: [u32; 3]| {
+        f.sort_unstable();
+        f
+    };
+    let mut flat: Vec<[u32; 3]> = faces.iter().filter(|f| !is_proper(f)).map(|&f| sorted(f)).collect();
+    flat.sort_unstable();
+    flat.windows(2).filter(|f| f[0] == f[1]).count()
+}
+
+/// One vertex of every connected part, in the order of the faces.
+fn representatives(vertices: &[Vec3], faces: &[[u32; 3]], part_of: &[u32]) -> Vec<Vec3> {
     let mut seen = vec![false; vertices.len()];
-    let mut representatives = Vec::new();
-    for f in &faces {
+    let mut found = Vec::new();
+    for f in faces {
         let part = part_of[f[0] as usize] as usize;
         if !std::mem::replace(&mut seen[part], true) {
-            representatives.push(vertices[f[0] as usize]);
+            found.push(vertices[f[0] as usize]);
         }
     }
-    Topology { report, parts: representatives, in_closed_part }
-}
-
-/// The first vertex of the same coordinates, for each vertex (-0 is 0).
-fn weld(vertices: &[Vec3]) -> Vec<u32> {
-    let mut first: HashMap<[u64; 3], u32> = HashMap::with_capacity(vertices.len());
-    vertices
-        .iter()
-        .enumerate()
-        .map(|(i, v)| *first.entry(v.to_array().map(|c| (c + 0.0).to_bits())).or_insert(i as u32))
-        .collect()
-}
-
-/// Root vertex of the connected part of each vertex (union-find with path halving).
-fn parts(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..count as u32).collect();
-    for f in faces {
-        let a = root(&mut parent, f[0]);
-        for &v in &f[1..] {
-            let b = root(&mut parent, v);
-            parent[b as usize] = a;
-        }
-    }
-    (0..count as u32).map(|v| root(&mut parent, v)).collect()
-}
-
-fn root(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        parent[v as usize] = parent[parent[v as usize] as usize];
-        v = parent[v as usize];
-    }
-    v
-}
-
-/// Faces with three corners.
-fn proper(faces: &[[u32; 3]]) -> impl Iterator<Item = &[u32; 3]> {
-    faces.iter().filter(|f| f[0] != f[1] && f[1] != f[2] && f[2] != f[0])
-}
-
-/// How many faces use each edge.
-fn edge_uses(faces: &[[u32; 3]]) -> HashMap<(u32, u32), u32> {
-    let mut uses = HashMap::with_capacity(faces.len() * 3 / 2);
-    for f in proper(faces) {
-        for k in 0..3 {
-            let (a, b) = (f[k], f[(k + 1) % 3]);
-            *uses.entry((a.min(b), a.max(b))).or_insert(0) += 1;
-        }
-    }
-    uses
-}
-
-/// Per part: true where some edge is used by an odd number of triangles, or where no triangle has three corners.
-/// A part whose edges are used two or four times still has an inside.
-fn open_parts(faces: &[[u32; 3]], uses: &HashMap<(u32, u32), u32>, part_of: &[u32]) -> Vec<bool> {
-    let mut open = vec![true; part_of.len()];
-    proper(faces).for_each(|f| open[part_of[f[0] as usize] as usize] = false);
-    let odd = uses.iter().filter(|(_, count)| *count % 2 == 1);
-    odd.for_each(|((a, _), _)| open[part_of[*a as usize] as usize] = true);
-    open
-}
-
-fn duplicates(faces: &[[u32; 3]]) -> usize {
-    let mut seen = std::collections::HashSet::with_capacity(faces.len());
-    faces
-        .iter()
-        .filter(|f| {
-            let mut sorted = **f;
-            sorted.sort_unstable();
-            !seen.insert(sorted)
-        })
-        .count()
+    found
 }
 
 /// True where the triangle's height over its longest edge is lost in rounding.
 pub(crate) fn is_degenerate([a, b, c]: [Vec3; 3]) -> bool {
     let longest2 = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-    (b - a).cross(c - a).length() <= 1e-14 * longest2
+    let area2 = (b - a).cross(c - a).length_squared();
+    // The root is needed only where the squares leave the range in which they are exact enough.
+    if area2 > 1e-200 && longest2 < 1e100 {
+        return area2 <= 1e-28 * longest2 * longest2;
+    }
+    area2.sqrt() <= 1e-14 * longest2
 }

@@ -1,0 +1,128 @@
+//! The rows of an inspection: joints, solids of triangles, the Denavit-Hartenberg table.
+
+use elbowroom_kinematics::{Chain, JointKind, dh};
+use elbowroom_proximity::{Shape, TriMesh};
+use elbowroom_scene::{Body, Robot};
+use serde::Serialize;
+
+use super::edges;
+
+/// A joint.
+#[derive(Debug, Clone, Serialize)]
+pub struct JointRow {
+    /// Its name.
+    pub name: String,
+    /// `fixed`, `revolute`, `continuous` or `prismatic`.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Parent link.
+    pub parent: String,
+    /// Child link.
+    pub child: String,
+    /// Lower limit, rad or m.
+    pub lower: Option<f64>,
+    /// Upper limit, rad or m.
+    pub upper: Option<f64>,
+    /// Largest speed, rad/s or m/s.
+    pub velocity: Option<f64>,
+    /// The joint that it follows.
+    pub mimic: Option<String>,
+}
+
+/// A solid of triangles.
+#[derive(Debug, Clone, Serialize)]
+pub struct MeshRow {
+    /// Its link; of a mesh file, its object.
+    pub link: String,
+    /// The object's name.
+    pub name: String,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of distinct vertices.
+    pub vertices: usize,
+    /// True where every edge is shared by two faces of opposite direction.
+    pub closed: bool,
+    /// Faces without area.
+    pub degenerate: usize,
+    /// Faces that are there twice.
+    pub duplicate: usize,
+    /// Edges that belong to one face alone: the rims of holes.
+    pub open_edges: usize,
+    /// Edges that more than two faces share.
+    pub crowded_edges: usize,
+    /// True where a closed mesh has its faces turned inwards.
+    pub inside_out: bool,
+    /// Edge lengths of its box, in its own frame.
+    pub extent_m: [f64; 3],
+}
+
+/// A row of the generalized DH table.
+#[derive(Debug, Clone, Serialize)]
+pub struct DhRow {
+    /// The joint whose value is added to θ (turning) or d (sliding); null in fixed and auxiliary rows.
+    pub joint: Option<String>,
+    /// Turn about z, rad.
+    pub theta: f64,
+    /// Along x, m.
+    pub a: f64,
+    /// Along y, m.
+    pub b: f64,
+    /// Along z, m.
+    pub d: f64,
+    /// Turn about x, rad.
+    pub alpha: f64,
+}
+
+pub(super) fn joint_row(chain: &Chain, joint: &elbowroom_kinematics::Joint) -> JointRow {
+    let bound = |v: f64| (v.is_finite() && joint.kind.moves() && joint.kind != JointKind::Continuous).then_some(v);
+    JointRow {
+        name: joint.name.clone(),
+        kind: kind_name(joint.kind),
+        parent: chain.links()[joint.parent.0].clone(),
+        child: chain.links()[joint.child.0].clone(),
+        lower: bound(joint.limits.lower),
+        upper: bound(joint.limits.upper),
+        velocity: joint.limits.velocity,
+        mimic: joint.mimic.as_ref().map(|m| chain.joints()[m.joint.0].name.clone()),
+    }
+}
+
+fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Fixed => "fixed",
+        JointKind::Revolute => "revolute",
+        JointKind::Continuous => "continuous",
+        JointKind::Prismatic => "prismatic",
+    }
+}
+
+pub(super) fn dh_row(row: &dh::Row) -> DhRow {
+    DhRow { joint: row.joint.clone(), theta: row.theta, a: row.a, b: row.b, d: row.d, alpha: row.alpha }
+}
+
+pub(super) fn mesh_rows(robot: &Robot) -> Vec<MeshRow> {
+    let bodies = robot.chain.links().iter().zip(&robot.bodies);
+    let row = |link: &String, body: &Body| match &body.shape {
+        Shape::Mesh(solid) => Some(mesh_row(link, &body.name, solid)),
+        _ => None,
+    };
+    bodies.flat_map(|(link, bodies)| bodies.iter().filter_map(|b| row(link, b)).collect::<Vec<_>>()).collect()
+}
+
+pub(super) fn mesh_row(link: &str, name: &str, solid: &TriMesh) -> MeshRow {
+    let report = solid.report();
+    let (open_edges, crowded_edges) = edges::count(solid);
+    MeshRow {
+        link: link.to_owned(),
+        name: name.to_owned(),
+        triangles: report.triangles,
+        vertices: report.vertices,
+        closed: report.closed,
+        degenerate: report.degenerate,
+        duplicate: report.duplicate,
+        open_edges,
+        crowded_edges,
+        inside_out: report.inside_out,
+        extent_m: solid.aabb().extent().to_array(),
+    }
+}

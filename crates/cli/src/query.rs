@@ -1,0 +1,138 @@
+//! `elbowroom query`: collision, distance, tolerance, one answer per state.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use elbowroom::cell::Cell;
+use elbowroom::cell::query::{Ask, Row, States, Subject, Written, answer};
+use elbowroom::formats::robot::{self, LoadOptions};
+use elbowroom::spatial::units::LengthUnit;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::args::QueryArgs;
+use crate::output::{Failure, Verdict, note, print};
+
+/// From this many states on it pays to find out which pairs can never meet.
+const MANY: usize = 1000;
+
+pub(crate) fn query(args: &QueryArgs) -> Result<Verdict, Failure> {
+    let subject = subject(args)?;
+    let states = match &args.states {
+        Some(path) => States::read(path, &subject)?,
+        None => States::start(&subject),
+    };
+    states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let scene = subject.scene(states.len() >= MANY)?;
+    if scene.pairs().tested() == 0 {
+        note(format_args!("warning: {}: there is no pair that could meet", subject.file.display()));
+    }
+    let mut writer = Writer::new(args, &subject, states.len());
+    writer.begin()?;
+    let mut outcome = Ok(());
+    answer(&scene, &states, args.ask, args.level, &mut |rows| {
+        outcome = writer.rows(rows);
+        outcome.is_ok()
+    })?;
+    outcome?;
+    writer.end()?;
+    Ok(if args.ask == Ask::Collision && writer.colliding > 0 { Verdict::Bad } else { Verdict::Good })
+}
+
+fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
+    if let Some(urdf) = &args.urdf {
+        let unit = args.unit.map(LengthUnit::from);
+        let options = LoadOptions { srdf: args.srdf.clone(), load_visuals: false, unit };
+        let loaded = robot::load(urdf, &options)?;
+        loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+        return Ok(Subject::of_robot(urdf, loaded.robot));
+    }
+    // clap asks for one of the two.
+    let path = args.cell.as_deref().unwrap_or(Path::new(""));
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
+        let path = path.display();
+        return Err(Failure::Wrong(format!("{path}: is a robot, not a cell file\n  write: --urdf {path}")));
+    }
+    let cell = Cell::load(path)?;
+    cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    Ok(Subject::of_cell(&cell))
+}
+
+/// Prints rows as they come, and how far it has come where somebody watches.
+struct Writer<'a> {
+    args: &'a QueryArgs,
+    subject: &'a Subject,
+    states: usize,
+    done: usize,
+    colliding: usize,
+    begin: Instant,
+    bar: ProgressBar,
+}
+
+impl<'a> Writer<'a> {
+    fn new(args: &'a QueryArgs, subject: &'a Subject, states: usize) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
+            bar.set_style(style);
+        }
+        Self { args, subject, states, done: 0, colliding: 0, begin: Instant::now(), bar }
+    }
+
+    fn begin(&self) -> Result<(), Failure> {
+        if !self.args.json {
+            return print(&format!("{}\n", Written::HEADER));
+        }
+        let (ask, tolerance) = match self.args.ask {
+            Ask::Collision => ("collision", None),
+            Ask::Distance => ("distance", None),
+            Ask::Tolerance(t) => ("tolerance", Some(t)),
+        };
+        let model = json(&self.subject.file.display().to_string())?;
+        let level = self.args.level;
+        let (ask, tolerance, states) = (json(&ask)?, json(&tolerance)?, self.states);
+        print(&format!(
+            "{{\n\"model\": {model},\n\"ask\": {ask},\n\"tolerance_m\": {tolerance},\n\"level\": \"{level}\",\n\
+             \"states\": {states},\n\"rows\": [\n"
+        ))
+    }
+
+    fn rows(&mut self, rows: &[Row]) -> Result<(), Failure> {
+        let mut text = String::new();
+        for row in rows {
+            let written = Written::of(row, self.subject);
+            if self.args.json {
+                text.push_str(if self.done == 0 { "" } else { ",\n" });
+                text.push_str(&json(&written)?);
+            } else {
+                text.push_str(&written.csv());
+                text.push('\n');
+            }
+            self.done += 1;
+            self.colliding += usize::from(row.collides);
+        }
+        self.tell();
+        print(&text)
+    }
+
+    fn end(&self) -> Result<(), Failure> {
+        self.bar.finish_and_clear();
+        if self.args.json { print(&format!("\n],\n\"colliding\": {}\n}}\n", self.colliding)) } else { Ok(()) }
+    }
+
+    fn tell(&self) {
+        let elapsed = self.begin.elapsed();
+        if elapsed < Duration::from_secs(2) || !std::io::stderr().is_terminal() {
+            return;
+        }
+        if self.bar.is_hidden() {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        let left = elapsed.mul_f64(self.states.saturating_sub(self.done) as f64 / self.done.max(1) as f64);
+        self.bar.set_message(format!("{} in contact, {} left", self.colliding, HumanDuration(left)));
+        self.bar.set_position(self.done as u64);
+    }
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string(value).map_err(|e| Failure::Wrong(e.to_string()))
+}

@@ -1,0 +1,171 @@
+//! Every question on every set, ready to be asked by number.
+
+use std::cell::RefCell;
+use std::path::Path;
+use std::rc::Rc;
+
+use elbowroom_proximity::TriMesh;
+use elbowroom_proximity::mesh::{Hint, Scratch, collide, distance, distance_at, within};
+
+use crate::arm::{DISTANCES, LINKS};
+use crate::files::{Outcome, Poses, read_mesh, read_meta, read_poses};
+use crate::paths::{STEPS, TAGS};
+use crate::robots::Arms;
+
+const LIB: &str = "elbowroom";
+const ROBOT_TOLERANCE: f64 = 0.05;
+
+/// One question on the poses of one set.
+pub struct Cell {
+    pub lib: String,
+    pub set: String,
+    pub query: &'static str,
+    pub records: usize,
+    /// Largest extent of a mesh, metres.
+    pub size: f64,
+    pub tolerance: f64,
+    pub ask: Box<dyn Ask>,
+}
+
+/// The answer for a record: 0 or 1, or metres. The loop lies within, so that a call through a table is paid per round.
+pub trait Ask {
+    fn answer(&mut self, record: usize) -> f64;
+    /// Asks for the first `records`, `passes` times over; gives the sum of the answers.
+    fn pass(&mut self, records: usize, passes: usize) -> f64;
+}
+
+impl<F: FnMut(usize) -> f64> Ask for F {
+    fn answer(&mut self, record: usize) -> f64 {
+        self(record)
+    }
+
+    fn pass(&mut self, records: usize, passes: usize) -> f64 {
+        let mut sum = 0.0;
+        for _ in 0..passes {
+            for record in 0..records {
+                sum += self(record);
+            }
+        }
+        sum
+    }
+}
+
+/// All cells of `data` and of `extra`; sets whose file is missing are left out.
+pub fn all(data: &Path, extra: &Path) -> Outcome<Vec<Cell>> {
+    let mut cells = Vec::new();
+    for tag in TAGS {
+        if !data.join(format!("{tag}.meta")).is_file() {
+            continue;
+        }
+        let [size, tolerance] = read_meta(&data.join(format!("{tag}.meta")))?;
+        let mesh = |side| Ok::<_, String>(Rc::new(read_mesh(&data.join(format!("{tag}_{side}.stl")))?));
+        let pair = Pair { a: mesh("A")?, b: mesh("B")?, size, tolerance };
+        for band in ["touch", "near", "far", "random", "near_path", "far_path"] {
+            let set = format!("{tag}_{band}");
+            let folder = if matches!(band, "touch" | "near" | "far") { data } else { extra };
+            let file = folder.join(format!("{set}.pose"));
+            if file.is_file() {
+                pair.add(&set, read_poses(&file)?, &mut cells);
+            }
+        }
+    }
+    add_arms(data, &mut cells)?;
+    Ok(cells)
+}
+
+struct Pair {
+    a: Rc<TriMesh>,
+    b: Rc<TriMesh>,
+    size: f64,
+    tolerance: f64,
+}
+
+impl Pair {
+    fn add(&self, set: &str, poses: Poses, cells: &mut Vec<Cell>) {
+        let poses = Rc::new(poses);
+        let mut add = |lib: &str, query, ask| {
+            let (lib, set, records) = (lib.to_owned(), set.to_owned(), poses.len());
+            cells.push(Cell { lib, set, query, records, size: self.size, tolerance: self.tolerance, ask });
+        };
+        if !set.ends_with("_path") {
+            add(LIB, "collide", self.collide(&poses));
+            add(LIB, "tolerance", self.within(&poses));
+        }
+        add(LIB, "distance", self.distance(&poses));
+        if set.ends_with("_path") {
+            add("elbowroom+warm", "distance", self.warm(&poses));
+        }
+    }
+
+    fn collide(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
+        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+        Box::new(move |i| {
+            let p = poses.record(i);
+            f64::from(u8::from(collide(&a, &p[0], &b, &p[1], &mut scratch).is_some()))
+        })
+    }
+
+    fn within(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
+        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+        let tolerance = self.tolerance;
+        Box::new(move |i| {
+            let p = poses.record(i);
+            f64::from(u8::from(within(&a, &p[0], &b, &p[1], tolerance, &mut scratch).is_some()))
+        })
+    }
+
+    fn distance(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
+        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+        Box::new(move |i| {
+            let p = poses.record(i);
+            distance(&a, &p[0], &b, &p[1], &mut scratch).distance
+        })
+    }
+
+    /// The hint of a step helps the next; a path begins without.
+    fn warm(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
+        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+        let mut hint: Option<Hint> = None;
+        Box::new(move |i| {
+            let p = poses.record(i);
+            if i % STEPS == 0 {
+                hint = None;
+            }
+            let near = distance_at(&a, &p[0], &b, &p[1], f64::INFINITY, hint, &mut scratch);
+            hint = near.map(|near| near.hint);
+            // Without a limit there is always an answer; a NaN would be counted as a disagreement.
+            near.map_or(f64::NAN, |near| near.distance)
+        })
+    }
+}
+
+fn add_arms(data: &Path, cells: &mut Vec<Cell>) -> Outcome<()> {
+    if !data.join("robot_link0.stl").is_file() {
+        return Ok(());
+    }
+    let links: Outcome<Vec<TriMesh>> = (0..LINKS).map(|k| read_mesh(&data.join(format!("robot_link{k}.stl")))).collect();
+    let arms = Arms::new(links?);
+    let (size, arms) = (arms.size(), Rc::new(RefCell::new(arms)));
+    for name in DISTANCES.into_iter().chain(["hard"]) {
+        let file = data.join(format!("robots_{name}.pose"));
+        if !file.is_file() {
+            continue;
+        }
+        let poses = Rc::new(read_poses(&file)?);
+        if poses.bodies != 2 * LINKS {
+            return Err(format!("{}: {} bodies a record, not {}", file.display(), poses.bodies, 2 * LINKS));
+        }
+        let mut add = |query, ask| {
+            let (lib, set, records) = (LIB.to_owned(), format!("robots_{name}"), poses.len());
+            cells.push(Cell { lib, set, query, records, size, tolerance: ROBOT_TOLERANCE, ask });
+        };
+        let (shared, p) = (arms.clone(), poses.clone());
+        add("collide", Box::new(move |i| f64::from(u8::from(shared.borrow_mut().collides(p.record(i))))));
+        let (shared, p) = (arms.clone(), poses.clone());
+        let within = move |i| shared.borrow_mut().within(p.record(i), ROBOT_TOLERANCE);
+        add("tolerance", Box::new(move |i| f64::from(u8::from(within(i)))));
+        let (shared, p) = (arms.clone(), poses.clone());
+        add("distance", Box::new(move |i| shared.borrow_mut().distance(p.record(i))));
+    }
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! Is anything in contact: yes or no, and who.
+
+use super::answer::Contact;
+use super::list::{Pair, PairList};
+use super::{Candidate, Core};
+use crate::world_box::round_up;
+use crate::{Level, SceneState, weight};
+
+impl Core<'_> {
+    /// A pair that is not farther apart than its margin and `tolerance` metres.
+    pub(super) fn first(&mut self, list: &mut PairList, state: &SceneState, tolerance: f64) -> Option<Contact> {
+        self.collect(list, state, tolerance);
+        if self.options.weights {
+            for c in &mut self.candidates {
+                c.key = -list.pairs[c.index as usize].weight;
+            }
+        }
+        self.sort();
+        let mut found = None;
+        for i in 0..self.candidates.len() {
+            let pair = &mut list.pairs[self.candidates[i].index as usize];
+            let hit = self.hit(pair, state, tolerance);
+            if self.options.weights {
+                pair.weight = weight::learned(pair.weight, hit.is_some());
+            }
+            if hit.is_some() {
+                found = hit;
+                break;
+            }
+        }
+        self.counts.answered.add(self.deepest, 1);
+        found
+    }
+
+    /// Every pair in contact.
+    pub(super) fn all(&mut self, list: &mut PairList, state: &SceneState, mut found: impl FnMut(Contact)) {
+        self.collect(list, state, 0.0);
+        self.sort();
+        for i in 0..self.candidates.len() {
+            let pair = &mut list.pairs[self.candidates[i].index as usize];
+            if let Some(contact) = self.hit(pair, state, 0.0) {
+                found(contact);
+            }
+        }
+        self.counts.answered.add(self.deepest, 1);
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.candidates.sort_unstable_by(|x, y| x.key.total_cmp(&y.key).then(x.rank.cmp(&y.rank)));
+    }
+
+    /// The level at which pairs are looked at one by one.
+    pub(super) fn fine(&self) -> Level {
+        match self.options.level {
+            Level::Auto => Level::L3,
+            Level::L1 => Level::L2,
+            level => level,
+        }
+    }
+
+    pub(super) fn deepen(&mut self, level: Level) {
+        self.deepest = self.deepest.max(level);
+    }
+
+    /// True where pairs may be dismissed by boxes: their answer would be the same.
+    pub(super) fn boxes_decide(&self) -> bool {
+        match self.options.level {
+            Level::Auto => self.options.start <= Level::L2,
+            Level::L1 | Level::L2 | Level::Hull => true,
+            // A capsule may stick out of the box.
+            Level::Capsule | Level::L3 => false,
+        }
+    }
+
+    /// True where robots may be dismissed as a whole.
+    pub(super) fn wholes_decide(&self) -> bool {
+        match self.options.level {
+            Level::Auto => self.options.start <= Level::L1,
+            level => level == Level::L1,
+        }
+    }
+
+    /// Metres that the pair is certainly apart by what the matrix knows.
+    pub(super) fn known(&self, pair: &Pair, state: &SceneState) -> f64 {
+        let sides = [pair.a, pair.b].map(|m| self.scene.models[m as usize].member);
+        let holds = pair.least > 0.0 && self.options.matrix && sides.iter().all(|m| state.proofs_hold(*m));
+        if holds { pair.least } else { 0.0 }
+    }
+
+    /// Pairs that boxes do not dismiss.
+    fn collect(&mut self, list: &PairList, state: &SceneState, tolerance: f64) {
+        self.candidates.clear();
+        self.deepest = Level::L1;
+        let (boxes, wholes) = (self.boxes_decide(), self.wholes_decide());
+        let reach = round_up(tolerance);
+        for block in &list.blocks {
+            let margin = round_up(block.margin + tolerance);
+            let same = block.a == block.b;
+            if wholes && !same && state.boxes[block.a].clear(&state.boxes[block.b], margin) {
+                self.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
+                continue;
+            }
+            for index in block.start..block.end {
+                let pair = &list.pairs[index];
+                if pair.least > 0.0 && self.known(pair, state) > pair.margin + tolerance {
+                    self.counts.pairs_skipped += 1;
+                    continue;
+                }
+                let (a, b) = (&state.boxes[pair.a as usize], &state.boxes[pair.b as usize]);
+                let coarse = self.options.level == Level::L1 && !same;
+                if boxes && !coarse && a.clear(b, (pair.margin_f32 + reach).next_up()) {
+                    self.counts.pairs_cleared.l2 += 1;
+                    self.deepen(Level::L2);
+                    continue;
+                }
+                self.candidates.push(Candidate { key: 0.0, rank: pair.rank, index: index as u32 });
+                if coarse {
+                    // One pair stands for all of the block.
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Looks at one pair, from coarse to fine.
+    fn hit(&mut self, pair: &mut Pair, state: &SceneState, tolerance: f64) -> Option<Contact> {
+        let limit = pair.margin + tolerance;
+        let [a, b] = self.sides(pair, state);
+        let contact = |level| Some(Contact { a: a.model.member, b: b.model.member, level });
+        let carriers = [a, b].map(|p| state.carrier(p.model.member).map(|c| c.0));
+        if self.options.level == Level::L1 && (carriers[0] != carriers[1] || carriers[0].is_none()) {
+            return contact(Level::L1);
+        }
+        if self.options.level == Level::Auto
+            && self.boxes_decide()
+            && let Some(level) = self.cleared_coarsely(&a, &b, limit)
+        {
+            self.counts.pairs_cleared.add(level, 1);
+            self.deepen(level);
+            return None;
+        }
+        let level = self.fine();
+        self.deepen(level);
+        if self.touch(&a, &b, level, limit) {
+            return contact(level);
+        }
+        self.counts.pairs_cleared.add(level, 1);
+        None
+    }
+}

@@ -1,0 +1,166 @@
+//! The pairs of one selection, ready to be gone through.
+
+use std::collections::HashMap;
+
+use elbowroom_proximity::mesh::Hint;
+
+use crate::world_box::round_up;
+use crate::{Member, PairState, Reason, Scene, SceneState, Selection, weight};
+
+/// A pair, and what was learned of it.
+#[derive(Debug, Clone)]
+pub(super) struct Pair {
+    /// Indices of models.
+    pub a: u32,
+    pub b: u32,
+    /// Metres, and rounded up.
+    pub margin: f64,
+    pub margin_f32: f32,
+    /// Proven distance, metres; 0 where nothing is. Infinite where the user has ruled the pair out.
+    pub least: f64,
+    /// Place in the order of the hierarchy.
+    pub rank: u32,
+    pub weight: f64,
+    /// Which solids were nearest, and where.
+    pub hint: (u32, u32, Hint),
+}
+
+/// Pairs between the same two carriers.
+#[derive(Debug, Clone)]
+pub(super) struct Block {
+    /// Indices of boxes of a state: of a robot, or of an object by itself.
+    pub a: usize,
+    pub b: usize,
+    pub start: usize,
+    pub end: usize,
+    /// Largest margin, metres.
+    pub margin: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct PairList {
+    pub key: (Selection, Selection),
+    /// For which arrangement of attached objects it was made.
+    pub arrangement: Option<u64>,
+    pub pairs: Vec<Pair>,
+    pub blocks: Vec<Block>,
+    /// The pair that was nearest last time.
+    pub nearest: Option<usize>,
+}
+
+impl PairList {
+    pub fn new(key: (Selection, Selection)) -> Self {
+        Self { key, arrangement: None, pairs: Vec::new(), blocks: Vec::new(), nearest: None }
+    }
+
+    /// Makes the list anew; what was learned of pairs that stay is kept.
+    pub fn arrange(&mut self, scene: &Scene, state: &SceneState) {
+        let known: HashMap<(u32, u32), Pair> = self.pairs.drain(..).map(|p| ((p.a, p.b), p)).collect();
+        self.nearest = None;
+        self.arrangement = Some(state.arrangement);
+        self.of_matrix(scene, state);
+        self.of_objects(scene, state);
+        self.rank(scene, state);
+        for p in &mut self.pairs {
+            if let Some(old) = known.get(&(p.a, p.b)) {
+                (p.weight, p.hint) = (old.weight, old.hint);
+            }
+        }
+        self.block(scene, state);
+    }
+
+    fn selects(&self, state: &SceneState, a: Member, b: Member) -> bool {
+        let (one, other) = self.key;
+        let holds = |s: Selection, m: Member| {
+            let carrier = if let Member::Object(_) = m { state.carrier(m).map(|c| c.0) } else { None };
+            s.holds(m, carrier)
+        };
+        (holds(one, a) && holds(other, b)) || (holds(one, b) && holds(other, a))
+    }
+
+    fn of_matrix(&mut self, scene: &Scene, state: &SceneState) {
+        for e in scene.pairs.entries() {
+            if !self.selects(state, e.a, e.b) {
+                continue;
+            }
+            let least = match (state.pair(scene, e.a, e.b), &e.reason) {
+                (Some((PairState::Tested, _)), _) => 0.0,
+                (Some((_, Reason::OutOfReach { least_m })), _) => least_m,
+                (Some((_, Reason::NeverInSamples { .. })), _) => f64::INFINITY,
+                _ => continue,
+            };
+            self.push(scene, (e.a, e.b), e.margin_m, least, e.weight);
+        }
+    }
+
+    /// Two objects: where one is attached, or where nothing else is asked for.
+    fn of_objects(&mut self, scene: &Scene, state: &SceneState) {
+        let asked = self.key.0.is_objects() && self.key.1.is_objects();
+        let held = |o: usize| state.attached[o].is_some();
+        let objects = scene.objects.len();
+        for i in (0..objects).filter(|i| asked || held(*i)) {
+            // The pair of two that are held comes once.
+            for j in (0..objects).filter(|j| *j != i && (*j > i || !(asked || held(*j)))) {
+                let (a, b) = (Member::Object(i.min(j)), Member::Object(i.max(j)));
+                let tested = match state.pair(scene, a, b) {
+                    Some((state, _)) => state == PairState::Tested,
+                    None => asked,
+                };
+                if tested && self.selects(state, a, b) {
+                    let margin = [i, j].map(|o| scene.models[scene.first_object + o].padding_m).iter().sum();
+                    self.push(scene, (a, b), margin, 0.0, 1.0);
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, scene: &Scene, (a, b): (Member, Member), margin: f64, least: f64, weight: f64) {
+        let (Some(a), Some(b)) = (scene.model_of(a), scene.model_of(b)) else { return };
+        self.pairs.push(Pair {
+            a: a as u32,
+            b: b as u32,
+            margin,
+            margin_f32: round_up(margin),
+            least,
+            rank: 0,
+            weight,
+            hint: (0, 0, Hint::default()),
+        });
+    }
+
+    /// Root-most pairs first; the matrix' order among equals.
+    fn rank(&mut self, scene: &Scene, state: &SceneState) {
+        let depth = |model: u32| {
+            let carrier = state.carrier(scene.models[model as usize].member);
+            carrier.map(|(robot, link)| weight::depth(&scene.robots, Member::Link { robot, link }))
+        };
+        self.pairs.sort_by_cached_key(|p| {
+            let (a, b) = (depth(p.a), depth(p.b));
+            let first = a.into_iter().chain(b).min().unwrap_or(usize::MAX);
+            (first, a.unwrap_or(0).max(b.unwrap_or(0)))
+        });
+        for (rank, p) in self.pairs.iter_mut().enumerate() {
+            p.rank = rank as u32;
+        }
+    }
+
+    fn block(&mut self, scene: &Scene, state: &SceneState) {
+        let whole = |model: u32| match state.carrier(scene.models[model as usize].member) {
+            Some((robot, _)) => scene.models.len() + robot,
+            None => model as usize,
+        };
+        let carriers = |p: &Pair| (whole(p.a).min(whole(p.b)), whole(p.a).max(whole(p.b)));
+        self.pairs.sort_by_key(|p| (carriers(p), p.rank));
+        self.blocks.clear();
+        for (i, p) in self.pairs.iter().enumerate() {
+            let (a, b) = carriers(p);
+            match self.blocks.last_mut() {
+                Some(last) if (last.a, last.b) == (a, b) => {
+                    last.end = i + 1;
+                    last.margin = last.margin.max(p.margin);
+                }
+                _ => self.blocks.push(Block { a, b, start: i, end: i + 1, margin: p.margin }),
+            }
+        }
+    }
+}

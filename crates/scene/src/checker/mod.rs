@@ -1,0 +1,235 @@
+//! Questions about a state of a scene.
+
+mod answer;
+mod first;
+mod list;
+mod narrow;
+mod nearest;
+
+use elbowroom_proximity::mesh::Scratch;
+
+pub use answer::{Contact, Distance};
+
+use crate::{Counts, Level, Member, Scene, SceneState, Selection};
+use list::PairList;
+
+/// How questions are answered. None of these but [`Options::level`] changes an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// How closely solids are looked at.
+    pub level: Level,
+    /// Where [`Level::Auto`] begins: [`Level::L1`], [`Level::L2`], or [`Level::L3`], which is to look at nothing but the
+    /// exact geometry.
+    pub start: Level,
+    /// Whether the likeliest pairs are looked at first, by kinematics and by what was found before. Without, the order
+    /// is that of the hierarchy: of several contacts, the one nearest to a base is told.
+    pub weights: bool,
+    /// Whether pairs that the matrix knows to be out of reach are passed over. Pairs that are none by rule (neighbours,
+    /// SRDF, by hand) never count.
+    pub matrix: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { level: Level::Auto, start: Level::L1, weights: true, matrix: true }
+    }
+}
+
+/// Answers questions about states of one scene; each thread has its own.
+///
+/// It remembers what it found (likely pairs, nearest triangles), which makes the next answer faster, never different.
+/// Questions do not allocate, except the first about a [selection](Checker::between) and the first after something
+/// was attached or detached.
+///
+/// ```
+/// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+/// let scene = example::two_arms();
+/// let mut state = SceneState::new(&scene);
+/// let mut checker = Checker::new(&scene, Options::default());
+/// assert!(checker.collides(&state).is_none());
+/// let free = checker.distance(&state).unwrap();
+/// state.set_q(&scene, 0, &[0.0, 1.5, 0.0])?; // leans over to the other arm
+/// let near = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
+/// assert!(near.metres < free.metres);
+/// assert!(checker.within(&state, near.metres + 1e-6).is_some());
+/// # Ok::<(), elbowroom_scene::SceneError>(())
+/// ```
+#[derive(Debug)]
+pub struct Checker<'s> {
+    core: Core<'s>,
+    lists: Vec<PairList>,
+}
+
+/// All but the pair lists.
+#[derive(Debug)]
+struct Core<'s> {
+    scene: &'s Scene,
+    options: Options,
+    scratch: Scratch,
+    /// World boxes of one member's solids.
+    bounds: Vec<crate::world_box::WorldBox>,
+    candidates: Vec<Candidate>,
+    counts: Counts,
+    /// The finest level that the present answer has needed.
+    deepest: Level,
+}
+
+/// A pair that is still in question.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// What it is sorted by: small first.
+    key: f64,
+    rank: u32,
+    index: u32,
+}
+
+impl<'s> Checker<'s> {
+    /// For a scene, ready for questions about everything.
+    pub fn new(scene: &'s Scene, options: Options) -> Self {
+        let most = scene.models.iter().flat_map(|m| [m.exact.len(), m.hull.len()]).max().unwrap_or(0);
+        let core = Core {
+            scene,
+            options,
+            scratch: Scratch::new(),
+            bounds: Vec::with_capacity(most),
+            candidates: Vec::new(),
+            counts: Counts::default(),
+            deepest: Level::L1,
+        };
+        let mut checker = Self { core, lists: Vec::new() };
+        checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
+        checker
+    }
+
+    /// The scene it was made for.
+    pub fn scene(&self) -> &'s Scene {
+        self.core.scene
+    }
+
+    /// How it answers.
+    pub fn options(&self) -> Options {
+        self.core.options
+    }
+
+    /// What it has done so far.
+    pub fn counts(&self) -> Counts {
+        self.core.counts
+    }
+
+    /// Counts from zero again.
+    pub fn reset_counts(&mut self) {
+        self.core.counts = Counts::default();
+    }
+
+    /// The finest level that the last answer needed.
+    pub fn last_level(&self) -> Level {
+        self.core.deepest
+    }
+
+    /// Questions about pairs with one member in each selection. Equal selections: the pairs within, as a robot's
+    /// self-collision. Pairs that are none by rule stay none, even where both are named; two objects, which are no pair
+    /// otherwise, are one where nothing but objects is named.
+    ///
+    /// ```
+    /// use elbowroom_kinematics::LinkId;
+    /// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+    /// let scene = example::two_arms();
+    /// let state = SceneState::new(&scene);
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// let hand = Selection::Link { robot: 0, link: LinkId(3) };
+    /// assert!(checker.between(hand, Selection::Objects).distance(&state).unwrap().metres > 0.0);
+    /// assert!(checker.between(Selection::Robot(0), Selection::Robot(0)).collides(&state).is_none());
+    /// let (part, table) = (Selection::Object(0), Selection::Object(1));
+    /// assert!(checker.between(part, table).within(&state, 0.01).is_some());
+    /// ```
+    pub fn between(&mut self, one: Selection, other: Selection) -> Between<'_, 's> {
+        let key = (one, other);
+        let list = self.lists.iter().position(|l| l.key == key).unwrap_or_else(|| {
+            self.lists.push(PairList::new(key));
+            self.lists.len() - 1
+        });
+        Between { checker: self, list }
+    }
+
+    /// A pair that is in contact (not farther apart than its margin), or `None` where there is none.
+    pub fn collides(&mut self, state: &SceneState) -> Option<Contact> {
+        self.between(Selection::All, Selection::All).collides(state)
+    }
+
+    /// Tells every pair in contact, in the order of the hierarchy.
+    pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(Contact)) {
+        self.between(Selection::All, Selection::All).contacts(state, found);
+    }
+
+    /// A pair that is not farther apart than `tolerance_m` beyond its margin. Less than 0 counts as 0, NaN as infinite.
+    pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
+        self.between(Selection::All, Selection::All).within(state, tolerance_m)
+    }
+
+    /// The nearest pair; `None` where there is no pair at all.
+    pub fn distance(&mut self, state: &SceneState) -> Option<Distance> {
+        self.between(Selection::All, Selection::All).distance(state)
+    }
+
+    /// The weights as they are now, of the pairs of everything: (a, b, weight), in the order of the hierarchy.
+    pub fn weights(&self) -> impl Iterator<Item = (Member, Member, f64)> + '_ {
+        let models = &self.core.scene.models;
+        let all = self.lists.first().map_or(&[][..], |l| &l.pairs);
+        all.iter().map(|p| (models[p.a as usize].member, models[p.b as usize].member, p.weight))
+    }
+}
+
+/// Questions about some pairs of the scene; see [`Checker::between`].
+#[derive(Debug)]
+pub struct Between<'c, 's> {
+    checker: &'c mut Checker<'s>,
+    list: usize,
+}
+
+impl<'s> Between<'_, 's> {
+    /// Core and an up-to-date list.
+    fn fresh(&mut self, state: &SceneState) -> (&mut Core<'s>, &mut PairList) {
+        let Checker { core, lists } = &mut *self.checker;
+        let list = &mut lists[self.list];
+        if list.arrangement != Some(state.arrangement) {
+            list.arrange(core.scene, state);
+            core.candidates.clear();
+            core.candidates.reserve(list.pairs.len());
+        }
+        (core, list)
+    }
+
+    /// Number of pairs, those out of reach included.
+    pub fn len(&mut self, state: &SceneState) -> usize {
+        self.fresh(state).1.pairs.len()
+    }
+
+    /// True where there is no pair.
+    pub fn is_empty(&mut self, state: &SceneState) -> bool {
+        self.len(state) == 0
+    }
+
+    /// As [`Checker::collides`].
+    pub fn collides(&mut self, state: &SceneState) -> Option<Contact> {
+        self.within(state, 0.0)
+    }
+
+    /// As [`Checker::contacts`].
+    pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(Contact)) {
+        let (core, list) = self.fresh(state);
+        core.all(list, state, found);
+    }
+
+    /// As [`Checker::within`].
+    pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
+        let tolerance = if tolerance_m.is_nan() { f64::INFINITY } else { tolerance_m.max(0.0) };
+        let (core, list) = self.fresh(state);
+        core.first(list, state, tolerance)
+    }
+
+    /// As [`Checker::distance`].
+    pub fn distance(&mut self, state: &SceneState) -> Option<Distance> {
+        let (core, list) = self.fresh(state);
+        core.nearest(list, state)
+    }
+}

@@ -1,0 +1,146 @@
+//! Two members against each other.
+
+use elbowroom_proximity::mesh::Hint;
+use elbowroom_proximity::{Separation, Shape, separation_within};
+use elbowroom_spatial::{Obb, Pose};
+
+use super::Core;
+use super::list::Pair;
+use crate::model::{Model, Solid};
+use crate::world_box::{WorldBox, round_up};
+use crate::{Level, SceneState, obb};
+
+/// A model and where it is.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'s> {
+    pub model: &'s Model,
+    pub in_world: Pose,
+}
+
+impl Placed<'_> {
+    fn obb(&self) -> Option<Obb> {
+        self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
+    }
+}
+
+impl<'s> Core<'s> {
+    pub(super) fn sides(&self, pair: &Pair, state: &SceneState) -> [Placed<'s>; 2] {
+        let scene = self.scene;
+        [pair.a as usize, pair.b as usize].map(|i| Placed { model: &scene.models[i], in_world: state.in_world[i] })
+    }
+
+    /// The coarse level at which two members are certainly farther apart than `limit` metres.
+    pub(super) fn cleared_coarsely(&mut self, a: &Placed, b: &Placed, limit: f64) -> Option<Level> {
+        if !(a.model.complex || b.model.complex) {
+            return None;
+        }
+        if let (Some(x), Some(y)) = (a.obb(), b.obb()) {
+            self.counts.pairs_tested.l2 += 1;
+            if obb::gap(&x, &y) > limit {
+                return Some(Level::L2);
+            }
+        }
+        if a.model.slim || b.model.slim {
+            self.counts.pairs_tested.capsule += 1;
+            let ([x], [y]) = (enclosure(a.model), enclosure(b.model)) else { return None };
+            let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+            if separation_within(&x.shape, &in_a, &y.shape, &in_b, limit).is_none() {
+                return Some(Level::Capsule);
+            }
+        }
+        None
+    }
+
+    /// True where the models of a level are not certainly farther apart than `limit` metres.
+    pub(super) fn touch(&mut self, a: &Placed, b: &Placed, level: Level, limit: f64) -> bool {
+        self.counts.pairs_tested.add(level, 1);
+        let (of_a, of_b) = (a.model.at(level), b.model.at(level));
+        if let ([x], [y]) = (of_a, of_b) {
+            return self.solids_touch(x, &a.in_world, y, &b.in_world, limit);
+        }
+        let margin = round_up(limit);
+        self.fill_bounds(of_b, &b.in_world);
+        for x in of_a {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                if !bounds.clear(&self.bounds[j], margin) && self.solids_touch(x, &a.in_world, y, &b.in_world, limit) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    fn solids_touch(&mut self, x: &Solid, a_in_world: &Pose, y: &Solid, b_in_world: &Pose, limit: f64) -> bool {
+        let (in_a, in_b) = (*a_in_world * x.in_member, *b_in_world * y.in_member);
+        if limit > 0.0 {
+            self.scratch.within(&x.shape, &in_a, &y.shape, &in_b, limit)
+        } else {
+            self.scratch.collides(&x.shape, &in_a, &y.shape, &in_b)
+        }
+    }
+
+    /// Distance between the models of a level, or `None` where it is certainly above `limit` metres.
+    pub(super) fn measure(
+        &mut self,
+        a: &Placed,
+        b: &Placed,
+        level: Level,
+        limit: f64,
+        hint: &mut (u32, u32, Hint),
+    ) -> Option<Separation> {
+        self.counts.pairs_tested.add(level, 1);
+        let (of_a, of_b) = (a.model.at(level), b.model.at(level));
+        if let ([x], [y]) = (of_a, of_b) {
+            let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+            return self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut hint.2);
+        }
+        // The two that were nearest last time give a limit to the others.
+        let (first, mut best, mut limit) = ((hint.0 as usize, hint.1 as usize), None, limit);
+        if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
+            let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+            best = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut hint.2);
+            limit = best.map_or(limit, |s: Separation| s.distance);
+        }
+        self.fill_bounds(of_b, &b.in_world);
+        for (i, x) in of_a.iter().enumerate() {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                if (i, j) == first || f64::from(bounds.gap(&self.bounds[j])) > limit {
+                    continue;
+                }
+                let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+                let mut fresh = Hint::default();
+                let Some(s) = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut fresh) else {
+                    continue;
+                };
+                best = Some(nearer(best, s));
+                if best == Some(s) {
+                    *hint = (i as u32, j as u32, fresh);
+                }
+                limit = limit.min(s.distance);
+            }
+        }
+        best
+    }
+
+    fn fill_bounds(&mut self, solids: &[Solid], in_world: &Pose) {
+        self.bounds.clear();
+        self.bounds.extend(solids.iter().map(|s| WorldBox::of_aabb(&s.bounds.transformed(in_world))));
+    }
+}
+
+/// The smaller of capsule and box, where there is one.
+fn enclosure(model: &Model) -> &[Solid] {
+    let solids = if model.slim { &model.capsule } else { &model.cuboid };
+    if matches!(solids[..], [Solid { shape: Shape::Capsule(_) | Shape::Cuboid(_), .. }]) { solids } else { &[] }
+}
+
+/// The nearer of two, with the lower bound of both.
+fn nearer(best: Option<Separation>, s: Separation) -> Separation {
+    match best {
+        None => s,
+        Some(b) if b.distance <= s.distance => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..b },
+        Some(b) => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..s },
+    }
+}

@@ -1,0 +1,133 @@
+//! Which pair is nearest: one running upper bound over all pairs.
+
+use elbowroom_proximity::Separation;
+
+use super::answer::Distance;
+use super::list::PairList;
+use super::{Candidate, Core};
+use crate::{Level, SceneState};
+
+impl Core<'_> {
+    /// The nearest pair; `None` where there is none.
+    pub(super) fn nearest(&mut self, list: &mut PairList, state: &SceneState) -> Option<Distance> {
+        self.deepest = Level::L1;
+        let mut best: Option<Distance> = None;
+        // What was nearest is likely to be nearest again, and gives the others a limit.
+        let last = list.nearest.filter(|_| self.options.level != Level::L1);
+        if let Some(index) = last {
+            self.look(list, index, state, &mut best);
+        }
+        self.bound(list, state, &mut best, last);
+        self.sort();
+        for i in 0..self.candidates.len() {
+            let Candidate { key, index, .. } = self.candidates[i];
+            if best.is_some_and(|b| key >= b.metres) {
+                self.counts.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
+                break;
+            }
+            self.look(list, index as usize, state, &mut best);
+        }
+        self.counts.answered.add(self.deepest, 1);
+        best
+    }
+
+    /// Collects the pairs that boxes leave in question, with the bounds that they give.
+    fn bound(&mut self, list: &PairList, state: &SceneState, best: &mut Option<Distance>, last: Option<usize>) {
+        self.candidates.clear();
+        let (boxes, wholes) = (self.boxes_decide(), self.wholes_decide());
+        for block in &list.blocks {
+            let same = block.a == block.b;
+            let limit = best.map_or(f64::INFINITY, |b| b.metres);
+            if wholes && !same {
+                let gap = f64::from(state.boxes[block.a].gap(&state.boxes[block.b])) - block.margin;
+                if self.options.level == Level::L1 {
+                    self.whole(list, block, state, best);
+                    continue;
+                }
+                if gap >= limit && best.is_some() {
+                    self.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
+                    continue;
+                }
+            }
+            for index in (block.start..block.end).filter(|i| Some(*i) != last) {
+                let pair = &list.pairs[index];
+                let known = if pair.least > 0.0 { self.known(pair, state) } else { 0.0 };
+                if known == f64::INFINITY {
+                    self.counts.pairs_skipped += 1;
+                    continue;
+                }
+                let gap = if boxes {
+                    f64::from(state.boxes[pair.a as usize].gap(&state.boxes[pair.b as usize]))
+                } else {
+                    0.0
+                };
+                let key = (gap.max(known) - pair.margin).max(0.0);
+                if best.is_some() && key >= limit {
+                    self.counts.pairs_cleared.l2 += 1;
+                    self.deepen(Level::L2);
+                    continue;
+                }
+                self.candidates.push(Candidate { key, rank: pair.rank, index: index as u32 });
+            }
+        }
+    }
+
+    /// The box of a robot against that of another or of an object.
+    fn whole(&mut self, list: &PairList, block: &super::list::Block, state: &SceneState, best: &mut Option<Distance>) {
+        let (a, b) = (&state.boxes[block.a], &state.boxes[block.b]);
+        let (on_a, on_b) = a.nearest(b);
+        let gap = f64::from(a.gap(b));
+        let Some(pair) = list.pairs[block.start..block.end].iter().find(|p| self.known(p, state) < f64::INFINITY)
+        else {
+            return;
+        };
+        let metres = (gap - block.margin).max(0.0);
+        if best.is_none_or(|b| metres < b.metres) {
+            let [x, y] = self.sides(pair, state).map(|p| p.model.member);
+            // The block's order is by box, the pair's by member.
+            let swapped = state.carrier(x).map_or(pair.a as usize, |(r, _)| self.scene.models.len() + r) != block.a;
+            let (on_a, on_b) = if swapped { (on_b, on_a) } else { (on_a, on_b) };
+            *best = Some(Distance { metres, lower_bound: metres, on_a, on_b, a: x, b: y, level: Level::L1 });
+        }
+    }
+
+    /// Looks at one pair, no farther than the best so far.
+    fn look(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<Distance>) {
+        let pair = &mut list.pairs[index];
+        let [a, b] = self.sides(pair, state);
+        let limit = best.map_or(f64::INFINITY, |b| b.metres + pair.margin);
+        if self.options.level == Level::Auto
+            && self.boxes_decide()
+            && limit < f64::INFINITY
+            && let Some(level) = self.cleared_coarsely(&a, &b, limit)
+        {
+            self.counts.pairs_cleared.add(level, 1);
+            self.deepen(level);
+            return;
+        }
+        let level = self.fine();
+        self.deepen(level);
+        let Some(s) = self.measure(&a, &b, level, limit, &mut pair.hint) else {
+            self.counts.pairs_cleared.add(level, 1);
+            return;
+        };
+        let found = less_margin(&s, pair.margin);
+        let lower_bound = best.map_or(found.1, |b| b.lower_bound.min(found.1));
+        if best.is_none_or(|b| found.0 < b.metres) {
+            list.nearest = Some(index);
+            let (a, b) = (a.model.member, b.model.member);
+            *best = Some(Distance { metres: found.0, lower_bound, on_a: s.on_a, on_b: s.on_b, a, b, level });
+        } else if let Some(best) = best {
+            best.lower_bound = lower_bound;
+        }
+    }
+}
+
+/// Distance and proven lower bound between padded solids.
+fn less_margin(s: &Separation, margin: f64) -> (f64, f64) {
+    if margin == 0.0 {
+        return (s.distance, s.lower_bound);
+    }
+    let lower = s.lower_bound - margin - f64::EPSILON * (s.lower_bound + margin);
+    ((s.distance - margin).max(0.0), lower.max(0.0))
+}

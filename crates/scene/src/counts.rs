@@ -1,0 +1,61 @@
+//! What a checker has done.
+
+use crate::Level;
+
+/// A number per level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PerLevel {
+    /// [`Level::L1`].
+    pub l1: u64,
+    /// [`Level::L2`].
+    pub l2: u64,
+    /// [`Level::Capsule`].
+    pub capsule: u64,
+    /// [`Level::Hull`].
+    pub hull: u64,
+    /// [`Level::L3`].
+    pub l3: u64,
+}
+
+impl PerLevel {
+    /// The number of one level; 0 for [`Level::Auto`], which answers nothing itself.
+    pub fn get(&self, level: Level) -> u64 {
+        match level {
+            Level::Auto => 0,
+            Level::L1 => self.l1,
+            Level::L2 => self.l2,
+            Level::Capsule => self.capsule,
+            Level::Hull => self.hull,
+            Level::L3 => self.l3,
+        }
+    }
+
+    /// The sum over all levels.
+    pub fn total(&self) -> u64 {
+        self.l1 + self.l2 + self.capsule + self.hull + self.l3
+    }
+
+    pub(crate) fn add(&mut self, level: Level, n: u64) {
+        match level {
+            Level::Auto => {}
+            Level::L1 => self.l1 += n,
+            Level::L2 => self.l2 += n,
+            Level::Capsule => self.capsule += n,
+            Level::Hull => self.hull += n,
+            Level::L3 => self.l3 += n,
+        }
+    }
+}
+
+/// What a [`Checker`](crate::Checker) has done since it was made or [`reset`](crate::Checker::reset_counts).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Questions per level that was needed to be certain.
+    pub answered: PerLevel,
+    /// Pairs per level that proved them far enough apart.
+    pub pairs_cleared: PerLevel,
+    /// Pairs whose models of that level were measured against each other one by one.
+    pub pairs_tested: PerLevel,
+    /// Pairs not looked at because the pair matrix knows that they cannot meet.
+    pub pairs_skipped: u64,
+}

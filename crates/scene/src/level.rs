@@ -1,0 +1,72 @@
+//! Resolution levels.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// How closely solids are looked at.
+///
+/// All levels but [`Level::Auto`] and [`Level::L3`] answer with enclosing volumes: "free" is certain, "contact" and
+/// distances are on the safe side (a contact may be none, a distance is never too large).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Level {
+    /// From coarse to exact, no further than the answer needs. The answer is that of [`Level::L3`].
+    #[default]
+    Auto,
+    /// The world's box around a whole robot with what it carries, and around each object. Links of one robot, which
+    /// this level cannot tell apart, are answered at [`Level::L2`].
+    L1,
+    /// One oriented box per link or object.
+    L2,
+    /// One capsule per link or object.
+    Capsule,
+    /// The convex hull of each body.
+    Hull,
+    /// The exact geometry.
+    L3,
+}
+
+impl Level {
+    /// The levels that can answer, coarse first.
+    pub const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::L1 => "L1",
+            Self::L2 => "L2",
+            Self::Capsule => "capsule",
+            Self::Hull => "hull",
+            Self::L3 => "L3",
+        })
+    }
+}
+
+/// A word that names no level.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no resolution level; write auto, L1, L2, L3, capsule or hull")]
+pub struct UnknownLevel(pub String);
+
+impl FromStr for Level {
+    type Err = UnknownLevel;
+
+    fn from_str(word: &str) -> Result<Self, UnknownLevel> {
+        let all = [Self::Auto].into_iter().chain(Self::ANSWERING);
+        all.into_iter().find(|l| l.to_string().eq_ignore_ascii_case(word)).ok_or_else(|| UnknownLevel(word.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_go_there_and_back() {
+        for level in Level::ANSWERING.into_iter().chain([Level::Auto]) {
+            assert_eq!(level.to_string().parse(), Ok(level));
+        }
+        assert_eq!("l2".parse(), Ok(Level::L2));
+        assert!("L4".parse::<Level>().unwrap_err().to_string().contains("write auto, L1"));
+    }
+}

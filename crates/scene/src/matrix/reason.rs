@@ -1,0 +1,64 @@
+//! Why a pair is tested or not.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Why a pair is tested or not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// Nothing speaks against it: tested.
+    Default,
+    /// One joint between them, or a chain through links without solids.
+    Adjacent,
+    /// No joint moves one against the other.
+    NoJointBetween,
+    /// The SRDF disables it, for its own reason.
+    Srdf(String),
+    /// Proven: within the joint limits they are never closer than this, metres.
+    OutOfReach {
+        /// Metres between the solids, at least.
+        least_m: f64,
+    },
+    /// No sample of the joint space had them in contact.
+    NeverInSamples {
+        /// How many states were looked at.
+        samples: u64,
+        /// Confidence of the rule of three: P(contact) < 3 / samples.
+        confidence: f64,
+    },
+    /// Every sample of the joint space had them in contact.
+    AlwaysInContact {
+        /// How many states were looked at.
+        samples: u64,
+    },
+    /// Somebody decided, with this note.
+    ByHand(String),
+    /// The object is part of this `robot/link` at present.
+    Attached(String),
+    /// The object is held by a link and may touch this one.
+    MayTouch(String),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default => write!(f, "default"),
+            Self::Adjacent => write!(f, "adjacent"),
+            Self::NoJointBetween => write!(f, "no joint between"),
+            Self::Srdf(why) => write!(f, "SRDF: {why}"),
+            Self::OutOfReach { least_m } => write!(f, "out of reach: never closer than {least_m:.4} m"),
+            Self::NeverInSamples { samples, confidence } => write!(
+                f,
+                "never in {samples} samples: P(contact) < {:.1e} at {:.0} % confidence",
+                3.0 / *samples as f64,
+                confidence * 100.0
+            ),
+            Self::AlwaysInContact { samples } => write!(f, "always in contact, in {samples} samples"),
+            Self::ByHand(note) => write!(f, "by hand: {note}"),
+            Self::Attached(link) => write!(f, "part of {link}"),
+            Self::MayTouch(link) => write!(f, "held, may touch {link}"),
+        }
+    }
+}
