@@ -1,11 +1,42 @@
 //! Eight triangles against eight: which of the 64 pairs may be within the limit.
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::lanes::{V3, W8, load_corners, rows8, splat8};
 use super::limit::{Limit, Sight};
 use super::placement::Pairing;
 use super::tree::Leaf;
+
+/// The pairs of triangles that may be within the limit, whose squares of gaps decide.
+pub(super) fn near(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, all: Pairs) -> u64 {
+    dispatch!(level, simd => {
+        let left = match &limit.sight {
+            Some(sight) => {
+                let of_a = Intervals::of_a(simd, a, sight);
+                Facing::new(simd, b, sight).near(simd, &of_a, limit, all)
+            }
+            None => all,
+        };
+        if left.0 == 0 { 0 } else { along_normals(simd, a, b, pairing, limit, left).0 }
+    })
+}
+
+/// The pairs of triangles that may touch.
+pub(super) fn touching(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, all: Pairs) -> u64 {
+    dispatch!(level, simd => {
+        let of_a = Intervals::own(simd, a);
+        let left = Facing::new(simd, b, &pairing.axes).touching(simd, &of_a, limit, all);
+        if left.0 == 0 { 0 } else { along_normals(simd, a, b, pairing, limit, left).0 }
+    })
+}
+
+/// The pair that looks nearest.
+pub(super) fn nearest(level: Level, a: &Leaf, b: &Leaf, sight: &Sight, all: Pairs) -> u32 {
+    dispatch!(level, simd => {
+        let of_a = Intervals::of_a(simd, a, sight);
+        Facing::new(simd, b, sight).nearest(simd, &of_a, all)
+    })
+}
 
 /// Bit `8 i + j`: triangle `i` of A and `j` of B.
 #[derive(Clone, Copy)]
@@ -20,20 +51,20 @@ pub(super) fn filled(count_a: usize, count_b: usize) -> Pairs {
 }
 
 /// Eight triangles as intervals along the axes of a [`Sight`].
-pub(super) struct Intervals<S: Simd> {
+struct Intervals<S: Simd> {
     low: V3<W8<S>>,
     high: V3<W8<S>>,
 }
 
 impl<S: Simd> Intervals<S> {
     #[inline(always)]
-    pub fn of_a(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
+    fn of_a(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
         Self::along(simd, leaf, &sight.of_a, [0.0; 3])
     }
 
     /// Along the axes of the leaf's own mesh.
     #[inline(always)]
-    pub fn own(simd: S, leaf: &Leaf) -> Self {
+    fn own(simd: S, leaf: &Leaf) -> Self {
         let [p, q, r] = load_corners(simd, &leaf.corner);
         Self {
             low: V3(p.0.min(q.0).min(r.0), p.1.min(q.1).min(r.1), p.2.min(q.2).min(r.2)),
@@ -42,7 +73,7 @@ impl<S: Simd> Intervals<S> {
     }
 
     #[inline(always)]
-    pub fn of_b(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
+    fn of_b(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
         Self::along(simd, leaf, &sight.of_b, sight.shift)
     }
 
@@ -67,14 +98,14 @@ impl<S: Simd> Intervals<S> {
 }
 
 /// Eight triangles of B, ready to be compared with leaves of A.
-pub(super) struct Facing<S: Simd> {
+struct Facing<S: Simd> {
     each: Intervals<S>,
     whole: ([f32; 3], [f32; 3]),
 }
 
 impl<S: Simd> Facing<S> {
     #[inline(always)]
-    pub fn new(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
+    fn new(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
         let each = Intervals::of_b(simd, leaf, sight);
         let whole = each.whole();
         Self { each, whole }
@@ -102,7 +133,7 @@ impl<S: Simd> Facing<S> {
 
     /// Leaves out pairs that are farther apart than the limit.
     #[inline(always)]
-    pub fn near(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
+    fn near(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
         let mut rows = !self.square_of_whole(simd, a).simd_gt(limit.squared).to_bitmask() & 0xff;
         if rows == 0 {
             return Pairs(0);
@@ -120,7 +151,7 @@ impl<S: Simd> Facing<S> {
 
     /// Leaves out pairs that some axis keeps farther apart than the limit.
     #[inline(always)]
-    pub fn touching(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
+    fn touching(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
         let (low, high) = &self.whole;
         let n = (W8::splat(simd, low[0]) - a.high.0).max(a.low.0 - high[0]);
         let u = (W8::splat(simd, low[1]) - a.high.1).max(a.low.1 - high[1]);
@@ -146,7 +177,7 @@ impl<S: Simd> Facing<S> {
 
     /// The pair that looks nearest.
     #[inline(always)]
-    pub fn nearest(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u32 {
+    fn nearest(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u32 {
         let ends = (stored(a.low), stored(a.high));
         let mut best = (f32::INFINITY, 0);
         let mut squares = [0.0f32; 8];
@@ -165,14 +196,7 @@ impl<S: Simd> Facing<S> {
 
 /// Leaves out pairs that the plane of either triangle keeps farther apart than the limit.
 #[inline(always)]
-pub(super) fn along_normals<S: Simd>(
-    simd: S,
-    a: &Leaf,
-    b: &Leaf,
-    pairing: &Pairing,
-    limit: &Limit,
-    pairs: Pairs,
-) -> Pairs {
+fn along_normals<S: Simd>(simd: S, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, pairs: Pairs) -> Pairs {
     let ab = &pairing.ab;
     let (rows, shift) = (rows8(simd, &ab.m), splat8(simd, ab.t));
     let [p, q, r] = load_corners(simd, &b.corner);

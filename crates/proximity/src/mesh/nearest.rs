@@ -1,18 +1,17 @@
 //! Distance: first a good upper bound, then the proof that nothing is nearer.
 
 use elbowroom_spatial::{Pose, Vec3};
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Level;
 
 use super::exact::{BATCH, Distances};
-use super::leaf::{Facing, Intervals, along_normals, filled};
+use super::leaf::{filled, near, nearest};
 use super::limit::Limit;
-use super::node::{NEAR, step};
+use super::node::{NEAR, open};
 use super::placement::{Pairing, apart};
-use super::search::settle;
-use super::search::{Entry, Queue, Scratch, Stack, Visits, filling, side};
+use super::search::{Entry, Queue, Scratch, Stack, Visits, filling, settle};
 use super::swallowed::swallowed;
 use super::touch::{Pair, collide};
-use super::toward::{Spot, nearest_leaf};
+use super::toward::nearest_leaf;
 use super::tree::LEAF;
 use crate::TriMesh;
 use crate::triangle::Near;
@@ -80,7 +79,7 @@ pub fn distance_at(
     let unit = a.tree.frame.unit;
     let radius = limit.max(0.0) / unit + pairing.slack;
     let level = scratch.level();
-    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, pairing.slack, hint, scratch));
+    let found = search(level, a, b, &pairing, (radius, pairing.slack), hint, scratch);
     if scratch.stack.overflown() {
         return Some(unknown(a_in_world, b_in_world));
     }
@@ -138,7 +137,7 @@ pub fn within(
     }
     let radius = tolerance / a.tree.frame.unit + pairing.slack;
     let level = scratch.level();
-    let found = dispatch!(level, simd => search(simd, a, b, &pairing, radius, radius, None, scratch));
+    let found = search(level, a, b, &pairing, (radius, radius), None, scratch);
     match found {
         Some(best) => Some(Pair::Triangles(best.triangles.0, best.triangles.1)),
         None if scratch.stack.overflown() => Some(Pair::Unknown),
@@ -167,6 +166,7 @@ struct Best {
 }
 
 struct Search<'a> {
+    level: Level,
     a: &'a TriMesh,
     b: &'a TriMesh,
     pairing: &'a Pairing,
@@ -178,18 +178,17 @@ struct Search<'a> {
     seen: f64,
     best: Option<Best>,
     queue: &'a mut Queue,
-    slots: [(u32, u32); LEAF],
-    visits: Visits,
+    slots: [(u32, u32); BATCH],
+    visits: &'a mut Visits,
 }
 
-#[inline(always)]
-fn search<S: Simd>(
-    simd: S,
+/// Looks for the nearest pair within `radius`, until one is within `enough`.
+fn search(
+    level: Level,
     a: &TriMesh,
     b: &TriMesh,
     pairing: &Pairing,
-    radius: f64,
-    enough: f64,
+    (radius, enough): (f64, f64),
     hint: Option<Hint>,
     scratch: &mut Scratch,
 ) -> Option<Best> {
@@ -198,42 +197,38 @@ fn search<S: Simd>(
     stack.clear();
     let mut limit = Limit::new(radius, pairing);
     limit.look_along(pairing.to_a(Vec3::ZERO), pairing);
-    let slots = [(0, 0); LEAF];
-    let seen = f64::INFINITY;
-    let visits_now = Visits::default();
-    let mut s = Search { a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits: visits_now };
+    let (seen, slots) = (f64::INFINITY, [(0, 0); BATCH]);
+    let mut s = Search { level, a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits };
     stack.push(Entry::root(&a.tree, &b.tree));
-    s.begin(simd, hint, stack);
-    s.prove(simd, stack);
-    *visits = s.visits;
+    s.begin(hint, stack);
+    s.prove(stack);
     s.best
 }
 
 impl Search<'_> {
     /// Looks for a good upper bound: the hint, else the first leaves that the descent meets; then from side to side as
     /// long as it helps.
-    #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, hint: Option<Hint>, stack: &mut Stack) {
+    fn begin(&mut self, hint: Option<Hint>, stack: &mut Stack) {
         let (ab, ba) = (self.pairing.ab, self.pairing.ba);
         match hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
-            Some(h) => self.measure_slots(simd, h.a, h.b),
-            None => self.dive(simd, stack),
+            Some(h) => self.measure_slots(h.a, h.b),
+            None => self.dive(stack),
         }
         let Some(best) = self.best else { return };
         let (mut leaf_a, mut leaf_b) = (best.hint.a as usize / LEAF, best.hint.b as usize / LEAF);
-        self.leaves(simd, leaf_a, leaf_b);
-        self.flush(simd);
+        self.leaves(leaf_a, leaf_b);
+        self.flush();
         for round in 0..8 {
             let Some(best) = self.best else { return };
             if best.distance <= self.enough {
                 return;
             }
             let next = if round % 2 == 0 {
-                let spot = Spot { center: narrowed(best.near.on_a), half: [0.0; 3] };
-                (best.hint.a as usize / LEAF, nearest_leaf(simd, &self.b.tree, &ab, &spot))
+                let spot = narrowed(best.near.on_a);
+                (best.hint.a as usize / LEAF, nearest_leaf(self.level, &self.b.tree, &ab, spot))
             } else {
-                let spot = Spot { center: narrowed(self.to_b(best.near.on_b)), half: [0.0; 3] };
-                (nearest_leaf(simd, &self.a.tree, &ba, &spot), best.hint.b as usize / LEAF)
+                let spot = narrowed(self.to_b(best.near.on_b));
+                (nearest_leaf(self.level, &self.a.tree, &ba, spot), best.hint.b as usize / LEAF)
             };
             if next == (leaf_a, leaf_b) {
                 if round > 0 {
@@ -242,35 +237,28 @@ impl Search<'_> {
                 continue;
             }
             (leaf_a, leaf_b) = next;
-            self.leaves(simd, leaf_a, leaf_b);
-            self.flush(simd);
+            self.leaves(leaf_a, leaf_b);
+            self.flush();
         }
     }
 
     /// Opens what looks nearest until a leaf of each is reached, and measures the pair of triangles that looks nearest.
-    #[inline(always)]
-    fn dive<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
+    fn dive(&mut self, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
             if !pair.is_leaves() {
-                self.open(simd, pair, stack);
+                self.open(&pair, stack);
                 continue;
             }
             let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
             let (a, b) = (&self.a.tree, &self.b.tree);
             let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-            let bit = match &self.limit.sight {
-                Some(sight) => {
-                    let of_a = Intervals::of_a(simd, &a.leaves[leaf_a], sight);
-                    Facing::new(simd, &b.leaves[leaf_b], sight).nearest(simd, &of_a, all)
-                }
-                None => 0,
-            };
-            self.measure_slots(simd, pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
+            let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+            let bit = self.limit.sight.map_or(0, |sight| nearest(self.level, of_a, of_b, &sight, all));
+            self.measure_slots(pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
             return;
         }
     }
 
-    #[inline(always)]
     fn done(&self) -> bool {
         self.best.is_some_and(|b| b.distance <= self.enough)
     }
@@ -282,15 +270,13 @@ impl Search<'_> {
     }
 
     /// Measures one pair at once.
-    #[inline(always)]
-    fn measure_slots<S: Simd>(&mut self, simd: S, slot_a: u32, slot_b: u32) {
+    fn measure_slots(&mut self, slot_a: u32, slot_b: u32) {
         self.slots[self.queue.len()] = (slot_a, slot_b);
         self.queue.push(self.a, slot_a, self.b, slot_b);
-        self.flush(simd);
+        self.flush();
     }
 
     /// Keeps the nearer; of equals the one with the smaller numbers, so that no order of tests shows.
-    #[inline(always)]
     fn offer(&mut self, distance: f64, near: Near, triangles: (u32, u32), hint: Hint) {
         if !(distance <= self.radius) {
             return;
@@ -309,12 +295,11 @@ impl Search<'_> {
     }
 
     /// Measures the queue.
-    #[inline(always)]
-    fn flush<S: Simd>(&mut self, simd: S) {
+    fn flush(&mut self) {
         if self.queue.is_empty() {
             return;
         }
-        let (mut found, len) = self.queue.measure(simd, self.pairing);
+        let (mut found, len) = self.queue.measure(self.level, self.pairing);
         self.visits.triangles += len as u32;
         self.visits.batches += 1;
         // The nearest first: it may spare the others.
@@ -336,7 +321,6 @@ impl Search<'_> {
     }
 
     /// Turns the line of sight to the nearest pair measured, though it is not near enough.
-    #[inline(always)]
     fn look(&mut self, found: &Distances, len: usize) {
         if let Some(lane) = least(&found.distance, len, self.seen) {
             let near = found.near(lane);
@@ -345,51 +329,30 @@ impl Search<'_> {
         }
     }
 
-    #[inline(always)]
-    fn leaves<S: Simd>(&mut self, simd: S, leaf_a: usize, leaf_b: usize) {
+    fn leaves(&mut self, leaf_a: usize, leaf_b: usize) {
         self.visits.leaves += 1;
         let (a, b) = (&self.a.tree, &self.b.tree);
         let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-        let mut left = all;
-        if let Some(sight) = &self.limit.sight {
-            let of_a = Intervals::of_a(simd, &a.leaves[leaf_a], sight);
-            left = Facing::new(simd, &b.leaves[leaf_b], sight).near(simd, &of_a, &self.limit, left);
-        }
-        if left.0 != 0 {
-            left = along_normals(simd, &a.leaves[leaf_a], &b.leaves[leaf_b], self.pairing, &self.limit, left);
-        }
-        let mut left = left.0;
+        let mut left = near(self.level, &a.leaves[leaf_a], &b.leaves[leaf_b], self.pairing, &self.limit, all);
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;
             let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
             self.slots[self.queue.len()] = (slot_a, slot_b);
             if self.queue.push(self.a, slot_a, self.b, slot_b) {
-                self.flush(simd);
+                self.flush();
             }
         }
     }
 
-    #[inline(always)]
-    fn open<S: Simd>(&mut self, simd: S, pair: Entry, stack: &mut Stack) {
+    fn open(&mut self, pair: &Entry, stack: &mut Stack) {
         self.visits.nodes += 1;
-        let (open_a, open_b) = pair.opens();
-        let side_a = side(&self.a.tree, pair.a, pair.height_a, open_a);
-        let side_b = side(&self.b.tree, pair.b, pair.height_b, open_b);
-        let first = stack.len();
-        let mut nearest = (f32::INFINITY, first);
-        self.visits.boxes += step::<S, NEAR>(simd, side_a, side_b, self.pairing, &self.limit, |i, j, key| {
-            if key < nearest.0 {
-                nearest = (key, stack.len());
-            }
-            stack.push(pair.child(i, j, key));
-        });
-        stack.bring_to_top(nearest.1);
+        let trees = (&self.a.tree, &self.b.tree);
+        self.visits.boxes += open::<NEAR>(self.level, trees, pair, self.pairing, &self.limit, stack);
     }
 
     /// Opens every pair of nodes that may be nearer than the best.
-    #[inline(always)]
-    fn prove<S: Simd>(&mut self, simd: S, stack: &mut Stack) {
+    fn prove(&mut self, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
             if self.done() {
                 return;
@@ -398,12 +361,12 @@ impl Search<'_> {
                 continue;
             }
             if pair.is_leaves() {
-                self.leaves(simd, pair.a as usize, pair.b as usize);
+                self.leaves(pair.a as usize, pair.b as usize);
             } else {
-                self.open(simd, pair, stack);
+                self.open(&pair, stack);
             }
         }
-        self.flush(simd);
+        self.flush();
     }
 }
 

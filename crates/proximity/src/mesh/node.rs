@@ -1,31 +1,73 @@
 //! Children of one node against children of another, sixteen at a time.
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::lanes::{V3, W16, abs16, load16, rows16, splat16, store16};
 use super::limit::{Limit, Sight};
 use super::placement::{Pairing, Placement};
-use super::tree::Node;
+use super::search::{Entry, Stack};
+use super::tree::{FAN, Node, Tree};
 
 /// Is anything in contact: gaps along single axes decide.
 pub(super) const TOUCH: u8 = 0;
 /// Is anything this near: squared distances decide.
 pub(super) const NEAR: u8 = 1;
 
+/// Pushes the pairs of children of `pair` that may be within the limit, the most promising last, and returns the number
+/// of 16-lane tests.
+pub(super) fn open<const MODE: u8>(
+    level: Level,
+    (a, b): (&Tree, &Tree),
+    pair: &Entry,
+    pairing: &Pairing,
+    limit: &Limit,
+    stack: &mut Stack,
+) -> u32 {
+    dispatch!(level, simd => {
+        let (open_a, open_b) = pair.opens();
+        let first = stack.len();
+        let side_a = side(a, pair.a, pair.height_a, open_a);
+        let side_b = side(b, pair.b, pair.height_b, open_b);
+        let mut best = (f32::INFINITY, first);
+        let tests = step::<_, MODE>(simd, side_a, side_b, pairing, limit, |i, j, key| {
+            if key < best.0 {
+                best = (key, stack.len());
+            }
+            stack.push(pair.child(i, j, key));
+        });
+        stack.bring_to_top(best.1);
+        tests
+    })
+}
+
 /// A node of which the children in `mask` are asked about.
 #[derive(Clone, Copy)]
-pub(super) struct Side<'a> {
-    pub node: &'a Node,
-    pub mask: u32,
+struct Side<'a> {
+    node: &'a Node,
+    mask: u32,
     /// The box of the node itself, a lane of its parent.
-    pub own: ([f32; 3], [f32; 3]),
+    own: ([f32; 3], [f32; 3]),
+}
+
+/// A node to be opened, or the lane of its parent that is itself.
+#[inline(always)]
+fn side(tree: &Tree, number: u32, height: u8, open: bool) -> Side<'_> {
+    let (number, height) = (number as usize, height as usize);
+    let (parent, lane) = (&tree.levels[height][number / FAN], number % FAN);
+    let at = |p: &[[f32; FAN]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
+    let own = (at(&parent.center), at(&parent.half));
+    if open {
+        Side { node: &tree.levels[height - 1][number], mask: tree.children(height, number), own }
+    } else {
+        Side { node: parent, mask: 1 << lane, own }
+    }
 }
 
 /// Calls `emit(i, j, key)` for every pair of children that may be within the limit, and returns the number of 16-lane
 /// tests. A negative key is the least depth of overlap along any axis tried; others are the gap ([`TOUCH`]) or a lower
 /// bound of the squared distance, in units of A.
 #[inline(always)]
-pub(super) fn step<S: Simd, const MODE: u8>(
+fn step<S: Simd, const MODE: u8>(
     simd: S,
     a: Side,
     b: Side,
@@ -88,7 +130,7 @@ pub(super) fn step<S: Simd, const MODE: u8>(
         } else {
             let apart = gap.max(zero);
             let square = square.max(square_a).max(square_b * square_scale).max(apart * apart);
-            (gap.simd_lt(zero).select(gap, square), square.simd_gt(limit.squared))
+            (square.simd_gt(zero).select(square, gap), square.simd_gt(limit.squared))
         };
         let left = columns & !(out.to_bitmask() as u32);
         if left != 0 {

@@ -10,7 +10,7 @@ use super::tree::{FAN, LEAF, Leaf, Node, Tree};
 /// A lower bound for sixteen boxes at once. What is bounded is up to the probe; the smaller, the sooner visited.
 pub(crate) trait Probe {
     /// For the children of a node, in units of the tree's frame.
-    fn bounds<S: Simd>(&self, simd: S, node: &Node) -> W16<S>;
+    fn bounds(&self, node: &Node) -> [f32; FAN];
 }
 
 /// A subtree still to be visited.
@@ -27,43 +27,44 @@ const DEPTH: usize = 16 * 10;
 impl Tree {
     /// Calls `leaf` with the number of every triangle that is not bounded away beyond `limit`, most promising first;
     /// it returns the limit that holds from then on.
-    pub(crate) fn visit(&self, probe: &impl Probe, limit: f32, leaf: impl FnMut(usize) -> f32) {
-        dispatch!(detected_level(), simd => descend(simd, self, probe, limit, leaf));
-    }
-}
-
-#[inline(always)]
-fn descend<S: Simd>(simd: S, tree: &Tree, probe: &impl Probe, limit: f32, mut leaf: impl FnMut(usize) -> f32) {
-    let mut stack = [Waiting { bound: 0.0, number: 0, height: 0 }; DEPTH];
-    let mut limit = limit;
-    stack[0] = Waiting { bound: f32::NEG_INFINITY, number: 0, height: tree.height() as u8 };
-    let mut len = 1;
-    while len > 0 {
-        len -= 1;
-        let Waiting { bound, number, height } = stack[len];
-        // A NaN is visited: what is not known is not left out.
-        if bound > limit {
-            continue;
-        }
-        let mut bounds = [0.0f32; FAN];
-        if height == 0 {
-            let (first, count) = (number as usize * LEAF, (tree.order.len() - number as usize * LEAF).min(LEAF));
-            probe.bounds(simd, &of_triangles(simd, &tree.leaves[number as usize])).store_slice(&mut bounds);
-            let mut left = (1u32 << count) - 1;
-            while let Some(lane) = smallest(&bounds, &mut left, limit) {
-                limit = leaf(tree.triangle((first + lane) as u32));
+    pub(crate) fn visit(&self, probe: &dyn Probe, mut limit: f32, leaf: &mut dyn FnMut(usize) -> f32) {
+        let mut stack = [Waiting { bound: 0.0, number: 0, height: 0 }; DEPTH];
+        stack[0] = Waiting { bound: f32::NEG_INFINITY, number: 0, height: self.height() as u8 };
+        let mut len = 1;
+        while len > 0 {
+            len -= 1;
+            let Waiting { bound, number, height } = stack[len];
+            // A NaN is visited: what is not known is not left out.
+            if bound > limit {
+                continue;
             }
-            continue;
+            let number = number as usize;
+            if height == 0 {
+                limit = self.visit_leaf(probe, number, limit, leaf);
+                continue;
+            }
+            let bounds = probe.bounds(&self.levels[height as usize - 1][number]);
+            let mut left = self.children(height as usize, number);
+            let first = len;
+            while let Some(lane) = smallest(&bounds, &mut left, limit) {
+                let number = (number * FAN + lane) as u32;
+                stack[len] = Waiting { bound: bounds[lane], number, height: height - 1 };
+                len += 1;
+            }
+            stack[first..len].reverse();
         }
-        let node = &tree.levels[height as usize - 1][number as usize];
-        probe.bounds(simd, node).store_slice(&mut bounds);
-        let mut left = tree.children(height as usize, number as usize);
-        let first = len;
+    }
+
+    fn visit_leaf(&self, probe: &dyn Probe, number: usize, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) -> f32 {
+        let first = number * LEAF;
+        let node = dispatch!(detected_level(), simd => of_triangles(simd, &self.leaves[number]));
+        let bounds = probe.bounds(&node);
+        let mut left = (1u32 << (self.order.len() - first).min(LEAF)) - 1;
+        let mut limit = limit;
         while let Some(lane) = smallest(&bounds, &mut left, limit) {
-            stack[len] = Waiting { bound: bounds[lane], number: number * FAN as u32 + lane as u32, height: height - 1 };
-            len += 1;
+            limit = leaf(self.triangle((first + lane) as u32));
         }
-        stack[first..len].reverse();
+        limit
     }
 }
 
@@ -151,8 +152,14 @@ impl Box {
 const DOUBT: f64 = 1.0 / 131_072.0;
 
 impl Probe for Box {
+    fn bounds(&self, node: &Node) -> [f32; FAN] {
+        dispatch!(detected_level(), simd => stored(self.lanes(simd, node)))
+    }
+}
+
+impl Box {
     #[inline(always)]
-    fn bounds<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
+    fn lanes<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
         let zero = W16::splat(simd, 0.0);
         let c = load16(simd, &node.center).minus(splat16(simd, self.center));
         let h = load16(simd, &node.half);
@@ -211,8 +218,14 @@ impl Height {
 }
 
 impl Probe for Height {
+    fn bounds(&self, node: &Node) -> [f32; FAN] {
+        dispatch!(detected_level(), simd => stored(self.lanes(simd, node)))
+    }
+}
+
+impl Height {
     #[inline(always)]
-    fn bounds<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
+    fn lanes<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
         let [x, y, z] = self.up;
         let reach = load16(simd, &node.half).dot(splat16(simd, [x.abs(), y.abs(), z.abs()]));
         load16(simd, &node.center).dot(splat16(simd, self.up)) - reach
@@ -234,8 +247,14 @@ impl Ray {
 }
 
 impl Probe for Ray {
+    fn bounds(&self, node: &Node) -> [f32; FAN] {
+        dispatch!(detected_level(), simd => stored(self.lanes(simd, node)))
+    }
+}
+
+impl Ray {
     #[inline(always)]
-    fn bounds<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
+    fn lanes<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
         let c = load16(simd, &node.center).minus(splat16(simd, self.from));
         let h = load16(simd, &node.half).plus(splat16(simd, [(8.0 * DOUBT) as f32; 3]));
         let [x, y, z] = self.inverse;
@@ -247,6 +266,13 @@ impl Probe for Ray {
         // Inflated by far more than these few roundings are worth.
         enters - fx.min(fy).min(fz)
     }
+}
+
+#[inline(always)]
+fn stored<S: Simd>(x: W16<S>) -> [f32; FAN] {
+    let mut out = [0.0; FAN];
+    x.store_slice(&mut out);
+    out
 }
 
 #[inline]

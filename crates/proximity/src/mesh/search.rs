@@ -3,10 +3,9 @@
 use std::cell::RefCell;
 use std::sync::OnceLock;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::{Level, dispatch};
 
 use super::exact::{BATCH, Corners, Distances, distances};
-use super::node::Side;
 use super::placement::Pairing;
 use super::tree::{FAN, LEAF, Tree};
 use crate::TriMesh;
@@ -178,20 +177,6 @@ impl Entry {
     }
 }
 
-/// A node to be opened, or the lane of its parent that is itself.
-#[inline(always)]
-pub(super) fn side(tree: &Tree, number: u32, height: u8, open: bool) -> Side<'_> {
-    let (number, height) = (number as usize, height as usize);
-    let (parent, lane) = (&tree.levels[height][number / FAN], number % FAN);
-    let at = |p: &[[f32; FAN]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
-    let own = (at(&parent.center), at(&parent.half));
-    if open {
-        Side { node: &tree.levels[height - 1][number], mask: tree.children(height, number), own }
-    } else {
-        Side { node: parent, mask: 1 << lane, own }
-    }
-}
-
 /// Triangles in a leaf.
 #[inline(always)]
 pub(super) fn filling(tree: &Tree, leaf: usize) -> usize {
@@ -241,10 +226,9 @@ impl Queue {
     }
 
     /// Measures all and empties the queue; lanes from `len` on mean nothing. The second value is `len`.
-    #[inline(always)]
-    pub fn measure<S: Simd>(&mut self, simd: S, pairing: &Pairing) -> (Distances, usize) {
+    pub fn measure(&mut self, level: Level, pairing: &Pairing) -> (Distances, usize) {
         let len = std::mem::take(&mut self.len);
-        (distances(simd, &self.corners, pairing), len)
+        (dispatch!(level, simd => distances(simd, &self.corners, pairing)), len)
     }
 }
 

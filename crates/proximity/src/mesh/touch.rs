@@ -1,13 +1,13 @@
 //! Collision: does any triangle touch any other? Ends at the first; [`contacts`] goes on.
 
 use elbowroom_spatial::Pose;
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Level;
 
-use super::leaf::{Facing, Intervals, along_normals, filled};
+use super::leaf::{filled, touching};
 use super::limit::Limit;
-use super::node::{TOUCH, step};
+use super::node::{TOUCH, open};
 use super::placement::{Pairing, apart};
-use super::search::{Entry, Queue, Scratch, Stack, Visits, corners_in_a, filling, settle, side};
+use super::search::{Entry, Queue, Scratch, Visits, corners_in_a, filling, settle};
 use super::swallowed::swallowed;
 use super::tree::LEAF;
 use crate::TriMesh;
@@ -42,7 +42,7 @@ pub enum Pair {
 /// ```
 pub fn collide(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> Option<Pair> {
     let mut first = None;
-    traverse(a, a_in_world, b, b_in_world, scratch, |pair| {
+    traverse(a, a_in_world, b, b_in_world, scratch, &mut |pair| {
         first = Some(pair);
         true
     });
@@ -73,7 +73,7 @@ pub fn contacts(
     scratch: &mut Scratch,
     mut found: impl FnMut(Pair),
 ) {
-    traverse(a, a_in_world, b, b_in_world, scratch, |pair| {
+    traverse(a, a_in_world, b, b_in_world, scratch, &mut |pair| {
         found(pair);
         false
     });
@@ -86,7 +86,7 @@ fn traverse(
     b: &TriMesh,
     b_in_world: &Pose,
     scratch: &mut Scratch,
-    mut found: impl FnMut(Pair) -> bool,
+    found: &mut dyn FnMut(Pair) -> bool,
 ) {
     scratch.visits = Visits::default();
     if apart(&a.tree, a_in_world, &b.tree, b_in_world, 0.0) {
@@ -97,12 +97,12 @@ fn traverse(
         found(Pair::Unknown);
         return;
     }
-    let level = scratch.level();
     let mut touched = false;
-    let ended = dispatch!(level, simd => search(simd, a, b, &pairing, scratch, |x, y| {
+    let mut touch = |x, y| {
         touched = true;
         found(Pair::Triangles(x, y))
-    }));
+    };
+    let ended = Search { a, b, pairing: &pairing, found: &mut touch }.run(scratch);
     if scratch.stack.overflown() {
         found(Pair::Unknown);
     } else if !ended && !touched && swallowed(a, a_in_world, b, b_in_world).is_some() {
@@ -110,127 +110,80 @@ fn traverse(
     }
 }
 
-#[inline(always)]
-fn search<S: Simd>(
-    simd: S,
-    a: &TriMesh,
-    b: &TriMesh,
-    pairing: &Pairing,
-    scratch: &mut Scratch,
-    mut found: impl FnMut(u32, u32) -> bool,
-) -> bool {
-    let limit = Limit::new(pairing.slack, pairing);
-    let Scratch { stack, queue, visits, .. } = scratch;
-    queue.clear();
-    stack.clear();
-    stack.push(Entry::root(&a.tree, &b.tree));
-    while let Some(pair) = stack.pop() {
-        if pair.is_leaves() {
-            visits.leaves += 1;
-            let left = leaves(simd, a, b, &pair, pairing, &limit);
-            if examine(simd, a, b, &pair, left, pairing, queue, visits, &mut found) {
+struct Search<'a> {
+    a: &'a TriMesh,
+    b: &'a TriMesh,
+    pairing: &'a Pairing,
+    /// Told the numbers of two triangles that touch; returns true to end.
+    found: &'a mut dyn FnMut(u32, u32) -> bool,
+}
+
+impl Search<'_> {
+    fn run(&mut self, scratch: &mut Scratch) -> bool {
+        let level = scratch.level();
+        let limit = Limit::new(self.pairing.slack, self.pairing);
+        let Scratch { stack, queue, visits, .. } = scratch;
+        let trees = (&self.a.tree, &self.b.tree);
+        queue.clear();
+        stack.clear();
+        stack.push(Entry::root(trees.0, trees.1));
+        while let Some(pair) = stack.pop() {
+            if pair.is_leaves() {
+                visits.leaves += 1;
+                let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
+                let all = filled(filling(trees.0, leaf_a), filling(trees.1, leaf_b));
+                let (of_a, of_b) = (&trees.0.leaves[leaf_a], &trees.1.leaves[leaf_b]);
+                let left = touching(level, of_a, of_b, self.pairing, &limit, all);
+                if left != 0 && self.examine(level, &pair, left, queue, visits) {
+                    return true;
+                }
+            } else {
+                visits.nodes += 1;
+                visits.boxes += open::<TOUCH>(level, trees, &pair, self.pairing, &limit, stack);
+            }
+        }
+        self.measure(level, queue, visits)
+    }
+
+    /// Pairs that cross are found at once; the others wait to be measured together.
+    fn examine(&mut self, level: Level, pair: &Entry, mut left: u64, queue: &mut Queue, visits: &mut Visits) -> bool {
+        while left != 0 {
+            let bit = left.trailing_zeros();
+            left &= left - 1;
+            let (slot_a, slot_b) = (pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
+            let (ta, tb) = (self.a.tree.triangle(slot_a), self.b.tree.triangle(slot_b));
+            let (s, t) = corners_in_a(self.a, ta, self.b, tb, self.pairing);
+            visits.triangles += 1;
+            if triangles_cross(s, t) {
+                if (self.found)(ta as u32, tb as u32) {
+                    return true;
+                }
+            } else if queue.push(self.a, slot_a, self.b, slot_b) && self.measure(level, queue, visits) {
                 return true;
             }
-        } else {
-            visits.nodes += 1;
-            visits.boxes += open(simd, a, b, &pair, pairing, &limit, stack);
         }
+        false
     }
-    any_close(simd, a, b, pairing, queue, visits, &mut found)
-}
 
-/// The pairs of triangles that neither boxes nor planes keep apart.
-#[inline(always)]
-fn leaves<S: Simd>(simd: S, a: &TriMesh, b: &TriMesh, pair: &Entry, pairing: &Pairing, limit: &Limit) -> u64 {
-    let (leaf_a, leaf_b) = (&a.tree.leaves[pair.a as usize], &b.tree.leaves[pair.b as usize]);
-    let all = filled(filling(&a.tree, pair.a as usize), filling(&b.tree, pair.b as usize));
-    let of_a = Intervals::own(simd, leaf_a);
-    let left = Facing::new(simd, leaf_b, &pairing.axes).touching(simd, &of_a, limit, all);
-    if left.0 == 0 { 0 } else { along_normals(simd, leaf_a, leaf_b, pairing, limit, left).0 }
-}
-
-/// Pairs that cross are found at once; the others wait to be measured together.
-#[inline(always)]
-fn examine<S: Simd>(
-    simd: S,
-    a: &TriMesh,
-    b: &TriMesh,
-    pair: &Entry,
-    mut left: u64,
-    pairing: &Pairing,
-    queue: &mut Queue,
-    visits: &mut Visits,
-    found: &mut impl FnMut(u32, u32) -> bool,
-) -> bool {
-    while left != 0 {
-        let bit = left.trailing_zeros();
-        left &= left - 1;
-        let (slot_a, slot_b) = (pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
-        let (ta, tb) = (a.tree.triangle(slot_a), b.tree.triangle(slot_b));
-        let (s, t) = corners_in_a(a, ta, b, tb, pairing);
-        visits.triangles += 1;
-        if triangles_cross(s, t) {
-            if found(ta as u32, tb as u32) {
+    /// Measures the queue.
+    fn measure(&mut self, level: Level, queue: &mut Queue, visits: &mut Visits) -> bool {
+        if queue.is_empty() {
+            return false;
+        }
+        let (measured, len) = queue.measure(level, self.pairing);
+        visits.batches += 1;
+        let slack = self.pairing.slack;
+        for lane in 0..len {
+            if measured.at_least[lane] > slack {
+                continue;
+            }
+            let (ta, tb) = queue.triangles[lane];
+            let certain = measured.at_least[lane] >= measured.distance[lane];
+            let settled = || settle(self.a, ta as usize, self.b, tb as usize, self.pairing).squared <= slack * slack;
+            if (certain || settled()) && (self.found)(ta, tb) {
                 return true;
             }
-        } else if queue.push(a, slot_a, b, slot_b) && any_close(simd, a, b, pairing, queue, visits, found) {
-            return true;
         }
+        false
     }
-    false
-}
-
-#[inline(always)]
-fn open<S: Simd>(
-    simd: S,
-    a: &TriMesh,
-    b: &TriMesh,
-    pair: &Entry,
-    pairing: &Pairing,
-    limit: &Limit,
-    stack: &mut Stack,
-) -> u32 {
-    let (open_a, open_b) = pair.opens();
-    let first = stack.len();
-    let side_a = side(&a.tree, pair.a, pair.height_a, open_a);
-    let side_b = side(&b.tree, pair.b, pair.height_b, open_b);
-    let mut deepest = (f32::INFINITY, first);
-    let tests = step::<S, TOUCH>(simd, side_a, side_b, pairing, limit, |i, j, key| {
-        if key < deepest.0 {
-            deepest = (key, stack.len());
-        }
-        stack.push(pair.child(i, j, key));
-    });
-    stack.bring_to_top(deepest.1);
-    tests
-}
-
-/// Measures the queue.
-#[inline(always)]
-fn any_close<S: Simd>(
-    simd: S,
-    a: &TriMesh,
-    b: &TriMesh,
-    pairing: &Pairing,
-    queue: &mut Queue,
-    visits: &mut Visits,
-    found: &mut impl FnMut(u32, u32) -> bool,
-) -> bool {
-    if queue.is_empty() {
-        return false;
-    }
-    let (measured, len) = queue.measure(simd, pairing);
-    visits.batches += 1;
-    for lane in 0..len {
-        if measured.at_least[lane] > pairing.slack {
-            continue;
-        }
-        let (ta, tb) = queue.triangles[lane];
-        let certain = measured.at_least[lane] >= measured.distance[lane];
-        let settled = || settle(a, ta as usize, b, tb as usize, pairing).squared <= pairing.slack * pairing.slack;
-        if (certain || settled()) && found(ta, tb) {
-            return true;
-        }
-    }
-    false
 }

@@ -1,32 +1,25 @@
 //! Greedy steps to a near leaf: no proof, only a good place to start.
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::lanes::{V3, W16, load16, rows16, splat16};
 use super::placement::Placement;
 use super::tree::{FAN, Tree};
 
-/// A box in its own tree's frame.
-#[derive(Clone, Copy)]
-pub(super) struct Spot {
-    pub center: [f32; 3],
-    pub half: [f32; 3],
-}
-
 /// The child of a node that looks nearest to `spot`; `seen` places the node's mesh in the spot's frame.
 #[inline(always)]
-pub(super) fn nearest_child<S: Simd>(
+fn nearest_child<S: Simd>(
     simd: S,
     tree: &Tree,
     height: usize,
     number: usize,
     seen: &Placement,
-    spot: &Spot,
+    spot: [f32; 3],
 ) -> usize {
     let node = &tree.levels[height - 1][number];
     let (c, h) = (load16(simd, &node.center), load16(simd, &node.half));
-    let c = c.mapped(&rows16(simd, &seen.m)).plus(splat16(simd, seen.t)).minus(splat16(simd, spot.center));
-    let h = h.mapped(&rows16(simd, &seen.abs)).plus(splat16(simd, spot.half));
+    let c = c.mapped(&rows16(simd, &seen.m)).plus(splat16(simd, seen.t)).minus(splat16(simd, spot));
+    let h = h.mapped(&rows16(simd, &seen.abs));
     let zero = W16::splat(simd, 0.0);
     let gap = V3((c.0.abs() - h.0).max(zero), (c.1.abs() - h.1).max(zero), (c.2.abs() - h.2).max(zero));
     // Overlapping boxes are told apart by their centres.
@@ -44,11 +37,12 @@ pub(super) fn nearest_child<S: Simd>(
 }
 
 /// The leaf of `tree` that looks nearest to `spot`.
-#[inline(always)]
-pub(super) fn nearest_leaf<S: Simd>(simd: S, tree: &Tree, seen: &Placement, spot: &Spot) -> usize {
-    let mut number = 0;
-    for height in (1..=tree.height()).rev() {
-        number = nearest_child(simd, tree, height, number, seen, spot);
-    }
-    number
+pub(super) fn nearest_leaf(level: Level, tree: &Tree, seen: &Placement, spot: [f32; 3]) -> usize {
+    dispatch!(level, simd => {
+        let mut number = 0;
+        for height in (1..=tree.height()).rev() {
+            number = nearest_child(simd, tree, height, number, seen, spot);
+        }
+        number
+    })
 }

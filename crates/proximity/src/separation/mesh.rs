@@ -46,8 +46,8 @@ impl Best {
     }
 
     /// Asks `leaf` about every triangle that may be within the limit of the core's box.
-    fn search(&mut self, mesh: &TriMesh, probe: &BoxProbe, leaf: impl Fn(usize, f64) -> Option<Gap>) {
-        mesh.tree.visit(probe, BoxProbe::limit(&mesh.tree, self.limit), |triangle| {
+    fn search(&mut self, mesh: &TriMesh, probe: &BoxProbe, leaf: &dyn Fn(usize, f64) -> Option<Gap>) {
+        mesh.tree.visit(probe, BoxProbe::limit(&mesh.tree, self.limit), &mut |triangle| {
             if let Some(gap) = leaf(triangle, self.limit) {
                 self.offer(gap);
             }
@@ -65,19 +65,19 @@ pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit:
     let probe = BoxProbe::new(&mesh.tree, &bounds(core), core_in_mesh);
     match core {
         Core::Point => {
-            best.search(mesh, &probe, |i, _| Some(Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale)));
+            best.search(mesh, &probe, &|i, _| Some(Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale)));
         }
         Core::Segment(half) => {
             let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
             let (p, q) = (axis.at(-half), axis.at(*half));
-            best.search(mesh, &probe, |i, _| {
+            best.search(mesh, &probe, &|i, _| {
                 let near = segment_triangle(p, q, mesh.corners(i));
                 Some(Gap::closed(near.on_b, near.on_a, scale))
             });
         }
         _ => {
             let mesh_in_core = core_in_mesh.inverse();
-            best.search(mesh, &probe, |i, limit| {
+            best.search(mesh, &probe, &|i, limit| {
                 let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
                 let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
                 let back = |p| core_in_mesh.transform_point(p);
@@ -104,7 +104,7 @@ fn bounds(core: &Core) -> Aabb {
 pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose) -> Gap {
     let up = mesh_in_b.inverse_transform_vector(Vec3::Z);
     let mut lowest = mesh.corners(0)[0];
-    mesh.tree.visit(&Height::new(up), Height::limit(&mesh.tree, up, lowest), |triangle| {
+    mesh.tree.visit(&Height::new(up), Height::limit(&mesh.tree, up, lowest), &mut |triangle| {
         for p in mesh.corners(triangle) {
             if p.dot(up) < lowest.dot(up) {
                 lowest = p;
@@ -121,7 +121,7 @@ pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose) -> Gap {
 pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
     let mut best = (f64::INFINITY, mesh.corners(0)[0], 0);
     let probe = BoxProbe::new(&mesh.tree, &Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, &Pose::from_translation(p));
-    mesh.tree.visit(&probe, f32::INFINITY, |triangle| {
+    mesh.tree.visit(&probe, f32::INFINITY, &mut |triangle| {
         let q = nearest_on_triangle(p, mesh.corners(triangle));
         let distance = (q - p).length();
         // Of equals the lower number, so that the order of the tree does not show.

@@ -51,7 +51,7 @@ impl TriMesh {
 
     fn cast(&self, p: Vec3, direction: Vec3) -> Crossings {
         let mut found = Crossings { count: 0, signed: 0, unsure: false };
-        self.tree.visit(&Ray::new(&self.tree, p, direction), 0.0, |triangle| {
+        self.tree.visit(&Ray::new(&self.tree, p, direction), 0.0, &mut |triangle| {
             if self.in_closed_part[triangle] {
                 cross(self.corners(triangle), p, direction, &mut found);
             }
