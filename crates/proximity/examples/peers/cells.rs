@@ -143,7 +143,8 @@ fn add_arms(data: &Path, cells: &mut Vec<Cell>) -> Outcome<()> {
     if !data.join("robot_link0.stl").is_file() {
         return Ok(());
     }
-    let links: Outcome<Vec<TriMesh>> = (0..LINKS).map(|k| read_mesh(&data.join(format!("robot_link{k}.stl")))).collect();
+    let links: Outcome<Vec<TriMesh>> =
+        (0..LINKS).map(|k| read_mesh(&data.join(format!("robot_link{k}.stl")))).collect();
     let arms = Arms::new(links?);
     let (size, arms) = (arms.size(), Rc::new(RefCell::new(arms)));
     for name in DISTANCES.into_iter().chain(["hard"]) {
