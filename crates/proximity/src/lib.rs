@@ -9,6 +9,8 @@
 //! | nearest surface point, signed distance | [`project_point`] |
 //! | how far and which way to separate | [`escape`] |
 //! | when two moving shapes first touch | [`impact`] |
+//! | which faces a motion can bring into contact | [`facing`] |
+//! | corners, sides and parts of a drawn mesh put right | [`repair`] |
 //! | a simple shape around points | [`fit`] |
 //! | triangles for a picture | [`tessellate`] |
 //!
@@ -41,10 +43,12 @@
 //! ```
 
 mod escape;
+pub mod facing;
 pub mod fit;
 pub mod impact;
 pub mod mesh;
 mod project;
+pub mod repair;
 mod separation;
 mod shape;
 pub mod tessellate;

@@ -159,21 +159,27 @@ fn closing(carrier: &Carrier, in_world: &Pose, own: &Steady, other: &Steady, t: 
         turning = turning.max(own_turning.length());
         rate = rate.max(normal.map_or(f64::NEG_INFINITY, |n| -n.dot(relative)));
     }
-    let (own_turn, other_turn) = (own.rotation.length(), other.rotation.length());
-    let growth = own_turn * turning + other_turn * (travel.length() + turning);
+    let other_turn = other.rotation.length();
+    let growth = (own.rotation - other.rotation).length() * turning + other.rotation.cross(travel).length();
     let alone = other_turn == 0.0;
+    // Rounding is relative to the speeds, not to their difference or component.
+    let doubt = (CAREFUL - 1.0) * (speed + turning + travel.length() + other_turn * arm(carrier, in_world, other, t));
     match normal {
         None => {
             let cap = if alone { travel.length() + turning } else { f64::INFINITY };
-            Closing { rate: speed * CAREFUL, growth: growth * CAREFUL, cap: cap * CAREFUL }
+            Closing { rate: speed + doubt, growth: growth * CAREFUL, cap: cap + doubt }
         }
         Some(n) => {
             let across = own.rotation.try_normalize().map_or(0.0, |axis| axis.cross(n).length());
             let cap = if alone { -n.dot(travel) + across * turning } else { f64::INFINITY };
             let growth = growth + other_turn * (speed + growth * (1.0 - t));
-            // Rounding is relative to the speeds, not to their small component.
-            let doubt = (CAREFUL - 1.0) * (speed + turning + travel.length());
             Closing { rate: rate + doubt, growth: growth * CAREFUL, cap: cap + doubt }
         }
     }
+}
+
+/// Largest distance of the carrier's points from the pivot of `other`, metres.
+fn arm(carrier: &Carrier, in_world: &Pose, other: &Steady, t: f64) -> f64 {
+    let pivot = other.pivot + other.velocity * t;
+    (in_world.translation - pivot).length() + carrier.radius()
 }

@@ -1,0 +1,105 @@
+//! All faces of a closed part turned outward.
+
+use elbowroom_spatial::Vec3;
+
+use super::shells::{Shell, Shells};
+use super::{RepairError, check};
+use crate::TriMesh;
+
+/// What [`orient`] made of the triangles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Oriented {
+    /// The same triangles in the same order, some with two corners swapped.
+    pub triangles: Vec<[u32; 3]>,
+    /// What was changed.
+    pub report: OrientReport,
+}
+
+/// Counts of what [`orient`] found and changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OrientReport {
+    /// Triangles turned over.
+    pub flipped: usize,
+    /// Surfaces that hang together over edges of two faces.
+    pub shells: usize,
+    /// Those that are closed.
+    pub closed: usize,
+    /// Closed ones that face inward because they bound a hollow inside another.
+    pub cavities: usize,
+    /// Those whose faces cannot all be turned the same way, as in a Möbius strip; left as they are.
+    pub one_sided: usize,
+}
+
+/// Turns triangles so that neighbours agree and closed surfaces face outward. Corners of equal coordinates count as
+/// one; nothing is known across edges of more than two faces. Open surfaces keep the way of their first triangle.
+///
+/// A closed surface inside another that was drawn the opposite way bounds a hollow and stays opposite.
+///
+/// # Errors
+/// A triangle names a vertex that is not there.
+pub fn orient(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Oriented, RepairError> {
+    check(vertices.len(), triangles)?;
+    let Shells { list, against } = Shells::of(vertices, triangles);
+    let outward = outward(&list, vertices, triangles);
+    let mut report = OrientReport { shells: list.len(), ..OrientReport::default() };
+    let mut turned = triangles.to_vec();
+    for (shell, outward) in list.iter().zip(&outward) {
+        report.closed += usize::from(shell.closed);
+        report.one_sided += usize::from(!shell.orientable);
+        report.cavities += usize::from(!outward);
+        if !shell.orientable {
+            continue;
+        }
+        let over = shell.volume.is_some_and(|v| (v > 0.0) != *outward);
+        for &f in shell.faces.iter().filter(|&&f| against[f as usize] != over) {
+            turned[f as usize].swap(1, 2);
+            report.flipped += 1;
+        }
+    }
+    Ok(Oriented { triangles: turned, report })
+}
+
+/// Per shell: true unless it bounds a cavity.
+fn outward(list: &[Shell], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<bool> {
+    let mut outward = vec![true; list.len()];
+    // Only what was drawn consistently says by its sign what it means.
+    let drawn: Vec<(usize, f64)> =
+        list.iter().enumerate().filter(|(_, s)| s.consistent).filter_map(|(i, s)| Some((i, s.volume?))).collect();
+    let mixed = drawn.iter().any(|d| d.1 > 0.0) && drawn.iter().any(|d| d.1 < 0.0);
+    if !mixed {
+        return outward;
+    }
+    let mut by_size = drawn;
+    by_size.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+    let mut solids: Vec<Option<TriMesh>> = vec![None; list.len()];
+    for n in 0..by_size.len() {
+        let (i, volume) = by_size[n];
+        let around = by_size[..n].iter().rev().find(|&&(e, _)| encloses(e, i, list, vertices, triangles, &mut solids));
+        if let Some(&(parent, parent_volume)) = around {
+            outward[i] = !(outward[parent] && (volume > 0.0) != (parent_volume > 0.0));
+        }
+    }
+    outward
+}
+
+fn encloses(
+    outer: usize,
+    inner: usize,
+    list: &[Shell],
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    solids: &mut [Option<TriMesh>],
+) -> bool {
+    let (o, i) = (&list[outer], &list[inner]);
+    if !(o.bounds.contains(i.bounds.min) && o.bounds.contains(i.bounds.max)) {
+        return false;
+    }
+    if solids[outer].is_none() {
+        let corners: Vec<Vec3> =
+            o.faces.iter().flat_map(|&f| triangles[f as usize].map(|v| vertices[v as usize])).collect();
+        let own = (0..o.faces.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+        solids[outer] = TriMesh::new(corners, own).ok();
+    }
+    let corner = vertices[triangles[i.faces[0] as usize][0] as usize];
+    solids[outer].as_ref().is_some_and(|m| m.contains(corner))
+}

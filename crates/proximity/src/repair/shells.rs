@@ -1,0 +1,157 @@
+//! Faces that hang together over edges of two faces each, and which way they are turned.
+
+use elbowroom_spatial::{Aabb, Vec3};
+
+use crate::shape::topology::{Edges, first_of_equal, is_proper};
+
+/// No shell, no neighbour.
+const NONE: u32 = u32::MAX;
+
+/// A surface that can be walked without crossing an edge of one, three or more faces.
+#[derive(Debug, Clone)]
+pub(crate) struct Shell {
+    /// Its faces, in the order in which the walk met them.
+    pub faces: Vec<u32>,
+    /// All faces are turned the same way as they are drawn.
+    pub consistent: bool,
+    /// Faces can be turned the same way at all: not a Möbius strip.
+    pub orientable: bool,
+    /// Every edge of its faces has an even number of uses by this shell.
+    pub closed: bool,
+    /// Signed volume, m³, once its faces are turned like its first one; `None` where open, or too small for a sign.
+    pub volume: Option<f64>,
+    pub bounds: Aabb,
+}
+
+/// All shells, and per triangle whether it is turned against the first face of its shell.
+pub(crate) struct Shells {
+    pub list: Vec<Shell>,
+    pub against: Vec<bool>,
+}
+
+impl Shells {
+    pub fn of(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let first = first_of_equal(vertices);
+        let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| first[i as usize])).collect();
+        let edges = Edges::new(vertices.len(), &faces, |triangle, _| triangle as u32);
+        let neighbours = neighbours(&faces, &edges);
+        let mut walk =
+            Walk { faces: &faces, neighbours, shell_of: vec![NONE; faces.len()], against: vec![false; faces.len()] };
+        let mut list = Vec::new();
+        for start in 0..faces.len() {
+            if walk.shell_of[start] == NONE && is_proper(&faces[start]) {
+                list.push(walk.from(start as u32, list.len() as u32));
+            }
+        }
+        edges.for_each(|_, _, uses| open_odd(uses, &walk.shell_of, &mut list));
+        for shell in &mut list {
+            measure(shell, vertices, triangles, &walk.against);
+        }
+        Self { list, against: walk.against }
+    }
+}
+
+/// Per face and corner: the face over the edge from there to the next corner, where that edge has two faces.
+fn neighbours(faces: &[[u32; 3]], edges: &Edges) -> Vec<[u32; 3]> {
+    let mut over = vec![[NONE; 3]; faces.len()];
+    edges.for_each(|low, high, uses| {
+        let [s, t] = uses else { return };
+        let (s, t) = (*s as u32, *t as u32);
+        let corner =
+            |f: [u32; 3]| (0..3).find(|&k| (f[k].min(f[(k + 1) % 3]), f[k].max(f[(k + 1) % 3])) == (low, high));
+        for (from, to) in [(s, t), (t, s)] {
+            if let Some(k) = corner(faces[from as usize]) {
+                over[from as usize][k] = to;
+            }
+        }
+    });
+    over
+}
+
+struct Walk<'a> {
+    faces: &'a [[u32; 3]],
+    neighbours: Vec<[u32; 3]>,
+    shell_of: Vec<u32>,
+    against: Vec<bool>,
+}
+
+impl Walk<'_> {
+    fn from(&mut self, start: u32, number: u32) -> Shell {
+        let (mut consistent, mut orientable) = (true, true);
+        let mut met = vec![start];
+        self.shell_of[start as usize] = number;
+        let mut next = 0;
+        while next < met.len() {
+            let f = met[next] as usize;
+            next += 1;
+            for k in 0..3 {
+                let g = self.neighbours[f][k];
+                if g == NONE {
+                    continue;
+                }
+                let same_way = !has_directed(self.faces[g as usize], self.faces[f][k], self.faces[f][(k + 1) % 3]);
+                let against = self.against[f] == same_way;
+                consistent &= same_way;
+                if self.shell_of[g as usize] == NONE {
+                    self.shell_of[g as usize] = number;
+                    self.against[g as usize] = against;
+                    met.push(g);
+                } else {
+                    orientable &= self.against[g as usize] == against;
+                }
+            }
+        }
+        Shell { faces: met, consistent, orientable, closed: true, volume: None, bounds: Aabb::EMPTY }
+    }
+}
+
+/// True where the face runs through the edge from `a` to `b` in that direction.
+fn has_directed(f: [u32; 3], a: u32, b: u32) -> bool {
+    (0..3).any(|k| f[k] == a && f[(k + 1) % 3] == b)
+}
+
+fn open_odd(uses: &[u64], shell_of: &[u32], list: &mut [Shell]) {
+    let mut shells: Vec<u32> = uses.iter().map(|&u| shell_of[u as u32 as usize]).collect();
+    shells.sort_unstable();
+    for same in shells.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1) {
+        list[same[0] as usize].closed = false;
+    }
+}
+
+fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], against: &[bool]) {
+    let corners = |&f: &u32| triangles[f as usize].map(|i| vertices[i as usize]);
+    shell.bounds = Aabb::from_points(shell.faces.iter().flat_map(corners));
+    if !(shell.closed && shell.orientable) {
+        return;
+    }
+    let origin = shell.bounds.center();
+    let (mut six_fold, mut size) = (0.0, 0.0);
+    for f in &shell.faces {
+        let [a, b, c] = corners(f).map(|p| p - origin);
+        let part = a.dot(b.cross(c));
+        six_fold += if against[*f as usize] { -part } else { part };
+        size += a.length() * b.length() * c.length();
+    }
+    let volume: f64 = six_fold / 6.0;
+    shell.volume = (volume.abs() > 1e-13 * size).then_some(volume);
+}
+
+impl Shells {
+    /// True where all closed shells are consistent and have the same sign: the solid is then their union, and each
+    /// looks the way its sign says.
+    pub fn agree(&self) -> bool {
+        let mut signs = self.closed().map(|s| s.volume.filter(|_| s.consistent).map(f64::signum));
+        let first = signs.next().flatten();
+        first.is_some() && signs.all(|sign| sign == first)
+    }
+
+    /// True where the bounds of no other closed shell overlap this one's: it is a solid by itself, and no hollow.
+    pub fn is_alone(&self, number: usize) -> bool {
+        let bounds = &self.list[number].bounds;
+        self.closed().all(|s| std::ptr::eq(s, &self.list[number]) || !s.bounds.overlaps(bounds))
+    }
+
+    fn closed(&self) -> impl Iterator<Item = &Shell> {
+        self.list.iter().filter(|s| s.closed)
+    }
+}

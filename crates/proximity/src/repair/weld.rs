@@ -1,0 +1,164 @@
+//! Corners that are meant to be one.
+
+use std::collections::HashMap;
+
+use elbowroom_spatial::Vec3;
+
+use super::{RepairError, check};
+use crate::shape::topology::{Edges, first_of_equal, is_degenerate, is_proper};
+
+/// What [`weld`] made of the triangles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Welded {
+    /// The vertices that are left, in the order given.
+    pub vertices: Vec<Vec3>,
+    /// The triangles that are left, in the order given, as indices into the vertices that are left.
+    pub triangles: Vec<[u32; 3]>,
+    /// What was changed.
+    pub report: WeldReport,
+}
+
+/// Counts of what [`weld`] changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WeldReport {
+    /// Vertices replaced by an earlier one.
+    pub merged: usize,
+    /// Vertices left out because no triangle that is left uses them.
+    pub unused: usize,
+    /// Triangles left out because they have no area.
+    pub zero_area: usize,
+    /// Triangles without area that stay, because without them a closed surface would open: three different corners on
+    /// a line, as where a long edge meets two short ones.
+    pub slivers_kept: usize,
+    /// Triangles left out because an earlier one has the same corners, turned the same way. Two that face each other
+    /// are the wall between two solids and stay.
+    pub duplicate: usize,
+}
+
+/// Merges vertices within `tolerance` metres, and drops what becomes of triangles that have no area or are there twice.
+///
+/// Vertices are taken in order: each goes to the nearest (of those, the first) kept vertex within the tolerance, or is
+/// kept itself. So no vertex moves by more than the tolerance, however long a chain of close neighbours is, no two kept
+/// vertices are within it, and the result depends on nothing but the input. Tolerance 0 merges equal coordinates.
+/// Vertices that are not finite stay as they are.
+///
+/// # Errors
+/// The tolerance is not a finite number of metres, 0 or more; a triangle names a vertex that is not there.
+pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result<Welded, RepairError> {
+    if !(tolerance >= 0.0 && tolerance.is_finite()) {
+        return Err(RepairError::Tolerance(tolerance));
+    }
+    check(vertices.len(), triangles)?;
+    let mut target = first_of_equal(vertices);
+    if tolerance > 0.0 {
+        merge_near(vertices, &mut target, tolerance);
+    }
+    let merged = target.iter().enumerate().filter(|&(i, &t)| t as usize != i).count();
+    let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| target[i as usize])).collect();
+    let mut report = WeldReport { merged, ..WeldReport::default() };
+    let kept = without_copies(&without_flat(vertices, faces, &mut report), &mut report);
+    let (vertices, triangles) = compact(vertices, &kept);
+    report.unused = target.len() - merged - vertices.len();
+    Ok(Welded { vertices, triangles, report })
+}
+
+/// Cells are twice as wide as the tolerance, so that what is near lies in the 27 around, rounding included.
+fn merge_near(vertices: &[Vec3], target: &mut [u32], tolerance: f64) {
+    let width = (2.0 * tolerance).max(1e-290);
+    let mut kept: HashMap<[u64; 3], Vec<u32>> = HashMap::with_capacity(vertices.len());
+    for i in 0..vertices.len() {
+        let v = vertices[i];
+        if target[i] as usize != i {
+            // The first of the same coordinates has been decided already.
+            target[i] = target[target[i] as usize];
+            continue;
+        }
+        if !v.is_finite() {
+            continue;
+        }
+        let cell = v.to_array().map(|c| (c / width).floor());
+        match nearest_kept(vertices, &kept, cell, v, tolerance) {
+            Some(first) => target[i] = first,
+            None => kept.entry(cell.map(key)).or_default().push(i as u32),
+        }
+    }
+}
+
+/// Cells are numbered by whole f64: an i64 would end where a tolerance is tiny beside a coordinate.
+fn key(cell: f64) -> u64 {
+    (cell + 0.0).to_bits()
+}
+
+fn nearest_kept(
+    vertices: &[Vec3],
+    kept: &HashMap<[u64; 3], Vec<u32>>,
+    cell: [f64; 3],
+    v: Vec3,
+    tolerance: f64,
+) -> Option<u32> {
+    let mut best: Option<(f64, u32)> = None;
+    for n in 0..27 {
+        let step = [n % 3, n / 3 % 3, n / 9].map(|s| f64::from(s) - 1.0);
+        let neighbour = std::array::from_fn(|k| key(cell[k] + step[k]));
+        for &k in kept.get(&neighbour).into_iter().flatten() {
+            let found = (vertices[k as usize].distance(v), k);
+            if found.0 <= tolerance && best.is_none_or(|b| found < b) {
+                best = Some(found);
+            }
+        }
+    }
+    best.map(|(_, k)| k)
+}
+
+/// Leaves out triangles without area. One with three different corners toggles whether its edges are matched, so it
+/// goes only where one of them is unmatched anyway.
+fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport) -> Vec<[u32; 3]> {
+    let flat: Vec<bool> = faces.iter().map(|f| is_degenerate(f.map(|i| vertices[i as usize]))).collect();
+    let mut beside_open = vec![false; faces.len()];
+    if flat.iter().zip(&faces).any(|(&flat, f)| flat && is_proper(f)) {
+        let edges = Edges::new(vertices.len(), &faces, |triangle, _| triangle as u32);
+        edges.for_each(|_, _, uses| {
+            if uses.len() % 2 == 1 {
+                uses.iter().for_each(|&u| beside_open[u as u32 as usize] = true);
+            }
+        });
+    }
+    let mut kept = Vec::with_capacity(faces.len());
+    for (i, f) in faces.into_iter().enumerate() {
+        if flat[i] && (!is_proper(&f) || beside_open[i]) {
+            report.zero_area += 1;
+        } else {
+            report.slivers_kept += usize::from(flat[i]);
+            kept.push(f);
+        }
+    }
+    kept
+}
+
+fn without_copies(faces: &[[u32; 3]], report: &mut WeldReport) -> Vec<[u32; 3]> {
+    // Turned until the smallest corner is first, triangles of the same corners and side are equal.
+    let turned = |f: &[u32; 3]| {
+        let least = (0..3).min_by_key(|&k| f[k]).unwrap_or(0);
+        [f[least], f[(least + 1) % 3], f[(least + 2) % 3]]
+    };
+    let mut order: Vec<([u32; 3], u32)> = faces.iter().enumerate().map(|(i, f)| (turned(f), i as u32)).collect();
+    order.sort_unstable();
+    let mut again = vec![false; faces.len()];
+    for pair in order.windows(2).filter(|p| p[0].0 == p[1].0) {
+        again[pair[1].1 as usize] = true;
+    }
+    report.duplicate = again.iter().filter(|&&a| a).count();
+    faces.iter().zip(again).filter(|(_, again)| !again).map(|(f, _)| *f).collect()
+}
+
+/// The vertices in use, in their order, and triangles that name them by their new places.
+fn compact(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let mut place = vec![u32::MAX; vertices.len()];
+    triangles.iter().flatten().for_each(|&i| place[i as usize] = 0);
+    let mut used = Vec::new();
+    for (p, v) in place.iter_mut().zip(vertices).filter(|(p, _)| **p == 0) {
+        *p = used.len() as u32;
+        used.push(*v);
+    }
+    (used, triangles.iter().map(|t| t.map(|i| place[i as usize])).collect())
+}

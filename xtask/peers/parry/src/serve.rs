@@ -1,0 +1,103 @@
+//! The conversation with xtask, word for word that of the other runners (`xtask/peers/README.md`).
+
+use std::io::{BufRead, Write};
+use std::time::Duration;
+
+use rustix::time::{ClockId, clock_gettime};
+
+/// The answer for a record: 0 or 1, or metres.
+pub trait Ask {
+    fn answer(&mut self, record: usize) -> f64;
+    /// The whole loop, so that the question can be inlined into it.
+    fn pass(&mut self, records: usize, passes: usize) -> f64;
+}
+
+impl<F: FnMut(usize) -> f64> Ask for F {
+    fn answer(&mut self, record: usize) -> f64 {
+        self(record)
+    }
+
+    fn pass(&mut self, records: usize, passes: usize) -> f64 {
+        let mut sum = 0.0;
+        for _ in 0..passes {
+            for record in 0..records {
+                sum += self(record);
+            }
+        }
+        sum
+    }
+}
+
+#[derive(Default)]
+pub struct Cell {
+    pub lib: String,
+    pub set: String,
+    pub query: &'static str,
+    pub records: usize,
+    pub size: f64,
+    pub tolerance: f64,
+    pub ask: Option<Box<dyn Ask>>,
+}
+
+impl Cell {
+    /// One question on this set.
+    pub fn with(&self, lib: &str, query: &'static str, records: usize, ask: Box<dyn Ask>) -> Self {
+        let (lib, set) = (lib.to_owned(), self.set.clone());
+        Self { lib, set, query, records, size: self.size, tolerance: self.tolerance, ask: Some(ask) }
+    }
+}
+
+pub fn yes(answer: bool) -> f64 {
+    f64::from(u8::from(answer))
+}
+
+pub fn serve(mut cells: Vec<Cell>) {
+    for Cell { lib, set, query, records, size, tolerance, .. } in &cells {
+        println!("cell {lib} {set} {query} {records} {size:?} {tolerance:?}");
+    }
+    println!("ready");
+    for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+        let Some(reply) = obey(&line, &mut cells) else {
+            eprintln!("error: cannot do `{line}`");
+            std::process::exit(2);
+        };
+        println!("{reply}");
+        let _ = std::io::stdout().flush();
+    }
+}
+
+fn obey(line: &str, cells: &mut [Cell]) -> Option<String> {
+    let words: Vec<&str> = line.split(' ').collect();
+    let number = |k: usize| words.get(k)?.parse::<usize>().ok();
+    let cell = cells.get_mut(number(1)?)?;
+    let records = cell.records;
+    let ask = cell.ask.as_mut()?;
+    let (first, second) = (number(2)?, number(3)?);
+    if words[0] == "time" {
+        return Some(format!("{:.3}", time(&mut **ask, first.min(records), second)));
+    }
+    let all = first..(first + second).min(records);
+    let bytes: Vec<u8> = all.flat_map(|i| ask.answer(i).to_le_bytes()).collect();
+    std::fs::write(words.get(4)?, &bytes).ok()?;
+    Some(format!("{}", bytes.len() / 8))
+}
+
+/// Nanoseconds of this thread's processor time per record, after a warm-up of a millisecond or one pass.
+fn time(ask: &mut dyn Ask, records: usize, passes: usize) -> f64 {
+    let start = processor_time();
+    let mut sum = 0.0;
+    for record in 0..records {
+        sum += ask.answer(record);
+        if (processor_time() - start).as_micros() >= 1000 {
+            break;
+        }
+    }
+    let start = processor_time();
+    sum += ask.pass(records, passes);
+    std::hint::black_box(sum);
+    (processor_time() - start).as_nanos() as f64 / (records * passes).max(1) as f64
+}
+
+fn processor_time() -> Duration {
+    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
+}

@@ -1,0 +1,60 @@
+//! The meshes and poses: given, or of our own making.
+
+use std::path::{Path, PathBuf};
+
+use super::{make, native};
+
+/// Where the files are.
+pub struct Workload {
+    /// Meshes, poses and tolerances in the shared format.
+    pub data: PathBuf,
+    /// Paths and random poses made to go with them.
+    pub extra: PathBuf,
+}
+
+/// elbowroom's runner as a command line; built by [`prepare`].
+pub fn elbowroom(verb: &str) -> Vec<String> {
+    let fixed = ["run", "--quiet", "--release", "-p", "elbowroom-proximity", "--example", "peers", "--", verb];
+    std::iter::once(native::cargo()).chain(fixed.map(str::to_owned)).collect()
+}
+
+/// Builds elbowroom's runner; makes the workload where none is given, and what goes with any.
+pub fn prepare(root: &Path, folder: &Path, given: Option<&Path>) -> Result<Workload, String> {
+    let cargo = native::cargo();
+    native::run(root, &[&cargo, "build", "--release", "-p", "elbowroom-proximity", "--example", "peers"], &[])?;
+    let data = match given {
+        Some(given) => readable(given)?,
+        None => own(root, &folder.join("data"))?,
+    };
+    let extra = folder.join("extra");
+    // What an earlier workload left must not be taken for this one's.
+    let _ = std::fs::remove_dir_all(&extra);
+    make(&extra)?;
+    ours(root, "extend", &[&data, &extra])?;
+    Ok(Workload { data, extra })
+}
+
+fn readable(given: &Path) -> Result<PathBuf, String> {
+    let data = given.canonicalize().map_err(|e| format!("--data {}: {e}", given.display()))?;
+    let any = ["m4k.meta", "m23k.meta", "robot_link0.stl"].iter().any(|name| data.join(name).is_file());
+    let missing = "none of m4k.meta, m23k.meta, robot_link0.stl is there; xtask/peers/README.md has the format";
+    if any { Ok(data) } else { Err(format!("--data {}: {missing}", data.display())) }
+}
+
+/// Made once; the last file written tells that all are there.
+fn own(root: &Path, data: &Path) -> Result<PathBuf, String> {
+    let done = data.join("complete");
+    if !done.is_file() {
+        eprintln!("making the workload in {}", data.display());
+        make(data)?;
+        ours(root, "generate", &[data])?;
+        std::fs::write(&done, "").map_err(|e| format!("{}: {e}", done.display()))?;
+    }
+    Ok(data.to_owned())
+}
+
+fn ours(root: &Path, verb: &str, folders: &[&Path]) -> Result<(), String> {
+    let mut words = elbowroom(verb);
+    words.extend(folders.iter().map(|folder| folder.display().to_string()));
+    native::run(root, &words.iter().map(String::as_str).collect::<Vec<_>>(), &[])
+}
