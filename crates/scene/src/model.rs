@@ -68,7 +68,7 @@ impl Model {
         }
     }
 
-    /// Distance (m) of the farthest point from the member's origin, at most; infinite where the solid has no end.
+    /// Distance (m) of the farthest point from the member's origin, at most; infinite or NaN where the solid has no end.
     pub fn radius(&self) -> f64 {
         let far = |b: &Aabb| b.min.abs().max(b.max.abs()).length();
         self.exact.iter().map(|s| far(&s.bounds)).fold(0.0, f64::max)

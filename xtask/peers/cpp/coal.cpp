@@ -131,6 +131,16 @@ struct Managers {
   }
 };
 
+// One question per pair of links. It points to the models, so it keeps them.
+template <class Models, class Ask>
+struct Questions {
+  Models models;
+  std::vector<Ask> pairs;
+  explicit Questions(const Models& all) : models(all) {
+    for (int k = 0; k < LINKS * LINKS; ++k) pairs.emplace_back(models[k / LINKS].get(), models[k % LINKS].get());
+  }
+};
+
 template <class BV>
 void add_arms(const std::string& lib, const std::string& data) {
   if (!there(data + "/robot_link0.stl")) return;
@@ -138,8 +148,7 @@ void add_arms(const std::string& lib, const std::string& data) {
   const auto meta = arm_meta(*links);
   std::vector<std::shared_ptr<coal::BVHModel<BV>>> models;
   for (const auto& link : *links) models.push_back(model<BV>(link));
-  auto asks = std::make_shared<std::vector<coal::ComputeCollision>>();
-  for (int k = 0; k < LINKS * LINKS; ++k) asks->emplace_back(models[k / LINKS].get(), models[k % LINKS].get());
+  const auto asks = std::make_shared<Questions<decltype(models), coal::ComputeCollision>>(models);
   for (const auto& set : arm_sets(data)) {
     const auto poses = std::make_shared<Poses>(read_poses(set.file));
     const auto t = transforms(*poses);
@@ -150,19 +159,17 @@ void add_arms(const std::string& lib, const std::string& data) {
       return [=, request = yes_or_no(margin), result = coal::CollisionResult()](int i) mutable {
         return double(any_close(*links, *poses, i, margin, [&](int a, int b) {
           result.clear();
-          return (*asks)[a * LINKS + b]((*t)[i * 14 + a], (*t)[i * 14 + LINKS + b], request, result) > 0;
+          return asks->pairs[a * LINKS + b]((*t)[i * 14 + a], (*t)[i * 14 + LINKS + b], request, result) > 0;
         }));
       };
     };
     add_arm(lib + "+aabb", "collide", touches(0));
     add_arm(lib + "+aabb", "tolerance", touches(ARM_TOLERANCE));
     if constexpr (std::is_same<BV, coal::OBBRSS>::value) {
-      std::vector<coal::ComputeDistance> measure;
-      for (int k = 0; k < LINKS * LINKS; ++k) measure.emplace_back(models[k / LINKS].get(), models[k % LINKS].get());
-      const auto measures = std::make_shared<std::vector<coal::ComputeDistance>>(measure);
+      const auto measures = std::make_shared<Questions<decltype(models), coal::ComputeDistance>>(models);
       // The result is kept from pair to pair: its least distance so far prunes the next.
       const auto nearest = [=, request = how_far()](int i, int a, int b, coal::DistanceResult& result) {
-        (*measures)[a * LINKS + b]((*t)[i * 14 + a], (*t)[i * 14 + LINKS + b], request, result);
+        measures->pairs[a * LINKS + b]((*t)[i * 14 + a], (*t)[i * 14 + LINKS + b], request, result);
         return result.min_distance;
       };
       add_arm(lib + "+ub+aabb", "tolerance", [=, result = coal::DistanceResult()](int i) mutable {

@@ -67,9 +67,9 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     }
     let table = report::table(&lines, &peers, &missing);
     if options.json {
-        eprint!("{table}")
+        eprint!("{table}");
     } else {
-        print!("{table}")
+        print!("{table}");
     }
     judge(&lines)
 }

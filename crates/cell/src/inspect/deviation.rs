@@ -9,8 +9,11 @@ use elbowroom_spatial::Vec3;
 
 use super::simplify::Simplified;
 
-/// Cuts of a face, at most.
-const DEPTH: u32 = 5;
+/// Cuts of a face, at most, one in the other.
+const DEPTH: u32 = 12;
+
+/// Distances taken for the parts of all faces, at most; what is not cut any more has a bound that is less tight.
+const BUDGET: usize = 60_000_000;
 
 /// No point of the surface of `mesh` is farther (m) than this from the surface of `simple`.
 pub(super) fn bound(mesh: &TriMesh, simple: &Simplified) -> f64 {
@@ -21,30 +24,50 @@ pub(super) fn bound(mesh: &TriMesh, simple: &Simplified) -> f64 {
         }
     }
     let size = mesh.aabb().extent().length();
-    let mut worst: f64 = 0.0;
-    let mut near: Vec<u32> = Vec::new();
-    let mut solids: Vec<[Vec3; 3]> = Vec::new();
+    let face = |t: &[u32; 3]| t.map(|v| mesh.vertices()[v as usize]);
+    let mut near = Vec::new();
+    // Corners first: what is within their distances needs no closer look.
+    let mut enough: f64 = 1e-6 * size;
+    let mut whole = Vec::with_capacity(mesh.triangles().len());
     for t in mesh.triangles() {
-        // Where its corners went, and the faces around those: the nearest is among them, but any would do for a bound.
-        near.clear();
-        for v in t.map(|v| simple.became[v as usize]) {
-            for f in faces_of.get(v as usize).into_iter().flatten() {
-                near.extend(simple.triangles[*f as usize].iter().flat_map(|w| &faces_of[*w as usize]));
-            }
+        around(t, simple, &faces_of, &mut near);
+        let (least, together) = measure(face(t), &near);
+        enough = enough.max(if least.is_finite() { least } else { 0.0 });
+        whole.push(together);
+    }
+    let mut worst: f64 = 0.0;
+    let mut budget = BUDGET;
+    let solids: Vec<[Vec3; 3]> = simple.triangles.iter().map(|t| t.map(|v| simple.vertices[v as usize])).collect();
+    for (t, together) in mesh.triangles().iter().zip(whole) {
+        let mut bound = together;
+        if together > enough && budget > 0 {
+            budget = budget.saturating_sub(solids.len());
+            bound = of_face(face(t), &relevant(face(t), &solids), enough.max(worst), DEPTH, &mut budget);
         }
-        near.sort_unstable();
-        near.dedup();
-        solids.clear();
-        solids.extend(near.iter().map(|f| simple.triangles[*f as usize].map(|v| simple.vertices[v as usize])));
-        let face = t.map(|v| mesh.vertices()[v as usize]);
-        worst = worst.max(of_face(face, &solids, worst.max(1e-6 * size), DEPTH));
+        worst = worst.max(bound);
     }
     // What rounding may have taken off.
     worst + 1e-12 * size
 }
 
-/// Bound for one face; below `enough` nobody cares.
-fn of_face(face: [Vec3; 3], solids: &[[Vec3; 3]], enough: f64, depth: u32) -> f64 {
+/// The faces where the corners of a face went, and around those: the nearest is among them, but any would do for a bound.
+fn around(t: &[u32; 3], simple: &Simplified, faces_of: &[Vec<u32>], near: &mut Vec<[Vec3; 3]>) {
+    let once = |mut list: Vec<u32>| {
+        list.sort_unstable();
+        list.dedup();
+        list
+    };
+    let faces = |vertices: &[u32]| -> Vec<u32> {
+        once(vertices.iter().filter_map(|v| faces_of.get(*v as usize)).flatten().copied().collect())
+    };
+    let there = faces(&t.map(|v| simple.became[v as usize]));
+    let list = faces(&once(there.iter().flat_map(|f| simple.triangles[*f as usize]).collect()));
+    near.clear();
+    near.extend(list.iter().map(|f| simple.triangles[*f as usize].map(|v| simple.vertices[v as usize])));
+}
+
+/// The largest distance of a corner to its nearest face, and the least over the faces of the largest distance of a corner.
+fn measure(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> (f64, f64) {
     let mut nearest = [f64::INFINITY; 3];
     let mut together = f64::INFINITY;
     for solid in solids {
@@ -52,15 +75,33 @@ fn of_face(face: [Vec3; 3], solids: &[[Vec3; 3]], enough: f64, depth: u32) -> f6
         nearest.iter_mut().zip(d).for_each(|(n, d)| *n = n.min(d));
         together = together.min(d[0].max(d[1]).max(d[2]));
     }
-    let least = nearest.into_iter().fold(0.0, f64::max);
-    if depth == 0 || together <= enough || together <= 1.05 * least || !together.is_finite() {
+    (nearest.into_iter().fold(0.0, f64::max), together)
+}
+
+/// Bound for one face; below `enough` nobody cares.
+fn of_face(face: [Vec3; 3], solids: &[[Vec3; 3]], enough: f64, depth: u32, budget: &mut usize) -> f64 {
+    *budget = budget.saturating_sub(4 * solids.len());
+    let (least, together) = measure(face, solids);
+    if depth == 0 || *budget == 0 || together <= enough || together <= 1.05 * least || !together.is_finite() {
         return together;
     }
     let [a, b, c] = face;
     let (ab, bc, ca) = (a.lerp(b, 0.5), b.lerp(c, 0.5), c.lerp(a, 0.5));
     let quarters = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
-    let cut = quarters.into_iter().map(|q| of_face(q, solids, enough.max(least), depth - 1)).fold(0.0, f64::max);
-    cut.min(together)
+    let enough = enough.max(least);
+    let part = |q: [Vec3; 3]| of_face(q, &relevant(q, solids), enough, depth - 1, budget);
+    quarters.into_iter().map(part).fold(0.0, f64::max).min(together)
+}
+
+/// All faces that can be the nearest to some point of `face`: seen from its middle, not farther than the nearest by
+/// more than twice its radius.
+fn relevant(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
+    let middle = (face[0] + face[1] + face[2]) / 3.0;
+    let radius = face.into_iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+    let distances: Vec<f64> = solids.iter().map(|s| middle.distance(nearest_on(*s, middle))).collect();
+    let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+    let near = |(d, _): &(&f64, _)| **d <= least + 2.0 * radius;
+    distances.iter().zip(solids).filter(near).map(|(_, s)| *s).collect()
 }
 
 /// The point of a triangle nearest to `p`, by the region of the triangle's plane that `p` is over (Ericson, "Real-Time

@@ -3,6 +3,7 @@
 mod deviation;
 mod edges;
 mod levels;
+mod pairs;
 mod picture;
 mod png;
 mod quadric;
@@ -24,6 +25,7 @@ use elbowroom_spatial::units::LengthUnit;
 use serde::Serialize;
 
 pub use levels::Level2;
+pub use pairs::PairRow;
 pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
 pub use rows::{DhRow, JointRow, MeshRow};
 pub use units::UnitDoubt;
@@ -86,6 +88,8 @@ pub struct Inspection {
     pub levels: Vec<Level2>,
     /// The same levels and more, per link, with coarse, middle and fine triangles. Empty where they were left out.
     pub resolution: Vec<LinkLevels>,
+    /// The pair matrix, an entry per pair of links with solids. Empty for a mesh, and where it was left out.
+    pub pairs: Vec<PairRow>,
     /// Units suspected wrong.
     pub unit_doubts: Vec<UnitDoubt>,
     /// What the user should know.
@@ -127,6 +131,8 @@ impl Inspection {
             inspection.levels = levels::of_robot(&loaded.robot);
             let links = chain.links().iter().cloned().zip(loaded.robot.bodies.iter().cloned());
             inspection.resolution = resolution::of_links(&links.collect::<Vec<_>>());
+            inspection.pairs = pairs::of_robot(path, &loaded.robot)?;
+            inspection.doubt_pairs();
         }
         inspection.robot = Some(loaded.robot);
         Ok(inspection)
@@ -175,6 +181,7 @@ impl Inspection {
             dh_residual: None,
             levels: vec![],
             resolution: vec![],
+            pairs: vec![],
             unit_doubts: vec![],
             warnings: warnings.iter().map(ToString::to_string).collect(),
             robot: None,
@@ -190,6 +197,17 @@ impl Inspection {
                 self.warnings.push(doubt.reason.clone());
             }
             self.unit_doubts.push(doubt);
+        }
+    }
+
+    /// Pairs that would make every state a collision.
+    fn doubt_pairs(&mut self) {
+        for p in self.pairs.iter().filter(|p| p.tested && p.always) {
+            self.warnings.push(format!(
+                "links `{}` and `{}` touch in every state that was looked at: every query answers collision\n  write: \
+                 <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"Default\"/> in an SRDF, and --srdf",
+                p.a, p.b, p.a, p.b
+            ));
         }
     }
 

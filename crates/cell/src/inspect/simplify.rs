@@ -121,7 +121,7 @@ impl Work {
             let Some(f) = f else { continue };
             let [p, q, r] = f.map(|v| self.at[v as usize]);
             let normal = (q - p).cross(r - p);
-            let quadric = Quadric::plane(normal, p, normal.length());
+            let quadric = Quadric::plane(normal, p, 1.0);
             for (k, &v) in f.iter().enumerate() {
                 self.quadrics[v as usize].add(&quadric);
                 self.of_vertex[v as usize].push(i as u32);
@@ -136,7 +136,7 @@ impl Work {
             let [p, q, r] = f.map(|v| self.at[v as usize]);
             let edge = self.at[b as usize] - self.at[a as usize];
             let across = edge.cross((q - p).cross(r - p));
-            let quadric = Quadric::plane(across, self.at[a as usize], 10.0 * edge.length_squared());
+            let quadric = Quadric::plane(across, self.at[a as usize], 4.0);
             self.quadrics[a as usize].add(&quadric);
             self.quadrics[b as usize].add(&quadric);
         }
@@ -170,7 +170,7 @@ impl Work {
             .into_iter()
             .flatten()
             // Length breaks ties: flat places lose their shortest edges first.
-            .map(|x| (quadric.at(x).max(0.0) + 1e-12 * p.distance(q).powi(4), x))
+            .map(|x| (quadric.at(x).max(0.0) + 1e-9 * (p - q).length_squared(), x))
             .min_by(|x, y| x.0.total_cmp(&y.0))?;
         let version = self.version[a as usize] + self.version[b as usize];
         (cost.is_finite() && at.is_finite()).then_some(Candidate { cost, a, b, at, version })

@@ -20,6 +20,7 @@ impl fmt::Display for Inspection {
         self.fmt_meshes(f)?;
         self.fmt_levels(f)?;
         self.fmt_resolution(f)?;
+        self.fmt_pairs(f)?;
         self.fmt_dh(f)?;
         if !self.warnings.is_empty() {
             writeln!(f, "\nNote")?;
@@ -90,6 +91,26 @@ impl Inspection {
             let hull = l.hull.as_ref().map_or("flat".into(), |h| h.triangles.to_string());
             let (link, middle, coarse) = (shortened(&l.link, 24), off(l.middle.as_ref()), off(l.coarse.as_ref()));
             writeln!(f, "{link:24} {fine:>8} {middle:>20} {coarse:>20} {hull:>8}")?;
+        }
+        Ok(())
+    }
+
+    fn fmt_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.pairs.is_empty() {
+            return Ok(());
+        }
+        let tested = self.pairs.iter().filter(|p| p.tested).count();
+        writeln!(f, "\n{tested} of {} pairs of links are looked at for collisions", self.pairs.len())?;
+        let mut kinds: Vec<&str> = Vec::new();
+        for p in &self.pairs {
+            if !kinds.contains(&p.kind) {
+                kinds.push(p.kind);
+            }
+        }
+        for kind in kinds {
+            let of_kind = || self.pairs.iter().filter(|p| p.kind == kind);
+            let does = if of_kind().all(|p| p.tested) { "tested" } else { "skipped" };
+            writeln!(f, "{:>6} {does}: {kind}", of_kind().count())?;
         }
         Ok(())
     }

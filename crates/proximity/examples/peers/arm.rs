@@ -75,7 +75,7 @@ fn two_arms(n: usize, apart: f64) -> [Pose; 2 * LINKS] {
     // The root of x¹³ = x + 1.
     let golden = (0..60).fold(1.5_f64, |x, _| (1.0 + x).powf(1.0 / (AXES as f64 + 1.0)));
     let q: [f64; AXES] = std::array::from_fn(|k| {
-        let share = (0.5 + n as f64 * golden.powi(-(k as i32) - 1)).fract();
+        let share = (0.5 + n as f64 / golden.powf(k as f64 + 1.0)).fract();
         (2.0 * share - 1.0) * JOINTS[k % JOINTS.len()].1
     });
     let mut poses = [Pose::IDENTITY; 2 * LINKS];

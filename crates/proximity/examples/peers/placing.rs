@@ -80,7 +80,7 @@ impl Placing<'_> {
     fn pushed_in(&mut self) -> Option<Pose> {
         let (mut pose, away) = self.at_gap(0.0005 * self.size, 0.0005 * self.size)?;
         let push = self.size * (0.0015 + self.random.between_decades(0.001, 0.1));
-        pose.translation = pose.translation - away * push;
+        pose.translation -= away * push;
         collide(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.scratch).map(|_| pose)
     }
 

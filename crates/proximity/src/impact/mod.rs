@@ -69,7 +69,8 @@ pub struct Impact {
     pub on_a: Vec3,
     /// Nearest point of the second shape at that time, in the world.
     pub on_b: Vec3,
-    /// Unit vector from the second shape to the first; `None` where they overlap, which they can at the start only.
+    /// Unit vector from the second shape to the first; `None` where the distance is 0: they overlap, which they can at
+    /// the start only, or are too close to be told from touching.
     pub normal: Option<Vec3>,
     /// Distance at that time, metres: at most the tolerance where certain.
     pub separation: f64,

@@ -148,7 +148,8 @@ impl Shells {
     /// True where the bounds of no other closed shell overlap this one's: it is a solid by itself, and no hollow.
     pub fn is_alone(&self, number: usize) -> bool {
         let bounds = &self.list[number].bounds;
-        self.closed().all(|s| std::ptr::eq(s, &self.list[number]) || !s.bounds.overlaps(bounds))
+        let mut others = self.list.iter().enumerate().filter(|&(n, s)| n != number && s.closed);
+        others.all(|(_, s)| !s.bounds.overlaps(bounds))
     }
 
     fn closed(&self) -> impl Iterator<Item = &Shell> {

@@ -119,7 +119,9 @@ fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport
         let edges = Edges::new(vertices.len(), &faces, |triangle, _| triangle as u32);
         edges.for_each(|_, _, uses| {
             if uses.len() % 2 == 1 {
-                uses.iter().for_each(|&u| beside_open[u as u32 as usize] = true);
+                for &u in uses {
+                    beside_open[u as u32 as usize] = true;
+                }
             }
         });
     }

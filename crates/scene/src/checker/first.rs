@@ -2,11 +2,12 @@
 
 use super::answer::Contact;
 use super::list::{Pair, PairList};
+use super::narrow::Placed;
 use super::{Candidate, Core};
 use crate::world_box::round_up;
 use crate::{Level, SceneState, weight};
 
-impl Core<'_> {
+impl<'s> Core<'s> {
     /// A pair that is not farther apart than its margin and `tolerance` metres.
     pub(super) fn first(&mut self, list: &mut PairList, state: &SceneState, tolerance: f64) -> Option<Contact> {
         self.collect(list, state, tolerance);
@@ -28,7 +29,7 @@ impl Core<'_> {
                 break;
             }
         }
-        self.counts.answered.add(self.deepest, 1);
+        self.narrow.counts.answered.add(self.deepest, 1);
         found
     }
 
@@ -42,7 +43,11 @@ impl Core<'_> {
                 found(contact);
             }
         }
-        self.counts.answered.add(self.deepest, 1);
+        self.narrow.counts.answered.add(self.deepest, 1);
+    }
+
+    pub(super) fn sides(&self, pair: &Pair, state: &SceneState) -> [Placed<'s>; 2] {
+        [pair.a, pair.b].map(|model| Placed::new(self.scene, state, model as usize))
     }
 
     pub(super) fn sort(&mut self) {
@@ -97,19 +102,19 @@ impl Core<'_> {
             let margin = round_up(block.margin + tolerance);
             let same = block.a == block.b;
             if wholes && !same && state.boxes[block.a].clear(&state.boxes[block.b], margin) {
-                self.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
+                self.narrow.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
                 continue;
             }
             for index in block.start..block.end {
                 let pair = &list.pairs[index];
                 if pair.least > 0.0 && self.known(pair, state) > pair.margin + tolerance {
-                    self.counts.pairs_skipped += 1;
+                    self.narrow.counts.pairs_skipped += 1;
                     continue;
                 }
                 let (a, b) = (&state.boxes[pair.a as usize], &state.boxes[pair.b as usize]);
                 let coarse = self.options.level == Level::L1 && !same;
                 if boxes && !coarse && a.clear(b, (pair.margin_f32 + reach).next_up()) {
-                    self.counts.pairs_cleared.l2 += 1;
+                    self.narrow.counts.pairs_cleared.l2 += 1;
                     self.deepen(Level::L2);
                     continue;
                 }
@@ -133,18 +138,18 @@ impl Core<'_> {
         }
         if self.options.level == Level::Auto
             && self.boxes_decide()
-            && let Some(level) = self.cleared_coarsely(&a, &b, limit)
+            && let Some(level) = self.narrow.cleared_coarsely(&a, &b, limit)
         {
-            self.counts.pairs_cleared.add(level, 1);
+            self.narrow.counts.pairs_cleared.add(level, 1);
             self.deepen(level);
             return None;
         }
         let level = self.fine();
         self.deepen(level);
-        if self.touch(&a, &b, level, limit) {
+        if self.narrow.touch(&a, &b, level, limit) {
             return contact(level);
         }
-        self.counts.pairs_cleared.add(level, 1);
+        self.narrow.counts.pairs_cleared.add(level, 1);
         None
     }
 }

@@ -83,10 +83,10 @@ impl PairList {
             if !self.selects(state, e.a, e.b) {
                 continue;
             }
-            let least = match (state.pair(scene, e.a, e.b), &e.reason) {
-                (Some((PairState::Tested, _)), _) => 0.0,
-                (Some((_, Reason::OutOfReach { least_m })), _) => least_m,
-                (Some((_, Reason::NeverInSamples { .. })), _) => f64::INFINITY,
+            let least = match state.pair(scene, e.a, e.b) {
+                Some((PairState::Tested, _)) => 0.0,
+                Some((_, Reason::OutOfReach { least_m })) => least_m,
+                Some((_, Reason::NeverInSamples { .. })) => f64::INFINITY,
                 _ => continue,
             };
             self.push(scene, (e.a, e.b), e.margin_m, least, e.weight);

@@ -3,15 +3,14 @@
 mod answer;
 mod first;
 mod list;
-mod narrow;
+pub(crate) mod narrow;
 mod nearest;
-
-use elbowroom_proximity::mesh::Scratch;
 
 pub use answer::{Contact, Distance};
 
 use crate::{Counts, Level, Member, Scene, SceneState, Selection};
 use list::PairList;
+use narrow::Narrow;
 
 /// How questions are answered. None of these but [`Options::level`] changes an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,11 +46,12 @@ impl Default for Options {
 /// let mut state = SceneState::new(&scene);
 /// let mut checker = Checker::new(&scene, Options::default());
 /// assert!(checker.collides(&state).is_none());
-/// let free = checker.distance(&state).unwrap();
-/// state.set_q(&scene, 0, &[0.0, 1.5, 0.0])?; // leans over to the other arm
-/// let near = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
-/// assert!(near.metres < free.metres);
-/// assert!(checker.within(&state, near.metres + 1e-6).is_some());
+/// let nearest = checker.distance(&state).unwrap();
+/// assert!(nearest.lower_bound <= nearest.metres && checker.within(&state, nearest.metres + 1e-6).is_some());
+/// let upright = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
+/// state.set_q(&scene, 0, &[0.0, 0.7, 0.0])?; // leans over to the other arm
+/// let leaning = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
+/// assert!(leaning.metres < upright.metres);
 /// # Ok::<(), elbowroom_scene::SceneError>(())
 /// ```
 #[derive(Debug)]
@@ -65,11 +65,8 @@ pub struct Checker<'s> {
 struct Core<'s> {
     scene: &'s Scene,
     options: Options,
-    scratch: Scratch,
-    /// World boxes of one member's solids.
-    bounds: Vec<crate::world_box::WorldBox>,
+    narrow: Narrow,
     candidates: Vec<Candidate>,
-    counts: Counts,
     /// The finest level that the present answer has needed.
     deepest: Level,
 }
@@ -86,16 +83,8 @@ struct Candidate {
 impl<'s> Checker<'s> {
     /// For a scene, ready for questions about everything.
     pub fn new(scene: &'s Scene, options: Options) -> Self {
-        let most = scene.models.iter().flat_map(|m| [m.exact.len(), m.hull.len()]).max().unwrap_or(0);
-        let core = Core {
-            scene,
-            options,
-            scratch: Scratch::new(),
-            bounds: Vec::with_capacity(most),
-            candidates: Vec::new(),
-            counts: Counts::default(),
-            deepest: Level::L1,
-        };
+        let narrow = Narrow::new(scene);
+        let core = Core { scene, options, narrow, candidates: Vec::new(), deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new() };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
         checker
@@ -113,12 +102,12 @@ impl<'s> Checker<'s> {
 
     /// What it has done so far.
     pub fn counts(&self) -> Counts {
-        self.core.counts
+        self.core.narrow.counts
     }
 
     /// Counts from zero again.
     pub fn reset_counts(&mut self) {
-        self.core.counts = Counts::default();
+        self.core.narrow.counts = Counts::default();
     }
 
     /// The finest level that the last answer needed.

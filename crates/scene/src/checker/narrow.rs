@@ -1,36 +1,47 @@
 //! Two members against each other.
 
-use elbowroom_proximity::mesh::Hint;
+use elbowroom_proximity::mesh::{Hint, Scratch};
 use elbowroom_proximity::{Separation, Shape, separation_within};
 use elbowroom_spatial::{Obb, Pose};
 
-use super::Core;
-use super::list::Pair;
 use crate::model::{Model, Solid};
 use crate::world_box::{WorldBox, round_up};
-use crate::{Level, SceneState, obb};
+use crate::{Counts, Level, Scene, SceneState, obb};
+
+/// What comparing two members takes: memory, and counts of what was done.
+#[derive(Debug)]
+pub(crate) struct Narrow {
+    scratch: Scratch,
+    /// World boxes of one member's solids.
+    bounds: Vec<WorldBox>,
+    pub counts: Counts,
+}
 
 /// A model and where it is.
 #[derive(Clone, Copy)]
-pub(super) struct Placed<'s> {
+pub(crate) struct Placed<'s> {
     pub model: &'s Model,
     pub in_world: Pose,
 }
 
-impl Placed<'_> {
+impl<'s> Placed<'s> {
+    pub fn new(scene: &'s Scene, state: &SceneState, model: usize) -> Self {
+        Self { model: &scene.models[model], in_world: state.in_world[model] }
+    }
+
     fn obb(&self) -> Option<Obb> {
         self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
     }
 }
 
-impl<'s> Core<'s> {
-    pub(super) fn sides(&self, pair: &Pair, state: &SceneState) -> [Placed<'s>; 2] {
-        let scene = self.scene;
-        [pair.a as usize, pair.b as usize].map(|i| Placed { model: &scene.models[i], in_world: state.in_world[i] })
+impl Narrow {
+    pub fn new(scene: &Scene) -> Self {
+        let most = scene.models.iter().map(|m| m.exact.len()).max().unwrap_or(0);
+        Self { scratch: Scratch::new(), bounds: Vec::with_capacity(most), counts: Counts::default() }
     }
 
     /// The coarse level at which two members are certainly farther apart than `limit` metres.
-    pub(super) fn cleared_coarsely(&mut self, a: &Placed, b: &Placed, limit: f64) -> Option<Level> {
+    pub fn cleared_coarsely(&mut self, a: &Placed, b: &Placed, limit: f64) -> Option<Level> {
         if !(a.model.complex || b.model.complex) {
             return None;
         }
@@ -52,7 +63,7 @@ impl<'s> Core<'s> {
     }
 
     /// True where the models of a level are not certainly farther apart than `limit` metres.
-    pub(super) fn touch(&mut self, a: &Placed, b: &Placed, level: Level, limit: f64) -> bool {
+    pub fn touch(&mut self, a: &Placed, b: &Placed, level: Level, limit: f64) -> bool {
         self.counts.pairs_tested.add(level, 1);
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
         if let ([x], [y]) = (of_a, of_b) {
@@ -81,7 +92,7 @@ impl<'s> Core<'s> {
     }
 
     /// Distance between the models of a level, or `None` where it is certainly above `limit` metres.
-    pub(super) fn measure(
+    pub fn measure(
         &mut self,
         a: &Placed,
         b: &Placed,

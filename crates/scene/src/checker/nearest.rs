@@ -22,12 +22,12 @@ impl Core<'_> {
         for i in 0..self.candidates.len() {
             let Candidate { key, index, .. } = self.candidates[i];
             if best.is_some_and(|b| key >= b.metres) {
-                self.counts.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
+                self.narrow.counts.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
                 break;
             }
             self.look(list, index as usize, state, &mut best);
         }
-        self.counts.answered.add(self.deepest, 1);
+        self.narrow.counts.answered.add(self.deepest, 1);
         best
     }
 
@@ -45,7 +45,7 @@ impl Core<'_> {
                     continue;
                 }
                 if gap >= limit && best.is_some() {
-                    self.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
+                    self.narrow.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
                     continue;
                 }
             }
@@ -53,7 +53,7 @@ impl Core<'_> {
                 let pair = &list.pairs[index];
                 let known = if pair.least > 0.0 { self.known(pair, state) } else { 0.0 };
                 if known == f64::INFINITY {
-                    self.counts.pairs_skipped += 1;
+                    self.narrow.counts.pairs_skipped += 1;
                     continue;
                 }
                 let gap = if boxes {
@@ -63,7 +63,7 @@ impl Core<'_> {
                 };
                 let key = (gap.max(known) - pair.margin).max(0.0);
                 if best.is_some() && key >= limit {
-                    self.counts.pairs_cleared.l2 += 1;
+                    self.narrow.counts.pairs_cleared.l2 += 1;
                     self.deepen(Level::L2);
                     continue;
                 }
@@ -99,16 +99,16 @@ impl Core<'_> {
         if self.options.level == Level::Auto
             && self.boxes_decide()
             && limit < f64::INFINITY
-            && let Some(level) = self.cleared_coarsely(&a, &b, limit)
+            && let Some(level) = self.narrow.cleared_coarsely(&a, &b, limit)
         {
-            self.counts.pairs_cleared.add(level, 1);
+            self.narrow.counts.pairs_cleared.add(level, 1);
             self.deepen(level);
             return;
         }
         let level = self.fine();
         self.deepen(level);
-        let Some(s) = self.measure(&a, &b, level, limit, &mut pair.hint) else {
-            self.counts.pairs_cleared.add(level, 1);
+        let Some(s) = self.narrow.measure(&a, &b, level, limit, &mut pair.hint) else {
+            self.narrow.counts.pairs_cleared.add(level, 1);
             return;
         };
         let found = less_margin(&s, pair.margin);

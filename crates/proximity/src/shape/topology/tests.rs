@@ -42,7 +42,9 @@ fn plain_parts(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
         let before = of.clone();
         for f in faces {
             let least = f.map(|v| of[v as usize]).into_iter().min().unwrap();
-            f.iter().for_each(|&v| of[v as usize] = least);
+            for &v in f {
+                of[v as usize] = least;
+            }
         }
         if of == before {
             return of;

@@ -1,0 +1,44 @@
+//! Questions take no memory once a checker is made. Alone in its file: the counter counts the whole process.
+
+mod common;
+
+use std::alloc::System;
+
+use common::{Random, scene_of};
+use elbowroom_kinematics::LinkId;
+use elbowroom_scene::{Checker, Level, Options, SceneState, Selection};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+#[test]
+fn questions_take_no_memory() {
+    let scene = scene_of(51, |_| {});
+    let mut r = Random(51);
+    let mut states = [SceneState::new(&scene), SceneState::new(&scene)];
+    states[1].attach(&scene, 5, 0, LinkId(3), &[]).unwrap();
+    for level in [Level::Auto, Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::L3] {
+        for state in &mut states {
+            let mut checker = Checker::new(&scene, Options { level, ..Options::default() });
+            let (one, other) = (Selection::Robot(0), Selection::Robot(1));
+            // The first question about a selection or an arrangement makes its list.
+            checker.collides(state);
+            checker.between(one, other).collides(state);
+            let region = Region::new(ALLOCATOR);
+            let mut found = 0;
+            for _ in 0..200 {
+                state.set_q(&scene, 0, &r.q()).unwrap();
+                state.set_q(&scene, 1, &r.q()).unwrap();
+                found += usize::from(checker.collides(state).is_some());
+                found += usize::from(checker.within(state, 0.05).is_some());
+                found += usize::from(checker.distance(state).is_some_and(|d| d.metres > 0.0));
+                found += usize::from(checker.between(one, other).distance(state).is_some());
+                checker.contacts(state, |_| found += 1);
+            }
+            let used = region.change();
+            assert_eq!((used.allocations, used.reallocations), (0, 0), "{level}");
+            assert!(found > 400);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! A grasped object against the same object held in place by hand.
+
+mod common;
+
+use common::{Random, apart, link, scene_of};
+use elbowroom_kinematics::LinkId;
+use elbowroom_scene::{Checker, Edit, Member, Options, PairState, Reason, SceneState, Selection};
+use elbowroom_spatial::{Pose, Vec3};
+
+#[test]
+fn an_attached_object_is_the_object_in_its_place() {
+    let scene = scene_of(21, |b| {
+        b.padding(Member::Object(5), 0.01);
+    });
+    let mut r = Random(21);
+    let (mut held, mut placed) = (SceneState::new(&scene), SceneState::new(&scene));
+    let mut checker = Checker::new(&scene, Options::default());
+    let mut plain = Checker::new(&scene, Options { weights: false, matrix: false, ..Options::default() });
+    let in_link = Pose::from_translation(Vec3::Z * 0.55);
+    held.attach_at(&scene, 5, 0, LinkId(3), in_link, &[]).unwrap();
+    let part = Selection::Object(5);
+    let mut seen = [0; 2];
+    for _ in 0..200 {
+        let (q, p) = (r.q(), r.q());
+        for state in [&mut held, &mut placed] {
+            state.set_q(&scene, 0, &q).unwrap();
+            state.set_q(&scene, 1, &p).unwrap();
+        }
+        let hand = placed.pose(&scene, link(0, 3)).unwrap();
+        placed.place(&scene, 5, hand * in_link).unwrap();
+        assert_eq!(held.pose(&scene, Member::Object(5)), placed.pose(&scene, Member::Object(5)));
+        // Against another robot, and against each other object: the same answers.
+        let forearm = Selection::Link { robot: 1, link: LinkId(3) };
+        for other in [forearm, Selection::Object(0), Selection::Object(6)] {
+            let (x, y) = (checker.between(part, other).distance(&held), plain.between(part, other).distance(&placed));
+            let (x, y) = (x.unwrap(), y.unwrap());
+            assert!((x.metres - y.metres).abs() < 1e-12 && (x.a, x.b) == (y.a, y.b), "{x:?} {y:?}");
+            seen[usize::from(x.metres > 0.0)] += 1;
+        }
+        // Everything: all pairs one by one.
+        let members: Vec<Member> = scene.members().collect();
+        let mut nearest = f64::INFINITY;
+        for (i, a) in members.iter().enumerate() {
+            for b in &members[i + 1..] {
+                if let Some((PairState::Tested | PairState::Skipped, why)) = held.pair(&scene, *a, *b) {
+                    if matches!(why, Reason::Default | Reason::OutOfReach { .. }) {
+                        let margin = [a, b].iter().filter(|m| ***m == Member::Object(5)).count() as f64 * 0.01;
+                        nearest = nearest.min((apart(&scene, &held, *a, *b) - margin).max(0.0));
+                    }
+                }
+            }
+        }
+        let d = checker.distance(&held).unwrap();
+        assert!((d.metres - nearest).abs() < 1e-9, "{d:?} {nearest}");
+        assert_eq!(checker.collides(&held).is_some(), nearest == 0.0);
+    }
+    assert!(seen[0] > 5 && seen[1] > 100, "{seen:?}");
+}
+
+#[test]
+fn pairs_of_what_is_held_tell_their_reasons() {
+    let scene = scene_of(22, |b| {
+        b.edit(link(0, 1), Member::Object(0), Edit::Skip("behind a curtain".into()));
+    });
+    let part = Member::Object(0);
+    let mut state = SceneState::new(&scene);
+    assert_eq!(state.pair(&scene, part, Member::Object(1)), None);
+    assert_eq!(state.pair(&scene, part, link(0, 0)), Some((PairState::Skipped, Reason::NoJointBetween)));
+    state.attach(&scene, 0, 0, LinkId(3), &[LinkId(2)]).unwrap();
+    let of = |state: &SceneState, m| state.pair(&scene, part, m);
+    assert_eq!(of(&state, link(0, 3)), Some((PairState::Skipped, Reason::Attached("meshes/forearm".into()))));
+    assert_eq!(of(&state, link(0, 2)), Some((PairState::Skipped, Reason::MayTouch("meshes/upper_arm".into()))));
+    assert_eq!(of(&state, link(0, 1)), Some((PairState::Skipped, Reason::ByHand("behind a curtain".into()))));
+    for tested in [link(0, 0), link(1, 0), link(1, 3), Member::Object(1), Member::Object(6)] {
+        assert_eq!(of(&state, tested), Some((PairState::Tested, Reason::Default)), "{tested:?}");
+    }
+    // Two tools on one flange do not meet.
+    state.attach(&scene, 1, 0, LinkId(3), &[]).unwrap();
+    assert!(matches!(of(&state, Member::Object(1)), Some((PairState::Skipped, Reason::Attached(_)))));
+    // What hangs on a base stands as still as the objects around it.
+    state.detach(&scene, 1).unwrap();
+    state.attach(&scene, 1, 1, LinkId(0), &[]).unwrap();
+    let pair = state.pair(&scene, Member::Object(1), Member::Object(2));
+    assert_eq!(pair, Some((PairState::Skipped, Reason::NoJointBetween)));
+}
+
+#[test]
+fn letting_go_leaves_it_there_and_mistakes_are_told() {
+    let scene = scene_of(23, |_| {});
+    let mut state = SceneState::new(&scene);
+    state.attach(&scene, 2, 1, LinkId(3), &[]).unwrap();
+    let again = state.attach(&scene, 2, 0, LinkId(3), &[]).unwrap_err().to_string();
+    assert!(again.contains("`thing 2` is attached to `mixed/forearm`; detach it first"), "{again}");
+    assert!(state.place(&scene, 2, Pose::IDENTITY).is_err());
+    state.set_q(&scene, 1, &[0.7, 0.6, 0.5]).unwrap();
+    let there = state.pose(&scene, Member::Object(2)).unwrap();
+    state.detach(&scene, 2).unwrap();
+    assert!(state.detach(&scene, 2).is_err());
+    state.set_q(&scene, 1, &[0.0; 3]).unwrap();
+    assert_eq!(state.pose(&scene, Member::Object(2)), Some(there));
+    assert!(state.attach(&scene, 99, 0, LinkId(0), &[]).is_err());
+    assert!(state.attach(&scene, 0, 9, LinkId(0), &[]).is_err());
+    assert!(state.attach(&scene, 0, 0, LinkId(0), &[LinkId(44)]).is_err());
+    // Where it was let go counts, not where the scene was built with it.
+    let mut checker = Checker::new(&scene, Options::default());
+    let d = checker.between(Selection::Object(2), Selection::Robots).distance(&state).unwrap();
+    assert!((apart(&scene, &state, d.a, d.b) - d.metres).abs() < 1e-9);
+}

@@ -1,0 +1,130 @@
+//! Random scenes, and the plain way to answer questions about them.
+#![allow(dead_code)]
+
+use std::sync::Arc;
+
+use elbowroom_kinematics::LinkId;
+use elbowroom_proximity::{
+    Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, separation, tessellate,
+};
+use elbowroom_scene::pairs::pairs;
+use elbowroom_scene::{Body, Member, Object, Robot, Scene, SceneBuilder, SceneState, example};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn vec3(&mut self, size: f64) -> Vec3 {
+        Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
+    }
+
+    pub fn pose(&mut self, size: f64) -> Pose {
+        let axis = self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z);
+        Pose::new(Rotation::from_axis_angle(axis, self.between(-3.0, 3.0)), self.vec3(size))
+    }
+
+    /// Within the limits of the example arm.
+    pub fn q(&mut self) -> [f64; 3] {
+        [self.between(-3.0, 3.0), self.between(-2.2, 2.2), self.between(-2.5, 2.5)]
+    }
+
+    pub fn solid(&mut self, kind: usize, size: f64) -> Shape {
+        let mut h = || self.between(0.3 * size, size);
+        let (x, y, z) = (h(), h(), h());
+        match kind {
+            0 => Shape::Sphere(Sphere { radius: x }),
+            1 => Shape::Capsule(Capsule { half_length: x, radius: 0.5 * y }),
+            2 => Shape::Cylinder(Cylinder { half_length: x, radius: 0.5 * y }),
+            3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) }),
+            4 => Shape::Hull(Arc::new(ConvexHull::from_points(&self.points(size)).unwrap())),
+            _ => {
+                let hull = ConvexHull::from_points(&self.points(size)).unwrap();
+                Shape::Mesh(Arc::new(TriMesh::new(hull.vertices().to_vec(), hull.triangles().to_vec()).unwrap()))
+            }
+        }
+    }
+
+    fn points(&mut self, size: f64) -> Vec<Vec3> {
+        (0..12).map(|_| self.vec3(size)).collect()
+    }
+}
+
+/// The example arm with meshes in place of its capsules.
+pub fn mesh_arm() -> Robot {
+    let mut robot = example::arm().unwrap();
+    for body in robot.bodies.iter_mut().flatten() {
+        let (vertices, triangles) = tessellate::tessellate(&body.shape, 0.004);
+        body.shape = Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()));
+    }
+    robot
+}
+
+/// The example arm with several solids of all kinds per link.
+pub fn mixed_arm(r: &mut Random) -> Robot {
+    let mut robot = example::arm().unwrap();
+    for (link, bodies) in robot.bodies.iter_mut().enumerate() {
+        let along = if link == 0 { 0.05 } else { 0.2 };
+        for k in 0..3 {
+            let mut in_link = r.pose(0.05);
+            in_link.translation += Vec3::Z * along;
+            bodies.push(Body { name: format!("{k}"), shape: r.solid((link + 2 * k) % 6, 0.06), in_link });
+        }
+    }
+    robot
+}
+
+/// Two different arms among objects of every kind, without edits.
+pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
+    let mut r = Random(seed);
+    let mut builder = Scene::builder();
+    builder.robot("meshes", mesh_arm(), Pose::IDENTITY);
+    builder.robot("mixed", mixed_arm(&mut r), Pose::from_translation(Vec3::X * 0.75));
+    for kind in 0..6 {
+        let shape = r.solid(kind, 0.12);
+        let mut in_world = r.pose(0.3);
+        in_world.translation += Vec3::new(0.4, if kind % 2 == 0 { 0.5 } else { -0.5 }, 0.6);
+        builder.object(Object { name: format!("thing {kind}"), shape, in_world });
+    }
+    let floor = Pose::from_translation(Vec3::Z * -0.3);
+    builder.object(Object { name: "floor".into(), shape: Shape::HalfSpace(HalfSpace), in_world: floor });
+    more(&mut builder);
+    builder.build().unwrap()
+}
+
+/// All solids of a member as they are placed now.
+pub fn solids(scene: &Scene, state: &SceneState, member: Member) -> Vec<(Shape, Pose)> {
+    let in_world = state.pose(scene, member).unwrap();
+    match member {
+        Member::Object(o) => vec![(scene.objects()[o].shape.clone(), in_world)],
+        Member::Link { robot, link } => {
+            scene.robots()[robot].robot.bodies[link.0].iter().map(|b| (b.shape.clone(), in_world * b.in_link)).collect()
+        }
+    }
+}
+
+/// Distance of two members by asking every pair of solids.
+pub fn apart(scene: &Scene, state: &SceneState, a: Member, b: Member) -> f64 {
+    let (of_a, of_b) = (solids(scene, state, a), solids(scene, state, b));
+    let all = of_a.iter().flat_map(|(s, p)| of_b.iter().map(move |(t, q)| separation(s, p, t, q).distance));
+    all.fold(f64::INFINITY, f64::min)
+}
+
+/// Every pair by rule with its distance less its padding, the plain way.
+pub fn plain(scene: &Scene, state: &SceneState, padding: impl Fn(Member) -> f64) -> Vec<(Member, Member, f64)> {
+    let robots: Vec<&Robot> = scene.robots().iter().map(|r| &r.robot).collect();
+    let list = pairs(&robots, scene.objects().len());
+    list.into_iter().map(|(a, b)| (a, b, (apart(scene, state, a, b) - padding(a) - padding(b)).max(0.0))).collect()
+}
+
+pub fn link(robot: usize, link: usize) -> Member {
+    Member::Link { robot, link: LinkId(link) }
+}
