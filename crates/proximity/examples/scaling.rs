@@ -44,7 +44,10 @@ fn time(apart: f64, mut ask: impl FnMut(&Pose)) -> f64 {
     let pose = |i: usize| {
         let turn = i as f64;
         let direction = Vec3::new(turn.sin(), (turn * 1.7).cos(), (turn * 0.6).sin() + 0.1);
-        Pose { rotation: Rotation::from_rpy(turn, turn * 0.7, turn * 1.3), translation: direction * (apart / direction.length()) }
+        Pose {
+            rotation: Rotation::from_rpy(turn, turn * 0.7, turn * 1.3),
+            translation: direction * (apart / direction.length()),
+        }
     };
     let poses: Vec<Pose> = (0..200).map(pose).collect();
     poses.iter().for_each(&mut ask);
@@ -98,7 +101,9 @@ fn main() {
                 "{{\"triangles\":{triangles},\"build_ms\":{build:.3},\"tree_bytes_per_triangle\":{bytes:.1},\"collide_near_us\":{near:.3},\"collide_touch_us\":{touch:.3},\"within_us\":{tolerance:.3},\"distance_us\":{far:.3}}}"
             );
         } else {
-            println!("{triangles:9}  {build:8.2}  {bytes:10.1}  {near:15.2}  {touch:16.2}  {tolerance:13.2}  {far:11.2}");
+            println!(
+                "{triangles:9}  {build:8.2}  {bytes:10.1}  {near:15.2}  {touch:16.2}  {tolerance:13.2}  {far:11.2}"
+            );
         }
     }
 }

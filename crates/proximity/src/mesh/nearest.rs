@@ -255,6 +255,10 @@ impl Search<'_> {
             let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
             let bit = self.limit.sight.map_or(0, |sight| nearest(self.level, of_a, of_b, &sight, all));
             self.measure_slots(pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
+            // Where it is near enough, `begin` looks at the rest of the leaf.
+            if self.best.is_none() {
+                stack.push(pair);
+            }
             return;
         }
     }

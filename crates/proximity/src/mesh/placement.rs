@@ -65,10 +65,10 @@ impl Pairing {
         }
     }
 
-    /// False where numbers are NaN, infinite or so large that their products are.
+    /// False where numbers are NaN, infinite or so large beside the meshes that f64 has no digits left for them.
     #[inline]
     pub fn is_usable(&self) -> bool {
-        self.slack.is_finite() && self.doubt.is_finite()
+        self.slack.is_finite() && self.doubt < F32_DOUBT * 1e15
     }
 
     /// A point of B's tree frame in A's.

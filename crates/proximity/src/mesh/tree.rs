@@ -23,7 +23,7 @@ impl Frame {
         let half = bounds.extent().max_element() * 0.5;
         // The power of two above the half extent, with room for the rounding of the centre.
         let exponent = if half > 0.0 { (half * 1.000_001).log2().floor() + 1.0 } else { 0.0 };
-        let unit = exponent.clamp(-1000.0, 1000.0).exp2();
+        let unit = exponent.clamp(-40.0, 1000.0).exp2();
         Self { center: bounds.center(), unit, inverse: 1.0 / unit }
     }
 
