@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::query::{Ask, BLOCK, Level, Row, States, Subject, Written, answer};
-use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_proximity::{Shape, separation};
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::{Shape, collides, separation};
 use elbowroom_scene::pairs::pairs;
 use elbowroom_scene::{Body, Member};
 use elbowroom_spatial::Pose;
@@ -39,7 +39,7 @@ at = [350, 350, 500]
 radius = 90
 "#;
 
-/// Per pair the least distance of its solids.
+/// Per pair the least distance of its solids; 0 where two of them collide.
 fn naive(subject: &Subject, q: &[Vec<f64>]) -> Vec<(Member, Member, f64)> {
     let robots: Vec<_> = subject.robots.iter().map(|r| &r.robot).collect();
     let mut states: Vec<ChainState> = robots.iter().map(|r| ChainState::new(&r.chain)).collect();
@@ -62,6 +62,9 @@ fn naive(subject: &Subject, q: &[Vec<f64>]) -> Vec<(Member, Member, f64)> {
         let mut least = f64::INFINITY;
         for (shape_a, a_in_world) in solids(a) {
             for (shape_b, b_in_world) in solids(b) {
+                if collides(&shape_a, &a_in_world, &shape_b, &b_in_world) {
+                    return 0.0;
+                }
                 least = least.min(separation(&shape_a, &a_in_world, &shape_b, &b_in_world).distance);
             }
         }
@@ -196,8 +199,9 @@ fn names_are_those_of_the_cell() {
     let states = States::parse("s.csv".as_ref(), text, &subject).unwrap();
     let row = rows(&subject, &states, Ask::Collision, Level::Auto, false)[0];
     let written = Written::of(&row, &subject);
-    assert_eq!((written.a.as_deref(), written.b.as_deref()), (Some("left/link_2"), Some("ball")));
-    let member = Member::Link { robot: 0, link: LinkId(3) };
+    assert_eq!((written.a.as_deref(), written.b.as_deref()), (Some("left/link_3"), Some("ball")));
+    let link = subject.robots[0].robot.chain.link("link_3").unwrap();
+    let member = Member::Link { robot: 0, link };
     assert_eq!(subject.member_name(member), "left/link_3");
-    assert!(written.csv().starts_with("0,1,0.0,left/link_2,ball,"), "{}", written.csv());
+    assert!(written.csv().starts_with("0,1,0.0,left/link_3,ball,"), "{}", written.csv());
 }

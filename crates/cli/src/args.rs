@@ -83,10 +83,10 @@ pub(crate) struct QueryArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) urdf: Option<PathBuf>,
     /// The SRDF that belongs to the URDF: the pairs that it disables are not looked at
-    #[arg(long, value_name = "FILE", requires = "urdf")]
+    #[arg(long, value_name = "FILE", conflicts_with = "cell")]
     pub(crate) srdf: Option<PathBuf>,
     /// Unit of the URDF's meshes whose format states none
-    #[arg(long, value_enum, requires = "urdf")]
+    #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
     /// What to ask: collision, distance, or tolerance=METRES
     #[arg(long, value_name = "WHAT")]
@@ -122,6 +122,9 @@ pub(crate) struct InspectArgs {
     /// Joint states (a header of joint names, a row of radians or metres each): print link poses instead
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
+    /// Leave out what takes time: resolution levels, the pair matrix, visual meshes
+    #[arg(long, conflicts_with = "models")]
+    pub(crate) brief: bool,
     /// Also write a picture of the model: a PNG, or a page with four views
     #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
     pub(crate) picture: Option<PathBuf>,

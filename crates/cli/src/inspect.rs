@@ -19,7 +19,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
         srdf: args.srdf.clone(),
         unit: args.unit.map(LengthUnit::from),
         tip: args.tip.clone(),
-        brief: args.states.is_some(),
+        brief: args.brief || args.states.is_some(),
     };
     let inspection = Inspection::of(&args.model, &options)?;
     if let Some(states) = &args.states {

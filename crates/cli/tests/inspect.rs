@@ -97,3 +97,76 @@ fn the_table_for_people_names_every_joint_and_mesh() {
         assert!(answer.stdout.contains(word), "{word}: {}", answer.stdout);
     }
 }
+
+#[test]
+fn models_are_made_by_themselves_and_say_how_far_they_are_off() {
+    let dir = tempfile::tempdir().unwrap();
+    let answer =
+        elbowroom(dir.path(), &["inspect", &ns16(), "--json", "--models", "m", "--picture", "p.png"]).expect(0);
+    let json = answer.json();
+    assert_eq!(json["unit_doubts"].as_array().map(Vec::len), Some(0));
+    assert!(json["meshes"].as_array().unwrap().iter().all(|m| m["open_edges"] == 0 && m["crowded_edges"] == 0));
+    let levels = json["resolution"].as_array().unwrap();
+    assert_eq!(levels.len(), 7);
+    for l in levels {
+        let triangles = |key: &str| l[key]["triangles"].as_u64().unwrap();
+        assert!(triangles("middle") <= triangles("fine") / 4 + 1 && triangles("coarse") <= triangles("fine") / 16 + 12);
+        let off = |key: &str| l[key]["deviation_m"].as_f64().unwrap();
+        assert!(off("fine") == 0.0 && off("middle") > 0.0 && off("middle") < 0.01 && off("coarse") < 0.05, "{l}");
+        assert!(["box", "obb", "capsule", "hull"].iter().all(|k| l[*k].is_object()), "{l}");
+    }
+    let pairs = json["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 7 * 6 / 2);
+    assert_eq!(keys(&pairs[0]), ["a", "b", "margin_m", "reason", "suggestion", "tested", "weight"]);
+    let adjacent = pairs.iter().filter(|p| p["tested"] == false && p["reason"] == "adjacent").count();
+    assert_eq!(adjacent, 6);
+    assert_eq!(std::fs::read_dir(dir.path().join("m")).unwrap().count(), 3 * 7);
+    let coarse = dir.path().join("m/01_link_1.coarse.stl");
+    let json = elbowroom(dir.path(), &["inspect", coarse.to_str().unwrap(), "--json", "--brief"]).expect(0).json();
+    assert_eq!(json["meshes"][0]["triangles"], levels[1]["coarse"]["triangles"]);
+    let png = std::fs::read(dir.path().join("p.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 20_000);
+    elbowroom(dir.path(), &["inspect", &ns16(), "--brief", "--picture", "p.html"]).expect(0);
+    assert_eq!(std::fs::read_to_string(dir.path().join("p.html")).unwrap().matches("data:image/png").count(), 4);
+    let answer = elbowroom(dir.path(), &["inspect", &ns16(), "--brief", "--picture", "p.gif"]).expect(2);
+    assert!(answer.stderr.contains("png"), "{}", answer.stderr);
+}
+
+/// A slide of 1 m whose cart is a cube; the numbers of its corners are times `size`, and `scale` is in the URDF.
+fn cart(dir: &std::path::Path, size: f64, scale: f64) -> serde_json::Value {
+    let s = size;
+    let corners = [[0.0, 0.0, 0.0], [s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]];
+    let mut obj: String = corners.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    obj += "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    std::fs::write(dir.join("cart.obj"), obj).unwrap();
+    let urdf = format!(
+        "<robot name='slide'><link name='rail'/><link name='cart'><collision><geometry>\
+         <mesh filename='cart.obj' scale='{scale} {scale} {scale}'/></geometry></collision></link>\
+         <joint name='x' type='prismatic'><parent link='rail'/><child link='cart'/>\
+         <limit lower='0' upper='1' velocity='1' effort='0'/></joint></robot>"
+    );
+    std::fs::write(dir.join("slide.urdf"), urdf).unwrap();
+    elbowroom(dir, &["inspect", "slide.urdf", "--json"]).expect(0).json()
+}
+
+#[test]
+fn units_are_doubted_where_they_are_wrong_and_nowhere_else() {
+    let dir = tempfile::tempdir().unwrap();
+    for (size, scale, looks_like) in [
+        (300.0, 1.0, Some("mm")),
+        (300.0, 0.001, None),
+        (0.3, 1.0, None),
+        (0.3, 0.001, Some("applied twice")),
+        (3.0, 1.0, None),
+        (0.02, 1.0, None),
+    ] {
+        let json = cart(dir.path(), size, scale);
+        let doubts = json["unit_doubts"].as_array().unwrap();
+        assert_eq!(doubts.first().and_then(|d| d["looks_like"].as_str()), looks_like, "{size} {scale}");
+        assert_eq!(doubts.len(), usize::from(looks_like.is_some()));
+        assert_eq!(json["meshes"][0]["open_edges"], 3);
+        if looks_like.is_some() {
+            assert!(json["warnings"].to_string().contains("looks like"), "{}", json["warnings"]);
+        }
+    }
+}

@@ -41,7 +41,7 @@ pub struct InspectOptions {
     pub unit: Option<LengthUnit>,
     /// The link that the DH table ends at; default: the leaf with the most independent joints above it.
     pub tip: Option<String>,
-    /// Leave out what takes time: resolution levels and pairs.
+    /// Leave out what takes time: resolution levels, pairs, and what is only looked at.
     pub brief: bool,
 }
 
@@ -111,7 +111,7 @@ impl Inspection {
     }
 
     fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
-        let load = robot::LoadOptions { srdf: options.srdf.clone(), load_visuals: true, unit: options.unit };
+        let load = robot::LoadOptions { srdf: options.srdf.clone(), load_visuals: !options.brief, unit: options.unit };
         let loaded = robot::load(path, &load)?;
         let chain = &loaded.robot.chain;
         let tip = tip(chain, path, options.tip.as_deref())?;

@@ -166,11 +166,11 @@ impl Header {
         let names: Vec<String> = text.split(',').map(|c| unquoted(c.trim()).to_owned()).collect();
         let wrong =
             |what: String| FormatError::new(path, line, what).hint(format!("the header {}", header_of(subject)));
-        if let Some((_, twice)) = names.iter().enumerate().find(|(i, n)| names[..*i].contains(n)) {
-            return Err(wrong(format!("two columns are named `{twice}`")));
-        }
         if names.iter().all(|n| n.parse::<f64>().is_ok()) {
             return Err(wrong("has numbers where the joint names should be".into()));
+        }
+        if let Some((_, twice)) = names.iter().enumerate().find(|(i, n)| names[..*i].contains(n)) {
+            return Err(wrong(format!("two columns are named `{twice}`")));
         }
         let mut places = vec![None; names.len()];
         let mut at = 0;

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use elbowroom_formats::FormatError;
-use elbowroom_scene::{Checker, Level, Options, Scene, SceneError, SceneState};
+use elbowroom_scene::{Checker, Contact, Level, Options, Scene, SceneError, SceneState};
+use elbowroom_spatial::Vec3;
 
 use super::{Ask, Row, States};
 
@@ -96,38 +97,50 @@ fn one(checker: &mut Checker<'_>, state: &SceneState, ask: Ask) -> Row {
     match ask {
         Ask::Collision => {
             let Some(contact) = checker.collides(state) else { return nothing(checker.last_level()) };
-            let found = checker.between(contact.a.into(), contact.b.into()).distance(state);
             Row {
                 collides: true,
                 distance_m: Some(0.0),
                 pair: Some((contact.a, contact.b)),
-                witness: found.map(|d| (d.on_a, d.on_b)),
+                witness: touching(checker, state, contact),
                 ..nothing(contact.level)
             }
         }
-        Ask::Distance => nearest(checker, state, 0.0).unwrap_or_else(|| nothing(checker.last_level())),
+        Ask::Distance => distance(checker, state).unwrap_or_else(|| nothing(checker.last_level())),
         Ask::Tolerance(t) => {
             if checker.within(state, t).is_none() {
                 return nothing(checker.last_level());
             }
             let level = checker.last_level();
-            let row = nearest(checker, state, t).unwrap_or_else(|| nothing(level));
+            let row = distance(checker, state).unwrap_or_else(|| nothing(level));
             Row { collides: true, ..row }
         }
     }
 }
 
 /// `None` where there is no pair.
-fn nearest(checker: &mut Checker<'_>, state: &SceneState, tolerance_m: f64) -> Option<Row> {
+fn distance(checker: &mut Checker<'_>, state: &SceneState) -> Option<Row> {
     let d = checker.distance(state)?;
-    // A distance that is no number is not known to be one: contact.
-    let free = d.metres > tolerance_m;
-    Some(Row {
+    let row = Row {
         index: 0,
-        collides: !free,
+        // A distance that is no number is not known to be one: contact.
+        collides: !(d.metres > 0.0),
         distance_m: Some(d.metres.max(0.0)),
         pair: Some((d.a, d.b)),
         witness: Some((d.on_a, d.on_b)),
         level: d.level,
-    })
+    };
+    if row.collides || d.lower_bound > 0.0 {
+        return Some(row);
+    }
+    // Nearer than the distance is exact: the yes-or-no question decides, so that all questions agree.
+    let Some(contact) = checker.collides(state) else { return Some(row) };
+    let pair = Some((contact.a, contact.b));
+    let witness = if row.pair == pair { row.witness } else { touching(checker, state, contact) };
+    Some(Row { collides: true, distance_m: Some(0.0), pair, witness, ..row })
+}
+
+/// A point of each of two members in contact.
+fn touching(checker: &mut Checker<'_>, state: &SceneState, contact: Contact) -> Option<(Vec3, Vec3)> {
+    let found = checker.between(contact.a.into(), contact.b.into()).distance(state);
+    found.map(|d| (d.on_a, d.on_b))
 }
