@@ -93,7 +93,6 @@ fn size(s: &Shape) -> f64 {
 }
 
 #[test]
-#[ignore = "fails until a dive of the mesh search that measured one pair of a leaf pair gives the others back"]
 fn every_question_about_odd_meshes_has_an_answer() {
     let mut rng = Rng(3);
     let mut scratch = Scratch::new();
@@ -164,7 +163,6 @@ fn a_mesh_far_away_is_as_near_as_one_at_home() {
 }
 
 #[test]
-#[ignore = "fails until the unit of a mesh tree has a least size: its inverse overflows f32"]
 fn a_mesh_too_small_to_square_its_size_is_never_free_where_it_touches() {
     let (dust, solid) = (shape(&brick(1e-160, Vec3::ZERO)), shape(&brick(0.1, Vec3::ZERO)));
     let box_around = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.1) });

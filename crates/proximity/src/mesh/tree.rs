@@ -21,9 +21,10 @@ pub(super) struct Frame {
 impl Frame {
     fn of(bounds: &Aabb) -> Self {
         let half = bounds.extent().max_element() * 0.5;
-        // The power of two above the half extent, with room for the rounding of the centre.
+        // The power of two above the half extent, with room for the rounding of the centre; never less than a micrometre,
+        // so that ratios of distances to units stay numbers.
         let exponent = if half > 0.0 { (half * 1.000_001).log2().floor() + 1.0 } else { 0.0 };
-        let unit = exponent.clamp(-40.0, 1000.0).exp2();
+        let unit = exponent.clamp(-20.0, 1000.0).exp2();
         Self { center: bounds.center(), unit, inverse: 1.0 / unit }
     }
 
