@@ -1,6 +1,8 @@
 //! The exact-mesh engine: wide trees, sixteen boxes a test. See README.md beside this file.
 
 mod any;
+#[cfg(test)]
+mod audit;
 mod exact;
 mod lanes;
 mod leaf;
