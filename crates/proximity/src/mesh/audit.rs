@@ -153,7 +153,14 @@ fn sighted(a: &Child, b: &Child, sight: &Sight) -> f64 {
 }
 
 /// One pair of nodes opened; returns how many pairs of children f32 left out.
-fn audit_boxes<const MODE: u8>(a: &Tree, b: &Tree, pair: &Entry, pairing: &Pairing, limit: &Limit, radius: f64) -> usize {
+fn audit_boxes<const MODE: u8>(
+    a: &Tree,
+    b: &Tree,
+    pair: &Entry,
+    pairing: &Pairing,
+    limit: &Limit,
+    radius: f64,
+) -> usize {
     let mut scratch = Scratch::new();
     open::<MODE>(Level::new(), (a, b), pair, pairing, limit, &mut scratch.stack);
     let mut kept = [[false; FAN]; FAN];
@@ -211,6 +218,25 @@ fn audit_leaves(a: &TriMesh, b: &TriMesh, pair: &Entry, pairing: &Pairing, limit
     decided
 }
 
+fn random_lanes(n: &mut Numbers, a: &Tree, b: &Tree, pair: &Entry) -> (usize, usize) {
+    let mut lane = |tree: &Tree, height: u8, number: u32| {
+        n.below(tree.children(height.into(), number as usize).count_ones() as usize)
+    };
+    let (open_a, open_b) = pair.opens();
+    let i = if open_a { lane(a, pair.height_a, pair.a) } else { 0 };
+    (i, if open_b { lane(b, pair.height_b, pair.b) } else { 0 })
+}
+
+/// The distance of some pair of triangles, or a hair less than one: a limit at which rounding decides.
+fn at_a_pair(n: &mut Numbers, a: &TriMesh, b: &TriMesh, pair: &Entry, pairing: &Pairing) -> Option<f64> {
+    let slot =
+        |n: &mut Numbers, tree: &Tree, leaf: u32| leaf * LEAF as u32 + n.below(filling(tree, leaf as usize)) as u32;
+    let (slot_a, slot_b) = (slot(n, &a.tree, pair.a), slot(n, &b.tree, pair.b));
+    let (s, t) = corners_in_a(a, a.tree.triangle(slot_a), b, b.tree.triangle(slot_b), pairing);
+    let exact = triangle_triangle(s, t).squared.sqrt();
+    (exact > pairing.slack).then_some(exact * (1.0 + 1e-12))
+}
+
 #[test]
 fn what_f32_leaves_out_is_farther_than_the_limit() {
     let mut n = Numbers(2);
@@ -222,7 +248,7 @@ fn what_f32_leaves_out_is_farther_than_the_limit() {
             let here = Pose { rotation: Rotation::from_rpy(n.next(), n.next(), n.next()), translation: n.vector() };
             let there = n.pose(&a, &here, &b);
             let pairing = Pairing::new(&a.tree, &here, &b.tree, &there);
-            let radius = if n.next() < 0.3 { pairing.slack } else { 10f64.powf(-5.0 * n.next()) };
+            let mut radius = if n.next() < 0.3 { pairing.slack } else { 10f64.powf(-5.0 * n.next()) };
             let mut limit = Limit::new(radius, &pairing);
             if n.next() < 0.7 {
                 limit.look_along(n.vector(), &pairing);
@@ -230,16 +256,21 @@ fn what_f32_leaves_out_is_farther_than_the_limit() {
             // Down to the leaves on a random way.
             let mut pair = Entry::root(&a.tree, &b.tree);
             while !pair.is_leaves() {
+                let (i, j) = random_lanes(&mut n, &a.tree, &b.tree, &pair);
+                let next = pair.child(i, j, 0.0);
+                // Half of the limits lie just where one pair of boxes is: there rounding decides.
+                let ends = (child(&a.tree, next.height_a, next.a), child(&b.tree, next.height_b, next.b));
+                let exact = bound(&ends.0, &ends.1, &pairing, limit.sight.as_ref());
+                if n.next() < 0.5 && exact > pairing.slack {
+                    radius = exact * (1.0 + 1e-12);
+                    limit = limit.with_radius(radius, &pairing);
+                }
                 boxes += audit_boxes::<TOUCH>(&a.tree, &b.tree, &pair, &pairing, &limit, radius);
                 boxes += audit_boxes::<NEAR>(&a.tree, &b.tree, &pair, &pairing, &limit, radius);
-                let lane = |n: &mut Numbers, tree: &Tree, height: u8, number: u32| {
-                    n.below(tree.children(height.into(), number as usize).count_ones() as usize)
-                };
-                let (open_a, open_b) = pair.opens();
-                let i = if open_a { lane(&mut n, &a.tree, pair.height_a, pair.a) } else { 0 };
-                let j = if open_b { lane(&mut n, &b.tree, pair.height_b, pair.b) } else { 0 };
-                pair = pair.child(i, j, 0.0);
+                pair = next;
             }
+            let radius = at_a_pair(&mut n, &a, &b, &pair, &pairing).unwrap_or(radius);
+            limit = limit.with_radius(radius, &pairing);
             triangles += audit_leaves(&a, &b, &pair, &pairing, &limit, radius);
         }
     }

@@ -34,6 +34,13 @@ impl Limit {
         limit
     }
 
+    /// The same line of sight with another radius.
+    #[cfg(test)]
+    pub fn with_radius(mut self, radius: f64, pairing: &Pairing) -> Self {
+        self.set_radius(radius, pairing);
+        self
+    }
+
     #[inline]
     fn set_radius(&mut self, radius: f64, pairing: &Pairing) {
         self.gap = up(radius + pairing.doubt);
