@@ -84,6 +84,8 @@ impl<'s> Checker<'s> {
     /// For a scene, ready for questions about everything.
     pub fn new(scene: &'s Scene, options: Options) -> Self {
         let narrow = Narrow::new(scene);
+        // Models that are made when first asked for are asked for now.
+        scene.models.iter().for_each(|m| _ = m.at(options.level));
         let core = Core { scene, options, narrow, candidates: Vec::new(), deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new() };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
