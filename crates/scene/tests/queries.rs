@@ -150,6 +150,8 @@ fn coarse_levels_are_on_the_safe_side() {
                 assert!(truth.metres > 0.0 || checker.between(one, other).collides(&state).is_some());
                 let close = checker.between(one, other).within(&state, tolerance);
                 assert!(truth.metres > tolerance || close.is_some());
+                let free = checker.between(one, other).collides(&state).is_none();
+                assert!(!free || d.metres > 0.0, "{:?} {d:?} {one:?} {other:?}", levels[i]);
                 if d.metres > 1e-5 {
                     assert!(checker.between(one, other).collides(&state).is_none(), "{:?} {d:?}", levels[i]);
                     assert!(checker.between(one, other).within(&state, d.metres * 0.99 - 1e-6).is_none());

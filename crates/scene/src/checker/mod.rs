@@ -12,7 +12,8 @@ use crate::{Counts, Level, Member, Scene, SceneState, Selection};
 use list::PairList;
 use narrow::Narrow;
 
-/// How questions are answered. None of these but [`Options::level`] changes an answer.
+/// How questions are answered. None of these but [`Options::level`] changes an answer; at levels of enclosing volumes the
+/// matrix, which knows more than they do, makes it more exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// How closely solids are looked at.

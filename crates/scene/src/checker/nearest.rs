@@ -95,6 +95,8 @@ impl Core<'_> {
     fn look(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<Distance>) {
         let pair = &mut list.pairs[index];
         let [a, b] = self.sides(pair, state);
+        // What was proven of the exact solids may be more than what enclosing volumes can tell.
+        let proven = (self.known(pair, state) - pair.margin).max(0.0);
         let slack = a.model.slack(self.options.level) + b.model.slack(self.options.level);
         let margin = pair.margin + slack;
         let limit = best.map_or(f64::INFINITY, |b| b.metres + margin);
@@ -113,7 +115,8 @@ impl Core<'_> {
             self.narrow.counts.pairs_cleared.add(level, 1);
             return;
         };
-        let found = less_margin(&s, margin);
+        let (metres, lower) = less_margin(&s, margin);
+        let found = (metres.max(proven), lower.max(proven));
         let lower_bound = best.map_or(found.1, |b| b.lower_bound.min(found.1));
         if best.is_none_or(|b| found.0 < b.metres) {
             list.nearest = Some(index);
