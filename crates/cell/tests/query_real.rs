@@ -11,7 +11,7 @@ fn robots() -> Vec<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from);
     if !data.is_dir() {
-        println!("skipped: no data at {}", data.display());
+        eprintln!("skipped: no data at {}", data.display());
         return Vec::new();
     }
     let mut robots = Vec::new();

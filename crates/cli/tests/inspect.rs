@@ -134,10 +134,7 @@ fn models_are_made_by_themselves_and_say_how_far_they_are_off() {
 
 /// A slide of 1 m whose cart is a cube; the numbers of its corners are times `size`, and `scale` is in the URDF.
 fn cart(dir: &std::path::Path, size: f64, scale: f64) -> serde_json::Value {
-    let s = size;
-    let corners = [[0.0, 0.0, 0.0], [s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]];
-    let mut obj: String = corners.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
-    obj += "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    let obj = format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
     std::fs::write(dir.join("cart.obj"), obj).unwrap();
     let urdf = format!(
         "<robot name='slide'><link name='rail'/><link name='cart'><collision><geometry>\

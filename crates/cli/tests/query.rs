@@ -120,7 +120,9 @@ fn wrong_states_name_file_line_and_column() {
         for ask in ["collision", "distance", "tolerance=0.1"] {
             let answer = query(CELL, Some(states), &["--ask", ask]).expect(2);
             assert_eq!(answer.stdout, "", "{states:?}");
-            parts.iter().for_each(|p| assert!(answer.stderr.contains(p), "{states:?}: {}", answer.stderr));
+            for part in parts {
+                assert!(answer.stderr.contains(part), "{states:?}: {}", answer.stderr);
+            }
         }
     }
     let beyond = query(CELL, Some("joint_1,joint_2\n90,0\n"), &["--ask", "distance"]).expect(0);

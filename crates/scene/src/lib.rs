@@ -21,6 +21,7 @@ mod attach;
 mod builder;
 mod checker;
 mod counts;
+mod enclose;
 mod error;
 pub mod example;
 mod first_contacts;

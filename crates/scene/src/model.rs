@@ -1,8 +1,11 @@
 //! The models of one member, coarse to fine, made once.
 
-use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Shape, fit};
+use std::sync::OnceLock;
+
+use elbowroom_proximity::{Capsule, Cuboid, Shape};
 use elbowroom_spatial::{Aabb, Obb, Pose, Vec3};
 
+use crate::enclose;
 use crate::{Level, Member};
 
 /// A shape in its member's frame.
@@ -26,7 +29,8 @@ impl Solid {
 pub(crate) struct Model {
     pub member: Member,
     pub exact: Vec<Solid>,
-    pub hull: Vec<Solid>,
+    /// Made when first asked for: of large meshes it takes longer than all the rest.
+    hull: OnceLock<Vec<Solid>>,
     pub capsule: Vec<Solid>,
     pub cuboid: Vec<Solid>,
     /// `cuboid` again; `None` where the solid has no end.
@@ -36,7 +40,13 @@ pub(crate) struct Model {
     /// True where the capsule is the smaller of the two enclosures, so that it can clear what the box does not.
     pub slim: bool,
     pub padding_m: f64,
+    /// Metres by which a hull may fail to hold its mesh.
+    hull_slack: f64,
 }
+
+/// What [`ConvexHull::from_points`](elbowroom_proximity::ConvexHull::from_points) promises, with room, as a fraction of
+/// the extent.
+const HULL_TOLERANCE: f64 = 1e-12;
 
 impl Model {
     pub fn new(member: Member, exact: Vec<Solid>, padding_m: f64) -> Self {
@@ -44,18 +54,29 @@ impl Model {
         let endless = exact.iter().any(|s| matches!(s.shape, Shape::HalfSpace(_)));
         let boxed = if endless { None } else { cuboid(&exact) };
         let rounded = if endless { None } else { capsule(&exact) };
+        let hull_slack = exact
+            .iter()
+            .filter(|s| matches!(s.shape, Shape::Mesh(_)))
+            .map(|s| HULL_TOLERANCE * s.bounds.extent().length())
+            .fold(0.0, f64::max);
         let volume = |s: &Option<Solid>| s.as_ref().map_or(f64::INFINITY, |s| s.shape.volume());
         Self {
             member,
             slim: volume(&rounded) < volume(&boxed),
             obb: boxed.as_ref().and_then(obb),
-            hull: exact.iter().map(hull).collect(),
+            hull: OnceLock::new(),
             capsule: rounded.map_or_else(|| exact.clone(), |s| vec![s]),
             cuboid: boxed.map_or_else(|| exact.clone(), |s| vec![s]),
             exact,
             complex,
             padding_m,
+            hull_slack,
         }
+    }
+
+    /// Metres that a level's models may fail to enclose the solid by.
+    pub fn slack(&self, level: Level) -> f64 {
+        if level == Level::Hull { self.hull_slack } else { 0.0 }
     }
 
     /// The solids of a level; L1 is no model of a member.
@@ -63,7 +84,7 @@ impl Model {
         match level {
             Level::L1 | Level::L2 => &self.cuboid,
             Level::Capsule => &self.capsule,
-            Level::Hull => &self.hull,
+            Level::Hull => self.hull.get_or_init(|| self.exact.iter().map(hull).collect()),
             Level::L3 | Level::Auto => &self.exact,
         }
     }
@@ -88,8 +109,8 @@ fn cuboid(exact: &[Solid]) -> Option<Solid> {
     {
         return Some(Solid::new(Shape::Cuboid(Cuboid { half_extents }), only.in_member));
     }
-    let fit = fit::cuboid(&points(exact))?;
-    Some(Solid::new(fit.shape, fit.in_frame))
+    let (shape, in_member) = enclose::cuboid(&points(exact))?;
+    Some(Solid::new(shape, in_member))
 }
 
 fn capsule(exact: &[Solid]) -> Option<Solid> {
@@ -104,8 +125,8 @@ fn capsule(exact: &[Solid]) -> Option<Solid> {
             return Some(Solid::new(shape, only.in_member));
         }
     }
-    let fit = fit::capsule(&points(exact))?;
-    Some(Solid::new(fit.shape, fit.in_frame))
+    let (shape, in_member) = enclose::capsule(&points(exact))?;
+    Some(Solid::new(shape, in_member))
 }
 
 /// The box around a primitive in its own frame.
@@ -151,32 +172,7 @@ fn prism(half_length: f64, radius: f64) -> Vec<Vec3> {
 fn hull(solid: &Solid) -> Solid {
     let Shape::Mesh(mesh) = &solid.shape else { return solid.clone() };
     match mesh.hull() {
-        // A hull may leave a vertex out by its tolerance, so it is checked and grown.
-        Some(hull) => Solid::new(Shape::Hull(std::sync::Arc::new(enclosing(hull, mesh.vertices()))), solid.in_member),
+        Some(hull) => Solid::new(Shape::Hull(std::sync::Arc::new(hull.clone())), solid.in_member),
         None => cuboid(std::slice::from_ref(solid)).unwrap_or_else(|| solid.clone()),
-    }
-}
-
-/// The hull, grown about its middle until it holds the points.
-fn enclosing(hull: &ConvexHull, points: &[Vec3]) -> ConvexHull {
-    let excess = |h: &ConvexHull| points.iter().map(|&p| h.nearest(p).distance(p)).fold(0.0, f64::max);
-    let missing = if points.len() > 20_000 { 1e-13 * hull.aabb().extent().length() } else { excess(hull) };
-    if missing == 0.0 {
-        return hull.clone();
-    }
-    let middle = hull.vertices().iter().copied().sum_over(hull.vertices().len());
-    let thin = hull.aabb().extent().min_element().max(f64::MIN_POSITIVE);
-    let grow = 1.0 + 8.0 * missing / thin;
-    let grown: Vec<Vec3> = hull.vertices().iter().map(|&v| middle + (v - middle) * grow).collect();
-    ConvexHull::from_points(&grown).unwrap_or_else(|_| hull.clone())
-}
-
-trait SumOver {
-    fn sum_over(self, count: usize) -> Vec3;
-}
-
-impl<I: Iterator<Item = Vec3>> SumOver for I {
-    fn sum_over(self, count: usize) -> Vec3 {
-        self.fold(Vec3::ZERO, |s, p| s + p) / count.max(1) as f64
     }
 }

@@ -25,9 +25,14 @@ pub struct SceneState {
     pub(crate) displaced: Vec<bool>,
     /// Per robot: some joint is beyond its limits.
     pub(crate) beyond_limits: Vec<bool>,
+    /// What was proven when the scene was built holds for every pair.
+    pub(crate) all_proofs_hold: bool,
     /// Names what is attached to what: states of equal number have equal pairs. 0: nothing is attached.
     pub(crate) arrangement: u64,
 }
+
+/// Numbers of arrangements; only whether two are equal matters.
+static NEXT: AtomicU64 = AtomicU64::new(1);
 
 impl SceneState {
     /// All joints at zero (which may lie beyond a limit), objects where the scene has them, nothing attached.
@@ -39,6 +44,7 @@ impl SceneState {
             attached: vec![None; scene.objects.len()],
             displaced: vec![false; scene.objects.len()],
             beyond_limits: vec![false; scene.robots.len()],
+            all_proofs_hold: true,
             arrangement: 0,
         };
         for (i, o) in scene.objects.iter().enumerate() {
@@ -95,6 +101,7 @@ impl SceneState {
             return Err(SceneError::PlacedWhileAttached { object: o.name.clone(), link });
         }
         self.displaced[object] = in_world != o.in_world;
+        self.count_proofs();
         self.put(scene, scene.first_object + object, in_world);
         Ok(())
     }
@@ -141,7 +148,10 @@ impl SceneState {
             let l = chain.joints()[chain.active_joints()[i].0].limits;
             *q >= l.lower && *q <= l.upper
         };
-        self.beyond_limits[robot] = !self.chains[robot].q.iter().enumerate().all(within);
+        let beyond = !self.chains[robot].q.iter().enumerate().all(within);
+        if std::mem::replace(&mut self.beyond_limits[robot], beyond) != beyond {
+            self.count_proofs();
+        }
         if self.arrangement != 0 {
             self.carry(scene, robot);
         }
@@ -170,8 +180,14 @@ impl SceneState {
         }
     }
 
+    fn count_proofs(&mut self) {
+        let free = |o: (&bool, &Option<Attachment>)| !o.0 && o.1.is_none();
+        self.all_proofs_hold =
+            !self.beyond_limits.contains(&true) && self.displaced.iter().zip(&self.attached).all(free);
+    }
+
     pub(crate) fn rearranged(&mut self) {
-        static NEXT: AtomicU64 = AtomicU64::new(1);
+        self.count_proofs();
         self.arrangement =
             if self.attached.iter().any(Option::is_some) { NEXT.fetch_add(1, Ordering::Relaxed) } else { 0 };
     }

@@ -42,11 +42,10 @@ fn an_attached_object_is_the_object_in_its_place() {
         let mut nearest = f64::INFINITY;
         for (i, a) in members.iter().enumerate() {
             for b in &members[i + 1..] {
-                if let Some((PairState::Tested | PairState::Skipped, why)) = held.pair(&scene, *a, *b) {
-                    if matches!(why, Reason::Default | Reason::OutOfReach { .. }) {
-                        let margin = [a, b].iter().filter(|m| ***m == Member::Object(5)).count() as f64 * 0.01;
-                        nearest = nearest.min((apart(&scene, &held, *a, *b) - margin).max(0.0));
-                    }
+                let why = held.pair(&scene, *a, *b).map(|p| p.1);
+                if matches!(why, Some(Reason::Default | Reason::OutOfReach { .. })) {
+                    let margin = if *b == Member::Object(5) || *a == Member::Object(5) { 0.01 } else { 0.0 };
+                    nearest = nearest.min((apart(&scene, &held, *a, *b) - margin).max(0.0));
                 }
             }
         }

@@ -80,13 +80,10 @@ fn what_is_out_of_reach_is_never_nearer_than_proven() {
 fn proofs_do_not_count_where_they_do_not_hold() {
     // The forearm does not come down to the foot within these limits, but beyond them.
     let mut arm = example::arm().unwrap();
-    let narrow = |robot: &Robot| {
-        let mut joints = robot.chain.joints().to_vec();
-        joints[2].limits = elbowroom_kinematics::Limits::symmetric(0.3);
-        joints[1].limits = elbowroom_kinematics::Limits::symmetric(0.5);
-        elbowroom_kinematics::Chain::new("arm", robot.chain.links().to_vec(), joints).unwrap()
-    };
-    arm.chain = narrow(&arm);
+    let mut joints = arm.chain.joints().to_vec();
+    joints[1].limits = elbowroom_kinematics::Limits::symmetric(0.5);
+    joints[2].limits = elbowroom_kinematics::Limits::symmetric(0.3);
+    arm.chain = elbowroom_kinematics::Chain::new("arm", arm.chain.links().to_vec(), joints).unwrap();
     let mut b = Scene::builder();
     b.robot("arm", arm, Pose::IDENTITY);
     b.object(Object {

@@ -68,7 +68,7 @@ fn all_questions_levels_and_options_agree_with_all_pairs_asked_plainly() {
     let mut checkers: Vec<_> = options().into_iter().map(|o| Checker::new(&scene, o)).collect();
     let mut r = Random(11);
     let (mut free, mut touching) = (0, 0);
-    for _ in 0..60 {
+    for _ in 0..120 {
         let state = random_state(&scene, &mut r);
         let truth = plain(&scene, &state, padded);
         let tolerance = r.between(0.0, 0.2);
@@ -83,7 +83,7 @@ fn all_questions_levels_and_options_agree_with_all_pairs_asked_plainly() {
                 let context = format!("{one:?} {other:?} {:?}", checker.options());
                 let mut ask = checker.between(one, other);
                 let contact = ask.collides(&state);
-                if nearest < 1e-15 || nearest > DOUBT {
+                if !(1e-15..=DOUBT).contains(&nearest) {
                     assert_eq!(contact.is_some(), nearest == 0.0, "{context} {nearest}");
                 }
                 if let Some(c) = contact {
@@ -110,7 +110,7 @@ fn all_questions_levels_and_options_agree_with_all_pairs_asked_plainly() {
             if nearest > 0.0 { free += 1 } else { touching += 1 }
         }
     }
-    assert!(free > 100 && touching > 100, "{free} free, {touching} touching");
+    assert!(free > 100 && touching > 60, "{free} free, {touching} touching");
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn coarse_levels_are_on_the_safe_side() {
     let mut looser = [0; 4];
     let levels = [Level::L1, Level::L2, Level::Capsule, Level::Hull];
     let mut coarse = levels.map(|level| Checker::new(&scene, Options { level, ..Options::default() }));
-    for _ in 0..150 {
+    for _ in 0..300 {
         let state = random_state(&scene, &mut r);
         let tolerance = r.between(0.0, 0.1);
         for (one, other) in SELECTIONS {
@@ -150,6 +150,8 @@ fn coarse_levels_are_on_the_safe_side() {
                 assert!(truth.metres > 0.0 || checker.between(one, other).collides(&state).is_some());
                 let close = checker.between(one, other).within(&state, tolerance);
                 assert!(truth.metres > tolerance || close.is_some());
+                let free = checker.between(one, other).collides(&state).is_none();
+                assert!(!free || d.metres > 0.0, "{:?} {d:?} {one:?} {other:?}", levels[i]);
                 if d.metres > 1e-5 {
                     assert!(checker.between(one, other).collides(&state).is_none(), "{:?} {d:?}", levels[i]);
                     assert!(checker.between(one, other).within(&state, d.metres * 0.99 - 1e-6).is_none());
@@ -159,8 +161,7 @@ fn coarse_levels_are_on_the_safe_side() {
             }
         }
     }
-    assert!(looser.iter().all(|n| *n > 50), "{looser:?}");
-    assert!(looser[0] > looser[3], "{looser:?}");
+    assert!(looser.iter().all(|n| *n > 20) && looser[0] > looser[3], "{looser:?}");
 }
 
 #[test]
@@ -234,7 +235,7 @@ fn of_several_contacts_the_one_nearest_to_a_base_is_told_without_weights() {
     let mut checker = Checker::new(&scene, Options { weights: false, ..Options::default() });
     let mut r = Random(12);
     let mut several = 0;
-    for _ in 0..300 {
+    for _ in 0..600 {
         let state = random_state(&scene, &mut r);
         let mut all = Vec::new();
         checker.contacts(&state, |c| all.push(c));

@@ -27,6 +27,11 @@ impl Line {
         self.lib.starts_with("elbowroom")
     }
 
+    /// Whether it carries something from step to step.
+    fn is_warm(&self) -> bool {
+        self.lib.contains("warm")
+    }
+
     pub fn json(&self) -> String {
         let Self { lib, set, query, mean_ns, n, answers_checked, disagreements, .. } = self;
         format!(
@@ -43,27 +48,15 @@ pub fn table(lines: &[Line], peers: &[Ready], missing: &[String]) -> String {
     row(&mut out, ["---", "---", "---", "---", "---", "---", "---", "---"]);
     let (mut met, mut rows_asked) = (0, 0);
     for line in lines.iter().filter(|line| line.is_ours()) {
-        let warm = if line.lib.contains("warm") { " warm" } else { "" };
-        let query = format!("{}{warm}", line.query);
-        let ours = grouped(line.mean_ns);
-        let Some(best) = best_peer(lines, line) else {
-            row(&mut out, [&line.set, &query, &ours, "none", "", "", "", wrong(line)]);
-            continue;
-        };
-        let ratio = best.mean_ns / line.mean_ns;
-        let (target, verdict) = match asked(&line.lib, &line.set, &line.query) {
-            Some(target) => {
-                rows_asked += 1;
-                met += usize::from(ratio >= target && line.disagreements == 0);
-                (format!("{target:.0}"), if ratio >= target { "met" } else { "missed" })
-            }
-            None => (String::new(), ""),
-        };
-        let verdict = if line.disagreements > 0 { wrong(line) } else { verdict };
-        row(
-            &mut out,
-            [&line.set, &query, &ours, &best.lib, &grouped(best.mean_ns), &format!("{ratio:.1}"), &target, verdict],
-        );
+        let best = best_peer(lines, line, line.is_warm());
+        let target = best.and_then(|_| asked(&line.lib, &line.set, &line.query));
+        rows_asked += usize::from(target.is_some());
+        met += usize::from(compare(&mut out, line, best, target));
+        // A warm line's rivals may be warm too; beside it what they reach cold.
+        let cold = best_peer(lines, line, false).filter(|_| best.is_some_and(Line::is_warm) && line.is_warm());
+        if cold.is_some() {
+            compare(&mut out, line, cold, None);
+        }
     }
     let _ = writeln!(out, "\n{met} of {rows_asked} ratios asked for are met.");
     agreement(&mut out, lines);
@@ -75,15 +68,30 @@ pub fn table(lines: &[Line], peers: &[Ready], missing: &[String]) -> String {
     out
 }
 
-fn wrong(line: &Line) -> &'static str {
-    if line.disagreements > 0 { "WRONG" } else { "" }
+/// A row; true where the ratio is reached.
+fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f64>) -> bool {
+    let query = format!("{}{}", line.query, if line.is_warm() { " warm" } else { "" });
+    let ratio = best.map_or(f64::NAN, |best| best.mean_ns / line.mean_ns);
+    let met = line.disagreements == 0 && target.is_some_and(|target| ratio >= target);
+    let verdict = match target {
+        _ if line.disagreements > 0 => "WRONG",
+        None => "",
+        Some(_) if met => "met",
+        Some(_) => "missed",
+    };
+    let (name, time) = best.map_or(("none", String::new()), |best| (&best.lib, grouped(best.mean_ns)));
+    let ratio = best.map_or(String::new(), |_| format!("{ratio:.1}"));
+    let target = target.map_or(String::new(), |target| format!("{target:.0}"));
+    row(out, [&line.set, &query, &grouped(line.mean_ns), name, &time, &ratio, &target, verdict]);
+    met
 }
 
 /// The quickest of those whose answers are right.
-fn best_peer<'a>(lines: &'a [Line], ours: &Line) -> Option<&'a Line> {
-    let rivals = lines
-        .iter()
-        .filter(|line| !line.is_ours() && line.set == ours.set && line.query == ours.query && line.disagreements == 0);
+fn best_peer<'a>(lines: &'a [Line], ours: &Line, warm_too: bool) -> Option<&'a Line> {
+    let rivals = lines.iter().filter(|line| {
+        let same = line.set == ours.set && line.query == ours.query;
+        same && !line.is_ours() && line.disagreements == 0 && (warm_too || !line.is_warm())
+    });
     rivals.min_by(|a, b| a.mean_ns.total_cmp(&b.mean_ns))
 }
 
@@ -143,6 +151,20 @@ mod tests {
         assert!(row.contains("parry") && row.contains("15.0") && row.ends_with("met"), "{row}");
         assert!(table.contains("90 yes-or-no answers") && table.contains("1 of 90 answers wrong"), "{table}");
         assert!(table.contains("fcl is ill") && table.lines().all(|row| row.chars().count() <= 100), "{table}");
+    }
+
+    #[test]
+    fn warm_peers_are_no_rivals_of_a_cold_line() {
+        let lines = [
+            line("elbowroom", 10.0, 0),
+            line("elbowroom+warm", 5.0, 0),
+            line("coal", 200.0, 0),
+            line("coal+warm", 50.0, 0),
+        ];
+        let table = table(&lines, &[], &[]);
+        assert!(table.lines().nth(2).unwrap().contains(" 20.0 "), "{table}");
+        assert!(table.lines().nth(3).unwrap().contains(" 10.0 "), "{table}");
+        assert!(table.lines().nth(4).unwrap().contains(" 40.0"), "{table}");
     }
 
     #[test]

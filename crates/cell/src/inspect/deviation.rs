@@ -141,3 +141,82 @@ fn nearest_on([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
 fn on_edge(from: Vec3, to: Vec3, along: f64, whole: f64) -> Vec3 {
     if whole > 0.0 { from.lerp(to, (along / whole).clamp(0.0, 1.0)) } else { from }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::simplify;
+    use super::*;
+
+    /// A bumpy ball of `n` by `2 n` quads, cut in triangles.
+    fn ball(n: u32, bump: f64) -> TriMesh {
+        let point = |i: u32, j: u32| {
+            let (u, v) = (f64::from(i) / f64::from(n), f64::from(j % (2 * n)) / f64::from(2 * n));
+            let ((su, cu), (sv, cv)) = ((u * std::f64::consts::PI).sin_cos(), (v * std::f64::consts::TAU).sin_cos());
+            Vec3::new(su * cv, su * sv, cu) * (1.0 + bump * (5.0 * u * v + 3.0 * v).sin())
+        };
+        let vertices = (0..=n).flat_map(|i| (0..2 * n).map(move |j| point(i, j))).collect();
+        let at = |i: u32, j: u32| i * 2 * n + j % (2 * n);
+        let quads = (0..n).flat_map(|i| (0..2 * n).map(move |j| (i, j)));
+        let triangles = quads.flat_map(|(i, j)| {
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        });
+        TriMesh::new(vertices, triangles.collect()).unwrap()
+    }
+
+    /// Distance of the farthest of many points of the original.
+    fn sampled(mesh: &TriMesh, simple: &Simplified) -> f64 {
+        let solids: Vec<[Vec3; 3]> = simple.triangles.iter().map(|t| t.map(|v| simple.vertices[v as usize])).collect();
+        let nearest = |p: Vec3| solids.iter().map(|s| p.distance(nearest_on(*s, p))).fold(f64::INFINITY, f64::min);
+        let mut worst: f64 = 0.0;
+        for t in mesh.triangles() {
+            let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
+            let grid = (0..=10).flat_map(|i| (0..=10 - i).map(move |j| (f64::from(i) / 10.0, f64::from(j) / 10.0)));
+            for (u, v) in grid {
+                worst = worst.max(nearest(a + (b - a) * u + (c - a) * v));
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn the_bound_holds_every_point_and_is_tight() {
+        let mesh = ball(12, 0.05);
+        let (middle, coarse) = simplify::middle_and_coarse(&mesh, 150, 50);
+        for (simple, most, off) in [(&middle, 150, 0.1), (&coarse, 50, 0.3)] {
+            assert!(simple.triangles.len() <= most, "{}", simple.triangles.len());
+            let (seen, proven) = (sampled(&mesh, simple), bound(&mesh, simple));
+            assert!(seen <= proven && proven <= 1.2 * seen && proven < off, "{seen} {proven}");
+        }
+    }
+
+    #[test]
+    fn nothing_to_take_away_deviates_by_nothing() {
+        let mesh = ball(3, 0.0);
+        let (same, _) = simplify::middle_and_coarse(&mesh, 1000, 1000);
+        assert!(bound(&mesh, &same) < 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Triangles of any kind: crossing, without area, of one corner.
+        #[test]
+        fn any_soup_of_triangles_is_bounded(
+            corners in prop::collection::vec((0..4_u8, 0..4_u8, 0..4_u8), 3..20),
+            faces in prop::collection::vec((0..20_usize, 0..20_usize, 0..20_usize), 1..40),
+        ) {
+            let vertices: Vec<Vec3> =
+                corners.iter().map(|c| Vec3::new(f64::from(c.0), f64::from(c.1), f64::from(c.2))).collect();
+            let n = vertices.len();
+            let triangles = faces.iter().map(|f| [f.0 % n, f.1 % n, f.2 % n].map(|i| i as u32)).collect();
+            let mesh = TriMesh::new(vertices, triangles).unwrap();
+            let (middle, coarse) = simplify::middle_and_coarse(&mesh, 12, 4);
+            for simple in [middle, coarse] {
+                prop_assert!(simple.vertices.iter().all(|v| v.is_finite()));
+                prop_assert!(sampled(&mesh, &simple) <= bound(&mesh, &simple));
+            }
+        }
+    }
+}

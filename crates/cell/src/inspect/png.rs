@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn areas_of_one_colour_take_little_room() {
         let mut file = Vec::new();
-        write(&mut file, 100, 100, &[200; 30_000]).unwrap();
+        write(&mut file, 100, 100, &vec![200; 30_000]).unwrap();
         assert!(file.starts_with(b"\x89PNG") && file.len() < 1500, "{}", file.len());
     }
 }

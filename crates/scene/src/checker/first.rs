@@ -7,6 +7,9 @@ use super::{Candidate, Core};
 use crate::world_box::round_up;
 use crate::{Level, SceneState, weight};
 
+/// More than the rounding of a sum of two f32 that are not negative.
+const ROUND_UP: f32 = 1.0 + 4.0 * f32::EPSILON;
+
 impl<'s> Core<'s> {
     /// A pair that is not farther apart than its margin and `tolerance` metres.
     pub(super) fn first(&mut self, list: &mut PairList, state: &SceneState, tolerance: f64) -> Option<Contact> {
@@ -51,6 +54,9 @@ impl<'s> Core<'s> {
     }
 
     pub(super) fn sort(&mut self) {
+        if self.candidates.len() < 2 {
+            return;
+        }
         self.candidates.sort_unstable_by(|x, y| x.key.total_cmp(&y.key).then(x.rank.cmp(&y.rank)));
     }
 
@@ -87,8 +93,9 @@ impl<'s> Core<'s> {
 
     /// Metres that the pair is certainly apart by what the matrix knows.
     pub(super) fn known(&self, pair: &Pair, state: &SceneState) -> f64 {
-        let sides = [pair.a, pair.b].map(|m| self.scene.models[m as usize].member);
-        let holds = pair.least > 0.0 && self.options.matrix && sides.iter().all(|m| state.proofs_hold(*m));
+        let side = |model: u32| state.proofs_hold(self.scene.models[model as usize].member);
+        let holds =
+            pair.least > 0.0 && self.options.matrix && (state.all_proofs_hold || (side(pair.a) && side(pair.b)));
         if holds { pair.least } else { 0.0 }
     }
 
@@ -98,6 +105,7 @@ impl<'s> Core<'s> {
         self.deepest = Level::L1;
         let (boxes, wholes) = (self.boxes_decide(), self.wholes_decide());
         let reach = round_up(tolerance);
+        let (mut skipped, mut cleared) = (0, 0);
         for block in &list.blocks {
             let margin = round_up(block.margin + tolerance);
             let same = block.a == block.b;
@@ -105,25 +113,29 @@ impl<'s> Core<'s> {
                 self.narrow.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
                 continue;
             }
-            for index in block.start..block.end {
-                let pair = &list.pairs[index];
-                if pair.least > 0.0 && self.known(pair, state) > pair.margin + tolerance {
-                    self.narrow.counts.pairs_skipped += 1;
+            // Robots against each other at L1: one pair stands for all.
+            let coarse = self.options.level == Level::L1 && !same;
+            for (i, sides) in list.sides[block.start..block.end].iter().enumerate() {
+                let index = block.start + i;
+                if sides.proven && self.known(&list.pairs[index], state) > list.pairs[index].margin + tolerance {
+                    skipped += 1;
                     continue;
                 }
-                let (a, b) = (&state.boxes[pair.a as usize], &state.boxes[pair.b as usize]);
-                let coarse = self.options.level == Level::L1 && !same;
-                if boxes && !coarse && a.clear(b, (pair.margin_f32 + reach).next_up()) {
-                    self.narrow.counts.pairs_cleared.l2 += 1;
-                    self.deepen(Level::L2);
+                let (a, b) = (&state.boxes[sides.a as usize], &state.boxes[sides.b as usize]);
+                if boxes && !coarse && a.clear(b, (sides.margin + reach) * ROUND_UP) {
+                    cleared += 1;
                     continue;
                 }
-                self.candidates.push(Candidate { key: 0.0, rank: pair.rank, index: index as u32 });
+                self.candidates.push(Candidate { key: 0.0, rank: list.pairs[index].rank, index: index as u32 });
                 if coarse {
-                    // One pair stands for all of the block.
                     break;
                 }
             }
+        }
+        self.narrow.counts.pairs_skipped += skipped;
+        self.narrow.counts.pairs_cleared.l2 += cleared;
+        if cleared > 0 {
+            self.deepen(Level::L2);
         }
     }
 
@@ -146,6 +158,7 @@ impl<'s> Core<'s> {
         }
         let level = self.fine();
         self.deepen(level);
+        let limit = limit + a.model.slack(level) + b.model.slack(level);
         if self.narrow.touch(&a, &b, level, limit) {
             return contact(level);
         }

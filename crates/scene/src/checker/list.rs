@@ -13,9 +13,8 @@ pub(super) struct Pair {
     /// Indices of models.
     pub a: u32,
     pub b: u32,
-    /// Metres, and rounded up.
+    /// Metres.
     pub margin: f64,
-    pub margin_f32: f32,
     /// Proven distance, metres; 0 where nothing is. Infinite where the user has ruled the pair out.
     pub least: f64,
     /// Place in the order of the hierarchy.
@@ -23,6 +22,17 @@ pub(super) struct Pair {
     pub weight: f64,
     /// Which solids were nearest, and where.
     pub hint: (u32, u32, Hint),
+}
+
+/// What a test of boxes takes of a pair, packed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sides {
+    pub a: u32,
+    pub b: u32,
+    /// Metres, rounded up.
+    pub margin: f32,
+    /// The matrix may know something.
+    pub proven: bool,
 }
 
 /// Pairs between the same two carriers.
@@ -43,6 +53,8 @@ pub(super) struct PairList {
     /// For which arrangement of attached objects it was made.
     pub arrangement: Option<u64>,
     pub pairs: Vec<Pair>,
+    /// One per pair.
+    pub sides: Vec<Sides>,
     pub blocks: Vec<Block>,
     /// The pair that was nearest last time.
     pub nearest: Option<usize>,
@@ -50,7 +62,7 @@ pub(super) struct PairList {
 
 impl PairList {
     pub fn new(key: (Selection, Selection)) -> Self {
-        Self { key, arrangement: None, pairs: Vec::new(), blocks: Vec::new(), nearest: None }
+        Self { key, arrangement: None, pairs: Vec::new(), sides: Vec::new(), blocks: Vec::new(), nearest: None }
     }
 
     /// Makes the list anew; what was learned of pairs that stay is kept.
@@ -120,7 +132,6 @@ impl PairList {
             a: a as u32,
             b: b as u32,
             margin,
-            margin_f32: round_up(margin),
             least,
             rank: 0,
             weight,
@@ -151,6 +162,8 @@ impl PairList {
         };
         let carriers = |p: &Pair| (whole(p.a).min(whole(p.b)), whole(p.a).max(whole(p.b)));
         self.pairs.sort_by_key(|p| (carriers(p), p.rank));
+        let sides = |p: &Pair| Sides { a: p.a, b: p.b, margin: round_up(p.margin), proven: p.least > 0.0 };
+        self.sides = self.pairs.iter().map(sides).collect();
         self.blocks.clear();
         for (i, p) in self.pairs.iter().enumerate() {
             let (a, b) = carriers(p);

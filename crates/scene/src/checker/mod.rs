@@ -12,7 +12,8 @@ use crate::{Counts, Level, Member, Scene, SceneState, Selection};
 use list::PairList;
 use narrow::Narrow;
 
-/// How questions are answered. None of these but [`Options::level`] changes an answer.
+/// How questions are answered. None of these but [`Options::level`] changes an answer; at levels of enclosing volumes the
+/// matrix, which knows more than they do, makes it more exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
     /// How closely solids are looked at.
@@ -84,6 +85,8 @@ impl<'s> Checker<'s> {
     /// For a scene, ready for questions about everything.
     pub fn new(scene: &'s Scene, options: Options) -> Self {
         let narrow = Narrow::new(scene);
+        // Models that are made when first asked for are asked for now.
+        scene.models.iter().for_each(|m| _ = m.at(options.level));
         let core = Core { scene, options, narrow, candidates: Vec::new(), deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new() };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));

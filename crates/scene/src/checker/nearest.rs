@@ -50,24 +50,24 @@ impl Core<'_> {
                 }
             }
             for index in (block.start..block.end).filter(|i| Some(*i) != last) {
-                let pair = &list.pairs[index];
-                let known = if pair.least > 0.0 { self.known(pair, state) } else { 0.0 };
+                let sides = &list.sides[index];
+                let known = if sides.proven { self.known(&list.pairs[index], state) } else { 0.0 };
                 if known == f64::INFINITY {
                     self.narrow.counts.pairs_skipped += 1;
                     continue;
                 }
                 let gap = if boxes {
-                    f64::from(state.boxes[pair.a as usize].gap(&state.boxes[pair.b as usize]))
+                    f64::from(state.boxes[sides.a as usize].gap(&state.boxes[sides.b as usize]))
                 } else {
                     0.0
                 };
-                let key = (gap.max(known) - pair.margin).max(0.0);
+                let key = (gap.max(known) - f64::from(sides.margin)).max(0.0);
                 if best.is_some() && key >= limit {
                     self.narrow.counts.pairs_cleared.l2 += 1;
                     self.deepen(Level::L2);
                     continue;
                 }
-                self.candidates.push(Candidate { key, rank: pair.rank, index: index as u32 });
+                self.candidates.push(Candidate { key, rank: list.pairs[index].rank, index: index as u32 });
             }
         }
     }
@@ -95,7 +95,11 @@ impl Core<'_> {
     fn look(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<Distance>) {
         let pair = &mut list.pairs[index];
         let [a, b] = self.sides(pair, state);
-        let limit = best.map_or(f64::INFINITY, |b| b.metres + pair.margin);
+        // What was proven of the exact solids may be more than what enclosing volumes can tell.
+        let proven = (self.known(pair, state) - pair.margin).max(0.0);
+        let slack = a.model.slack(self.options.level) + b.model.slack(self.options.level);
+        let margin = pair.margin + slack;
+        let limit = best.map_or(f64::INFINITY, |b| b.metres + margin);
         if self.options.level == Level::Auto
             && self.boxes_decide()
             && limit < f64::INFINITY
@@ -111,7 +115,8 @@ impl Core<'_> {
             self.narrow.counts.pairs_cleared.add(level, 1);
             return;
         };
-        let found = less_margin(&s, pair.margin);
+        let (metres, lower) = less_margin(&s, margin);
+        let found = (metres.max(proven), lower.max(proven));
         let lower_bound = best.map_or(found.1, |b| b.lower_bound.min(found.1));
         if best.is_none_or(|b| found.0 < b.metres) {
             list.nearest = Some(index);

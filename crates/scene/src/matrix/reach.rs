@@ -61,7 +61,7 @@ fn balls(scene: &Scene, a: Member, b: Member, wanted: f64) -> Option<f64> {
 }
 
 /// Where `member` can be as seen from what it shares with `other`.
-fn reach<'s>(scene: &'s Scene, member: Member, other: Member) -> Option<Reach<'s>> {
+fn reach(scene: &Scene, member: Member, other: Member) -> Option<Reach<'_>> {
     let model = &scene.models[scene.model_of(member)?];
     let Member::Link { robot, .. } = member else {
         let Member::Object(o) = member else { return None };

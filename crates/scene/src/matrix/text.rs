@@ -52,7 +52,9 @@ impl PairMatrix {
             };
             // Strings and numbers always have a TOML form.
             if let Ok(value) = toml::Value::try_from(&row) {
-                text.push_str(&format!("  {value},\n"));
+                text.push_str("  ");
+                text.push_str(&value.to_string());
+                text.push_str(",\n");
             }
         }
         text.push_str("]\n");

@@ -47,8 +47,13 @@ impl Random {
             3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) }),
             4 => Shape::Hull(Arc::new(ConvexHull::from_points(&self.points(size)).unwrap())),
             _ => {
-                let hull = ConvexHull::from_points(&self.points(size)).unwrap();
-                Shape::Mesh(Arc::new(TriMesh::new(hull.vertices().to_vec(), hull.triangles().to_vec()).unwrap()))
+                // Two lumps side by side: not convex.
+                let hull = ConvexHull::from_points(&self.points(0.5 * size)).unwrap();
+                let lump = |shift: f64| hull.vertices().iter().map(move |&v| v + Vec3::X * shift);
+                let count = hull.vertices().len() as u32;
+                let triangles = hull.triangles().iter().flat_map(|&t| [t, t.map(|i| i + count)]).collect();
+                let vertices = lump(-0.7 * size).chain(lump(0.7 * size)).collect();
+                Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()))
             }
         }
     }
