@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod figures;
+mod judge;
 mod layers;
 mod models;
 mod peers;
@@ -34,6 +35,9 @@ cargo xtask COMMAND
   rpq [--states N] [--out DIR] [--json]
         the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
         resolution level, pair matrix and weight matrix; --out writes the figures of docs/rpq.md
+  judge [--data DIR] [--states N] [--only NAME] [--json]
+        every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
+        states (default 200; 10000 with ELBOWROOM_LONG=1), and the pair matrix beside the SRDF
   peers [--data DIR] [--json]
         elbowroom beside Coal, FCL and parry on one workload: installs them in target/peers, compares every answer, and
         prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
@@ -92,6 +96,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["figures", "--check"] => Ok(figures::check(&root)?),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
+        ["judge", rest @ ..] => judge::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
         ["peers", options @ ..] => {
             Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?)

@@ -6,63 +6,95 @@ use super::groups::{Entry, Group};
 use super::measure::{Time, budget_ns};
 use super::report::Line;
 use super::runner::Runner;
+use super::witness::{Verdict, Witnesses};
 
-/// Of the size: nearer to the border between yes and no than this, both are right.
-const BORDER: f64 = 1e-9;
 /// Distances agree to this share of themselves, and to a thousandth of it of the size.
 const RELATIVE: f64 = 1e-9;
 /// More differences than these in one line are counted without looking for an explanation.
 const EXAMINED: usize = 50;
 
-/// The group's lines: times, and how the answers compare.
-pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut [Runner], folder: &Path) -> Vec<Line> {
+/// A group's lines, and what is to be said about differences.
+#[derive(Default)]
+pub struct Checked {
+    pub lines: Vec<Line>,
+    pub notes: Vec<String>,
+}
+
+/// Times, and how the answers compare.
+pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut [Runner], folder: &Path) -> Checked {
+    let mut checked = Checked::default();
     if group.entries.iter().all(|entry| !entry.timed) {
-        return Vec::new();
+        return checked;
     }
     let reference = group.reference();
-    let given: Vec<Vec<f64>> = group
-        .entries
-        .iter()
-        .zip(times)
-        .enumerate()
-        .map(|(k, (entry, time))| {
-            let count = wanted(entry, *time, reference == Some(k));
-            runners[entry.runner].answers(entry.number, 0, count, folder).unwrap_or_default()
-        })
-        .collect();
-    let mut lines = Vec::new();
+    let mut given = Vec::new();
+    for (k, (entry, time)) in group.entries.iter().zip(times).enumerate() {
+        let count = wanted(entry, *time, reference == Some(k));
+        given.push(runners[entry.runner].answers(entry.number, 0, count, folder).unwrap_or_default());
+    }
+    let mut witnesses = Witnesses::of(group, all, runners, folder);
+    let truth = reference.map(|reference| settle(group, &given, reference, &mut witnesses, &mut checked.notes));
     for (k, (entry, time)) in group.entries.iter().zip(times).enumerate() {
         let Some(time) = time else { continue };
-        let (mut checked, mut disagreements) = (0, 0);
-        if let Some(reference) = reference {
-            // The reference itself counts what it was compared on.
-            let other = if k == reference { ours(group).unwrap_or(k) } else { k };
-            checked = given[other].len().min(given[reference].len());
-            let differing = differing(group, &given[k], &given[reference], entry.cell.size);
+        let (mut compared, mut disagreements) = (0, 0);
+        if let Some(truth) = &truth {
+            // The reference counts what elbowroom was compared on.
+            let other = if Some(k) == reference { group.ours().unwrap_or(k) } else { k };
+            compared = given[other].len().min(truth.len());
+            let differing = differing(group, &given[k], truth);
             disagreements = differing.len();
-            if group.query != "distance" {
-                let near = differing.iter().take(EXAMINED);
-                disagreements -= near.filter(|&&i| explained(group, all, entry, i, runners, folder)).count();
-            }
-            let who = &group.entries[reference].cell.lib;
-            for &i in differing.iter().take(3) {
-                let (lib, answers) = (&entry.cell.lib, (given[k][i], given[reference][i]));
-                eprintln!("  {lib} on record {i}: {:?}, {who}: {:?}", answers.0, answers.1);
+            if !entry.cell.lib.starts_with("elbowroom") {
+                let border = |i: &&usize| witnesses.as_mut().is_some_and(|w| w.judge(**i).0 == Verdict::Either);
+                disagreements -= differing.iter().take(EXAMINED).filter(border).count();
             }
         }
-        let judged_by_coal = reference.is_some_and(|r| group.entries[r].cell.lib.starts_with("coal"));
-        lines.push(Line {
+        checked.lines.push(Line {
             lib: entry.cell.lib.clone(),
             set: group.set.clone(),
             query: group.query.clone(),
             mean_ns: time.mean_ns,
             n: time.records,
-            answers_checked: checked,
+            answers_checked: compared,
             disagreements,
-            judged_by_coal,
+            judged_by_coal: reference.is_some_and(|r| group.entries[r].cell.lib.starts_with("coal")),
         });
     }
-    lines
+    checked
+}
+
+/// The answers to compare with: the reference's, but where elbowroom's differs and the distances of both settle it,
+/// what these say. `None` where both answers are right.
+fn settle(
+    group: &Group,
+    given: &[Vec<f64>],
+    reference: usize,
+    witnesses: &mut Option<Witnesses>,
+    notes: &mut Vec<String>,
+) -> Vec<Option<f64>> {
+    let mut truth: Vec<Option<f64>> = given[reference].iter().copied().map(Some).collect();
+    let Some(ours) = group.ours() else { return truth };
+    for (n, i) in differing(group, &given[ours], &truth).into_iter().enumerate() {
+        let (mut verdict, mut told) = (Verdict::Open, String::new());
+        if let Some(witnesses) = witnesses.as_mut().filter(|_| n < EXAMINED) {
+            (verdict, told) = witnesses.judge(i);
+        }
+        let conclusion = match verdict {
+            Verdict::Either => "at the border, both are right".to_owned(),
+            Verdict::Is(answer) if answer == given[ours][i] => {
+                format!("{} contradicts its own distance", group.entries[reference].cell.lib)
+            }
+            Verdict::Is(_) => "elbowroom contradicts its own distance".to_owned(),
+            Verdict::Open => "unexplained".to_owned(),
+        };
+        let [mine, its] = [ours, reference].map(|k| format!("{} {:?}", group.entries[k].cell.lib, given[k][i]));
+        notes.push(format!("{} {} record {i}: {mine}, {its}; {told}{conclusion}.", group.set, group.query));
+        match verdict {
+            Verdict::Either => truth[i] = None,
+            Verdict::Is(answer) => truth[i] = Some(answer),
+            Verdict::Open => {}
+        }
+    }
+    truth
 }
 
 /// How many answers: all yes-or-no of elbowroom's and of the reference's; of the rest what the time allows.
@@ -79,48 +111,35 @@ fn wanted(entry: &Entry, time: Option<Time>, is_reference: bool) -> usize {
     affordable.max(if ours || is_reference { 500 } else { 12 }).min(all)
 }
 
-fn ours(group: &Group) -> Option<usize> {
-    group.entries.iter().position(|entry| entry.cell.lib.starts_with("elbowroom"))
+/// The records on which answers are not the truth; a NaN never is.
+fn differing(group: &Group, given: &[f64], truth: &[Option<f64>]) -> Vec<usize> {
+    let size = group.entries.first().map_or(0.0, |entry| entry.cell.size);
+    let right = |x: f64, y: f64| if group.query == "distance" { same_distance(x, y, size) } else { x == y };
+    let pairs = given.iter().zip(truth).enumerate();
+    pairs.filter(|(_, (x, y))| y.is_some_and(|y| !right(**x, y))).map(|(i, _)| i).collect()
 }
 
-/// The records on which two lists differ; a NaN always does.
-fn differing(group: &Group, given: &[f64], reference: &[f64], size: f64) -> Vec<usize> {
-    let same = |x: f64, y: f64| {
-        if group.query == "distance" {
-            // Some libraries tell a penetration as a negative distance.
-            let (x, y) = (x.max(0.0) + 0.0 * x, y.max(0.0) + 0.0 * y);
-            (x - y).abs() <= RELATIVE * (y + 1e-3 * size)
-        } else {
-            x == y
-        }
-    };
-    (0..given.len().min(reference.len())).filter(|&i| !same(given[i], reference[i])).collect()
+/// Some libraries tell a penetration as a negative distance; here it is 0.
+pub fn same_distance(x: f64, y: f64, size: f64) -> bool {
+    !x.is_nan() && !y.is_nan() && (x.max(0.0) - y.max(0.0)).abs() <= RELATIVE * (y.max(0.0) + 1e-3 * size)
 }
 
-/// Whether both elbowroom and the reference measure a distance at the very border between yes and no.
-fn explained(
-    group: &Group,
-    all: &[Group],
-    entry: &Entry,
-    record: usize,
-    runners: &mut [Runner],
-    folder: &Path,
-) -> bool {
-    let Some(distances) = all.iter().find(|other| other.set == group.set && other.query == "distance") else {
-        return false;
-    };
-    let witnesses: Vec<&Entry> =
-        [ours(distances), distances.reference()].into_iter().flatten().map(|k| &distances.entries[k]).collect();
-    let border = if group.query == "tolerance" { entry.cell.tolerance } else { 0.0 };
-    let mut told = Vec::new();
-    for witness in &witnesses {
-        let answer = runners[witness.runner].answers(witness.number, record, 1, folder);
-        let distance = answer.and_then(|a| a.first().copied()).unwrap_or(f64::NAN).max(0.0);
-        told.push(format!("{} {:e}", witness.cell.lib, distance - border));
-        if !((distance - border).abs() <= BORDER * entry.cell.size) {
-            return false;
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_the_same_within_what_was_agreed() {
+        assert!(same_distance(0.1, 0.1 + 1e-11, 1.0) && same_distance(-0.2, 0.0, 1.0));
+        assert!(!same_distance(0.1, 0.1 + 1e-9, 1.0) && !same_distance(0.0, 1e-9, 1.0));
+        assert!(!same_distance(f64::NAN, f64::NAN, 1.0) && !same_distance(f64::NAN, 0.0, 1.0));
     }
-    eprintln!("  explained: {} on record {record}: distance less border, metres: {}", entry.cell.lib, told.join(", "));
-    witnesses.len() == 2
+
+    #[test]
+    fn wrong_answers_are_found_and_open_ones_let_pass() {
+        let group = Group { set: "s".into(), query: "collide".into(), entries: Vec::new() };
+        let truth = [Some(1.0), Some(0.0), None, Some(1.0)];
+        assert_eq!(differing(&group, &[1.0, 1.0, 1.0, f64::NAN], &truth), [1, 3]);
+        assert_eq!(differing(&group, &[1.0, 0.0], &truth), [0_usize; 0]);
+    }
 }

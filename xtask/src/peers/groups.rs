@@ -18,6 +18,11 @@ pub struct Entry {
 }
 
 impl Group {
+    /// elbowroom's entry; the cold one, where there are two.
+    pub fn ours(&self) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.cell.lib.starts_with("elbowroom"))
+    }
+
     /// Whose answers the others' are compared with: Coal's exact query in f64, else FCL's, else parry's.
     pub fn reference(&self) -> Option<usize> {
         let plain = |lib: &str| !["+ub", "+bp", "+warm", "+contact"].iter().any(|way| lib.contains(way));

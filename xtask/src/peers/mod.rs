@@ -11,6 +11,7 @@ mod native;
 mod report;
 mod runner;
 mod targets;
+mod witness;
 mod workload;
 
 use std::path::{Path, PathBuf};
@@ -53,11 +54,13 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let peers = install::all(root, &folder);
     let (mut runners, mut missing) = start(&peers, &workload, root)?;
     let groups = groups::of(&runners, &only());
-    let mut lines = Vec::new();
+    let (mut lines, mut notes) = (Vec::new(), Vec::new());
     for (done, group) in groups.iter().enumerate() {
         eprintln!("[{}/{}] {} {}", done + 1, groups.len(), group.set, group.query);
         let times = measure::group(group, &mut runners);
-        lines.extend(answers::check(group, &groups, &times, &mut runners, &folder));
+        let checked = answers::check(group, &groups, &times, &mut runners, &folder);
+        lines.extend(checked.lines);
+        notes.extend(checked.notes);
     }
     missing.extend(runners.iter().filter_map(|runner| runner.failure().map(str::to_owned)));
     for line in &lines {
@@ -65,7 +68,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
             println!("{}", line.json());
         }
     }
-    let table = report::table(&lines, &peers, &missing);
+    let table = report::table(&lines, &peers, &notes, &missing);
     if options.json {
         eprint!("{table}");
     } else {

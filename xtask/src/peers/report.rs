@@ -42,7 +42,7 @@ impl Line {
 }
 
 /// For a terminal of a hundred columns.
-pub fn table(lines: &[Line], peers: &[Ready], missing: &[String]) -> String {
+pub fn table(lines: &[Line], peers: &[Ready], notes: &[String], missing: &[String]) -> String {
     let mut out = String::new();
     row(&mut out, ["set", "query", "elbowroom ns", "best peer", "ns", "ratio", "asked", ""]);
     row(&mut out, ["---", "---", "---", "---", "---", "---", "---", "---"]);
@@ -59,7 +59,7 @@ pub fn table(lines: &[Line], peers: &[Ready], missing: &[String]) -> String {
         }
     }
     let _ = writeln!(out, "\n{met} of {rows_asked} ratios asked for are met.");
-    agreement(&mut out, lines);
+    agreement(&mut out, lines, notes);
     let versions: Vec<String> = peers.iter().map(|peer| format!("{} {}", peer.name, peer.version)).collect();
     let _ = writeln!(out, "One core of {}; {}.", machine::processor(), versions.join(", "));
     for reason in missing {
@@ -95,7 +95,7 @@ fn best_peer<'a>(lines: &'a [Line], ours: &Line, warm_too: bool) -> Option<&'a L
     rivals.min_by(|a, b| a.mean_ns.total_cmp(&b.mean_ns))
 }
 
-fn agreement(out: &mut String, lines: &[Line]) {
+fn agreement(out: &mut String, lines: &[Line], notes: &[String]) {
     let ours = |yes_or_no: bool| {
         let some = move |line: &&Line| line.is_ours() && line.judged_by_coal && (line.query != "distance") == yes_or_no;
         let checked: usize = lines.iter().filter(some).map(|line| line.answers_checked).sum();
@@ -105,6 +105,9 @@ fn agreement(out: &mut String, lines: &[Line]) {
     for (kind, (checked, wrong)) in [("yes-or-no answers", ours(true)), ("distances", ours(false))] {
         let (checked, wrong) = (grouped(checked as f64), grouped(wrong as f64));
         let _ = writeln!(out, "elbowroom and Coal: {checked} {kind} compared, {wrong} differ unexplained.");
+    }
+    for note in notes {
+        let _ = writeln!(out, "differs: {note}");
     }
     for line in lines.iter().filter(|line| !line.is_ours() && line.disagreements > 0) {
         let Line { lib, set, query, disagreements, answers_checked, .. } = line;
@@ -146,7 +149,7 @@ mod tests {
     fn the_best_peer_is_the_quickest_that_is_right() {
         let lines =
             [line("elbowroom", 10.0, 0), line("coal", 200.0, 0), line("fcl", 100.0, 1), line("parry", 150.0, 0)];
-        let table = table(&lines, &[], &["fcl is ill".into()]);
+        let table = table(&lines, &[], &[], &["fcl is ill".into()]);
         let row = table.lines().find(|row| row.starts_with("m4k_near")).unwrap();
         assert!(row.contains("parry") && row.contains("15.0") && row.ends_with("met"), "{row}");
         assert!(table.contains("90 yes-or-no answers") && table.contains("1 of 90 answers wrong"), "{table}");
@@ -161,7 +164,7 @@ mod tests {
             line("coal", 200.0, 0),
             line("coal+warm", 50.0, 0),
         ];
-        let table = table(&lines, &[], &[]);
+        let table = table(&lines, &[], &[], &[]);
         assert!(table.lines().nth(2).unwrap().contains(" 20.0 "), "{table}");
         assert!(table.lines().nth(3).unwrap().contains(" 10.0 "), "{table}");
         assert!(table.lines().nth(4).unwrap().contains(" 40.0"), "{table}");

@@ -156,7 +156,10 @@ impl<'a> Run<'a> {
             states,
             frames: Frames::new(cell),
             regions: Regions::new(cell, setups),
-            checker: FirstContacts::new(cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(), &cell.objects),
+            checker: FirstContacts::new(
+                cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
+                &cell.objects,
+            ),
             tracks: cell.robots.iter().map(track).collect(),
             halts: vec![Halt::default(); cell.robots.len()],
             obeyed: vec![0.0; cell.robots.len()],

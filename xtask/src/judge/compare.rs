@@ -1,0 +1,134 @@
+//! Our answers beside theirs.
+
+use std::time::Instant;
+
+use elbowroom_proximity::{Shape, mesh};
+use elbowroom_scene::{Checker, Distance, Member, Options, Scene, SceneState};
+
+use super::reference::Answers;
+use super::world;
+
+/// Distances agree where they differ by no more than this share, or by [`ABSOLUTE_M`].
+const RELATIVE: f64 = 1e-9;
+const ABSOLUTE_M: f64 = 1e-12;
+
+/// Of one scene over all states.
+#[derive(Debug, Default)]
+pub struct Verdict {
+    pub states: usize,
+    pub pairs: usize,
+    pub contacts: usize,
+    /// One closed mesh lies wholly inside another: contact for us, a gap to the hollow surface for Coal.
+    pub swallowed: usize,
+    /// A primitive is nearest, and the difference is within what Coal's iteration leaves.
+    pub iterated: usize,
+    /// States with another answer that nothing above explains, and the first of them in words.
+    pub disagreements: usize,
+    pub first: Vec<String>,
+    /// Greatest relative difference of distances that agree.
+    pub worst: f64,
+    /// µs per state: joint values set and distance asked.
+    pub distance_us: f64,
+    /// µs per state: joint values set and collision asked.
+    pub collide_us: f64,
+}
+
+/// What Coal's GJK may leave of a pair with a primitive, m and relative.
+const ITERATED: f64 = 2e-6;
+
+/// Asks our checker about every state and compares.
+pub fn judge(scene: &Scene, states: &[Vec<f64>], theirs: &Answers) -> Result<Verdict, String> {
+    let (ours, distance_us) = timed(scene, states, |checker, state| checker.distance(state))?;
+    let (hits, collide_us) = timed(scene, states, |checker, state| checker.collides(state).is_some())?;
+    let pairs = theirs.pairs.len();
+    let mut verdict = Verdict { states: states.len(), pairs, distance_us, collide_us, ..Verdict::default() };
+    let mut state = SceneState::new(scene);
+    for (i, q) in states.iter().enumerate() {
+        let row = &theirs.distances[i * pairs..(i + 1) * pairs];
+        let gap = row.iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
+        let Some(found) = ours[i] else { continue };
+        verdict.contacts += usize::from(hits[i]);
+        if hits[i] != (found.metres == 0.0) {
+            verdict.wrong(i, &format!("our own answers contradict each other: {} and {} m", hits[i], found.metres));
+            continue;
+        }
+        let difference = (found.metres - gap).abs();
+        let same = difference <= RELATIVE * gap + ABSOLUTE_M;
+        if same && hits[i] == theirs.collides[i] {
+            verdict.worst = verdict.worst.max(if gap > 0.0 { difference / gap } else { 0.0 });
+            continue;
+        }
+        state.set_q(scene, 0, q).map_err(|e| e.to_string())?;
+        if found.metres == 0.0 && swallows(scene, &state, &found) {
+            verdict.swallowed += 1;
+        } else if difference <= ITERATED * (1.0 + gap) && has_primitive(scene, &found) {
+            verdict.iterated += 1;
+        } else {
+            let names = [found.a, found.b].map(|m| scene.name(m)).join(" and ");
+            let said = (hits[i], found.metres, theirs.collides[i], gap);
+            verdict.wrong(i, &format!("{names}: we {} {:e} m, they {} {:e} m", said.0, said.1, said.2, said.3));
+        }
+    }
+    Ok(verdict)
+}
+
+impl Verdict {
+    fn wrong(&mut self, state: usize, what: &str) {
+        self.disagreements += 1;
+        if self.first.len() < 3 {
+            self.first.push(format!("state {state}, {what}"));
+        }
+    }
+}
+
+/// The answers, and µs per state.
+fn timed<T>(
+    scene: &Scene,
+    states: &[Vec<f64>],
+    mut ask: impl FnMut(&mut Checker<'_>, &SceneState) -> T,
+) -> Result<(Vec<T>, f64), String> {
+    let mut checker = Checker::new(scene, Options::default());
+    let mut state = SceneState::new(scene);
+    ask(&mut checker, &state);
+    let mut answers = Vec::with_capacity(states.len());
+    let started = Instant::now();
+    for q in states {
+        state.set_q(scene, 0, q).map_err(|e| e.to_string())?;
+        answers.push(ask(&mut checker, &state));
+    }
+    Ok((answers, started.elapsed().as_secs_f64() * 1e6 / states.len().max(1) as f64))
+}
+
+/// True where no surface of the pair touches the other, but a solid lies inside another.
+fn swallows(scene: &Scene, state: &SceneState, found: &Distance) -> bool {
+    let mut scratch = mesh::Scratch::new();
+    let mut inside = false;
+    for a in world::bodies(scene, found.a) {
+        for b in world::bodies(scene, found.b) {
+            let (a_in_world, b_in_world) = (placed(scene, state, found.a), placed(scene, state, found.b));
+            let (Some(pose_a), Some(pose_b)) = (a_in_world, b_in_world) else { return false };
+            let (pose_a, pose_b) = (pose_a * a.in_link, pose_b * b.in_link);
+            match (&a.shape, &b.shape) {
+                (Shape::Mesh(x), Shape::Mesh(y)) => match mesh::collide(x, &pose_a, y, &pose_b, &mut scratch) {
+                    Some(mesh::Pair::Inside) => inside = true,
+                    Some(_) => return false,
+                    None => {}
+                },
+                // A primitive whose middle is in the mesh: its surface may touch, or not; Coal takes it for full.
+                (Shape::Mesh(x), _) => inside |= x.contains(pose_a.inverse().transform_point(pose_b.translation)),
+                (_, Shape::Mesh(y)) => inside |= y.contains(pose_b.inverse().transform_point(pose_a.translation)),
+                _ => {}
+            }
+        }
+    }
+    inside
+}
+
+fn placed(scene: &Scene, state: &SceneState, member: Member) -> Option<elbowroom_spatial::Pose> {
+    state.pose(scene, member)
+}
+
+fn has_primitive(scene: &Scene, found: &Distance) -> bool {
+    let all = [found.a, found.b].map(|m| world::bodies(scene, m));
+    all.iter().flatten().any(|body| !matches!(body.shape, Shape::Mesh(_)))
+}

@@ -1,0 +1,226 @@
+//! Every robot and cell of the data beside Pinocchio and Coal: the same states, triangles and pairs; distances and
+//! contacts must be equal. And our pair matrix beside each SRDF.
+
+mod compare;
+mod reference;
+mod srdf;
+mod world;
+
+use std::path::{Path, PathBuf};
+
+use crate::{Failure, python, release};
+use compare::Verdict;
+use reference::Answers;
+use world::Files;
+
+/// What the words after `judge` say.
+#[derive(Debug, PartialEq)]
+struct Options {
+    data: Option<PathBuf>,
+    states: usize,
+    only: Option<String>,
+    json: bool,
+}
+
+impl Options {
+    fn parse(words: &[&str]) -> Result<Self, String> {
+        let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
+        let mut options = Self { data: None, states: if long { 10_000 } else { 200 }, only: None, json: false };
+        let mut words = words.iter();
+        while let Some(word) = words.next() {
+            let mut value = || words.next().copied().ok_or(format!("`judge {word}` needs a value"));
+            match *word {
+                "--json" => options.json = true,
+                "--data" => options.data = Some(value()?.into()),
+                "--only" => options.only = Some(value()?.into()),
+                "--states" => {
+                    let count = value()?;
+                    options.states = count
+                        .parse()
+                        .ok()
+                        .filter(|n| *n > 0)
+                        .ok_or_else(|| format!("`judge --states {count}`: write a whole number of 1 or more"))?;
+                }
+                other => return Err(format!("`judge` does not know `{other}`")),
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// Judges every robot; an error where an answer differs and nothing explains it.
+pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
+    let options = Options::parse(words).map_err(Failure::Usage)?;
+    let again: Vec<&str> = ["judge"].iter().chain(words).copied().collect();
+    if let Some(ended) = release::again(root, &again) {
+        return Ok(ended?);
+    }
+    let data = options.data.clone().or_else(|| std::env::var_os("ELBOWROOM_DATA").map(PathBuf::from));
+    let data = data.unwrap_or_else(|| root.join("../shared/data"));
+    let mut robots = world::find(&data);
+    robots.retain(|files| options.only.as_ref().is_none_or(|only| files.name.contains(only)));
+    if robots.is_empty() {
+        println!("skipped: no data at {}", data.display());
+        return Ok(());
+    }
+    let python = interpreter(root)?;
+    let folder = std::env::temp_dir().join(format!("elbowroom-judge-{}", std::process::id()));
+    let wrong = judge_all(root, &python, &folder, &robots, &options);
+    let _ = std::fs::remove_dir_all(&folder);
+    match wrong? {
+        0 => Ok(()),
+        wrong => Err(Failure::Check(format!("{wrong} answers differ from the reference"))),
+    }
+}
+
+fn interpreter(root: &Path) -> Result<PathBuf, String> {
+    if let Some(named) = std::env::var_os("ELBOWROOM_PYTHON") {
+        return Ok(named.into());
+    }
+    if let Some(ready) = python::ready(root) {
+        return Ok(ready);
+    }
+    python::install(root)?;
+    python::ready(root).ok_or_else(|| "target/venv is not ready".to_owned())
+}
+
+/// States that differ without explanation.
+fn judge_all(root: &Path, python: &Path, folder: &Path, robots: &[Files], options: &Options) -> Result<usize, String> {
+    if !options.json {
+        print_head(options.states);
+    }
+    let mut wrong = 0;
+    for files in robots {
+        let robot = world::load(files, true)?;
+        let states = world::states(&robot, options.states);
+        let alone = world::scene(&files.name, robot.clone(), Vec::new())?;
+        let around = world::scene(&files.name, robot, world::objects(root, &alone)?)?;
+        for (kind, scene) in [("self", &alone), ("objects", &around)] {
+            let pairs = world::by_rule(scene);
+            if pairs.is_empty() {
+                continue;
+            }
+            let theirs = reference::ask(python, folder, &files.urdf, scene, &states, &pairs)
+                .map_err(|e| format!("{}: {e}", files.name))?;
+            let verdict = compare::judge(scene, &states, &theirs)?;
+            wrong += verdict.disagreements;
+            print_row(&files.name, kind, &verdict, &theirs, options.json);
+        }
+    }
+    if !options.json {
+        print_pairs(robots)?;
+    }
+    Ok(wrong)
+}
+
+fn print_head(states: usize) {
+    println!(
+        "{states} random states each; µs per state with the robot's move, Pinocchio + Coal without their Python; \
+         self: links among each other (a cell's own included), objects: with a box and a mesh beside it\n"
+    );
+    println!(
+        "{:<36} {:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8} | distance: {:>7} {:>9} {:>6} | collision: {:>6} {:>8} {:>6}",
+        "robot",
+        "",
+        "pairs",
+        "contacts",
+        "swallowed",
+        "iterated",
+        "differ",
+        "worst",
+        "ours",
+        "theirs",
+        "ratio",
+        "ours",
+        "theirs",
+        "ratio"
+    );
+}
+
+fn print_row(name: &str, kind: &str, v: &Verdict, theirs: &Answers, json: bool) {
+    if json {
+        println!(
+            r#"{{"robot":"{name}","with":"{kind}","states":{},"pairs":{},"contacts":{},"swallowed":{},"iterated":{},"disagreements":{},"worst_relative":{:e},"distance_us":{:.3},"their_distance_us":{:.3},"collide_us":{:.3},"their_collide_us":{:.3}}}"#,
+            v.states,
+            v.pairs,
+            v.contacts,
+            v.swallowed,
+            v.iterated,
+            v.disagreements,
+            v.worst,
+            v.distance_us,
+            theirs.distance_us,
+            v.collide_us,
+            theirs.collide_us
+        );
+        return;
+    }
+    println!(
+        "{name:<36} {kind:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8.1e} | {:>17.1} {:>9.1} {:>6.1} | {:>17.2} {:>8.1} {:>6.1}",
+        v.pairs,
+        v.contacts,
+        v.swallowed,
+        v.iterated,
+        v.disagreements,
+        v.worst,
+        v.distance_us,
+        theirs.distance_us,
+        theirs.distance_us / v.distance_us,
+        v.collide_us,
+        theirs.collide_us,
+        theirs.collide_us / v.collide_us,
+    );
+    for line in &v.first {
+        println!("    {line}");
+    }
+}
+
+fn print_pairs(robots: &[Files]) -> Result<(), String> {
+    for files in robots.iter().filter(|files| files.srdf.is_some()) {
+        let (plain, with) = (world::load(files, false)?, world::load(files, true)?);
+        let comparison = srdf::compare(&files.name, plain, &with.disabled_pairs)?;
+        let (equal, different) = (comparison.equal, comparison.different());
+        println!("\n### {}: {equal} pairs equal, {different} different\n\n{}", files.name, comparison.table());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_read_and_nonsense_is_refused() {
+        let options = Options::parse(&["--data", "x", "--states", "7", "--only", "ur5e", "--json"]).unwrap();
+        let expected = Options { data: Some("x".into()), states: 7, only: Some("ur5e".into()), json: true };
+        assert_eq!(options, expected);
+        for words in [&["--states"][..], &["--states", "0"], &["--data"], &["--fast"]] {
+            assert!(Options::parse(words).is_err(), "{words:?}");
+        }
+    }
+
+    /// A few states of our own arm against the reference, where it is installed.
+    #[test]
+    fn our_own_arm_agrees_with_the_reference() {
+        let root = crate::workspace_root().unwrap();
+        let named = std::env::var_os("ELBOWROOM_PYTHON").map(PathBuf::from);
+        let Some(python) = named.or_else(|| python::ready(&root)) else {
+            println!("skipped: no Python with pin and numpy in target/venv or ELBOWROOM_PYTHON");
+            return;
+        };
+        let model = root.join("examples/models/rx60b/rx60b");
+        let (urdf, srdf) = (model.with_extension("urdf"), Some(model.with_extension("srdf")));
+        let files = Files { name: "rx60b".into(), urdf, srdf };
+        let robot = world::load(&files, true).unwrap();
+        let states = world::states(&robot, 20);
+        let alone = world::scene("rx60b", robot.clone(), Vec::new()).unwrap();
+        let scene = world::scene("rx60b", robot, world::objects(&root, &alone).unwrap()).unwrap();
+        let folder = std::env::temp_dir().join(format!("elbowroom-judge-test-{}", std::process::id()));
+        let pairs = world::by_rule(&scene);
+        let theirs = reference::ask(&python, &folder, &files.urdf, &scene, &states, &pairs);
+        let _ = std::fs::remove_dir_all(&folder);
+        let verdict = compare::judge(&scene, &states, &theirs.unwrap()).unwrap();
+        assert_eq!(verdict.disagreements, 0, "{:?}", verdict.first);
+        assert!(verdict.contacts > 0 && verdict.contacts < 20, "{verdict:?}");
+    }
+}

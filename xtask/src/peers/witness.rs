@@ -1,0 +1,83 @@
+//! Who is right where two answers differ: the distance, measured by elbowroom and by the reference.
+
+use std::path::Path;
+
+use super::answers::same_distance;
+use super::groups::{Entry, Group};
+use super::runner::Runner;
+
+/// Of the size: nearer to the border between yes and no than this, both are right.
+const BORDER: f64 = 1e-9;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// The distance is at the border: yes and no are right.
+    Either,
+    /// Both measure the same distance, off the border: this answer follows.
+    Is(f64),
+    /// The distances differ, or there are none.
+    Open,
+}
+
+/// The two that measure, for one yes-or-no question.
+pub struct Witnesses<'a> {
+    entries: [&'a Entry; 2],
+    border: f64,
+    runners: &'a mut [Runner],
+    folder: &'a Path,
+}
+
+impl<'a> Witnesses<'a> {
+    /// `None` for a distance, and where one of the two is missing.
+    pub fn of(group: &Group, all: &'a [Group], runners: &'a mut [Runner], folder: &'a Path) -> Option<Self> {
+        if group.query == "distance" {
+            return None;
+        }
+        let distances = all.iter().find(|other| other.set == group.set && other.query == "distance")?;
+        let entries = [distances.ours()?, distances.reference()?].map(|k| &distances.entries[k]);
+        let border = if group.query == "tolerance" { entries[0].cell.tolerance } else { 0.0 };
+        Some(Self { entries, border, runners, folder })
+    }
+
+    /// What the distances of this record say, and the distances in words.
+    pub fn judge(&mut self, record: usize) -> (Verdict, String) {
+        let Self { entries, border, runners, folder } = self;
+        let [ours, theirs] = entries.map(|entry| {
+            let answer = runners[entry.runner].answers(entry.number, record, 1, folder);
+            answer.and_then(|answers| answers.first().copied()).unwrap_or(f64::NAN)
+        });
+        let told = format!("distances {ours:e} m, {theirs:e} m: ");
+        (verdict(ours, theirs, *border, entries[0].cell.size), told)
+    }
+}
+
+fn verdict(ours: f64, theirs: f64, border: f64, size: f64) -> Verdict {
+    // Without a tolerance every overlap, however deep, measures 0: that is no border.
+    if border == 0.0 && ours <= 0.0 && theirs <= 0.0 {
+        return Verdict::Is(1.0);
+    }
+    let near = |d: f64| (d.max(0.0) - border).abs() <= BORDER * size && !d.is_nan();
+    if near(ours) && near(theirs) {
+        return Verdict::Either;
+    }
+    if same_distance(ours, theirs, size) {
+        return Verdict::Is(f64::from(u8::from(theirs <= border)));
+    }
+    Verdict::Open
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distances_decide_only_where_they_agree() {
+        assert_eq!(verdict(0.0, 5e-10, 0.0, 1.0), Verdict::Either);
+        assert_eq!(verdict(0.0, -0.1, 0.0, 1.0), Verdict::Is(1.0));
+        assert_eq!(verdict(6e-7, 6e-7, 0.0, 1.0), Verdict::Is(0.0));
+        assert_eq!(verdict(0.04, 0.04, 0.05, 1.0), Verdict::Is(1.0));
+        assert_eq!(verdict(0.0, 0.0, 0.05, 1.0), Verdict::Is(1.0));
+        assert_eq!(verdict(0.0, 6e-7, 0.0, 1.0), Verdict::Open);
+        assert_eq!(verdict(f64::NAN, 0.0, 0.0, 1.0), Verdict::Open);
+    }
+}
