@@ -3,7 +3,7 @@
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use fearless_simd::Level;
 
-use super::leaf::{filled, near, touching};
+use super::leaf::{Facing, filled, near, touching};
 use super::limit::{Limit, Sight};
 use super::node::{NEAR, TOUCH, open};
 use super::placement::Pairing;
@@ -202,7 +202,8 @@ fn audit_leaves(a: &TriMesh, b: &TriMesh, pair: &Entry, pairing: &Pairing, limit
     let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
     let all = filled(filling(&a.tree, leaf_a), filling(&b.tree, leaf_b));
     let leaves = (&a.tree.leaves[leaf_a], &b.tree.leaves[leaf_b]);
-    let left = near(Level::new(), leaves.0, leaves.1, pairing, limit, all)
+    let mut facing = Facing::NOTHING;
+    let left = near(Level::new(), leaves.0, leaves.1, pairing, limit, &mut facing, all)
         & touching(Level::new(), leaves.0, leaves.1, pairing, limit, all);
     let mut decided = 0;
     for bit in 0..64 {

@@ -2,31 +2,42 @@
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{V3, W8, load_corners, rows8, splat8};
+use super::lanes::{V3, W8, load_corners, load8, rows8, splat8};
 use super::limit::{Limit, Sight};
 use super::placement::Pairing;
 use super::tree::Leaf;
 
 /// The pairs of triangles that may be within the limit, whose squares of gaps decide.
-pub(super) fn near(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, all: Pairs) -> u64 {
+pub(super) fn near(
+    level: Level,
+    a: &Leaf,
+    b: &Leaf,
+    pairing: &Pairing,
+    limit: &Limit,
+    facing: &mut Facing,
+    all: Pairs,
+) -> u64 {
     dispatch!(level, simd => {
         let left = match &limit.sight {
             Some(sight) => {
-                let of_a = Intervals::of_a(simd, a, sight);
-                Facing::new(simd, b, sight).near(simd, &of_a, limit, all)
+                facing.turn(simd, b, sight);
+                facing.near(simd, &Intervals::of_a(simd, a, sight), limit, all)
             }
             None => all,
         };
-        if left.0 == 0 { 0 } else { along_normals(simd, a, b, pairing, limit, left).0 }
+        if left.0 == 0 {
+            return 0;
+        }
+        along_normals(simd, &load_corners(simd, &a.corner), &seen_from_a(simd, b, pairing), a, limit, left).0
     })
 }
 
 /// The pairs of triangles that may touch.
 pub(super) fn touching(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, all: Pairs) -> u64 {
     dispatch!(level, simd => {
-        let of_a = Intervals::own(simd, a);
-        let left = Facing::new(simd, b, &pairing.axes).touching(simd, &of_a, limit, all);
-        if left.0 == 0 { 0 } else { along_normals(simd, a, b, pairing, limit, left).0 }
+        let (of_a, of_b) = (load_corners(simd, &a.corner), seen_from_a(simd, b, pairing));
+        let left = boxes_touch(simd, &of_a, &of_b, limit, all);
+        if left.0 == 0 { 0 } else { along_normals(simd, &of_a, &of_b, a, limit, left).0 }
     })
 }
 
@@ -34,8 +45,20 @@ pub(super) fn touching(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limi
 pub(super) fn nearest(level: Level, a: &Leaf, b: &Leaf, sight: &Sight, all: Pairs) -> u32 {
     dispatch!(level, simd => {
         let of_a = Intervals::of_a(simd, a, sight);
-        Facing::new(simd, b, sight).nearest(simd, &of_a, all)
+        let mut facing = Facing::NOTHING;
+        facing.turn(simd, b, sight);
+        facing.nearest(simd, &of_a, all)
     })
+}
+
+type Triangles<S> = [V3<W8<S>>; 3];
+
+/// Triangles of B in A's frame.
+#[inline(always)]
+fn seen_from_a<S: Simd>(simd: S, b: &Leaf, pairing: &Pairing) -> Triangles<S> {
+    let (rows, shift) = (rows8(simd, &pairing.ab.m), splat8(simd, pairing.ab.t));
+    let [p, q, r] = load_corners(simd, &b.corner);
+    [p.mapped(&rows).plus(shift), q.mapped(&rows).plus(shift), r.mapped(&rows).plus(shift)]
 }
 
 /// Bit `8 i + j`: triangle `i` of A and `j` of B.
@@ -62,10 +85,9 @@ impl<S: Simd> Intervals<S> {
         Self::along(simd, leaf, &sight.of_a, [0.0; 3])
     }
 
-    /// Along the axes of the leaf's own mesh.
+    /// Along the axes of the frame that the corners are in.
     #[inline(always)]
-    fn own(simd: S, leaf: &Leaf) -> Self {
-        let [p, q, r] = load_corners(simd, &leaf.corner);
+    fn own([p, q, r]: &Triangles<S>) -> Self {
         Self {
             low: V3(p.0.min(q.0).min(r.0), p.1.min(q.1).min(r.1), p.2.min(q.2).min(r.2)),
             high: V3(p.0.max(q.0).max(r.0), p.1.max(q.1).max(r.1), p.2.max(q.2).max(r.2)),
@@ -97,23 +119,43 @@ impl<S: Simd> Intervals<S> {
     }
 }
 
-/// Eight triangles of B, ready to be compared with leaves of A.
-struct Facing<S: Simd> {
-    each: Intervals<S>,
+/// Eight triangles of B as intervals along the axes of sight, kept for the next leaf of A.
+#[derive(Debug, Clone)]
+pub(super) struct Facing {
+    low: [[f32; 8]; 3],
+    high: [[f32; 8]; 3],
+    /// Lowest and highest of all eight.
     whole: ([f32; 3], [f32; 3]),
+    known: bool,
 }
 
-impl<S: Simd> Facing<S> {
+impl Facing {
+    pub const NOTHING: Self =
+        Self { low: [[0.0; 8]; 3], high: [[0.0; 8]; 3], whole: ([0.0; 3], [0.0; 3]), known: false };
+
+    /// What is known is of another leaf, or along other axes.
+    pub fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Looks at the leaf, unless it is known already.
     #[inline(always)]
-    fn new(simd: S, leaf: &Leaf, sight: &Sight) -> Self {
+    fn turn<S: Simd>(&mut self, simd: S, leaf: &Leaf, sight: &Sight) {
+        if self.known {
+            return;
+        }
         let each = Intervals::of_b(simd, leaf, sight);
-        let whole = each.whole();
-        Self { each, whole }
+        (self.low, self.high, self.whole, self.known) = (stored(each.low), stored(each.high), each.whole(), true);
+    }
+
+    #[inline(always)]
+    fn each<S: Simd>(&self, simd: S) -> Intervals<S> {
+        Intervals { low: load8(simd, &self.low), high: load8(simd, &self.high) }
     }
 
     /// Squared distance of each triangle of A from all of B, at least.
     #[inline(always)]
-    fn square_of_whole(&self, simd: S, a: &Intervals<S>) -> W8<S> {
+    fn square_of_whole<S: Simd>(&self, simd: S, a: &Intervals<S>) -> W8<S> {
         let (zero, (low, high)) = (W8::splat(simd, 0.0), &self.whole);
         let n = (W8::splat(simd, low[0]) - a.high.0).max(zero);
         let u = (W8::splat(simd, low[1]) - a.high.1).max(a.low.1 - high[1]).max(zero);
@@ -121,55 +163,19 @@ impl<S: Simd> Facing<S> {
         n * n + u * u + v * v
     }
 
-    /// Squared distance of each triangle of B from triangle `i` of A, at least.
-    #[inline(always)]
-    fn square(&self, simd: S, (low, high): &([[f32; 8]; 3], [[f32; 8]; 3]), i: usize) -> W8<S> {
-        let (zero, b) = (W8::splat(simd, 0.0), &self.each);
-        let n = (b.low.0 - high[0][i]).max(zero);
-        let u = (b.low.1 - high[1][i]).max(W8::splat(simd, low[1][i]) - b.high.1).max(zero);
-        let v = (b.low.2 - high[2][i]).max(W8::splat(simd, low[2][i]) - b.high.2).max(zero);
-        n * n + u * u + v * v
-    }
-
     /// Leaves out pairs that are farther apart than the limit.
     #[inline(always)]
-    fn near(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
+    fn near<S: Simd>(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
         let mut rows = !self.square_of_whole(simd, a).simd_gt(limit.squared).to_bitmask() & 0xff;
         if rows == 0 {
             return Pairs(0);
         }
-        let ends = (stored(a.low), stored(a.high));
+        let (ends, b) = ((stored(a.low), stored(a.high)), self.each(simd));
         let mut left = 0;
         while rows != 0 {
             let i = rows.trailing_zeros() as usize;
             rows &= rows - 1;
-            let out = self.square(simd, &ends, i).simd_gt(limit.squared).to_bitmask();
-            left |= (!out & 0xff) << (8 * i);
-        }
-        Pairs(left & pairs.0)
-    }
-
-    /// Leaves out pairs that some axis keeps farther apart than the limit.
-    #[inline(always)]
-    fn touching(&self, simd: S, a: &Intervals<S>, limit: &Limit, pairs: Pairs) -> Pairs {
-        let (low, high) = &self.whole;
-        let n = (W8::splat(simd, low[0]) - a.high.0).max(a.low.0 - high[0]);
-        let u = (W8::splat(simd, low[1]) - a.high.1).max(a.low.1 - high[1]);
-        let v = (W8::splat(simd, low[2]) - a.high.2).max(a.low.2 - high[2]);
-        let mut rows = !n.max(u).max(v).simd_gt(limit.gap).to_bitmask() & 0xff;
-        if rows == 0 {
-            return Pairs(0);
-        }
-        let (low, high) = (stored(a.low), stored(a.high));
-        let mut left = 0;
-        while rows != 0 {
-            let i = rows.trailing_zeros() as usize;
-            rows &= rows - 1;
-            let b = &self.each;
-            let n = (b.low.0 - high[0][i]).max(W8::splat(simd, low[0][i]) - b.high.0);
-            let u = (b.low.1 - high[1][i]).max(W8::splat(simd, low[1][i]) - b.high.1);
-            let v = (b.low.2 - high[2][i]).max(W8::splat(simd, low[2][i]) - b.high.2);
-            let out = n.max(u).max(v).simd_gt(limit.gap).to_bitmask();
+            let out = square(simd, &b, &ends, i).simd_gt(limit.squared).to_bitmask();
             left |= (!out & 0xff) << (8 * i);
         }
         Pairs(left & pairs.0)
@@ -177,12 +183,12 @@ impl<S: Simd> Facing<S> {
 
     /// The pair that looks nearest.
     #[inline(always)]
-    fn nearest(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u32 {
-        let ends = (stored(a.low), stored(a.high));
+    fn nearest<S: Simd>(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u32 {
+        let (ends, b) = ((stored(a.low), stored(a.high)), self.each(simd));
         let mut best = (f32::INFINITY, 0);
         let mut squares = [0.0f32; 8];
         for i in 0..8 {
-            self.square(simd, &ends, i).store_slice(&mut squares);
+            square(simd, &b, &ends, i).store_slice(&mut squares);
             for (j, &square) in squares.iter().enumerate() {
                 let bit = (8 * i + j) as u32;
                 if pairs.0 >> bit & 1 == 1 && square < best.0 {
@@ -194,32 +200,56 @@ impl<S: Simd> Facing<S> {
     }
 }
 
-/// Leaves out pairs that the plane of either triangle keeps farther apart than the limit.
+/// Squared distance of each triangle of B from triangle `i` of A, at least.
 #[inline(always)]
-fn along_normals<S: Simd>(simd: S, a: &Leaf, b: &Leaf, pairing: &Pairing, limit: &Limit, pairs: Pairs) -> Pairs {
-    let ab = &pairing.ab;
-    let (rows, shift) = (rows8(simd, &ab.m), splat8(simd, ab.t));
-    let [p, q, r] = load_corners(simd, &b.corner);
-    let of_b = [p.mapped(&rows).plus(shift), q.mapped(&rows).plus(shift), r.mapped(&rows).plus(shift)];
-    let of_a = load_corners(simd, &a.corner);
-    let (normal_a, low_a, high_a) = plane(simd, &of_a);
-    let (normal_b, low_b, high_b) = plane(simd, &of_b);
-    let normal_a = stored(normal_a);
-    let (mut lows, mut highs) = ([0.0f32; 8], [0.0f32; 8]);
-    low_a.store_slice(&mut lows);
-    high_a.store_slice(&mut highs);
+fn square<S: Simd>(simd: S, b: &Intervals<S>, (low, high): &([[f32; 8]; 3], [[f32; 8]; 3]), i: usize) -> W8<S> {
+    let zero = W8::splat(simd, 0.0);
+    let n = (b.low.0 - high[0][i]).max(zero);
+    let u = (b.low.1 - high[1][i]).max(W8::splat(simd, low[1][i]) - b.high.1).max(zero);
+    let v = (b.low.2 - high[2][i]).max(W8::splat(simd, low[2][i]) - b.high.2).max(zero);
+    n * n + u * u + v * v
+}
+
+/// Leaves out pairs whose boxes, along A's axes, are farther apart than the limit.
+#[inline(always)]
+fn boxes_touch<S: Simd>(simd: S, a: &Triangles<S>, b: &Triangles<S>, limit: &Limit, pairs: Pairs) -> Pairs {
+    let (a, b) = (Intervals::own(a), Intervals::own(b));
+    let (low, high) = (stored(a.low), stored(a.high));
+    let mut left = 0;
+    for i in 0..8 {
+        let x = (b.low.0 - high[0][i]).max(W8::splat(simd, low[0][i]) - b.high.0);
+        let y = (b.low.1 - high[1][i]).max(W8::splat(simd, low[1][i]) - b.high.1);
+        let z = (b.low.2 - high[2][i]).max(W8::splat(simd, low[2][i]) - b.high.2);
+        let out = x.max(y).max(z).simd_gt(limit.gap).to_bitmask();
+        left |= (!out & 0xff) << (8 * i);
+    }
+    Pairs(left & pairs.0)
+}
+
+/// Leaves out pairs that the plane of either triangle keeps farther apart than the limit; all in A's frame.
+#[inline(always)]
+fn along_normals<S: Simd>(
+    simd: S,
+    of_a: &Triangles<S>,
+    of_b: &Triangles<S>,
+    a: &Leaf,
+    limit: &Limit,
+    pairs: Pairs,
+) -> Pairs {
+    let (plane_a, plane_b) = (Plane::new(of_a, limit.gap), Plane::new(of_b, limit.gap));
+    let normal_a = stored(plane_a.normal);
+    let ends_a = stored(V3(plane_a.low, plane_a.high, plane_a.high));
     let mut left = 0;
     for i in 0..8 {
         if (pairs.0 >> (8 * i)) as u8 == 0 {
             continue;
         }
-        let n = splat8(simd, [normal_a[0][i], normal_a[1][i], normal_a[2][i]]);
-        let (low, high) = range(n, &of_b);
-        let from_a = (low - highs[i]).max(W8::splat(simd, lows[i]) - high);
+        let (low, high) = range(splat8(simd, [normal_a[0][i], normal_a[1][i], normal_a[2][i]]), of_b);
+        let from_a = (low - ends_a[1][i]).max(W8::splat(simd, ends_a[0][i]) - high);
         let corners = [one(simd, a, 0, i), one(simd, a, 1, i), one(simd, a, 2, i)];
-        let (low, high) = range(normal_b, &corners);
-        let from_b = (low - high_b).max(low_b - high);
-        let out = from_a.max(from_b).simd_gt(limit.gap).to_bitmask();
+        let (low, high) = range(plane_b.normal, &corners);
+        let from_b = (low - plane_b.high).max(plane_b.low - high);
+        let out = from_a.max(from_b).simd_gt(0.0).to_bitmask();
         left |= (!out & 0xff) << (8 * i);
     }
     Pairs(left & pairs.0)
@@ -231,15 +261,26 @@ fn one<S: Simd>(simd: S, leaf: &Leaf, k: usize, i: usize) -> V3<W8<S>> {
     splat8(simd, [leaf.corner[k][0][i], leaf.corner[k][1][i], leaf.corner[k][2][i]])
 }
 
-/// Normals no longer than 1, and the interval of each triangle along its own.
-#[inline(always)]
-fn plane<S: Simd>(simd: S, corners: &[V3<W8<S>>; 3]) -> (V3<W8<S>>, W8<S>, W8<S>) {
-    let n = corners[1].minus(corners[0]).cross(corners[2].minus(corners[0]));
-    // A triangle without area gets a normal too short to part anything.
-    let square = n.dot(n).max(W8::splat(simd, 1e-30));
-    let n = n.times(W8::splat(simd, 0.999_999) / square.sqrt());
-    let (low, high) = range(n, corners);
-    (n, low, high)
+/// Planes of triangles: normals of any length, and the interval of each triangle along its own, grown by the limit
+/// times that length (or more).
+struct Plane<S: Simd> {
+    normal: V3<W8<S>>,
+    low: W8<S>,
+    high: W8<S>,
+}
+
+impl<S: Simd> Plane<S> {
+    #[inline(always)]
+    fn new(corners: &Triangles<S>, limit: f32) -> Self {
+        let normal = corners[1].minus(corners[0]).cross(corners[2].minus(corners[0]));
+        let (low, high) = range(normal, corners);
+        // Squares of numbers this small are nothing to f32; their sum is longer than the normal, which is all it must be.
+        let square = normal.dot(normal);
+        let sum = normal.0.abs() + normal.1.abs() + normal.2.abs() + 1e-30;
+        let length = square.simd_gt(1e-30).select(square.sqrt() * 1.000_001, sum);
+        let grown = length * limit;
+        Self { normal, low: low - grown, high: high + grown }
+    }
 }
 
 #[inline(always)]

@@ -4,7 +4,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::Level;
 
 use super::exact::{BATCH, Distances};
-use super::leaf::{filled, near, nearest};
+use super::leaf::{Facing, filled, near, nearest};
 use super::limit::Limit;
 use super::node::{NEAR, open};
 use super::placement::{Pairing, apart};
@@ -178,6 +178,9 @@ struct Search<'a> {
     seen: f64,
     best: Option<Best>,
     queue: &'a mut Queue,
+    /// A leaf of B along the line of sight, and its number.
+    facing: Facing,
+    faced: Option<usize>,
     slots: [(u32, u32); BATCH],
     visits: &'a mut Visits,
 }
@@ -198,7 +201,22 @@ fn search(
     let mut limit = Limit::new(radius, pairing);
     limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
     let (seen, slots) = (f64::INFINITY, [(0, 0); BATCH]);
-    let mut s = Search { level, a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits };
+    let mut s = Search {
+        level,
+        a,
+        b,
+        pairing,
+        limit,
+        radius,
+        enough,
+        seen,
+        best: None,
+        queue,
+        facing: Facing::NOTHING,
+        faced: None,
+        slots,
+        visits,
+    };
     stack.push(Entry::root(&a.tree, &b.tree));
     s.begin(hint, stack);
     s.prove(stack);
@@ -295,6 +313,7 @@ impl Search<'_> {
         if nearer {
             self.radius = distance;
             self.limit.tighten(distance, near.on_a, near.on_b, self.pairing);
+            self.faced = None;
         }
     }
 
@@ -330,6 +349,7 @@ impl Search<'_> {
             let near = found.near(lane);
             self.seen = found.distance[lane];
             self.limit.look_along(near.on_b - near.on_a, self.pairing);
+            self.faced = None;
         }
     }
 
@@ -337,7 +357,14 @@ impl Search<'_> {
         self.visits.leaves += 1;
         let (a, b) = (&self.a.tree, &self.b.tree);
         let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-        let mut left = near(self.level, &a.leaves[leaf_a], &b.leaves[leaf_b], self.pairing, &self.limit, all);
+        let mut left = {
+            if self.faced != Some(leaf_b) {
+                self.facing.forget();
+                self.faced = Some(leaf_b);
+            }
+            let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+            near(self.level, of_a, of_b, self.pairing, &self.limit, &mut self.facing, all)
+        };
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;

@@ -2,7 +2,6 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::limit::Sight;
 use super::tree::{Frame, Tree};
 
 /// One mesh (Y) seen from the other (X), in units of X: `x = m·y + t`.
@@ -25,8 +24,6 @@ pub(super) struct Pairing {
     pub ba: Placement,
     pub frame_a: Frame,
     pub frame_b: Frame,
-    /// A's own axes, with B seen along them.
-    pub axes: Sight,
     /// Rows of the map from units of B to units of A, translation last.
     pub exact: [[f64; 4]; 3],
     /// Units of A per unit of B.
@@ -51,10 +48,8 @@ impl Pairing {
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
         let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
         let far = (reach(a_in_world, &a.frame) + reach(b_in_world, &b.frame)) / a.frame.unit;
-        let ab = placement(rows, t, scale);
         Self {
-            ab,
-            axes: Sight { of_a: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], of_b: ab.m, shift: ab.t },
+            ab: placement(rows, t, scale),
             ba: placement(columns, back, 1.0 / scale),
             exact,
             scale,
