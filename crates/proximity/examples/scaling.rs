@@ -3,6 +3,8 @@
 //! `cargo run --release -p elbowroom-proximity --example scaling [-- --json]` prints one row per size, from 1,000 to
 //! 2,000,000 triangles: two bumpy balls, 1 m across, apart by 1 % and overlapping by 1 %.
 
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use std::time::Instant;

@@ -349,7 +349,9 @@ fn golden(level: Level) -> u64 {
         let there = Pose { rotation: n.rotation(), translation: here.translation + n.vector() * 0.8 };
         let found = distance(&a, &here, &b, &there, &mut s);
         let numbers = [found.distance, found.lower_bound, found.on_a.x, found.on_b.y, found.on_b.z];
-        numbers.iter().for_each(|x| mix(&mut hash, x.to_bits()));
+        for x in numbers {
+            mix(&mut hash, x.to_bits());
+        }
         let pair = collide(&a, &here, &b, &there, &mut s);
         let near = within(&a, &here, &b, &there, 0.1, &mut s);
         for pair in [pair, near] {
@@ -360,7 +362,9 @@ fn golden(level: Level) -> u64 {
             mix(&mut hash, number);
         }
         let v = s.visits();
-        [v.nodes, v.boxes, v.leaves, v.triangles].iter().for_each(|x| mix(&mut hash, u64::from(*x)));
+        for x in [v.nodes, v.boxes, v.leaves, v.triangles] {
+            mix(&mut hash, u64::from(x));
+        }
     }
     hash
 }

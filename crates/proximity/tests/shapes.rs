@@ -250,3 +250,19 @@ fn a_solid_inside_a_closed_mesh_collides_and_in_its_cavity_is_free() {
         assert!(project_point(&outer, &pose, pose.translation).signed_distance < -0.9);
     }
 }
+
+#[test]
+fn a_hulls_own_corners_are_on_it() {
+    let capsule = Shape::Capsule(elbowroom_proximity::Capsule { half_length: 0.2, radius: 0.1 });
+    for chord in [0.02, 0.004, 0.001] {
+        let (vertices, _) = elbowroom_proximity::tessellate::tessellate(&capsule, chord);
+        let hull = Arc::new(ConvexHull::from_points(&vertices).unwrap());
+        let ball = Shape::Sphere(elbowroom_proximity::Sphere { radius: 1e-6 });
+        for &v in hull.vertices() {
+            let s = separation(&ball, &Pose::from_translation(v), &Shape::Hull(hull.clone()), &Pose::IDENTITY);
+            assert!(s.distance == 0.0 && s.lower_bound == 0.0, "{v:?}: {s:?}");
+            let p = project_point(&Shape::Hull(hull.clone()), &Pose::IDENTITY, v);
+            assert!(p.signed_distance.abs() < 1e-12, "{v:?}: {p:?}");
+        }
+    }
+}

@@ -108,7 +108,7 @@ fn bound(a: &Child, b: &Child, pairing: &Pairing, sight: Option<&Sight>) -> f64 
     let column = |k: usize| Vec3::new(pairing.exact[0][k], pairing.exact[1][k], pairing.exact[2][k]);
     // B's axes in A, each as long as B's unit.
     let axes = [column(0), column(1), column(2)];
-    let center_b = pairing.to_a(b.center);
+    let center_b = pairing.in_a(b.center);
     let half_b = axes[0].abs() * b.half.x + axes[1].abs() * b.half.y + axes[2].abs() * b.half.z;
     let outside = |c: Vec3, h: Vec3| (c.abs() - h).max(Vec3::ZERO);
     let in_a = outside(center_b - a.center, a.half + half_b).length();
@@ -127,7 +127,7 @@ fn bound(a: &Child, b: &Child, pairing: &Pairing, sight: Option<&Sight>) -> f64 
     let reach_b = (0..3).map(|k| a.normal.dot(axes[k]).abs() * [b.half.x, b.half.y, b.half.z][k]).sum();
     let slab_a = gap(a.normal, (a.low, a.high), center_b, reach_b);
     let normal_b = (axes[0] * b.normal.x + axes[1] * b.normal.y + axes[2] * b.normal.z) * unit;
-    let offset = normal_b.dot(pairing.to_a(Vec3::ZERO));
+    let offset = normal_b.dot(pairing.in_a(Vec3::ZERO));
     let ends = (b.low * pairing.scale + offset, b.high * pairing.scale + offset);
     let slab_b = gap(normal_b, ends, a.center, normal_b.abs().dot(a.half));
     let seen = sight.map_or(0.0, |s| sighted(a, b, s));

@@ -267,7 +267,7 @@ fn crossing<S: Simd>(
         let through_a = pierced(simd, b, a, heights_b, k);
         for (mask, point) in [through_b, through_a] {
             let mask = mask & both;
-            any = any | mask;
+            any |= mask;
             best.square = mask.select(zero, best.square);
             best.on_a = select(mask, point, best.on_a);
             best.apart = select(mask, V3(zero, zero, zero), best.apart);
@@ -293,7 +293,7 @@ fn pierced<S: Simd>(simd: S, t: &Prepared<S>, f: &Prepared<S>, heights: &[W<S>; 
     let mut inside = apart;
     for l in 0..3 {
         let side = f.normal.dot(f.edge[l].cross(x.minus(f.corner[l])));
-        inside = inside & side.simd_ge(zero);
+        inside &= side.simd_ge(zero);
     }
     (inside, x)
 }

@@ -210,7 +210,7 @@ fn along_normals<S: Simd>(simd: S, a: &Leaf, b: &Leaf, pairing: &Pairing, limit:
     high_a.store_slice(&mut highs);
     let mut left = 0;
     for i in 0..8 {
-        if (pairs.0 >> (8 * i)) & 0xff == 0 {
+        if (pairs.0 >> (8 * i)) as u8 == 0 {
             continue;
         }
         let n = splat8(simd, [normal_a[0][i], normal_a[1][i], normal_a[2][i]]);

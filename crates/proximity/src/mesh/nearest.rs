@@ -196,7 +196,7 @@ fn search(
     queue.clear();
     stack.clear();
     let mut limit = Limit::new(radius, pairing);
-    limit.look_along(pairing.to_a(Vec3::ZERO), pairing);
+    limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
     let (seen, slots) = (f64::INFINITY, [(0, 0); BATCH]);
     let mut s = Search { level, a, b, pairing, limit, radius, enough, seen, best: None, queue, slots, visits };
     stack.push(Entry::root(&a.tree, &b.tree));

@@ -73,7 +73,7 @@ impl Pairing {
 
     /// A point of B's tree frame in A's.
     #[inline]
-    pub fn to_a(&self, p: Vec3) -> Vec3 {
+    pub fn in_a(&self, p: Vec3) -> Vec3 {
         let row = |r: &[f64; 4]| r[0] * p.x + r[1] * p.y + r[2] * p.z + r[3];
         Vec3::new(row(&self.exact[0]), row(&self.exact[1]), row(&self.exact[2]))
     }

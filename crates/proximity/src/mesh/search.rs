@@ -96,6 +96,10 @@ pub(super) struct Stack {
 }
 
 impl Stack {
+    #[allow(
+        clippy::large_stack_arrays,
+        reason = "it lives in static or boxed memory; making it is not part of a query"
+    )]
     const fn new() -> Self {
         let blank = Entry { a: 0, b: 0, key: 0.0, height_a: 0, height_b: 0 };
         Self { entries: [blank; DEPTH], len: 0, overflown: false }
@@ -250,7 +254,7 @@ pub(super) fn corners_in_a(
     pairing: &Pairing,
 ) -> ([Vec3; 3], [Vec3; 3]) {
     let [p, q, r] = units(b, tb);
-    (units(a, ta), [pairing.to_a(p), pairing.to_a(q), pairing.to_a(r)])
+    (units(a, ta), [pairing.in_a(p), pairing.in_a(q), pairing.in_a(r)])
 }
 
 /// Nearest points of two triangles, robustly, in units and axes of A's tree.

@@ -91,17 +91,22 @@ impl ConvexHull {
         farthest(&self.vertices, dir)
     }
 
-    /// The point of the solid nearest to `p` (itself where inside), local frame: it lies on a face that `p` is above.
+    /// The point of the solid nearest to `p` (itself where inside), local frame.
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         self.nearest_with_face(p).0
     }
 
     /// The nearest point, and a face that it lies on where `p` is outside.
     pub(crate) fn nearest_with_face(&self, p: Vec3) -> (Vec3, Option<usize>) {
+        let heights = || self.planes.iter().map(|(normal, offset)| normal.dot(p) - offset);
+        if !heights().any(|height| height > 0.0) {
+            return (p, None);
+        }
+        // Every face counts, also those that rounding puts `p` just below: at a corner only a distant face may claim
+        // to see it.
         let mut best = (f64::INFINITY, p, None);
-        for (i, (normal, offset)) in self.planes.iter().enumerate() {
-            let height = normal.dot(p) - offset;
-            if height > 0.0 && height * height < best.0 {
+        for (i, height) in heights().enumerate() {
+            if height * height < best.0 {
                 let q = nearest_on_triangle(p, self.corners(i));
                 let squared = (q - p).length_squared();
                 if squared < best.0 {
