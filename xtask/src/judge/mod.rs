@@ -219,8 +219,17 @@ mod tests {
         let pairs = world::by_rule(&scene);
         let theirs = reference::ask(&python, &folder, &files.urdf, &scene, &states, &pairs);
         let _ = std::fs::remove_dir_all(&folder);
-        let verdict = compare::judge(&scene, &states, &theirs.unwrap()).unwrap();
+        let mut theirs = theirs.unwrap();
+        let verdict = compare::judge(&scene, &states, &theirs).unwrap();
         assert_eq!(verdict.disagreements, 0, "{:?}", verdict.first);
         assert!(verdict.contacts > 0 && verdict.contacts < 20, "{verdict:?}");
+        // A hair off, and it is found: a nanometre per metre is what is allowed, a contact denied is not.
+        let free = theirs.collides.iter().position(|hit| !hit).unwrap();
+        let of_state = free * theirs.pairs.len()..(free + 1) * theirs.pairs.len();
+        theirs.distances[of_state].iter_mut().for_each(|d| *d *= 1.0 + 1e-5);
+        let hit = theirs.collides.iter().position(|hit| *hit).unwrap();
+        theirs.collides[hit] = false;
+        let verdict = compare::judge(&scene, &states, &theirs).unwrap();
+        assert_eq!(verdict.disagreements, 2, "{:?}", verdict.first);
     }
 }

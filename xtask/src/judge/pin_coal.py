@@ -32,7 +32,6 @@ def joint_value(name, mimics, free):
 def mesh(vertices, triangles):
     model = coal.BVHModelOBBRSS()
     model.beginModel(len(triangles), len(vertices))
-    model.addVertices(vertices)
     rows = coal.StdVec_Triangle()
     for a, b, c in triangles.tolist():
         rows.append(coal.Triangle(a, b, c))

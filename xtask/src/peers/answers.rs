@@ -87,7 +87,7 @@ fn settle(
             Verdict::Open => "unexplained".to_owned(),
         };
         let [mine, its] = [ours, reference].map(|k| format!("{} {:?}", group.entries[k].cell.lib, given[k][i]));
-        notes.push(format!("{} {} record {i}: {mine}, {its}; {told}{conclusion}.", group.set, group.query));
+        notes.push(format!("{} {} record {i}: {mine}, {its};\n  {told}{conclusion}.", group.set, group.query));
         match verdict {
             Verdict::Either => truth[i] = None,
             Verdict::Is(answer) => truth[i] = Some(answer),
