@@ -111,17 +111,21 @@ fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
 
 /// True where an edge of one passes through the other, by f64 signs alone: nearly touching ones may go either way.
 pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
-    edges_cross(&s, &t) || edges_cross(&t, &s)
+    // Each must have corners on both sides of the other's plane.
+    let (Some(of_s), Some(of_t)) = (sides(&s, &t), sides(&t, &s)) else { return false };
+    edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)
+}
+
+/// Which corners of `s` are above `t`'s plane; `None` where all are on one side.
+#[inline]
+fn sides(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<[bool; 3]> {
+    let n = (t[1] - t[0]).cross(t[2] - t[0]);
+    let above = [n.dot(s[0] - t[0]) > 0.0, n.dot(s[1] - t[0]) > 0.0, n.dot(s[2] - t[0]) > 0.0];
+    (above[0] != above[1] || above[1] != above[2]).then_some(above)
 }
 
 #[inline]
-fn edges_cross(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
-    let n = (t[1] - t[0]).cross(t[2] - t[0]);
-    let h = [n.dot(s[0] - t[0]), n.dot(s[1] - t[0]), n.dot(s[2] - t[0])];
-    let above = [h[0] > 0.0, h[1] > 0.0, h[2] > 0.0];
-    if above[0] == above[1] && above[1] == above[2] {
-        return false;
-    }
+fn edges_cross(s: &[Vec3; 3], above: [bool; 3], t: &[Vec3; 3]) -> bool {
     (0..3).any(|k| above[k] != above[(k + 1) % 3] && segment_crosses(s[k], s[(k + 1) % 3], *t).is_some())
 }
 
