@@ -98,9 +98,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["judge", rest @ ..] => judge::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
-        ["peers", options @ ..] => {
-            Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?)
-        }
+        ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
         ["bench", rest @ ..] => {
             let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
             Ok(shell::cargo(&root, &args, &[])?)

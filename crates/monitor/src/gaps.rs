@@ -6,6 +6,7 @@ use elbowroom_spatial::Vec3;
 use crate::bound::RoundedBox;
 use crate::broad::RegionTree;
 use crate::placement::Placement;
+use crate::witness::Witnesses;
 use crate::{Configuration, RegionId};
 
 /// A volume near a region.
@@ -38,6 +39,7 @@ pub(crate) struct Gaps {
     volume_bounds: Vec<Option<RoundedBox>>,
     /// Regions that the tree cannot hold: they move, or are unbounded.
     roaming: Vec<u32>,
+    witnesses: Witnesses,
     of_region: Vec<Gap>,
     near: Vec<u32>,
     tick: u64,
@@ -56,6 +58,7 @@ impl Gaps {
             region_bounds: config.regions.iter().map(|r| RoundedBox::around(&r.shape)).collect(),
             volume_bounds: config.volumes.iter().map(|v| RoundedBox::around(&v.shape)).collect(),
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
+            witnesses: Witnesses::new(config),
             of_region: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, asking }; config.regions.len()],
             near: Vec::with_capacity(config.regions.len()),
             tick: 0,
@@ -84,9 +87,11 @@ impl Gaps {
     /// Measures every active region against the volumes it guards. `law` says which override a pair asks for, and how
     /// much farther than the warning zone a volume must be looked at.
     pub(crate) fn measure(&mut self, config: &Configuration, active: &[bool], now: &Placement, law: &impl PairLaw) {
-        let Self { tree, region_bounds, volume_bounds, roaming, of_region, near, tick, measured_pairs } = self;
+        let Self { tree, region_bounds, volume_bounds, roaming, witnesses, of_region, near, tick, measured_pairs } =
+            self;
         let bounds = (region_bounds.as_slice(), volume_bounds.as_slice());
-        let mut measuring = Measuring { config, active, now, law, bounds, of_region, near, tick: *tick, pairs: 0 };
+        let tick = *tick;
+        let mut measuring = Measuring { config, active, now, law, bounds, witnesses, of_region, near, tick, pairs: 0 };
         for volume in 0..config.volumes.len() {
             let extra_reach = law.extra_reach(volume);
             tree.visit(&now.volume_box[volume].inflated(extra_reach), |r| measuring.visit(r, volume, extra_reach));
@@ -106,6 +111,7 @@ struct Measuring<'a, L> {
     law: &'a L,
     /// Of the regions and of the volumes.
     bounds: (&'a [Option<RoundedBox>], &'a [Option<RoundedBox>]),
+    witnesses: &'a mut Witnesses,
     of_region: &'a mut [Gap],
     near: &'a mut Vec<u32>,
     tick: u64,
@@ -134,7 +140,8 @@ impl<L: PairLaw> Measuring<'_, L> {
         }
         self.pairs += 1;
         let (in_world, region_in_world) = (&self.now.volume_in_world[v], &self.now.region_in_world[r]);
-        let found = separation_within(&volume.shape, in_world, &region.shape, region_in_world, limit);
+        let (of_volume, of_region) = ((v, &volume.shape, in_world), (r, &region.shape, region_in_world));
+        let found = self.witnesses.separation(of_volume, of_region, limit);
         let Some(separation) = found else { return };
         self.note(Pair { region: r, volume: v, separation }, fresh);
     }

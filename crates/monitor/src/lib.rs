@@ -62,6 +62,7 @@ pub mod teach;
 mod verdict;
 mod volume;
 mod watchdog;
+mod witness;
 
 pub use access::{AccessClass, Edit, EditError, SwitchError};
 pub use config::{ConfigError, Configuration};
