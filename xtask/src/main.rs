@@ -10,6 +10,7 @@ mod python;
 mod release;
 mod robots;
 mod rpq;
+mod scaling;
 mod shell;
 mod snippets;
 mod solid;
@@ -42,6 +43,8 @@ cargo xtask COMMAND
         elbowroom beside Coal, FCL and parry on one workload: installs them in target/peers, compares every answer, and
         prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
         (default 0.5); ONLY: part of `lib|set|query`
+  scaling [--out DIR]
+        time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/benchmarks.md
   bench [ARGS…]
         cargo bench, with ARGS
 
@@ -99,6 +102,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["judge", rest @ ..] => judge::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
+        ["scaling"] => Ok(scaling::run(&root, None)?),
+        ["scaling", "--out", folder] => Ok(scaling::run(&root, Some(Path::new(folder)))?),
         ["bench", rest @ ..] => {
             let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
             Ok(shell::cargo(&root, &args, &[])?)

@@ -27,6 +27,16 @@ pub fn status(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -
     wait(root, program, args, env)
 }
 
+/// What `program args…` prints; an exit status other than 0 is an error with what it said.
+pub fn output(root: &Path, program: &str, args: &[&str]) -> Result<String, String> {
+    let output = Command::new(program).args(args).current_dir(root).output();
+    let output = output.map_err(|e| format!("cannot start `{program}`: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("`{}` failed:\n{}", line(program, args, &[]), String::from_utf8_lossy(&output.stderr)));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
 /// Whether `program args…` runs and ends well; prints nothing.
 pub fn succeeds(root: &Path, program: &str, args: &[&str]) -> bool {
     let output = Command::new(program).args(args).current_dir(root).output();

@@ -270,9 +270,16 @@ fn what_f32_leaves_out_is_farther_than_the_limit() {
                 boxes += audit_boxes::<NEAR>(&a.tree, &b.tree, &pair, &pairing, &limit, radius);
                 pair = next;
             }
-            let radius = at_a_pair(&mut n, &a, &b, &pair, &pairing).unwrap_or(radius);
-            limit = limit.with_radius(radius, &pairing);
-            triangles += audit_leaves(&a, &b, &pair, &pairing, &limit, radius);
+            for _ in 0..8 {
+                let sibling = |n: &mut Numbers, tree: &Tree, leaf: u32| {
+                    let first = leaf / FAN as u32 * FAN as u32;
+                    first + n.below((tree.leaves.len() - first as usize).min(FAN)) as u32
+                };
+                let pair = Entry { a: sibling(&mut n, &a.tree, pair.a), b: sibling(&mut n, &b.tree, pair.b), ..pair };
+                let radius = at_a_pair(&mut n, &a, &b, &pair, &pairing).unwrap_or(radius);
+                limit = limit.with_radius(radius, &pairing);
+                triangles += audit_leaves(&a, &b, &pair, &pairing, &limit, radius);
+            }
         }
     }
     println!("{boxes} pairs of boxes and {triangles} pairs of triangles decided in f32, none wrongly");
