@@ -1,9 +1,11 @@
 //! Our answers beside theirs.
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use elbowroom_proximity::{Shape, mesh};
-use elbowroom_scene::{Checker, Distance, Member, Options, Scene, SceneState};
+use elbowroom_proximity::tessellate::tessellate;
+use elbowroom_proximity::{Shape, TriMesh, mesh};
+use elbowroom_scene::{Body, Checker, Distance, Member, Options, Scene, SceneState};
 
 use super::reference::Answers;
 use super::world;
@@ -65,7 +67,7 @@ pub fn judge(scene: &Scene, states: &[Vec<f64>], theirs: &Answers) -> Result<Ver
         let same_verdict = hits[i] == theirs.collides[i] || touching;
         if found.metres == 0.0 && free_for_them && swallows(scene, &state, &found) {
             verdict.swallowed += 1;
-        } else if same_verdict && difference <= ITERATED * (1.0 + gap) && has_primitive(scene, &found) {
+        } else if same_verdict && difference <= ITERATED * (1.0 + gap) && iterated(scene, &state, &found) {
             verdict.iterated += 1;
         } else {
             let names = [found.a, found.b].map(|m| scene.name(m)).join(" and ");
@@ -85,22 +87,31 @@ impl Verdict {
     }
 }
 
+/// All states are gone through so many times, and the fastest counts: ours are so short that one interruption by another
+/// program would be most of what is measured.
+const PASSES: usize = 5;
+
 /// The answers, and µs per state.
 fn timed<'s, T>(
     scene: &'s Scene,
     states: &[Vec<f64>],
     mut ask: impl FnMut(&mut Checker<'s>, &SceneState) -> T,
 ) -> Result<(Vec<T>, f64), String> {
-    let mut checker = Checker::new(scene, Options::default());
-    let mut state = SceneState::new(scene);
-    ask(&mut checker, &state);
-    let mut answers = Vec::with_capacity(states.len());
-    let started = Instant::now();
-    for q in states {
-        state.set_q(scene, 0, q).map_err(|e| e.to_string())?;
-        answers.push(ask(&mut checker, &state));
+    let mut least = f64::INFINITY;
+    let mut answers = Vec::new();
+    for _ in 0..PASSES {
+        let mut checker = Checker::new(scene, Options::default());
+        let mut state = SceneState::new(scene);
+        ask(&mut checker, &state);
+        answers = Vec::with_capacity(states.len());
+        let started = Instant::now();
+        for q in states {
+            state.set_q(scene, 0, q).map_err(|e| e.to_string())?;
+            answers.push(ask(&mut checker, &state));
+        }
+        least = least.min(started.elapsed().as_secs_f64());
     }
-    Ok((answers, started.elapsed().as_secs_f64() * 1e6 / states.len().max(1) as f64))
+    Ok((answers, least * 1e6 / states.len().max(1) as f64))
 }
 
 /// True where no surface of the pair touches the other, but a solid lies inside another.
@@ -132,7 +143,33 @@ fn placed(scene: &Scene, state: &SceneState, member: Member) -> Option<elbowroom
     state.pose(scene, member)
 }
 
-fn has_primitive(scene: &Scene, found: &Distance) -> bool {
-    let all = [found.a, found.b].map(|m| world::bodies(scene, m));
-    all.iter().flatten().any(|body| !matches!(body.shape, Shape::Mesh(_)))
+/// True where a primitive is nearest. Where it is a box, its twelve triangles must be as far away as we say: triangles
+/// against triangles is where both agree to the last digits, so that what is left is Coal's iteration.
+fn iterated(scene: &Scene, state: &SceneState, found: &Distance) -> bool {
+    let [a, b] = [found.a, found.b].map(|m| world::bodies(scene, m));
+    let is_mesh = |body: &&Body| matches!(body.shape, Shape::Mesh(_));
+    if a.iter().chain(&b).all(|body| is_mesh(&body)) {
+        return false;
+    }
+    let [Some(pose_a), Some(pose_b)] = [found.a, found.b].map(|m| state.pose(scene, m)) else { return false };
+    let mut scratch = mesh::Scratch::new();
+    let mut least = f64::INFINITY;
+    for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
+        let (Some(p), Some(q)) = (triangles(&x.shape), triangles(&y.shape)) else { return true };
+        let apart = mesh::distance(&p, &(pose_a * x.in_link), &q, &(pose_b * y.in_link), &mut scratch).distance;
+        least = least.min(apart);
+    }
+    (least - found.metres).abs() <= RELATIVE * least + ABSOLUTE_M
+}
+
+/// The exact surface, of meshes and boxes.
+fn triangles(shape: &Shape) -> Option<Arc<TriMesh>> {
+    match shape {
+        Shape::Mesh(mesh) => Some(Arc::clone(mesh)),
+        Shape::Cuboid(_) => {
+            let (vertices, triangles) = tessellate(shape, 1e-3);
+            TriMesh::new(vertices, triangles).ok().map(Arc::new)
+        }
+        _ => None,
+    }
 }
