@@ -2,11 +2,13 @@
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_proximity::mesh::{Hint, Scratch, collide, distance_at, within};
-use elbowroom_spatial::{Aabb, Pose};
+use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {
     links: Vec<TriMesh>,
+    /// Middle of each link and the farthest that it reaches from there, metres.
+    balls: Vec<(Vec3, f64)>,
     scratch: Scratch,
     /// Boxes of all links in the world, first arm first.
     boxes: Vec<Aabb>,
@@ -16,7 +18,9 @@ pub struct Arms {
 
 impl Arms {
     pub fn new(links: Vec<TriMesh>) -> Self {
-        Self { links, scratch: Scratch::new(), boxes: Vec::new(), order: Vec::new() }
+        let ball = |link: &TriMesh| (link.aabb().center(), 0.5 * link.aabb().extent().length());
+        let balls = links.iter().map(ball).collect();
+        Self { links, balls, scratch: Scratch::new(), boxes: Vec::new(), order: Vec::new() }
     }
 
     /// Largest extent of a link, metres.
@@ -44,8 +48,12 @@ impl Arms {
         margin: f64,
         mut close: impl FnMut(&[TriMesh], usize, usize, &[Pose], &mut Scratch) -> bool,
     ) -> bool {
-        self.place(poses);
+        // The box around each arm, out of balls around its links, spares the boxes of most states.
         let links = self.links.len();
+        if !self.around(&poses[..links]).inflated(margin).overlaps(&self.around(&poses[links..])) {
+            return false;
+        }
+        self.place(poses);
         for a in 0..links {
             let box_a = self.boxes[a].inflated(margin);
             for b in 0..links {
@@ -78,6 +86,15 @@ impl Arms {
             best = found.map_or(best, |near| best.min(near.distance));
         }
         best
+    }
+
+    fn around(&self, poses: &[Pose]) -> Aabb {
+        let balls =
+            self.balls.iter().zip(poses).map(|((middle, radius), pose)| (pose.transform_point(*middle), *radius));
+        balls.fold(Aabb::EMPTY, |all, (c, radius)| {
+            let r = Vec3::splat(radius);
+            Aabb { min: all.min.min(c - r), max: all.max.max(c + r) }
+        })
     }
 
     fn place(&mut self, poses: &[Pose]) {

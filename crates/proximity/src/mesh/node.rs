@@ -79,25 +79,21 @@ fn step<S: Simd, const MODE: u8>(
     let (ca, ha) = (load16(simd, &a.node.center), load16(simd, &a.node.half));
     let (cb, hb) = (load16(simd, &b.node.center), load16(simd, &b.node.half));
     let (mut rows, mut columns) = (b.mask, a.mask);
-    // Everything that both sides need is begun before anything is asked: what is waited for is latency.
     let (cb_in_a, hb_in_a) = seen(simd, cb, hb, ab);
+    rows &= !beyond::<S, MODE>(simd, cb_in_a, hb_in_a, a.own, limit.gap, limit.squared);
+    if MODE == TOUCH && rows == 0 {
+        return 1;
+    }
     let (ca_in_b, ha_in_b) = seen(simd, ca, ha, ba);
+    // In units of B, rounded up once more.
+    let (gap, squared) = (limit.gap * ba.scale * 1.000_001, limit.squared * (ba.scale * ba.scale) * 1.000_001);
+    columns &= !beyond::<S, MODE>(simd, ca_in_b, ha_in_b, b.own, gap, squared);
+    if MODE == TOUCH && columns == 0 {
+        return 2;
+    }
+    // Squares reject less: there everything is begun before anything is asked, as what is waited for is latency.
     let slab_a = SlabsOfA::new(simd, a.node, ab);
     let slabs_b = SlabsOfB::new(simd, b.node, ab);
-    let (own_a, own_b) = (
-        beyond::<S, MODE>(simd, cb_in_a, hb_in_a, a.own, limit.gap, limit.squared),
-        // In units of B, rounded up once more.
-        beyond::<S, MODE>(
-            simd,
-            ca_in_b,
-            ha_in_b,
-            b.own,
-            limit.gap * ba.scale * 1.000_001,
-            limit.squared * (ba.scale * ba.scale) * 1.000_001,
-        ),
-    );
-    rows &= !own_a;
-    columns &= !own_b;
     if rows == 0 || columns == 0 {
         return 2;
     }
