@@ -57,6 +57,8 @@ struct Prepared<S: Simd> {
     inverse: [W<S>; 3],
     normal: V3<W<S>>,
     normal_square: W<S>,
+    /// 1 over the square of the normal, 0 where it has no length.
+    normal_inverse: W<S>,
     longest: W<S>,
 }
 
@@ -68,7 +70,9 @@ impl<S: Simd> Prepared<S> {
         let inverse = [reciprocal(simd, square[0]), reciprocal(simd, square[1]), reciprocal(simd, square[2])];
         let normal = edge[0].cross(edge[1]);
         let longest = square[0].max(square[1]).max(square[2]);
-        Self { corner, edge, square, inverse, normal, normal_square: normal.dot(normal), longest }
+        let normal_square = normal.dot(normal);
+        let normal_inverse = reciprocal(simd, normal_square);
+        Self { corner, edge, square, inverse, normal, normal_square, normal_inverse, longest }
     }
 
     #[inline(always)]
@@ -239,9 +243,8 @@ fn over_face<S: Simd>(simd: S, t: &Prepared<S>, point: V3<W<S>>, height: W<S>) -
     let w = t.square[0] * d2 - mixed * d0;
     let whole = t.square[0] * t.square[2] - mixed * mixed;
     let inside = u.simd_gt(zero) & w.simd_gt(zero) & (u + w).simd_lt(whole);
-    let tiny = W::splat(simd, f64::MIN_POSITIVE);
     let flat = t.normal_square.simd_gt(t.longest * t.longest * SLENDER);
-    let share = height / t.normal_square.max(tiny);
+    let share = height * t.normal_inverse;
     let square = (inside & flat).select(height * share, W::splat(simd, f64::INFINITY));
     Foot { square, offset: t.normal.times(share) }
 }

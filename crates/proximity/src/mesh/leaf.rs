@@ -41,8 +41,8 @@ pub(super) fn touching(level: Level, a: &Leaf, b: &Leaf, pairing: &Pairing, limi
     })
 }
 
-/// The pair that looks nearest.
-pub(super) fn nearest(level: Level, a: &Leaf, b: &Leaf, sight: &Sight, all: Pairs) -> u32 {
+/// For every triangle of A the one of B that looks nearest.
+pub(super) fn nearest(level: Level, a: &Leaf, b: &Leaf, sight: &Sight, all: Pairs) -> u64 {
     dispatch!(level, simd => {
         let of_a = Intervals::of_a(simd, a, sight);
         let mut facing = Facing::NOTHING;
@@ -181,22 +181,24 @@ impl Facing {
         Pairs(left & pairs.0)
     }
 
-    /// The pair that looks nearest.
+    /// For every triangle of A the one that looks nearest.
     #[inline(always)]
-    fn nearest<S: Simd>(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u32 {
+    fn nearest<S: Simd>(&self, simd: S, a: &Intervals<S>, pairs: Pairs) -> u64 {
         let (ends, b) = ((stored(a.low), stored(a.high)), self.each(simd));
-        let mut best = (f32::INFINITY, 0);
         let mut squares = [0.0f32; 8];
+        let mut chosen = 0;
         for i in 0..8 {
+            let mut best = (f32::INFINITY, 0);
             square(simd, &b, &ends, i).store_slice(&mut squares);
             for (j, &square) in squares.iter().enumerate() {
-                let bit = (8 * i + j) as u32;
-                if pairs.0 >> bit & 1 == 1 && square < best.0 {
+                let bit = 1 << (8 * i + j);
+                if pairs.0 & bit != 0 && square < best.0 {
                     best = (square, bit);
                 }
             }
+            chosen |= best.1;
         }
-        best.1
+        chosen
     }
 }
 

@@ -271,8 +271,10 @@ impl Search<'_> {
             let (a, b) = (&self.a.tree, &self.b.tree);
             let all = filled(filling(a, leaf_a), filling(b, leaf_b));
             let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
-            let bit = self.limit.sight.map_or(0, |sight| nearest(self.level, of_a, of_b, &sight, all));
-            self.measure_slots(pair.a * LEAF as u32 + bit / 8, pair.b * LEAF as u32 + bit % 8);
+            // A batch costs as much for one pair as for eight.
+            let chosen = self.limit.sight.map_or(all.0 & 0xff, |sight| nearest(self.level, of_a, of_b, &sight, all));
+            self.queue_pairs(leaf_a, leaf_b, chosen);
+            self.flush();
             // Where it is near enough, `begin` looks at the rest of the leaf.
             if self.best.is_none() {
                 stack.push(pair);
@@ -357,17 +359,20 @@ impl Search<'_> {
         self.visits.leaves += 1;
         let (a, b) = (&self.a.tree, &self.b.tree);
         let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-        let mut left = {
-            if self.faced != Some(leaf_b) {
-                self.facing.forget();
-                self.faced = Some(leaf_b);
-            }
-            let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
-            near(self.level, of_a, of_b, self.pairing, &self.limit, &mut self.facing, all)
-        };
-        while left != 0 {
-            let bit = left.trailing_zeros();
-            left &= left - 1;
+        if self.faced != Some(leaf_b) {
+            self.facing.forget();
+            self.faced = Some(leaf_b);
+        }
+        let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+        let left = near(self.level, of_a, of_b, self.pairing, &self.limit, &mut self.facing, all);
+        self.queue_pairs(leaf_a, leaf_b, left);
+    }
+
+    /// Puts pairs (bit `8 i + j`) in the queue, and measures it whenever it is full.
+    fn queue_pairs(&mut self, leaf_a: usize, leaf_b: usize, mut pairs: u64) {
+        while pairs != 0 {
+            let bit = pairs.trailing_zeros();
+            pairs &= pairs - 1;
             let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
             self.slots[self.queue.len()] = (slot_a, slot_b);
             if self.queue.push(self.a, slot_a, self.b, slot_b) {
