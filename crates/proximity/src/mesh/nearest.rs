@@ -156,6 +156,9 @@ fn unknown(a_in_world: &Pose, b_in_world: &Pose) -> Nearest {
     }
 }
 
+/// Steps from side to side at most when looking for a good start.
+const ROUNDS: usize = 12;
+
 /// The best so far, units of A.
 #[derive(Clone, Copy)]
 struct Best {
@@ -232,55 +235,49 @@ impl Search<'_> {
             Some(h) => self.measure_slots(h.a, h.b),
             None => self.dive(stack),
         }
-        let Some(best) = self.best else { return };
-        let (mut leaf_a, mut leaf_b) = (best.hint.a as usize / LEAF, best.hint.b as usize / LEAF);
-        self.leaves(leaf_a, leaf_b);
-        self.flush();
-        for round in 0..8 {
+        let mut idle = 0;
+        let mut looked = (usize::MAX, usize::MAX);
+        for round in 0..ROUNDS {
             let Some(best) = self.best else { return };
-            if best.distance <= self.enough {
+            if best.distance <= self.enough || idle == 2 {
                 return;
             }
+            let (slot_a, slot_b) = (best.hint.a as usize, best.hint.b as usize);
             let next = if round % 2 == 0 {
-                let spot = narrowed(best.near.on_a);
-                (best.hint.a as usize / LEAF, nearest_leaf(self.level, &self.b.tree, &ab, spot))
+                (slot_a / LEAF, nearest_leaf(self.level, &self.b.tree, &ab, narrowed(best.near.on_a)))
             } else {
-                let spot = narrowed(self.to_b(best.near.on_b));
-                (nearest_leaf(self.level, &self.a.tree, &ba, spot), best.hint.b as usize / LEAF)
+                (nearest_leaf(self.level, &self.a.tree, &ba, narrowed(self.to_b(best.near.on_b))), slot_b / LEAF)
             };
-            if next == (leaf_a, leaf_b) {
-                if round > 0 {
-                    return;
-                }
-                continue;
+            if next != looked {
+                looked = next;
+                self.sample(next.0, next.1);
             }
-            (leaf_a, leaf_b) = next;
-            self.leaves(leaf_a, leaf_b);
-            self.flush();
+            idle = if self.radius < best.distance { 0 } else { idle + 1 };
         }
     }
 
-    /// Opens what looks nearest until a leaf of each is reached, and measures the pair of triangles that looks nearest.
+    /// Opens what looks nearest until a leaf of each is reached, and measures what looks nearest there.
     fn dive(&mut self, stack: &mut Stack) {
         while let Some(pair) = stack.pop() {
-            if !pair.is_leaves() {
-                self.open(&pair, stack);
-                continue;
-            }
-            let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
-            let (a, b) = (&self.a.tree, &self.b.tree);
-            let all = filled(filling(a, leaf_a), filling(b, leaf_b));
-            let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
-            // A batch costs as much for one pair as for eight.
-            let chosen = self.limit.sight.map_or(all.0 & 0xff, |sight| nearest(self.level, of_a, of_b, &sight, all));
-            self.queue_pairs(leaf_a, leaf_b, chosen);
-            self.flush();
-            // Where it is near enough, `begin` looks at the rest of the leaf.
-            if self.best.is_none() {
+            if pair.is_leaves() {
+                self.sample(pair.a as usize, pair.b as usize);
+                // There are others in these leaves.
                 stack.push(pair);
+                return;
             }
-            return;
+            self.open(&pair, stack);
         }
+    }
+
+    /// Measures, for each triangle of a leaf of A, the one of B that looks nearest: a batch costs as much for one pair as
+    /// for eight.
+    fn sample(&mut self, leaf_a: usize, leaf_b: usize) {
+        let (a, b) = (&self.a.tree, &self.b.tree);
+        let all = filled(filling(a, leaf_a), filling(b, leaf_b));
+        let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+        let chosen = self.limit.sight.map_or(all.0 & 0xff, |sight| nearest(self.level, of_a, of_b, &sight, all));
+        self.queue_pairs(leaf_a, leaf_b, chosen);
+        self.flush();
     }
 
     fn done(&self) -> bool {
