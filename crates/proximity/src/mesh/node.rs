@@ -98,7 +98,15 @@ fn step<S: Simd, const MODE: u8>(
         return 2;
     }
     let sight = match &limit.sight {
-        Some(sight) if MODE != TOUCH => Some(Sighted::new(simd, a.node, b.node, sight)),
+        Some(sight) if MODE != TOUCH => {
+            let sighted = Sighted::new(simd, a.node, b.node, sight);
+            let (row, column) = sighted.beyond(simd, &a, &b, sight, limit.squared);
+            (rows, columns) = (rows & !row, columns & !column);
+            if rows == 0 || columns == 0 {
+                return 3;
+            }
+            Some(sighted)
+        }
         _ => None,
     };
     let lanes_a = LanesOfA { ca, ha, ca_in_b, ha_in_b, slab: slab_a };
@@ -269,6 +277,7 @@ struct Sighted<S: Simd> {
     near_b: [f32; 16],
     middle_b: ([f32; 16], [f32; 16]),
     half_b: ([f32; 16], [f32; 16]),
+    lanes_b: (W16<S>, W16<S>, W16<S>, W16<S>, W16<S>),
 }
 
 impl<S: Simd> Sighted<S> {
@@ -283,14 +292,35 @@ impl<S: Simd> Sighted<S> {
         let (mv, hv) = across(simd, ca, ha, sight.of_a[2]);
         let (bu, ku) = across(simd, cb, hb, sight.of_b[1]);
         let (bv, kv) = across(simd, cb, hb, sight.of_b[2]);
+        let (bu, bv) = (bu + sight.shift[1], bv + sight.shift[2]);
         Self {
+            lanes_b: (near, bu, ku, bv, kv),
             far,
             middle: (mu, mv),
             half: (hu, hv),
             near_b: stored(near),
-            middle_b: (stored(bu + sight.shift[1]), stored(bv + sight.shift[2])),
+            middle_b: (stored(bu), stored(bv)),
             half_b: (stored(ku), stored(kv)),
         }
+    }
+
+    /// Children of B and of A that are farther than `limit` (squared) from all of the other node.
+    #[inline(always)]
+    fn beyond(&self, simd: S, a: &Side, b: &Side, sight: &Sight, limit: f32) -> (u32, u32) {
+        let zero = W16::splat(simd, 0.0);
+        let (near, bu, ku, bv, kv) = self.lanes_b;
+        let (u, hu) = own_across(a, sight.of_a[1]);
+        let (v, hv) = own_across(a, sight.of_a[2]);
+        let n = (near - self.far.reduce_max()).max(zero);
+        let (du, dv) = (((bu - u).abs() - (ku + hu)).max(zero), ((bv - v).abs() - (kv + hv)).max(zero));
+        let rows = (n * n + du * du + dv * dv).simd_gt(limit).to_bitmask() as u32;
+        let (u, hu) = own_across(b, sight.of_b[1]);
+        let (v, hv) = own_across(b, sight.of_b[2]);
+        let (u, v) = (u + sight.shift[1], v + sight.shift[2]);
+        let n = (W16::splat(simd, near.reduce_min()) - self.far).max(zero);
+        let du = ((self.middle.0 - u).abs() - (self.half.0 + hu)).max(zero);
+        let dv = ((self.middle.1 - v).abs() - (self.half.1 + hv)).max(zero);
+        (rows, (n * n + du * du + dv * dv).simd_gt(limit).to_bitmask() as u32)
     }
 
     /// Squared distance of A's children from child `j` of B, at least.
@@ -302,6 +332,14 @@ impl<S: Simd> Sighted<S> {
         let v = ((self.middle.1 - self.middle_b.1[j]).abs() - (self.half.1 + self.half_b.1[j])).max(zero);
         n * n + u * u + v * v
     }
+}
+
+/// Middle and half width of a node's own box along an axis.
+#[inline(always)]
+fn own_across(side: &Side, d: [f32; 3]) -> (f32, f32) {
+    let (c, h) = &side.own;
+    let e = absolute(d);
+    (c[0] * d[0] + c[1] * d[1] + c[2] * d[2], h[0] * e[0] + h[1] * e[1] + h[2] * e[2])
 }
 
 /// Middle and half width of boxes along an axis.
