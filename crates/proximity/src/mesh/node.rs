@@ -277,7 +277,9 @@ struct Sighted<S: Simd> {
     near_b: [f32; 16],
     middle_b: ([f32; 16], [f32; 16]),
     half_b: ([f32; 16], [f32; 16]),
-    lanes_b: (W16<S>, W16<S>, W16<S>, W16<S>, W16<S>),
+    /// The same of all children of B at once.
+    near: W16<S>,
+    across_b: [(W16<S>, W16<S>); 2],
 }
 
 impl<S: Simd> Sighted<S> {
@@ -294,7 +296,8 @@ impl<S: Simd> Sighted<S> {
         let (bv, kv) = across(simd, cb, hb, sight.of_b[2]);
         let (bu, bv) = (bu + sight.shift[1], bv + sight.shift[2]);
         Self {
-            lanes_b: (near, bu, ku, bv, kv),
+            near,
+            across_b: [(bu, ku), (bv, kv)],
             far,
             middle: (mu, mv),
             half: (hu, hv),
@@ -308,7 +311,7 @@ impl<S: Simd> Sighted<S> {
     #[inline(always)]
     fn beyond(&self, simd: S, a: &Side, b: &Side, sight: &Sight, limit: f32) -> (u32, u32) {
         let zero = W16::splat(simd, 0.0);
-        let (near, bu, ku, bv, kv) = self.lanes_b;
+        let (near, [(bu, ku), (bv, kv)]) = (self.near, self.across_b);
         let (u, hu) = own_across(a, sight.of_a[1]);
         let (v, hv) = own_across(a, sight.of_a[2]);
         let n = (near - self.far.reduce_max()).max(zero);
