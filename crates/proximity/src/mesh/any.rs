@@ -3,7 +3,7 @@
 use elbowroom_spatial::Pose;
 
 use super::nearest::{Hint, distance_at, within};
-use super::search::Scratch;
+use super::scratch::Scratch;
 use super::touch::collide;
 use crate::{Separation, Shape, separation_within};
 

@@ -7,7 +7,7 @@ use super::leaf::{Facing, filled, near, touching};
 use super::limit::{Limit, Sight};
 use super::node::{NEAR, TOUCH, open};
 use super::placement::Pairing;
-use super::search::{Entry, Scratch, corners_in_a, filling};
+use super::scratch::{Entry, Scratch, corners_in_a, filling};
 use super::tree::{FAN, LEAF, Node, Tree};
 use crate::TriMesh;
 use crate::triangle::triangle_triangle;

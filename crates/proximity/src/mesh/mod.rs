@@ -15,6 +15,7 @@ mod node;
 mod order;
 mod placement;
 mod probe;
+mod scratch;
 mod search;
 mod swallowed;
 mod touch;
@@ -23,7 +24,7 @@ mod tree;
 
 pub use nearest::{Hint, Nearest, distance, distance_at, within};
 pub(crate) use probe::{Box as BoxProbe, Height, Ray};
-pub(crate) use search::with_scratch;
-pub use search::{Scratch, Visits};
+pub(crate) use scratch::with_scratch;
+pub use scratch::{Scratch, Visits};
 pub use touch::{Pair, collide, contacts};
 pub(crate) use tree::Tree;

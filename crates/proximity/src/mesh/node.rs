@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use super::lanes::{V3, W16, abs16, load16, rows16, splat16, store16};
 use super::limit::{Limit, Sight};
 use super::placement::{Pairing, Placement};
-use super::search::{Entry, Stack};
+use super::scratch::{Entry, Stack};
 use super::tree::{FAN, Node, Tree};
 
 /// Is anything in contact: gaps along single axes decide.

@@ -4,7 +4,7 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 use fearless_simd::{Simd, dispatch, prelude::*};
 
 use super::lanes::{V3, W8, W16, abs16, load_corners, load16, splat16};
-use super::search::detected_level;
+use super::scratch::detected_level;
 use super::tree::{FAN, LEAF, Leaf, Node, Tree};
 
 /// A lower bound for sixteen boxes at once. What is bounded is up to the probe; the smaller, the sooner visited.

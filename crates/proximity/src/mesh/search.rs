@@ -1,264 +1,281 @@
-//! What every traversal shares: the stack, the queue of triangle pairs, the counts.
+//! The nearest pair of triangles: first a good upper bound, then the proof that nothing is nearer.
 
-use std::cell::RefCell;
-use std::sync::OnceLock;
-
-use fearless_simd::{Level, dispatch};
-
-use super::exact::{BATCH, Corners, Distances, distances};
-use super::placement::Pairing;
-use super::tree::{FAN, LEAF, Tree};
-use crate::TriMesh;
-use crate::triangle::{Near, triangle_triangle};
 use elbowroom_spatial::Vec3;
+use fearless_simd::Level;
 
-/// Work done by one query.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Visits {
-    /// Pairs of nodes opened.
-    pub nodes: u32,
-    /// Tests of one box against sixteen.
-    pub boxes: u32,
-    /// Pairs of leaves opened, each of up to eight triangles.
-    pub leaves: u32,
-    /// Pairs of triangles that f32 could not decide.
-    pub triangles: u32,
-    /// Batches of up to eight such pairs measured in f64.
-    pub batches: u32,
+use super::exact::{BATCH, Distances};
+use super::leaf::{Facing, filled, near, nearest};
+use super::limit::Limit;
+use super::nearest::Hint;
+use super::node::{NEAR, open};
+use super::placement::Pairing;
+use super::scratch::{Entry, Queue, Scratch, Stack, Visits, filling, settle};
+use super::toward::nearest_leaf;
+use super::tree::LEAF;
+use crate::TriMesh;
+use crate::triangle::Near;
+
+/// Steps from side to side at most when looking for a good start.
+const ROUNDS: usize = 12;
+
+/// The best so far, units of A.
+#[derive(Clone, Copy)]
+pub(super) struct Best {
+    pub distance: f64,
+    pub near: Near,
+    pub triangles: (u32, u32),
+    pub hint: Hint,
 }
 
-/// Memory that queries use again: one per thread. It never allocates, and nothing of an answer depends on what was
-/// asked before.
-#[derive(Debug)]
-pub struct Scratch {
-    pub(super) stack: Stack,
-    pub(super) queue: Queue,
-    level: Option<Level>,
-    pub(super) visits: Visits,
+struct Search<'a> {
+    level: Level,
+    a: &'a TriMesh,
+    b: &'a TriMesh,
+    pairing: &'a Pairing,
+    limit: Limit,
+    radius: f64,
+    /// Nearer makes no difference: the search ends.
+    enough: f64,
+    /// Distance of the pair along which gaps are measured.
+    seen: f64,
+    best: Option<Best>,
+    queue: &'a mut Queue,
+    /// A leaf of B along the line of sight, and its number.
+    facing: Facing,
+    faced: Option<usize>,
+    slots: [(u32, u32); BATCH],
+    visits: &'a mut Visits,
 }
 
-impl Default for Scratch {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Scratch {
-    /// For the best instruction set of this processor.
-    pub const fn new() -> Self {
-        Self { stack: Stack::new(), queue: Queue::new(), level: None, visits: Visits::ZERO }
-    }
-
-    /// For a given instruction set.
-    #[doc(hidden)]
-    pub const fn with_level(level: Level) -> Self {
-        Self { level: Some(level), ..Self::new() }
-    }
-
-    /// Work done by the last query on two meshes.
-    pub fn visits(&self) -> Visits {
-        self.visits
-    }
-
-    #[inline]
-    pub(super) fn level(&self) -> Level {
-        self.level.unwrap_or_else(detected_level)
-    }
-}
-
-/// The best instruction set of this processor, asked for once.
-#[inline]
-pub(super) fn detected_level() -> Level {
-    static DETECTED: OnceLock<Level> = OnceLock::new();
-    *DETECTED.get_or_init(Level::new)
-}
-
-/// Runs a query with this thread's own memory, which is static: the first use does not allocate either.
-pub(crate) fn with_scratch<T>(query: impl FnOnce(&mut Scratch) -> T) -> T {
-    thread_local! { static SCRATCH: RefCell<Scratch> = const { RefCell::new(Scratch::new()) } }
-    SCRATCH.with_borrow_mut(query)
-}
-
-impl Visits {
-    const ZERO: Self = Self { nodes: 0, boxes: 0, leaves: 0, triangles: 0, batches: 0 };
-}
-
-/// Each step down pushes at most 256 pairs and takes one away; trees over 2³² triangles in leaves of 8 are 8 high, and
-/// pairs of unequal height push 16 a step until they are equal.
-const DEPTH: usize = 8 * 256 + 8 * 16;
-
-/// Pairs of nodes still to be opened, last in first out.
-#[derive(Debug)]
-pub(super) struct Stack {
-    entries: [Entry; DEPTH],
-    len: usize,
-    overflown: bool,
-}
-
-impl Stack {
-    #[allow(
-        clippy::large_stack_arrays,
-        reason = "it lives in static or boxed memory; making it is not part of a query"
-    )]
-    const fn new() -> Self {
-        let blank = Entry { a: 0, b: 0, key: 0.0, height_a: 0, height_b: 0 };
-        Self { entries: [blank; DEPTH], len: 0, overflown: false }
-    }
-
-    pub fn clear(&mut self) {
-        (self.len, self.overflown) = (0, false);
-    }
-
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// True where a pair was lost: an answer of "apart" would prove nothing.
-    pub fn overflown(&self) -> bool {
-        self.overflown
-    }
-
-    #[inline(always)]
-    pub fn push(&mut self, entry: Entry) {
-        match self.entries.get_mut(self.len) {
-            Some(slot) => (*slot, self.len) = (entry, self.len + 1),
-            None => self.overflown = true,
-        }
-    }
-
-    #[inline(always)]
-    pub fn pop(&mut self) -> Option<Entry> {
-        self.len = self.len.checked_sub(1)?;
-        self.entries.get(self.len).copied()
-    }
-
-    /// Makes this entry the next.
-    #[inline(always)]
-    pub fn bring_to_top(&mut self, number: usize) {
-        if number < self.len && self.len <= DEPTH {
-            self.entries.swap(number, self.len - 1);
-        }
-    }
-}
-
-/// A pair of nodes still to be opened.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
-    pub a: u32,
-    pub b: u32,
-    /// What is known of the distance (see [`super::node::step`]).
-    pub key: f32,
-    pub height_a: u8,
-    pub height_b: u8,
-}
-
-impl Entry {
-    #[inline(always)]
-    pub fn root(a: &Tree, b: &Tree) -> Self {
-        Self { a: 0, b: 0, key: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
-    }
-
-    #[inline(always)]
-    pub fn is_leaves(&self) -> bool {
-        self.height_a == 0 && self.height_b == 0
-    }
-
-    /// The higher of the two is opened; both, where they are equally high.
-    #[inline(always)]
-    pub fn opens(&self) -> (bool, bool) {
-        (self.height_a >= self.height_b, self.height_b >= self.height_a)
-    }
-
-    /// The pair of children `i` and `j` as numbered by [`side`].
-    #[inline(always)]
-    pub fn child(&self, i: usize, j: usize, key: f32) -> Self {
-        let (open_a, open_b) = self.opens();
-        let (a, height_a) =
-            if open_a { (self.a * FAN as u32 + i as u32, self.height_a - 1) } else { (self.a, self.height_a) };
-        let (b, height_b) =
-            if open_b { (self.b * FAN as u32 + j as u32, self.height_b - 1) } else { (self.b, self.height_b) };
-        Self { a, b, key, height_a, height_b }
-    }
-}
-
-/// Triangles in a leaf.
-#[inline(always)]
-pub(super) fn filling(tree: &Tree, leaf: usize) -> usize {
-    (tree.order.len() - leaf * LEAF).min(LEAF)
-}
-
-/// Pairs of triangles waiting to be measured together.
-#[derive(Debug)]
-pub(super) struct Queue {
-    pub triangles: [(u32, u32); BATCH],
-    len: usize,
-    corners: Corners,
-}
-
-impl Queue {
-    const fn new() -> Self {
-        Self { triangles: [(0, 0); BATCH], len: 0, corners: Corners::ZERO }
-    }
-
-    pub fn clear(&mut self) {
-        self.len = 0;
-    }
-
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// Adds a pair of slots; true where the batch is full.
-    #[inline(always)]
-    pub fn push(&mut self, a: &TriMesh, slot_a: u32, b: &TriMesh, slot_b: u32) -> bool {
-        let (ta, tb) = (a.tree.triangle(slot_a), b.tree.triangle(slot_b));
-        let lane = self.len;
-        self.triangles[lane] = (ta as u32, tb as u32);
-        let (pa, pb) = (a.triangles()[ta], b.triangles()[tb]);
-        for k in 0..3 {
-            let (p, q) = (a.vertices()[pa[k] as usize], b.vertices()[pb[k] as usize]);
-            let (to_a, to_b) = (&mut self.corners.a[k], &mut self.corners.b[k]);
-            (to_a[0][lane], to_a[1][lane], to_a[2][lane]) = (p.x, p.y, p.z);
-            (to_b[0][lane], to_b[1][lane], to_b[2][lane]) = (q.x, q.y, q.z);
-        }
-        self.len += 1;
-        self.len == BATCH
-    }
-
-    /// Measures all and empties the queue; lanes from `len` on mean nothing. The second value is `len`.
-    pub fn measure(&mut self, level: Level, pairing: &Pairing) -> (Distances, usize) {
-        let len = std::mem::take(&mut self.len);
-        (dispatch!(level, simd => distances(simd, &self.corners, pairing)), len)
-    }
-}
-
-/// Corners of a triangle in its tree's frame.
-#[inline(always)]
-fn units(mesh: &TriMesh, triangle: usize) -> [Vec3; 3] {
-    let [p, q, r] = mesh.triangles()[triangle];
-    let at = |i: u32| mesh.tree.frame.to_units(mesh.vertices()[i as usize]);
-    [at(p), at(q), at(r)]
-}
-
-/// Corners of a triangle of each, in units and axes of A's tree.
-#[inline(always)]
-pub(super) fn corners_in_a(
+/// Looks for the nearest pair within `radius`, until one is within `enough`.
+pub(super) fn search(
+    level: Level,
     a: &TriMesh,
-    ta: usize,
     b: &TriMesh,
-    tb: usize,
     pairing: &Pairing,
-) -> ([Vec3; 3], [Vec3; 3]) {
-    let [p, q, r] = units(b, tb);
-    (units(a, ta), [pairing.in_a(p), pairing.in_a(q), pairing.in_a(r)])
+    (radius, enough): (f64, f64),
+    hint: Option<Hint>,
+    scratch: &mut Scratch,
+) -> Option<Best> {
+    let Scratch { stack, queue, visits, .. } = scratch;
+    queue.clear();
+    stack.clear();
+    let mut limit = Limit::new(radius, pairing);
+    limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
+    let (seen, slots) = (f64::INFINITY, [(0, 0); BATCH]);
+    let mut s = Search {
+        level,
+        a,
+        b,
+        pairing,
+        limit,
+        radius,
+        enough,
+        seen,
+        best: None,
+        queue,
+        facing: Facing::NOTHING,
+        faced: None,
+        slots,
+        visits,
+    };
+    stack.push(Entry::root(&a.tree, &b.tree));
+    s.begin(hint, stack);
+    s.prove(stack);
+    s.best
 }
 
-/// Nearest points of two triangles, robustly, in units and axes of A's tree.
-pub(super) fn settle(a: &TriMesh, ta: usize, b: &TriMesh, tb: usize, pairing: &Pairing) -> Near {
-    let (s, t) = corners_in_a(a, ta, b, tb, pairing);
-    triangle_triangle(s, t)
+impl Search<'_> {
+    /// Looks for a good upper bound: the hint, else the first leaves that the descent meets; then from side to side as
+    /// long as it helps.
+    fn begin(&mut self, hint: Option<Hint>, stack: &mut Stack) {
+        let (ab, ba) = (self.pairing.ab, self.pairing.ba);
+        match hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
+            Some(h) => self.measure_slots(h.a, h.b),
+            None => self.dive(stack),
+        }
+        let mut idle = 0;
+        let mut looked = (usize::MAX, usize::MAX);
+        for round in 0..ROUNDS {
+            let Some(best) = self.best else { return };
+            if best.distance <= self.enough || idle == 2 {
+                return;
+            }
+            let (slot_a, slot_b) = (best.hint.a as usize, best.hint.b as usize);
+            let next = if round % 2 == 0 {
+                (slot_a / LEAF, nearest_leaf(self.level, &self.b.tree, &ab, narrowed(best.near.on_a)))
+            } else {
+                (nearest_leaf(self.level, &self.a.tree, &ba, narrowed(self.to_b(best.near.on_b))), slot_b / LEAF)
+            };
+            if next != looked {
+                looked = next;
+                self.sample(next.0, next.1);
+            }
+            idle = if self.radius < best.distance { 0 } else { idle + 1 };
+        }
+    }
+
+    /// Opens what looks nearest until a leaf of each is reached, and measures what looks nearest there.
+    fn dive(&mut self, stack: &mut Stack) {
+        while let Some(pair) = stack.pop() {
+            if pair.is_leaves() {
+                self.sample(pair.a as usize, pair.b as usize);
+                // There are others in these leaves.
+                stack.push(pair);
+                return;
+            }
+            self.open(&pair, stack);
+        }
+    }
+
+    /// Measures, for each triangle of a leaf of A, the one of B that looks nearest: a batch costs as much for one pair as
+    /// for eight.
+    fn sample(&mut self, leaf_a: usize, leaf_b: usize) {
+        let (a, b) = (&self.a.tree, &self.b.tree);
+        let all = filled(filling(a, leaf_a), filling(b, leaf_b));
+        let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+        let chosen = self.limit.sight.map_or(all.0 & 0xff, |sight| nearest(self.level, of_a, of_b, &sight, all));
+        self.queue_pairs(leaf_a, leaf_b, chosen);
+        self.flush();
+    }
+
+    fn done(&self) -> bool {
+        self.best.is_some_and(|b| b.distance <= self.enough)
+    }
+
+    fn to_b(&self, p: Vec3) -> Vec3 {
+        let (m, s) = (&self.pairing.exact, 1.0 / (self.pairing.scale * self.pairing.scale));
+        let q = [p.x - m[0][3], p.y - m[1][3], p.z - m[2][3]];
+        Vec3::from(std::array::from_fn::<f64, 3, _>(|k| (m[0][k] * q[0] + m[1][k] * q[1] + m[2][k] * q[2]) * s))
+    }
+
+    /// Measures one pair at once.
+    fn measure_slots(&mut self, slot_a: u32, slot_b: u32) {
+        self.slots[self.queue.len()] = (slot_a, slot_b);
+        self.queue.push(self.a, slot_a, self.b, slot_b);
+        self.flush();
+    }
+
+    /// Keeps the nearer; of equals the one with the smaller numbers, so that no order of tests shows.
+    fn offer(&mut self, distance: f64, near: Near, triangles: (u32, u32), hint: Hint) {
+        if !(distance <= self.radius) {
+            return;
+        }
+        if let Some(best) = &self.best
+            && (best.distance, best.triangles) <= (distance, triangles)
+        {
+            return;
+        }
+        let nearer = self.best.is_none_or(|b| distance < b.distance);
+        self.best = Some(Best { distance, near, triangles, hint });
+        if nearer {
+            self.radius = distance;
+            self.limit.tighten(distance, near.on_a, near.on_b, self.pairing);
+            self.faced = None;
+        }
+    }
+
+    /// Measures the queue.
+    fn flush(&mut self) {
+        if self.queue.is_empty() {
+            return;
+        }
+        let (mut found, len) = self.queue.measure(self.level, self.pairing);
+        self.visits.triangles += len as u32;
+        self.visits.batches += 1;
+        // The nearest first: it may spare the others.
+        if self.best.is_none() {
+            self.look(&found, len);
+        }
+        while let Some(lane) = least(&found.at_least, len, self.radius) {
+            let triangles = self.queue.triangles[lane];
+            let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1 };
+            let certain = found.at_least[lane] >= found.distance[lane];
+            let near = if certain {
+                found.near(lane)
+            } else {
+                settle(self.a, triangles.0 as usize, self.b, triangles.1 as usize, self.pairing)
+            };
+            self.offer(if certain { found.distance[lane] } else { near.squared.sqrt() }, near, triangles, hint);
+            found.at_least[lane] = f64::INFINITY;
+        }
+    }
+
+    /// Turns the line of sight to the nearest pair measured, though it is not near enough.
+    fn look(&mut self, found: &Distances, len: usize) {
+        if let Some(lane) = least(&found.distance, len, self.seen) {
+            let near = found.near(lane);
+            self.seen = found.distance[lane];
+            self.limit.look_along(near.on_b - near.on_a, self.pairing);
+            self.faced = None;
+        }
+    }
+
+    fn leaves(&mut self, leaf_a: usize, leaf_b: usize) {
+        self.visits.leaves += 1;
+        let (a, b) = (&self.a.tree, &self.b.tree);
+        let all = filled(filling(a, leaf_a), filling(b, leaf_b));
+        if self.faced != Some(leaf_b) {
+            self.facing.forget();
+            self.faced = Some(leaf_b);
+        }
+        let (of_a, of_b) = (&a.leaves[leaf_a], &b.leaves[leaf_b]);
+        let left = near(self.level, of_a, of_b, self.pairing, &self.limit, &mut self.facing, all);
+        self.queue_pairs(leaf_a, leaf_b, left);
+    }
+
+    /// Puts pairs (bit `8 i + j`) in the queue, and measures it whenever it is full.
+    fn queue_pairs(&mut self, leaf_a: usize, leaf_b: usize, mut pairs: u64) {
+        while pairs != 0 {
+            let bit = pairs.trailing_zeros();
+            pairs &= pairs - 1;
+            let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
+            self.slots[self.queue.len()] = (slot_a, slot_b);
+            if self.queue.push(self.a, slot_a, self.b, slot_b) {
+                self.flush();
+            }
+        }
+    }
+
+    fn open(&mut self, pair: &Entry, stack: &mut Stack) {
+        self.visits.nodes += 1;
+        let trees = (&self.a.tree, &self.b.tree);
+        self.visits.boxes += open::<NEAR>(self.level, trees, pair, self.pairing, &self.limit, stack);
+    }
+
+    /// Opens every pair of nodes that may be nearer than the best.
+    fn prove(&mut self, stack: &mut Stack) {
+        while let Some(pair) = stack.pop() {
+            if self.done() {
+                return;
+            }
+            if pair.key > self.limit.squared {
+                continue;
+            }
+            if pair.is_leaves() {
+                self.leaves(pair.a as usize, pair.b as usize);
+            } else {
+                self.open(&pair, stack);
+            }
+        }
+        self.flush();
+    }
+}
+
+/// The lane of the smallest number no larger than `limit`.
+#[inline(always)]
+fn least(numbers: &[f64; BATCH], len: usize, limit: f64) -> Option<usize> {
+    let mut best = None;
+    let mut smallest = limit;
+    for (lane, &x) in numbers.iter().enumerate().take(len) {
+        if x < smallest || (x == smallest && best.is_none()) {
+            (best, smallest) = (Some(lane), x);
+        }
+    }
+    best
+}
+
+#[inline]
+fn narrowed(p: Vec3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
 }

@@ -7,7 +7,7 @@ use super::leaf::{filled, touching};
 use super::limit::Limit;
 use super::node::{TOUCH, open};
 use super::placement::{Pairing, apart};
-use super::search::{Entry, Queue, Scratch, Visits, corners_in_a, filling, settle};
+use super::scratch::{Entry, Queue, Scratch, Visits, corners_in_a, filling, settle};
 use super::swallowed::swallowed;
 use super::tree::LEAF;
 use crate::TriMesh;

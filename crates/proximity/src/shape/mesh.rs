@@ -6,7 +6,8 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::mesh::Tree;
 
-use super::{ConvexHull, topology};
+use super::ConvexHull;
+use super::topology::{self, Topology};
 
 /// A surface of triangles. Where it is closed it bounds a solid.
 ///
@@ -90,9 +91,8 @@ impl TriMesh {
     /// No triangle, an index out of range, a coordinate that is not finite, more than 2³²-1 vertices or triangles.
     pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check(&vertices, &triangles)?;
-        let topology = topology::examine(&vertices, &triangles);
+        let (topology, tree) = prepare(&vertices, &triangles);
         let aabb = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize]));
-        let tree = Tree::build(&vertices, &triangles, 2);
         let extremes = extremes(&vertices, &triangles);
         Ok(Self {
             aabb,
@@ -167,10 +167,33 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
 }
 
 fn extremes(vertices: &[Vec3], triangles: &[[u32; 3]]) -> [Vec3; 6] {
-    let used = || triangles.iter().flatten().map(|&v| vertices[v as usize]);
-    std::array::from_fn(|n| {
-        let sign = if n < 3 { -1.0 } else { 1.0 };
-        let farther = |best: Vec3, v: Vec3| if v[n % 3] * sign > best[n % 3] * sign { v } else { best };
-        used().reduce(farther).unwrap_or_default()
+    let first = triangles.first().map_or(Vec3::ZERO, |t| vertices[t[0] as usize]);
+    let mut found = [first; 6];
+    for &i in triangles.iter().flatten() {
+        let v = vertices[i as usize];
+        for k in 0..3 {
+            if v[k] < found[k][k] {
+                found[k] = v;
+            }
+            if v[k] > found[k + 3][k] {
+                found[k + 3] = v;
+            }
+        }
+    }
+    found
+}
+
+/// From so many triangles on, the tree and the examination are worth a thread each.
+const LARGE: usize = 20_000;
+
+/// The two long parts of making a mesh, at the same time where it is large.
+fn prepare(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Topology, Tree) {
+    if triangles.len() < LARGE {
+        return (topology::examine(vertices, triangles), Tree::build(vertices, triangles, 1));
+    }
+    std::thread::scope(|scope| {
+        let examination = scope.spawn(|| topology::examine(vertices, triangles));
+        let tree = Tree::build(vertices, triangles, 2);
+        (examination.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), tree)
     })
 }
