@@ -130,6 +130,12 @@ fn fuzz(root: &Path, seconds: &str) -> Result<(), Failure> {
     Ok(shell::cargo(root, &args, &[])?)
 }
 
+/// The value of an option that counts something.
+fn count(option: &str, value: &str) -> Result<usize, String> {
+    let number = value.parse().ok().filter(|n| *n > 0);
+    number.ok_or_else(|| format!("`{option} {value}`: write a whole number of 1 or more"))
+}
+
 /// The directory above `xtask`, wherever the command was started.
 fn workspace_root() -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));

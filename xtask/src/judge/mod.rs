@@ -33,14 +33,7 @@ impl Options {
                 "--json" => options.json = true,
                 "--data" => options.data = Some(value()?.into()),
                 "--only" => options.only = Some(value()?.into()),
-                "--states" => {
-                    let count = value()?;
-                    options.states = count
-                        .parse()
-                        .ok()
-                        .filter(|n| *n > 0)
-                        .ok_or_else(|| format!("`judge --states {count}`: write a whole number of 1 or more"))?;
-                }
+                "--states" => options.states = crate::count("judge --states", value()?)?,
                 other => return Err(format!("`judge` does not know `{other}`")),
             }
         }

@@ -33,14 +33,7 @@ impl Options {
             match *word {
                 "--json" => options.json = true,
                 "--out" => options.out = Some(value()?.into()),
-                "--states" => {
-                    let count = value()?;
-                    options.states = count
-                        .parse()
-                        .ok()
-                        .filter(|n| *n > 0)
-                        .ok_or_else(|| format!("`rpq --states {count}`: write a whole number of 1 or more"))?;
-                }
+                "--states" => options.states = crate::count("rpq --states", value()?)?,
                 other => return Err(format!("`rpq` does not know `{other}`")),
             }
         }

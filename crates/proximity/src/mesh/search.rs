@@ -262,12 +262,15 @@ impl Search<'_> {
     }
 }
 
-/// The lane of the smallest number no larger than `limit`.
+/// The lane of the smallest number no larger than `limit`; a NaN, of which nothing is known, comes first.
 #[inline(always)]
 fn least(numbers: &[f64; BATCH], len: usize, limit: f64) -> Option<usize> {
     let mut best = None;
     let mut smallest = limit;
     for (lane, &x) in numbers.iter().enumerate().take(len) {
+        if x.is_nan() {
+            return Some(lane);
+        }
         if x < smallest || (x == smallest && best.is_none()) {
             (best, smallest) = (Some(lane), x);
         }

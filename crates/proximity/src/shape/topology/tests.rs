@@ -91,9 +91,8 @@ fn a_fan_around_one_vertex_is_no_trap() {
     assert!(report.open[0] && !report.all_twice && report.duplicates == 0);
 }
 
-/// `cargo test --release -p elbowroom-proximity --lib -- --ignored million --nocapture`
 #[test]
-#[ignore = "measures: run in release"]
+#[ignore = "measures; cargo test --release -p elbowroom-proximity --lib -- --ignored million --nocapture"]
 fn a_million_triangles_take_well_under_a_second() {
     let (rings, around) = (500_u32, 1000_u32);
     let point = |i: u32, j: u32| {
