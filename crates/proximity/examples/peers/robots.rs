@@ -1,7 +1,7 @@
 //! Two arms against each other. One file, so that a faster way can take its place.
 
 use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Hint, Scratch, collide, distance_at, within};
+use elbowroom_proximity::mesh::{Landmarks, PlacedLandmarks, Scratch, collide, distance_at, farther};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// The links' meshes; both arms have the same.
@@ -9,9 +9,12 @@ pub struct Arms {
     links: Vec<TriMesh>,
     /// Middle of each link and the farthest that it reaches from there, metres.
     balls: Vec<(Vec3, f64)>,
+    landmarks: Vec<Landmarks>,
     scratch: Scratch,
     /// Boxes of all links in the world, first arm first.
     boxes: Vec<Aabb>,
+    /// Landmarks of all links, likewise.
+    seen: Vec<PlacedLandmarks>,
     /// Squared distance of the boxes, and the links.
     order: Vec<(f64, usize, usize)>,
 }
@@ -20,7 +23,16 @@ impl Arms {
     pub fn new(links: Vec<TriMesh>) -> Self {
         let ball = |link: &TriMesh| (link.aabb().center(), 0.5 * link.aabb().extent().length());
         let balls = links.iter().map(ball).collect();
-        Self { links, balls, scratch: Scratch::new(), boxes: Vec::new(), order: Vec::new() }
+        let landmarks = links.iter().map(Landmarks::of).collect();
+        Self {
+            links,
+            balls,
+            landmarks,
+            scratch: Scratch::new(),
+            boxes: Vec::new(),
+            seen: Vec::new(),
+            order: Vec::new(),
+        }
     }
 
     /// Largest extent of a link, metres.
@@ -38,7 +50,7 @@ impl Arms {
     /// Are any two within `tolerance` metres?
     pub fn within(&mut self, poses: &[Pose], tolerance: f64) -> bool {
         self.any(poses, tolerance, |links, a, b, poses, scratch| {
-            within(&links[a], &poses[a], &links[b], &poses[links.len() + b], tolerance, scratch).is_some()
+            !farther(&links[a], &poses[a], &links[b], &poses[links.len() + b], tolerance, scratch)
         })
     }
 
@@ -65,27 +77,53 @@ impl Arms {
         false
     }
 
-    /// Metres between the arms; the nearest pair of boxes first, what is known so far limits the rest.
+    /// Metres between the arms: the pair whose landmarks are nearest first, then as the boxes are; what is known so far
+    /// limits the rest.
     pub fn distance(&mut self, poses: &[Pose]) -> f64 {
         self.place(poses);
         let links = self.links.len();
+        let (a, b) = self.promising(poses);
+        let mut best = self.pair(poses, a, b, f64::INFINITY);
         self.order.clear();
-        for a in 0..links {
-            let of_a = (0..links).map(|b| (self.boxes[a].distance_squared(&self.boxes[links + b]), a, b));
-            self.order.extend(of_a);
+        for x in 0..links {
+            for y in (0..links).filter(|y| (x, *y) != (a, b)) {
+                let gap_squared = self.boxes[x].distance_squared(&self.boxes[links + y]);
+                if gap_squared < best * best {
+                    self.order.push((gap_squared, x, y));
+                }
+            }
         }
         self.order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
-        let mut best = f64::INFINITY;
-        for &(gap_squared, a, b) in &self.order {
+        for i in 0..self.order.len() {
+            let (gap_squared, a, b) = self.order[i];
             if best <= 0.0 || gap_squared >= best * best {
                 break;
             }
-            let (mesh_a, mesh_b) = (&self.links[a], &self.links[b]);
-            let hint: Option<Hint> = None;
-            let found = distance_at(mesh_a, &poses[a], mesh_b, &poses[links + b], best, hint, &mut self.scratch);
-            best = found.map_or(best, |near| best.min(near.distance));
+            best = self.pair(poses, a, b, best);
         }
         best
+    }
+
+    fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64) -> f64 {
+        let (of_a, of_b) = (&poses[a], &poses[self.links.len() + b]);
+        let found = distance_at(&self.links[a], of_a, &self.links[b], of_b, limit, None, &mut self.scratch);
+        found.map_or(limit, |near| limit.min(near.distance))
+    }
+
+    fn promising(&mut self, poses: &[Pose]) -> (usize, usize) {
+        let links = self.links.len();
+        self.seen.clear();
+        self.seen.extend(self.landmarks.iter().cycle().zip(poses).map(|(marks, pose)| marks.placed(pose)));
+        let mut best = (f32::INFINITY, (0, 0));
+        for a in 0..links {
+            for b in 0..links {
+                let square = self.seen[a].distance_squared(&self.seen[links + b]);
+                if square < best.0 {
+                    best = (square, (a, b));
+                }
+            }
+        }
+        best.1
     }
 
     fn around(&self, poses: &[Pose]) -> Aabb {

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::Pose;
 
-use super::nearest::{Hint, distance_at, within};
+use super::nearest::{Hint, distance_at, farther};
 use super::scratch::Scratch;
 use super::touch::collide;
 use crate::{Separation, Shape, separation_within};
@@ -19,7 +19,7 @@ impl Scratch {
     /// Like [`within`](crate::within()).
     pub fn within(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
         match (a, b) {
-            (Shape::Mesh(a), Shape::Mesh(b)) => within(a, a_in_world, b, b_in_world, tolerance, self).is_some(),
+            (Shape::Mesh(a), Shape::Mesh(b)) => !farther(a, a_in_world, b, b_in_world, tolerance, self),
             _ => crate::within(a, a_in_world, b, b_in_world, tolerance),
         }
     }

@@ -113,10 +113,10 @@ fn bound(a: &Child, b: &Child, pairing: &Pairing, sight: Option<&Sight>) -> f64 
     let outside = |c: Vec3, h: Vec3| (c.abs() - h).max(Vec3::ZERO);
     let in_a = outside(center_b - a.center, a.half + half_b).length();
     let between = a.center - center_b;
-    let unit = 1.0 / pairing.scale;
+    let unit = 1.0 / scale(pairing);
     let along = |k: usize| {
         let axis = axes[k] * unit;
-        let reach = axis.abs().dot(a.half) + [b.half.x, b.half.y, b.half.z][k] * pairing.scale;
+        let reach = axis.abs().dot(a.half) + [b.half.x, b.half.y, b.half.z][k] * scale(pairing);
         (axis.dot(between).abs() - reach).max(0.0)
     };
     let in_b = Vec3::new(along(0), along(1), along(2)).length();
@@ -128,10 +128,15 @@ fn bound(a: &Child, b: &Child, pairing: &Pairing, sight: Option<&Sight>) -> f64 
     let slab_a = gap(a.normal, (a.low, a.high), center_b, reach_b);
     let normal_b = (axes[0] * b.normal.x + axes[1] * b.normal.y + axes[2] * b.normal.z) * unit;
     let offset = normal_b.dot(pairing.in_a(Vec3::ZERO));
-    let ends = (b.low * pairing.scale + offset, b.high * pairing.scale + offset);
+    let ends = (b.low * scale(pairing) + offset, b.high * scale(pairing) + offset);
     let slab_b = gap(normal_b, ends, a.center, normal_b.abs().dot(a.half));
     let seen = sight.map_or(0.0, |s| sighted(a, b, s));
     in_a.max(in_b).max(slab_a).max(slab_b).max(seen)
+}
+
+/// Units of A per unit of B.
+fn scale(pairing: &Pairing) -> f64 {
+    pairing.frame_b.unit / pairing.frame_a.unit
 }
 
 fn sighted(a: &Child, b: &Child, sight: &Sight) -> f64 {

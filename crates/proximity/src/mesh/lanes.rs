@@ -1,14 +1,38 @@
 //! Vectors of lanes: three coordinates, each a SIMD register.
 //!
-//! No fused multiply-add anywhere: every instruction set rounds alike, so all of them walk the same path.
+//! f32 lanes fuse multiplications with additions where the processor can, f64 lanes never do: what f32 decides is
+//! safe however it rounds, and what is told was measured in f64, alike on every instruction set.
 
 use std::ops::{Add, Mul, Sub};
 
-use fearless_simd::{Simd, f32x8, f32x16, prelude::*};
+use fearless_simd::{Simd, f32x8, f32x16, f64x8, prelude::*};
 
 /// Arithmetic of one register.
-pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Lanes for T {}
+pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// `self·k + c`, in one rounding or in two.
+    fn times_plus(self, k: Self, c: Self) -> Self;
+}
+
+impl<S: Simd> Lanes for f32x16<S> {
+    #[inline(always)]
+    fn times_plus(self, k: Self, c: Self) -> Self {
+        self.mul_add(k, c)
+    }
+}
+
+impl<S: Simd> Lanes for f32x8<S> {
+    #[inline(always)]
+    fn times_plus(self, k: Self, c: Self) -> Self {
+        self.mul_add(k, c)
+    }
+}
+
+impl<S: Simd> Lanes for f64x8<S> {
+    #[inline(always)]
+    fn times_plus(self, k: Self, c: Self) -> Self {
+        self * k + c
+    }
+}
 
 /// Three coordinates of many points.
 #[derive(Clone, Copy)]
@@ -17,7 +41,7 @@ pub(super) struct V3<T>(pub T, pub T, pub T);
 impl<T: Lanes> V3<T> {
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
-        self.0 * o.0 + self.1 * o.1 + self.2 * o.2
+        self.2.times_plus(o.2, self.1.times_plus(o.1, self.0 * o.0))
     }
 
     #[inline(always)]
@@ -48,7 +72,14 @@ impl<T: Lanes> V3<T> {
 
     #[inline(always)]
     fn along(self, r: &[T; 3]) -> T {
-        r[0] * self.0 + r[1] * self.1 + r[2] * self.2
+        self.2.times_plus(r[2], self.1.times_plus(r[1], self.0 * r[0]))
+    }
+
+    /// `[rows]·self + shift`.
+    #[inline(always)]
+    pub fn placed(self, rows: &[[T; 3]; 3], shift: Self) -> Self {
+        let along = |r: &[T; 3], c: T| self.2.times_plus(r[2], self.1.times_plus(r[1], self.0.times_plus(r[0], c)));
+        Self(along(&rows[0], shift.0), along(&rows[1], shift.1), along(&rows[2], shift.2))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
+use super::gilbert::beyond;
 use super::lanes::{V3, W8, load_corners, load8, rows8, splat8};
 use super::limit::{Limit, Sight};
 use super::placement::Pairing;
@@ -28,8 +29,29 @@ pub(super) fn near(
         if left.0 == 0 {
             return 0;
         }
-        along_normals(simd, &load_corners(simd, &a.corner), &seen_from_a(simd, b, pairing), a, limit, left).0
+        let of_b = seen_from_a(simd, b, pairing);
+        let left = along_normals(simd, &load_corners(simd, &a.corner), &of_b, a, limit, left);
+        match &limit.sight {
+            Some(sight) => descent(simd, a, &of_b, sight, limit, left).0,
+            None => left.0,
+        }
     })
+}
+
+/// Leaves out pairs that a step towards their nearest points shows to be farther apart than the limit.
+#[inline(always)]
+fn descent<S: Simd>(simd: S, a: &Leaf, of_b: &Triangles<S>, sight: &Sight, limit: &Limit, pairs: Pairs) -> Pairs {
+    let toward = splat8(simd, sight.of_a[0]);
+    let mut left = 0;
+    let mut rest = pairs.0;
+    while rest != 0 {
+        let i = rest.trailing_zeros() / 8;
+        let row = (pairs.0 >> (8 * i)) & 0xff;
+        rest &= !(0xff << (8 * i));
+        let corners = [one(simd, a, 0, i as usize), one(simd, a, 1, i as usize), one(simd, a, 2, i as usize)];
+        left |= (row & !beyond(simd, &corners, of_b, toward, limit.gap, row)) << (8 * i);
+    }
+    Pairs(left)
 }
 
 /// The pairs of triangles that may touch.
@@ -58,7 +80,7 @@ type Triangles<S> = [V3<W8<S>>; 3];
 fn seen_from_a<S: Simd>(simd: S, b: &Leaf, pairing: &Pairing) -> Triangles<S> {
     let (rows, shift) = (rows8(simd, &pairing.ab.m), splat8(simd, pairing.ab.t));
     let [p, q, r] = load_corners(simd, &b.corner);
-    [p.mapped(&rows).plus(shift), q.mapped(&rows).plus(shift), r.mapped(&rows).plus(shift)]
+    [p.placed(&rows, shift), q.placed(&rows, shift), r.placed(&rows, shift)]
 }
 
 /// Bit `8 i + j`: triangle `i` of A and `j` of B.

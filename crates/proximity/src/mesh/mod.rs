@@ -4,9 +4,12 @@
 #![allow(clippy::inline_always)]
 
 mod any;
+mod approach;
 #[cfg(test)]
 mod audit;
 mod exact;
+mod gilbert;
+mod landmarks;
 mod lanes;
 mod leaf;
 mod limit;
@@ -19,10 +22,10 @@ mod scratch;
 mod search;
 mod swallowed;
 mod touch;
-mod toward;
 mod tree;
 
-pub use nearest::{Hint, Nearest, distance, distance_at, within};
+pub use landmarks::{Landmarks, PlacedLandmarks};
+pub use nearest::{Hint, Nearest, distance, distance_at, farther, within};
 pub(crate) use probe::{Box as BoxProbe, Height, Ray};
 pub(crate) use scratch::with_scratch;
 pub use scratch::{Scratch, Visits};

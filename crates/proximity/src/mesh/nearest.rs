@@ -4,7 +4,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::placement::{Pairing, apart};
 use super::scratch::{Scratch, Visits};
-use super::search::search;
+use super::search::{Start, search};
 use super::swallowed::swallowed;
 use super::touch::{Pair, collide};
 use crate::TriMesh;
@@ -27,10 +27,19 @@ pub struct Nearest {
 }
 
 /// A pair of triangles that was nearest once. With other meshes than those it came from it is only a bad beginning.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hint {
     pub(super) a: u32,
     pub(super) b: u32,
+    /// How far apart they were, units of A.
+    pub(super) distance: f32,
+}
+
+impl Default for Hint {
+    /// Knows nothing.
+    fn default() -> Self {
+        Self { a: u32::MAX, b: u32::MAX, distance: 0.0 }
+    }
 }
 
 /// Distance of two meshes.
@@ -72,7 +81,9 @@ pub fn distance_at(
     let unit = a.tree.frame.unit;
     let radius = limit.max(0.0) / unit + pairing.slack;
     let level = scratch.level();
-    let found = search(level, a, b, &pairing, (radius, pairing.slack), hint, scratch);
+    // Where a limit is known, most meshes are beyond it, and the descent says so soonest.
+    let start = if radius < f64::INFINITY { Start::Descent } else { Start::Landmarks(DISTANCE_WIDTH) };
+    let found = search(level, a, b, &pairing, (radius, pairing.slack), (hint, start), scratch);
     if scratch.stack.overflown() {
         return Some(unknown(a_in_world, b_in_world));
     }
@@ -94,10 +105,14 @@ pub fn distance_at(
     })
 }
 
+/// Pairs of nodes that landmarks follow in search of the nearest pair, and of one that is near enough.
+const DISTANCE_WIDTH: usize = 4;
+const WITHIN_WIDTH: usize = 2;
+
 /// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
 ///
-/// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified but
-/// reproducible.
+/// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified.
+/// Looks first where the surfaces seem nearest; of meshes that mostly are farther apart, [`farther`] asks sooner.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, mesh::{Scratch, within}};
@@ -117,6 +132,41 @@ pub fn within(
     tolerance: f64,
     scratch: &mut Scratch,
 ) -> Option<Pair> {
+    near(a, a_in_world, b, b_in_world, tolerance, Start::Landmarks(WITHIN_WIDTH), scratch)
+}
+
+/// True where two meshes are certainly farther apart than `tolerance` metres: the opposite of [`within`], quicker where
+/// that is what is expected.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, farther}};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 1.5));
+/// assert!(farther(&mesh, &here, &mesh, &there, 0.49, &mut Scratch::new()));
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn farther(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    tolerance: f64,
+    scratch: &mut Scratch,
+) -> bool {
+    near(a, a_in_world, b, b_in_world, tolerance, Start::Descent, scratch).is_none()
+}
+
+fn near(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    tolerance: f64,
+    start: Start,
+    scratch: &mut Scratch,
+) -> Option<Pair> {
     if !(tolerance > 0.0) {
         return collide(a, a_in_world, b, b_in_world, scratch);
     }
@@ -130,7 +180,7 @@ pub fn within(
     }
     let radius = tolerance / a.tree.frame.unit + pairing.slack;
     let level = scratch.level();
-    let found = search(level, a, b, &pairing, (radius, radius), None, scratch);
+    let found = search(level, a, b, &pairing, (radius, radius), (None, start), scratch);
     match found {
         Some(best) => Some(Pair::Triangles(best.triangles.0, best.triangles.1)),
         None if scratch.stack.overflown() => Some(Pair::Unknown),

@@ -175,7 +175,7 @@ struct LanesOfA<S: Simd> {
 /// Boxes of one frame as boxes of the other.
 #[inline(always)]
 fn seen<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, p: &Placement) -> (V3<W16<S>>, V3<W16<S>>) {
-    (c.mapped(&rows16(simd, &p.m)).plus(splat16(simd, p.t)), h.mapped(&rows16(simd, &p.abs)))
+    (c.placed(&rows16(simd, &p.m), splat16(simd, p.t)), h.mapped(&rows16(simd, &p.abs)))
 }
 
 /// Largest gap along the three axes, and the sum of squares of the positive ones.

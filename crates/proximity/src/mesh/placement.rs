@@ -26,8 +26,6 @@ pub(super) struct Pairing {
     pub frame_b: Frame,
     /// Rows of the map from units of B to units of A, translation last.
     pub exact: [[f64; 4]; 3],
-    /// Units of A per unit of B.
-    pub scale: f64,
     /// No f32 gap of boxes, slabs or triangles is off by more, in units of A. See README.md, "Error bounds".
     pub doubt: f64,
     /// No f64 distance of two triangles is off by more, in units of A; nearer than this is contact.
@@ -52,7 +50,6 @@ impl Pairing {
             ab: placement(rows, t, scale),
             ba: placement(columns, back, 1.0 / scale),
             exact,
-            scale,
             frame_a: a.frame,
             frame_b: b.frame,
             doubt: extent * F32_DOUBT,

@@ -3,6 +3,7 @@
 use elbowroom_spatial::Vec3;
 use fearless_simd::Level;
 
+use super::approach::promising;
 use super::exact::{BATCH, Distances};
 use super::leaf::{Facing, filled, near, nearest};
 use super::limit::Limit;
@@ -10,13 +11,21 @@ use super::nearest::Hint;
 use super::node::{NEAR, open};
 use super::placement::Pairing;
 use super::scratch::{Entry, Queue, Scratch, Stack, Visits, filling, settle};
-use super::toward::nearest_leaf;
 use super::tree::LEAF;
 use crate::TriMesh;
 use crate::triangle::Near;
 
-/// Steps from side to side at most when looking for a good start.
-const ROUNDS: usize = 12;
+/// A hint whose triangles are farther apart by so much now (units of A) has become a bad beginning.
+const STALE: f64 = 0.02;
+
+/// Where the search begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Start {
+    /// Where the surfaces seem nearest, with so many pairs of nodes in view.
+    Landmarks(usize),
+    /// At the first leaves that the descent meets.
+    Descent,
+}
 
 /// The best so far, units of A.
 #[derive(Clone, Copy)]
@@ -54,7 +63,7 @@ pub(super) fn search(
     b: &TriMesh,
     pairing: &Pairing,
     (radius, enough): (f64, f64),
-    hint: Option<Hint>,
+    (hint, start): (Option<Hint>, Start),
     scratch: &mut Scratch,
 ) -> Option<Best> {
     let Scratch { stack, queue, visits, .. } = scratch;
@@ -80,38 +89,25 @@ pub(super) fn search(
         visits,
     };
     stack.push(Entry::root(&a.tree, &b.tree));
-    s.begin(hint, stack);
+    s.begin(hint, start, stack);
     s.prove(stack);
     s.best
 }
 
 impl Search<'_> {
-    /// Looks for a good upper bound: the hint, else the first leaves that the descent meets; then from side to side as
-    /// long as it helps.
-    fn begin(&mut self, hint: Option<Hint>, stack: &mut Stack) {
-        let (ab, ba) = (self.pairing.ab, self.pairing.ba);
-        match hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
-            Some(h) => self.measure_slots(h.a, h.b),
-            None => self.dive(stack),
-        }
-        let mut idle = 0;
-        let mut looked = (usize::MAX, usize::MAX);
-        for round in 0..ROUNDS {
-            let Some(best) = self.best else { return };
-            if best.distance <= self.enough || idle == 2 {
+    /// Looks for a good upper bound.
+    fn begin(&mut self, hint: Option<Hint>, start: Start, stack: &mut Stack) {
+        if let Some(h) = hint.filter(|h| h.a < self.a.tree.order.len() as u32 && h.b < self.b.tree.order.len() as u32) {
+            self.measure(&[(h.a, h.b)]);
+            if self.radius < f64::from(h.distance) + STALE || matches!(start, Start::Descent) {
                 return;
             }
-            let (slot_a, slot_b) = (best.hint.a as usize, best.hint.b as usize);
-            let next = if round % 2 == 0 {
-                (slot_a / LEAF, nearest_leaf(self.level, &self.b.tree, &ab, narrowed(best.near.on_a)))
-            } else {
-                (nearest_leaf(self.level, &self.a.tree, &ba, narrowed(self.to_b(best.near.on_b))), slot_b / LEAF)
-            };
-            if next != looked {
-                looked = next;
-                self.sample(next.0, next.1);
+        }
+        match start {
+            Start::Landmarks(width) => {
+                self.measure(&promising(self.level, &self.a.tree, &self.b.tree, self.pairing, width));
             }
-            idle = if self.radius < best.distance { 0 } else { idle + 1 };
+            Start::Descent => self.dive(stack),
         }
     }
 
@@ -143,16 +139,11 @@ impl Search<'_> {
         self.best.is_some_and(|b| b.distance <= self.enough)
     }
 
-    fn to_b(&self, p: Vec3) -> Vec3 {
-        let (m, s) = (&self.pairing.exact, 1.0 / (self.pairing.scale * self.pairing.scale));
-        let q = [p.x - m[0][3], p.y - m[1][3], p.z - m[2][3]];
-        Vec3::from(std::array::from_fn::<f64, 3, _>(|k| (m[0][k] * q[0] + m[1][k] * q[1] + m[2][k] * q[2]) * s))
-    }
-
-    /// Measures one pair at once.
-    fn measure_slots(&mut self, slot_a: u32, slot_b: u32) {
-        self.slots[self.queue.len()] = (slot_a, slot_b);
-        self.queue.push(self.a, slot_a, self.b, slot_b);
+    /// Measures pairs of slots at once.
+    fn measure(&mut self, pairs: &[(u32, u32)]) {
+        for &(slot_a, slot_b) in pairs {
+            self.queue_pair(slot_a, slot_b);
+        }
         self.flush();
     }
 
@@ -189,7 +180,8 @@ impl Search<'_> {
         }
         while let Some(lane) = least(&found.at_least, len, self.radius) {
             let triangles = self.queue.triangles[lane];
-            let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1 };
+            let distance = found.distance[lane] as f32;
+            let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1, distance };
             let certain = found.at_least[lane] >= found.distance[lane];
             let near = if certain {
                 found.near(lane)
@@ -229,11 +221,14 @@ impl Search<'_> {
         while pairs != 0 {
             let bit = pairs.trailing_zeros();
             pairs &= pairs - 1;
-            let (slot_a, slot_b) = (leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
-            self.slots[self.queue.len()] = (slot_a, slot_b);
-            if self.queue.push(self.a, slot_a, self.b, slot_b) {
-                self.flush();
-            }
+            self.queue_pair(leaf_a as u32 * LEAF as u32 + bit / 8, leaf_b as u32 * LEAF as u32 + bit % 8);
+        }
+    }
+
+    fn queue_pair(&mut self, slot_a: u32, slot_b: u32) {
+        self.slots[self.queue.len()] = (slot_a, slot_b);
+        if self.queue.push(self.a, slot_a, self.b, slot_b) {
+            self.flush();
         }
     }
 
@@ -276,9 +271,4 @@ fn least(numbers: &[f64; BATCH], len: usize, limit: f64) -> Option<usize> {
         }
     }
     best
-}
-
-#[inline]
-fn narrowed(p: Vec3) -> [f32; 3] {
-    [p.x as f32, p.y as f32, p.z as f32]
 }

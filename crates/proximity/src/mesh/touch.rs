@@ -27,7 +27,7 @@ pub enum Pair {
 /// A pair of triangles that touch, or `None` where the meshes are certainly apart.
 ///
 /// Touching is contact, and so is being closer than f64 can tell: 2⁻⁴⁰ of the sizes and distance of the meshes.
-/// A mesh wholly inside a closed one is in contact. Which pair is found is unspecified but reproducible.
+/// A mesh wholly inside a closed one is in contact. Which of several pairs is found is unspecified.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, mesh::{Scratch, collide}};
@@ -49,8 +49,8 @@ pub fn collide(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, s
     first
 }
 
-/// Calls `found` with every pair of triangles that touch, or that are closer than f64 can tell, each once and in an
-/// order that depends on nothing but the meshes and poses; with [`Pair::Inside`] where none touch and one mesh lies
+/// Calls `found` with every pair of triangles that touch, or that are closer than f64 can tell, each once and in no
+/// particular order; with [`Pair::Inside`] where none touch and one mesh lies
 /// inside the other.
 ///
 /// ```

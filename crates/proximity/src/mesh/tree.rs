@@ -28,6 +28,10 @@ impl Frame {
         Self { center: bounds.center(), unit, inverse: 1.0 / unit }
     }
 
+    pub fn in_metres(self, p: [f32; 3]) -> Vec3 {
+        Vec3::from(p.map(f64::from)) * self.unit + self.center
+    }
+
     #[inline]
     pub fn to_units(self, p: Vec3) -> Vec3 {
         (p - self.center) * self.inverse
@@ -45,6 +49,8 @@ pub(crate) struct Node {
     pub normal: [[f32; FAN]; 3],
     pub low: [f32; FAN],
     pub high: [f32; FAN],
+    /// A point of the surface near the middle of the box: a landmark.
+    pub mark: [[f32; FAN]; 3],
 }
 
 impl Node {
@@ -54,6 +60,7 @@ impl Node {
         normal: [[0.0; FAN]; 3],
         low: [0.0; FAN],
         high: [0.0; FAN],
+        mark: [[0.0; FAN]; 3],
     };
 }
 
@@ -160,12 +167,14 @@ fn fill_node(node: &mut Node, number: usize, span: usize, leaves: &[Leaf]) {
         let (low, high) = box_of(below);
         let n = mean_normal(below);
         let (near, far) = interval(below, n);
+        let mark = most_central(below, std::array::from_fn(|k| 0.5 * (low[k] + high[k])));
         for k in 0..3 {
             let middle = 0.5 * (low[k] + high[k]);
             node.center[k][lane] = middle;
             // Corners are off by 2⁻²⁵ at most, the middle and the differences by as much each.
             node.half[k][lane] = (high[k] - middle).max(middle - low[k]) + OUTWARD_BOX;
             node.normal[k][lane] = n[k];
+            node.mark[k][lane] = mark[k];
         }
         node.low[lane] = near - OUTWARD_SLAB;
         node.high[lane] = far + OUTWARD_SLAB;
@@ -177,7 +186,7 @@ const OUTWARD_BOX: f32 = 1.0 / 4_194_304.0;
 /// 2⁻²⁰: a dot product of a unit vector with a rounded point of [-1, 1]³ is off by less than 10·2⁻²⁴.
 const OUTWARD_SLAB: f32 = 1.0 / 1_048_576.0;
 
-fn box_of(leaves: &[Leaf]) -> ([f32; 3], [f32; 3]) {
+pub(super) fn box_of(leaves: &[Leaf]) -> ([f32; 3], [f32; 3]) {
     let (mut low, mut high) = ([[f32::INFINITY; LEAF]; 3], [[f32::NEG_INFINITY; LEAF]; 3]);
     for leaf in leaves {
         for corner in &leaf.corner {
@@ -192,6 +201,23 @@ fn box_of(leaves: &[Leaf]) -> ([f32; 3], [f32; 3]) {
     let least = |x: [f32; LEAF]| x.into_iter().fold(f32::INFINITY, f32::min);
     let most = |x: [f32; LEAF]| x.into_iter().fold(f32::NEG_INFINITY, f32::max);
     (low.map(least), high.map(most))
+}
+
+/// The middle of a triangle that is nearest to `center`.
+pub(super) fn most_central(leaves: &[Leaf], center: [f32; 3]) -> [f32; 3] {
+    let (mut nearest, mut mark) = ([f32::INFINITY; LEAF], [center; LEAF]);
+    for Leaf { corner: [p, q, r] } in leaves {
+        for lane in 0..LEAF {
+            let middle: [f32; 3] = std::array::from_fn(|k| (p[k][lane] + q[k][lane] + r[k][lane]) * (1.0 / 3.0));
+            let [x, y, z]: [f32; 3] = std::array::from_fn(|k| middle[k] - center[k]);
+            let square = x * x + y * y + z * z;
+            if square < nearest[lane] {
+                (nearest[lane], mark[lane]) = (square, middle);
+            }
+        }
+    }
+    let best = (0..LEAF).min_by(|&i, &j| nearest[i].total_cmp(&nearest[j])).unwrap_or(0);
+    mark[best]
 }
 
 /// Area-weighted mean normal, a hair shorter than 1; zero where the triangles have none.

@@ -1,0 +1,86 @@
+//! A few points of a surface, to guess at once which of many meshes is nearest.
+
+use elbowroom_spatial::{Pose, Vec3};
+use fearless_simd::{Simd, dispatch, prelude::*};
+
+use super::lanes::{V3, W16, load16, splat16};
+use super::scratch::detected_level;
+use super::tree::{FAN, Leaf, Tree, box_of, most_central};
+use crate::TriMesh;
+
+/// Sixteen points of a mesh's surface, spread over it.
+///
+/// Of many pairs of meshes, the one whose landmarks are nearest is a good one to measure first: its distance spares
+/// most others. This is a guess and proves nothing.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, mesh::Landmarks};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let of_mesh = Landmarks::of(&mesh);
+/// let here = of_mesh.placed(&Pose::IDENTITY);
+/// let (near, far) = (Pose::from_translation(Vec3::X * 2.0), Pose::from_translation(Vec3::X * 3.0));
+/// assert!(here.distance_squared(&of_mesh.placed(&near)) < here.distance_squared(&of_mesh.placed(&far)));
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Landmarks {
+    points: [Vec3; FAN],
+}
+
+/// [`Landmarks`] in a common frame, in single precision.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlacedLandmarks {
+    points: [[f32; FAN]; 3],
+}
+
+impl Landmarks {
+    /// Of a mesh, in its own frame, metres.
+    pub fn of(mesh: &TriMesh) -> Self {
+        let Tree { leaves, frame, .. } = &mesh.tree;
+        let points = std::array::from_fn(|k| {
+            let first = (k * leaves.len() / FAN).min(leaves.len() - 1);
+            let end = ((k + 1) * leaves.len() / FAN).max(first + 1);
+            frame.in_metres(middle_of(&leaves[first..end]))
+        });
+        Self { points }
+    }
+
+    /// In the frame in which the mesh has this pose.
+    pub fn placed(&self, pose: &Pose) -> PlacedLandmarks {
+        let mut placed = PlacedLandmarks::default();
+        for (k, p) in self.points.iter().enumerate() {
+            let p = pose.transform_point(*p);
+            for axis in 0..3 {
+                placed.points[axis][k] = p[axis] as f32;
+            }
+        }
+        placed
+    }
+}
+
+impl PlacedLandmarks {
+    /// Squared distance of the nearest two, m², in single precision; infinite where that is NaN.
+    pub fn distance_squared(&self, other: &Self) -> f32 {
+        dispatch!(detected_level(), simd => least(simd, &load16(simd, &self.points), &other.points))
+    }
+}
+
+#[inline(always)]
+fn least<S: Simd>(simd: S, points: &V3<W16<S>>, others: &[[f32; FAN]; 3]) -> f32 {
+    let mut best = W16::splat(simd, f32::INFINITY);
+    for j in 0..FAN {
+        let apart = points.minus(splat16(simd, [others[0][j], others[1][j], others[2][j]]));
+        best = best.min(apart.dot(apart));
+    }
+    let mut squares = [0.0; FAN];
+    best.store_slice(&mut squares);
+    squares.into_iter().fold(f32::INFINITY, f32::min)
+}
+
+/// A point of the surface near the middle of it all.
+fn middle_of(leaves: &[Leaf]) -> [f32; 3] {
+    let (low, high) = box_of(leaves);
+    most_central(leaves, std::array::from_fn(|k| 0.5 * (low[k] + high[k])))
+}
