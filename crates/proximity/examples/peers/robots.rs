@@ -1,8 +1,11 @@
 //! Two arms against each other. One file, so that a faster way can take its place.
 
 use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Landmarks, PlacedLandmarks, Scratch, collide, distance_at, farther};
+use elbowroom_proximity::mesh::{Hint, Landmarks, PlacedLandmarks, Scratch, collide, distance_at, farther, guess};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
+
+/// Pairs of links that are guessed at.
+const GUESSES: usize = 3;
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {
@@ -77,13 +80,13 @@ impl Arms {
         false
     }
 
-    /// Metres between the arms: the pair whose landmarks are nearest first, then as the boxes are; what is known so far
-    /// limits the rest.
+    /// Metres between the arms: guesses for the pairs whose landmarks are nearest limit all others, which come in the
+    /// order of their boxes.
     pub fn distance(&mut self, poses: &[Pose]) -> f64 {
         self.place(poses);
         let links = self.links.len();
-        let (a, b) = self.promising(poses);
-        let mut best = self.pair(poses, a, b, f64::INFINITY);
+        let (mut best, hint, (a, b)) = self.guess(poses);
+        best = self.pair(poses, a, b, best, Some(hint));
         self.order.clear();
         for x in 0..links {
             for y in (0..links).filter(|y| (x, *y) != (a, b)) {
@@ -99,31 +102,43 @@ impl Arms {
             if best <= 0.0 || gap_squared >= best * best {
                 break;
             }
-            best = self.pair(poses, a, b, best);
+            best = self.pair(poses, a, b, best, None);
         }
         best
     }
 
-    fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64) -> f64 {
+    fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64, hint: Option<Hint>) -> f64 {
         let (of_a, of_b) = (&poses[a], &poses[self.links.len() + b]);
-        let found = distance_at(&self.links[a], of_a, &self.links[b], of_b, limit, None, &mut self.scratch);
+        let found = distance_at(&self.links[a], of_a, &self.links[b], of_b, limit, hint, &mut self.scratch);
         found.map_or(limit, |near| limit.min(near.distance))
     }
 
-    fn promising(&mut self, poses: &[Pose]) -> (usize, usize) {
+    /// An upper bound, and where it was found.
+    fn guess(&mut self, poses: &[Pose]) -> (f64, Hint, (usize, usize)) {
         let links = self.links.len();
         self.seen.clear();
         self.seen.extend(self.landmarks.iter().cycle().zip(poses).map(|(marks, pose)| marks.placed(pose)));
-        let mut best = (f32::INFINITY, (0, 0));
+        let mut nearest = [(f32::INFINITY, (0, 0)); GUESSES];
         for a in 0..links {
             for b in 0..links {
                 let square = self.seen[a].distance_squared(&self.seen[links + b]);
-                if square < best.0 {
-                    best = (square, (a, b));
+                if square < nearest[GUESSES - 1].0 {
+                    nearest[GUESSES - 1] = (square, (a, b));
+                    nearest.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
                 }
             }
         }
-        best.1
+        let mut best = (f64::INFINITY, Hint::default(), nearest[0].1);
+        for (square, (a, b)) in nearest {
+            if square < f32::INFINITY {
+                let (of_a, of_b) = (&poses[a], &poses[links + b]);
+                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, &mut self.scratch);
+                if metres < best.0 {
+                    best = (metres, hint, (a, b));
+                }
+            }
+        }
+        best
     }
 
     fn around(&self, poses: &[Pose]) -> Aabb {

@@ -4,7 +4,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::placement::{Pairing, apart};
 use super::scratch::{Scratch, Visits};
-use super::search::{Start, search};
+use super::search::{Start, promising_pair, search};
 use super::swallowed::swallowed;
 use super::touch::{Pair, collide};
 use crate::TriMesh;
@@ -103,6 +103,34 @@ pub fn distance_at(
         pair: Pair::Triangles(found.triangles.0, found.triangles.1),
         hint: found.hint,
     })
+}
+
+/// The distance, metres, of a pair of triangles that looks nearest, and where it is: an upper bound of the distance, and
+/// often the distance itself, for a small part of its price. Infinite where a pose is not finite.
+///
+/// Of several pairs of meshes, the least of these is a limit for all of them.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, distance_at, guess}};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 1.5));
+/// let mut scratch = Scratch::new();
+/// let (metres, hint) = guess(&mesh, &here, &mesh, &there, &mut scratch);
+/// let near = distance_at(&mesh, &here, &mesh, &there, metres, Some(hint), &mut scratch).expect("it is no farther");
+/// assert!(near.distance <= metres);
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn guess(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> (f64, Hint) {
+    scratch.visits = Visits::default();
+    let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
+    let unknown = (f64::INFINITY, Hint::default());
+    if !pairing.is_usable() {
+        return unknown;
+    }
+    let found = promising_pair(scratch.level(), a, b, &pairing, DISTANCE_WIDTH, scratch);
+    found.map_or(unknown, |best| ((best.distance + pairing.slack) * a.tree.frame.unit, best.hint))
 }
 
 /// Pairs of nodes that landmarks follow in search of the nearest pair, and of one that is near enough.

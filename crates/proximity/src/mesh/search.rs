@@ -66,32 +66,45 @@ pub(super) fn search(
     (hint, start): (Option<Hint>, Start),
     scratch: &mut Scratch,
 ) -> Option<Best> {
-    let Scratch { stack, queue, visits, .. } = scratch;
-    queue.clear();
-    stack.clear();
-    let mut limit = Limit::new(radius, pairing);
-    limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
-    let (seen, slots) = (f64::INFINITY, [(0, 0); BATCH]);
-    let mut s = Search {
-        level,
-        a,
-        b,
-        pairing,
-        limit,
-        radius,
-        enough,
-        seen,
-        best: None,
-        queue,
-        facing: Facing::NOTHING,
-        faced: None,
-        slots,
-        visits,
-    };
+    let (mut s, stack) = Search::new(level, a, b, pairing, (radius, enough), scratch);
     stack.push(Entry::root(&a.tree, &b.tree));
     s.begin(hint, start, stack);
     s.prove(stack);
     s.best
+}
+
+/// The nearest of the pairs that landmarks find.
+pub(super) fn promising_pair(
+    level: Level,
+    a: &TriMesh,
+    b: &TriMesh,
+    pairing: &Pairing,
+    width: usize,
+    scratch: &mut Scratch,
+) -> Option<Best> {
+    let (mut s, stack) = Search::new(level, a, b, pairing, (f64::INFINITY, pairing.slack), scratch);
+    s.begin(None, Start::Landmarks(width), stack);
+    s.best
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        level: Level,
+        a: &'a TriMesh,
+        b: &'a TriMesh,
+        pairing: &'a Pairing,
+        (radius, enough): (f64, f64),
+        scratch: &'a mut Scratch,
+    ) -> (Self, &'a mut Stack) {
+        let Scratch { stack, queue, visits, .. } = scratch;
+        queue.clear();
+        stack.clear();
+        let mut limit = Limit::new(radius, pairing);
+        limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
+        let (seen, slots, facing) = (f64::INFINITY, [(0, 0); BATCH], Facing::NOTHING);
+        let (best, faced) = (None, None);
+        (Self { level, a, b, pairing, limit, radius, enough, seen, best, queue, facing, faced, slots, visits }, stack)
+    }
 }
 
 impl Search<'_> {
