@@ -1,0 +1,268 @@
+//! Where everything is at an instant of the motion, and how fast it can go.
+
+use elbowroom_kinematics::LinkId;
+use elbowroom_proximity::impact::Steady;
+use elbowroom_spatial::Vec3;
+
+use super::Move;
+use super::levers::{Levers, Turned};
+use super::speed::Speed;
+use crate::{Level, Member, Scene, SceneError, SceneState};
+
+/// A motion of the scene.
+#[derive(Debug)]
+pub(super) struct Travel {
+    /// The scene at the instant gone to last.
+    pub state: SceneState,
+    levers: Levers,
+    /// Per robot.
+    legs: Vec<Leg>,
+    /// Per object: how it moves by itself.
+    free: Vec<Option<Free>>,
+    /// Per model: where its speeds begin in `speeds`. One more: the end.
+    first: Vec<usize>,
+    speeds: Vec<Speed>,
+    /// Per model: sum of the lengths its place is computed from, metres.
+    sizes: Vec<f64>,
+    /// Velocities of the links are those of the present instant.
+    velocities_known: bool,
+    now: f64,
+}
+
+/// A robot's joint values over time: `from + rate·t`.
+#[derive(Debug)]
+struct Leg {
+    moves: bool,
+    from: Vec<f64>,
+    rate: Vec<f64>,
+    /// Within its limits all the way.
+    within: bool,
+}
+
+/// An object on a path of its own.
+#[derive(Debug, Clone, Copy)]
+struct Free {
+    steady: Option<Steady>,
+}
+
+/// A member as seen from a frame that is `cut` joints above the root on its way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    pub model: usize,
+    pub cut: usize,
+}
+
+impl Travel {
+    pub fn new(scene: &Scene, level: Level) -> Self {
+        let levers = Levers::new(scene, level);
+        let leg = |dof: usize| Leg { moves: false, from: vec![0.0; dof], rate: vec![0.0; dof], within: true };
+        let models = scene.models.len();
+        Self {
+            state: SceneState::new(scene),
+            legs: scene.robots.iter().map(|r| leg(r.robot.chain.dof())).collect(),
+            free: vec![None; scene.objects.len()],
+            first: Vec::with_capacity(models + 1),
+            speeds: Vec::with_capacity(models * (levers.longest() + 1)),
+            sizes: vec![0.0; models],
+            levers,
+            velocities_known: false,
+            now: 0.0,
+        }
+    }
+
+    /// Checks all moves, then takes the start from a state.
+    pub fn depart(&mut self, scene: &Scene, start: &SceneState, moves: &[Move]) -> Result<(), SceneError> {
+        self.legs.iter_mut().for_each(|l| l.moves = false);
+        self.free.fill(None);
+        for m in moves {
+            match *m {
+                Move::Robot { robot, to } => {
+                    start.check_q(scene, robot, to)?;
+                    if std::mem::replace(&mut self.legs[robot].moves, true) {
+                        return Err(SceneError::MovesTwice(scene.robots[robot].name.clone()));
+                    }
+                }
+                Move::Object { object, path } => {
+                    let name = start.check_place(scene, object)?;
+                    if !(path.pose(0.0).is_finite() && path.pose(1.0).is_finite()) {
+                        return Err(SceneError::PoseNotFinite(format!("`{name}` on its path")));
+                    }
+                    if self.free[object].replace(Free { steady: path.steady() }).is_some() {
+                        return Err(SceneError::MovesTwice(name.to_string()));
+                    }
+                }
+            }
+        }
+        self.state.copy_from(scene, start);
+        for (robot, leg) in self.legs.iter_mut().enumerate() {
+            self.state.chains[robot].qd.fill(0.0);
+            leg.from.copy_from_slice(start.q(robot));
+            leg.rate.fill(0.0);
+            leg.within = !start.beyond_limits[robot];
+        }
+        for m in moves {
+            if let Move::Robot { robot, to } = *m {
+                self.head_for(scene, robot, to);
+            }
+        }
+        self.bound(scene, moves);
+        Ok(())
+    }
+
+    /// The next leg of a robot that goes on alone, to joint values that were checked.
+    pub fn go_on(&mut self, scene: &Scene, robot: usize, to: &[f64]) {
+        let leg = &mut self.legs[robot];
+        for (from, rate) in leg.from.iter_mut().zip(&leg.rate) {
+            *from += rate;
+        }
+        leg.within = scene.within_limits(robot, &leg.from);
+        self.head_for(scene, robot, to);
+        self.bound(scene, &[]);
+    }
+
+    fn head_for(&mut self, scene: &Scene, robot: usize, to: &[f64]) {
+        let leg = &mut self.legs[robot];
+        for (rate, (to, from)) in leg.rate.iter_mut().zip(to.iter().zip(&leg.from)) {
+            *rate = to - from;
+        }
+        leg.within &= scene.within_limits(robot, to);
+        self.state.chains[robot].qd.copy_from_slice(&leg.rate);
+    }
+
+    /// Bounds of all speeds.
+    fn bound(&mut self, scene: &Scene, moves: &[Move]) {
+        self.first.clear();
+        self.speeds.clear();
+        for (model, m) in scene.models.iter().enumerate() {
+            self.first.push(self.speeds.len());
+            let begin = self.speeds.len();
+            self.sizes[model] = if let Some((robot, link)) = self.state.carrier(m.member) {
+                let leg = &self.legs[robot];
+                let carried = self.state.held(m.member).map(|a| a.in_link);
+                let turned = Turned { from: &leg.from, rate: &leg.rate };
+                let size = self.levers.speeds((robot, link), model, carried, &turned, &mut self.speeds);
+                size + scene.robots[robot].base_in_world.translation.length()
+            } else {
+                self.speeds.push(self.alone(m.member, model, moves));
+                self.state.in_world[model].translation.length() + self.levers.extent(model)
+            };
+            self.sizes[model] += self.speeds[begin].cap;
+        }
+        self.first.push(self.speeds.len());
+    }
+
+    /// Of an object that no robot carries.
+    fn alone(&self, member: Member, model: usize, moves: &[Move]) -> Speed {
+        let own = moves.iter().find_map(|m| match m {
+            Move::Object { object, path } if Member::Object(*object) == member => Some(*path),
+            _ => None,
+        });
+        own.map_or(Speed::REST, |path| Speed::of_path(path, self.levers.radius(model)))
+    }
+
+    /// Moves everything to where it is at `t`.
+    pub fn go(&mut self, scene: &Scene, moves: &[Move], t: f64) {
+        for (robot, leg) in self.legs.iter().enumerate().filter(|(_, l)| l.moves) {
+            let chain = &mut self.state.chains[robot];
+            for (q, (from, rate)) in chain.q.iter_mut().zip(leg.from.iter().zip(&leg.rate)) {
+                *q = from + rate * t;
+            }
+            scene.robots[robot].robot.chain.forward(chain);
+            self.state.moved(scene, robot);
+        }
+        for m in moves {
+            if let Move::Object { object, path } = m {
+                self.state.put(scene, scene.first_object + object, path.pose(t));
+            }
+        }
+        self.velocities_known = false;
+        self.now = t;
+    }
+
+    /// The two sides of a pair, each as seen from the last link that both hang on.
+    pub fn sides(&self, scene: &Scene, a: usize, b: usize) -> [Side; 2] {
+        let carriers = [a, b].map(|m| self.state.carrier(scene.models[m].member));
+        let cut = match carriers {
+            [Some((ra, la)), Some((rb, lb))] if ra == rb => self.levers.common(ra, la, lb),
+            _ => 0,
+        };
+        [Side { model: a, cut }, Side { model: b, cut }]
+    }
+
+    /// Bounds that hold during all of the motion.
+    pub fn speed(&self, side: Side) -> Speed {
+        self.speeds[(self.first[side.model] + side.cut).min(self.first[side.model + 1] - 1)]
+    }
+
+    /// Metres below which places of this size cannot be told apart.
+    pub fn finest(&self, a: usize, b: usize) -> f64 {
+        64.0 * f64::EPSILON * (self.sizes[a] + self.sizes[b])
+    }
+
+    /// True where what was proven when the scene was built holds during all of the motion.
+    pub fn proofs_hold(&self, member: Member) -> bool {
+        match member {
+            Member::Link { robot, .. } => self.legs[robot].within,
+            Member::Object(o) => self.free[o].is_none() && self.state.proofs_hold(member),
+        }
+    }
+
+    /// True where the object moves by itself.
+    pub fn is_free(&self, object: usize) -> bool {
+        self.free[object].is_some()
+    }
+
+    /// The largest speed of any point of a side at the present instant, metres per unit of time.
+    pub fn speed_now(&mut self, scene: &Scene, side: Side) -> f64 {
+        let bound = self.speed(side);
+        if bound.cap == 0.0 {
+            return 0.0;
+        }
+        let member = scene.models[side.model].member;
+        if self.state.carrier(member).is_some() {
+            self.know_velocities(scene);
+        }
+        let Some(corners) = self.levers.corners(side.model) else { return bound.cap };
+        let in_world = self.state.in_world[side.model];
+        let fastest = match self.state.carrier(member) {
+            Some((robot, link)) => {
+                let base = &scene.robots[robot].base_in_world;
+                let above = self.levers.above(robot, link, side.cut);
+                let own = self.twist(robot, link);
+                let other = above.map_or((Vec3::ZERO, Vec3::ZERO), |l| self.twist(robot, l));
+                // The field of relative velocities: at the root's origin, and how it turns.
+                let (velocity, turn) = (own.0 - other.0, own.1 - other.1);
+                let in_root = base.inverse_mul(&in_world);
+                longest(corners, |p| velocity + turn.cross(in_root.transform_point(p)))
+            }
+            None => {
+                let Member::Object(o) = member else { return bound.cap };
+                let Some(Free { steady: Some(s) }) = self.free[o] else { return bound.cap };
+                longest(corners, |p| s.velocity_at(in_world.transform_point(p), self.now))
+            }
+        };
+        // Rounding is relative to the parts, not to their difference.
+        let careful = fastest * (1.0 + 1e-9) + 1e-12 * bound.cap;
+        if careful < bound.cap { careful } else { bound.cap }
+    }
+
+    /// Velocity of the point of a link that is at the root's origin, and the link's turn, in the root's frame.
+    fn twist(&self, robot: usize, link: LinkId) -> (Vec3, Vec3) {
+        let (motion, at) = (self.state.chains[robot].link_motion(link), self.state.chains[robot].link_in_root(link));
+        (motion.velocity_at(-at.translation), motion.angular_velocity)
+    }
+
+    fn know_velocities(&mut self, scene: &Scene) {
+        if !std::mem::replace(&mut self.velocities_known, true) {
+            for (robot, _) in self.legs.iter().enumerate().filter(|(_, l)| l.moves) {
+                scene.robots[robot].robot.chain.forward_motion(&mut self.state.chains[robot]);
+            }
+        }
+    }
+}
+
+/// A length that is NaN is no bound.
+fn longest(points: &[Vec3], velocity: impl Fn(Vec3) -> Vec3) -> f64 {
+    let known = |v: f64| if v.is_nan() { f64::INFINITY } else { v };
+    points.iter().map(|p| known(velocity(*p).length_squared())).fold(0.0, f64::max).sqrt()
+}
