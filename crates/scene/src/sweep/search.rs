@@ -142,12 +142,13 @@ impl Search {
             let to = frame.to.min(until);
             let middle = 0.5 * (frame.from + to);
             let length = to - frame.from;
-            let short = |o: &Open| {
-                let t = &self.tracks[o.track];
-                t.speed.cap * length <= t.near - t.keep
-            };
-            // Where the whole frame is within the tolerance, its start tells all.
-            let last = !(middle > frame.from && middle < to) || self.open[frame.begin..].iter().all(short);
+            let speeds = || self.open[frame.begin..].iter().map(|o| &self.tracks[o.track]);
+            let short = |t: &Track| t.speed.cap * length <= t.near - t.keep;
+            // Where the whole frame is within the tolerance, its start tells all; without a bound of speed, there is no
+            // more to tell.
+            let last = !(middle > frame.from && middle < to)
+                || speeds().all(short)
+                || speeds().any(|t| t.speed.cap == f64::INFINITY);
             let at = if last { frame.from } else { middle };
             s.travel.go(s.core.scene, s.moves, at);
             if let Some(stuck) = self.look_at_all(s, &frame, at, last) {

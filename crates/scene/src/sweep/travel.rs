@@ -146,7 +146,8 @@ impl Travel {
                 self.speeds.push(self.alone(m.member, model, moves));
                 self.state.in_world[model].translation.length() + self.levers.extent(model)
             };
-            self.sizes[model] += self.speeds[begin].cap;
+            let way = self.speeds[begin].cap;
+            self.sizes[model] += if way.is_finite() { way } else { 0.0 };
         }
         self.first.push(self.speeds.len());
     }
