@@ -101,7 +101,7 @@ fn two_robots_among_objects_of_all_kinds_agree_with_dense_samples() {
             }
         }
         let both = [Move::Robot { robot: 0, to: &to[0] }, Move::Robot { robot: 1, to: &to[1] }];
-        let moves = &both[..1 + round % 2];
+        let moves = &both[..=(round % 2)];
         let options = SweepOptions { clearance_m: if round % 3 == 0 { 0.02 } else { 0.0 }, ..SweepOptions::default() };
         let selection =
             [ALL, (Selection::Robot(0), Selection::Robot(1)), (Selection::Robot(0), Selection::Objects)][round % 5 % 3];
@@ -473,6 +473,8 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
                     assert!(a.0.abs_diff(b.0) > 1, "neighbours: {h:?}");
                 }
             }
+            // Now and then against very many.
+            let samples = if i % 100 == 0 { 50 * samples } else { samples };
             let sampled = judge(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), samples);
             asking += begin.elapsed();
             missed_by_samples += usize::from(hit.is_some() && sampled.is_none());

@@ -117,7 +117,7 @@ impl Levers {
         let mut size = self.extent(model) + carried.map_or(0.0, |c| c.translation.length());
         let mut speed = Speed::REST;
         // Farthest point from the origin of the frame below the joint.
-        let mut ball = self.farthest(model, carried, |p| p.length());
+        let mut ball = self.farthest(model, carried, Vec3::length);
         // The next joint's place in that frame, at both ends of the motion.
         let mut next: Option<([Vec3; 2], f64)> = None;
         for (i, id) in path.iter().enumerate().rev() {

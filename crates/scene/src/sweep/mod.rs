@@ -87,9 +87,9 @@ impl Sweeper {
         }
         for (segment, q) in waypoints.iter().enumerate() {
             let moves = [Move::Robot { robot, to: q.as_ref() }];
-            match segment {
-                0 => self.travel.depart(core.scene, start, &moves)?,
-                _ => self.travel.go_on(core.scene, robot, q.as_ref()),
+            match segment.checked_sub(1) {
+                None => self.travel.depart(core.scene, start, &moves)?,
+                Some(last) => self.travel.go_on(core.scene, robot, (waypoints[last].as_ref(), q.as_ref())),
             }
             if let Some(hit) = self.search.run(core, list, &mut self.travel, &moves, options) {
                 return Ok(Some((segment, hit)));

@@ -7,10 +7,11 @@ use super::travel::{Side, Travel};
 use super::{Impact, Move, SweepOptions};
 use crate::checker::narrow::Placed;
 use crate::checker::{Core, Pair, PairList};
-use crate::{Level, Member, PairState, Reason};
+use crate::{Level, Member, Reason};
 
-/// Share of the time in question that a box must clear so that the solids need not be measured.
-const WORTH: f64 = 0.25;
+/// Share of the time in question that a box must clear so that the solids need not be measured: little, as boxes are
+/// some hundred times faster.
+const WORTH: f64 = 0.01;
 
 /// Memory that is used again.
 #[derive(Debug, Default)]
@@ -20,10 +21,11 @@ pub(super) struct Search {
     tracks: Vec<Track>,
     /// Times in question; those of the frame on top are at the end.
     open: Vec<Open>,
-    /// The later parts, on the way.
+    /// Earlier parts of the frame at hand, on their way to the end of `open`.
     early: Vec<Open>,
     frames: Vec<Frame>,
-    hit: Option<Impact>,
+    /// The earliest known: track and time.
+    hit: Option<(usize, f64)>,
     steps: u32,
 }
 
@@ -34,8 +36,10 @@ struct Track {
     pair: usize,
     sides: [Side; 2],
     speed: Speed,
-    /// Metres: nearer is a hit, where it is measured.
+    /// Metres: margin, clearance and the tolerance.
     near: f64,
+    /// Metres: nearer is a hit, where it is looked at. A little less than `near`, for rounding.
+    close: f64,
     /// Metres: farther is proven free. Half a tolerance less, so that every look gets on.
     keep: f64,
 }
@@ -58,10 +62,10 @@ struct Frame {
 
 /// What a look at a pair says.
 enum Look {
-    /// Free for so long before and after.
+    /// Free for so long before and after; infinite: for all the time in question.
     Free(f64),
-    /// Too near; free for so long before.
-    Near(Separation, f64),
+    /// Too near.
+    Near,
     /// Not looked at: the steps are used up.
     Spent,
 }
@@ -109,7 +113,8 @@ impl Search {
             let sides = travel.sides(core.scene, a, b);
             let speed = travel.speed(sides[0]).joined(travel.speed(sides[1]));
             self.open.push(Open { track: self.tracks.len(), from: 0.0, to: 1.0 });
-            self.tracks.push(Track { pair: index, sides, speed, near, keep: limit + 0.5 * tolerance });
+            let (close, keep) = (limit + 0.9 * tolerance, limit + 0.5 * tolerance);
+            self.tracks.push(Track { pair: index, sides, speed, near, close, keep });
         }
         if !self.open.is_empty() {
             self.frames.push(Frame { from: 0.0, to: 1.0, begin: 0 });
@@ -123,10 +128,9 @@ impl Search {
             for m in &scene.models {
                 let Member::Link { .. } = m.member else { continue };
                 let (a, b) = (m.member, Member::Object(object));
-                let still = travel.state.pair(scene, a, b) == Some((PairState::Skipped, Reason::NoJointBetween));
-                if still && list.selects(&travel.state, a, b) {
-                    let margin = scene.pairs.get(a, b).map_or(0.0, |e| e.margin_m);
-                    self.extra.extend(Pair::of(scene, (a, b), margin));
+                let entry = scene.pairs.get(a, b).filter(|e| e.reason == Reason::NoJointBetween);
+                if let Some(e) = entry.filter(|_| list.selects(&travel.state, a, b)) {
+                    self.extra.extend(Pair::of(scene, (a, b), e.margin_m));
                 }
             }
         }
@@ -134,7 +138,7 @@ impl Search {
 
     fn go(&mut self, s: &mut Scope) -> Option<Impact> {
         while let Some(frame) = self.frames.pop() {
-            let until = self.hit.map_or(1.0, |h| h.time);
+            let until = self.hit.map_or(1.0, |h| h.1);
             if self.hit.is_some() && frame.from >= until {
                 self.open.truncate(frame.begin);
                 continue;
@@ -143,7 +147,7 @@ impl Search {
             let middle = 0.5 * (frame.from + to);
             let length = to - frame.from;
             let speeds = || self.open[frame.begin..].iter().map(|o| &self.tracks[o.track]);
-            let short = |t: &Track| t.speed.cap * length <= t.near - t.keep;
+            let short = |t: &Track| t.speed.cap * length <= 0.5 * (t.near - t.keep);
             // Where the whole frame is within the tolerance, its start tells all; without a bound of speed, there is no
             // more to tell.
             let last = !(middle > frame.from && middle < to)
@@ -152,10 +156,11 @@ impl Search {
             let at = if last { frame.from } else { middle };
             s.travel.go(s.core.scene, s.moves, at);
             if let Some(stuck) = self.look_at_all(s, &frame, at, last) {
-                return Some(self.give_up(s, stuck, frame.from));
+                let impact = self.tell(s, stuck, frame.from);
+                return Some(Impact { certain: false, ..impact });
             }
         }
-        self.hit
+        self.hit.map(|(track, time)| self.tell(s, track, time))
     }
 
     /// Looks at the pairs of a frame, and leaves frames for what is in question still. A pair that gets nowhere is
@@ -166,7 +171,7 @@ impl Search {
         for i in frame.begin..self.open.len() {
             let open = self.open[i];
             // After a hit, only what is earlier matters.
-            let to = self.hit.map_or(open.to, |h| h.time.min(open.to));
+            let to = self.hit.map_or(open.to, |h| h.1.min(open.to));
             if to < open.from {
                 continue;
             }
@@ -174,11 +179,11 @@ impl Search {
             let (before, after) = match self.look(s, &track, (at - open.from).max(to - at).max(0.0)) {
                 Look::Spent => return Some(open.track),
                 Look::Free(time) => (at - time, at + time),
-                Look::Near(separation, time) => {
-                    if self.hit.is_none_or(|h| at < h.time) {
-                        self.hit = Some(s.impact(&track, &separation, at, self.steps));
+                Look::Near => {
+                    if self.hit.is_none_or(|h| at < h.1) {
+                        self.hit = Some((open.track, at));
                     }
-                    (at - time, f64::INFINITY)
+                    (at, f64::INFINITY)
                 }
             };
             if last && after < to {
@@ -230,8 +235,9 @@ impl Search {
         let now = track.sides.iter().map(|side| travel.speed_now(core.scene, *side)).sum();
         let reach = speed.over(now, time);
         if gap > near {
-            let free = speed.time_for(now, gap - keep);
-            if gap - keep >= reach || free >= WORTH * time {
+            let all = gap - keep >= reach;
+            let free = if all { f64::INFINITY } else { speed.time_for(now, gap - keep) };
+            if free >= WORTH * time {
                 core.narrow.counts.pairs_cleared.l2 += 1;
                 core.deepen(Level::L2);
                 return Look::Free(free);
@@ -249,22 +255,40 @@ impl Search {
             core.narrow.counts.pairs_cleared.add(level, 1);
             return Look::Free(f64::INFINITY);
         };
-        let free = speed.time_for(now, found.lower_bound - keep);
-        if found.distance > near { Look::Free(free) } else { Look::Near(found, free) }
+        if found.distance > track.close {
+            Look::Free(speed.time_for(now, found.lower_bound - keep))
+        } else {
+            Look::Near
+        }
     }
 
-    /// The answer where a pair gets nowhere: free until now.
-    fn give_up(&mut self, s: &mut Scope, track: usize, time: f64) -> Impact {
+    /// The answer: what a pair is like at some time.
+    fn tell(&mut self, s: &mut Scope, track: usize, time: f64) -> Impact {
         s.travel.go(s.core.scene, s.moves, time);
         let track = self.tracks[track];
         let [a, b] = track.sides.map(|side| Placed::new(s.core.scene, &s.travel.state, side.model));
-        let hint = &mut pair_mut(s.list, &mut self.extra, track.pair).hint;
+        let pair = pair_mut(s.list, &mut self.extra, track.pair);
         let level = s.core.fine();
-        let found = s.core.narrow.measure(&a, &b, level, f64::INFINITY, hint);
-        let nowhere =
-            Separation { distance: 0.0, lower_bound: 0.0, on_a: a.in_world.translation, on_b: b.in_world.translation };
-        let impact = s.impact(&track, &found.unwrap_or(nowhere), time, self.steps);
-        Impact { certain: false, ..impact }
+        let slack = a.model.slack(level) + b.model.slack(level);
+        let found = s.core.narrow.measure(&a, &b, level, f64::INFINITY, &mut pair.hint);
+        let nowhere = Separation {
+            distance: f64::INFINITY,
+            lower_bound: 0.0,
+            on_a: a.in_world.translation,
+            on_b: b.in_world.translation,
+        };
+        let found = found.unwrap_or(nowhere);
+        Impact {
+            time,
+            a: a.model.member,
+            b: b.model.member,
+            on_a: found.on_a,
+            on_b: found.on_b,
+            metres: (found.distance - pair.margin - slack).max(0.0),
+            level,
+            steps: self.steps,
+            certain: a.in_world.is_finite() && b.in_world.is_finite() && found.distance <= track.near,
+        }
     }
 }
 
@@ -275,28 +299,6 @@ struct Scope<'r, 'c, 's, 'm> {
     travel: &'r mut Travel,
     moves: &'c [Move<'m>],
     max_steps: u32,
-}
-
-impl Scope<'_, '_, '_, '_> {
-    fn impact(&self, track: &Track, found: &Separation, time: f64, steps: u32) -> Impact {
-        let [a, b] = track.sides.map(|side| Placed::new(self.core.scene, &self.travel.state, side.model));
-        let level = self.core.fine();
-        let slack = a.model.slack(level) + b.model.slack(level);
-        let margin =
-            self.list.pairs.get(track.pair).map_or(a.model.padding_m + b.model.padding_m, |p| p.margin) + slack;
-        let known = a.in_world.is_finite() && b.in_world.is_finite();
-        Impact {
-            time,
-            a: a.model.member,
-            b: b.model.member,
-            on_a: found.on_a,
-            on_b: found.on_b,
-            metres: (found.distance - margin).max(0.0),
-            level,
-            steps,
-            certain: known && found.distance <= track.near,
-        }
-    }
 }
 
 fn pair_mut<'p>(list: &'p mut PairList, extra: &'p mut [Pair], index: usize) -> &'p mut Pair {

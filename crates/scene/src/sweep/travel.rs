@@ -109,13 +109,11 @@ impl Travel {
         Ok(())
     }
 
-    /// The next leg of a robot that goes on alone, to joint values that were checked.
-    pub fn go_on(&mut self, scene: &Scene, robot: usize, to: &[f64]) {
+    /// The next leg of a robot that goes on alone, between joint values that were checked.
+    pub fn go_on(&mut self, scene: &Scene, robot: usize, (from, to): (&[f64], &[f64])) {
         let leg = &mut self.legs[robot];
-        for (from, rate) in leg.from.iter_mut().zip(&leg.rate) {
-            *from += rate;
-        }
-        leg.within = scene.within_limits(robot, &leg.from);
+        leg.from.copy_from_slice(from);
+        leg.within = scene.within_limits(robot, from);
         self.head_for(scene, robot, to);
         self.bound(scene, &[]);
     }
@@ -225,22 +223,19 @@ impl Travel {
         }
         let Some(corners) = self.levers.corners(side.model) else { return bound.cap };
         let in_world = self.state.in_world[side.model];
-        let fastest = match self.state.carrier(member) {
-            Some((robot, link)) => {
-                let base = &scene.robots[robot].base_in_world;
-                let above = self.levers.above(robot, link, side.cut);
-                let own = self.twist(robot, link);
-                let other = above.map_or((Vec3::ZERO, Vec3::ZERO), |l| self.twist(robot, l));
-                // The field of relative velocities: at the root's origin, and how it turns.
-                let (velocity, turn) = (own.0 - other.0, own.1 - other.1);
-                let in_root = base.inverse_mul(&in_world);
-                longest(corners, |p| velocity + turn.cross(in_root.transform_point(p)))
-            }
-            None => {
-                let Member::Object(o) = member else { return bound.cap };
-                let Some(Free { steady: Some(s) }) = self.free[o] else { return bound.cap };
-                longest(corners, |p| s.velocity_at(in_world.transform_point(p), self.now))
-            }
+        let fastest = if let Some((robot, link)) = self.state.carrier(member) {
+            let base = &scene.robots[robot].base_in_world;
+            let above = self.levers.above(robot, link, side.cut);
+            let own = self.twist(robot, link);
+            let other = above.map_or((Vec3::ZERO, Vec3::ZERO), |l| self.twist(robot, l));
+            // The field of relative velocities: at the root's origin, and how it turns.
+            let (velocity, turn) = (own.0 - other.0, own.1 - other.1);
+            let in_root = base.inverse_mul(&in_world);
+            longest(corners, |p| velocity + turn.cross(in_root.transform_point(p)))
+        } else {
+            let Member::Object(o) = member else { return bound.cap };
+            let Some(Free { steady: Some(s) }) = self.free[o] else { return bound.cap };
+            longest(corners, |p| s.velocity_at(in_world.transform_point(p), self.now))
         };
         // Rounding is relative to the parts, not to their difference.
         let careful = fastest * (1.0 + 1e-9) + 1e-12 * bound.cap;
@@ -266,4 +261,107 @@ impl Travel {
 fn longest(points: &[Vec3], velocity: impl Fn(Vec3) -> Vec3) -> f64 {
     let known = |v: f64| if v.is_nan() { f64::INFINITY } else { v };
     points.iter().map(|p| known(velocity(*p).length_squared())).fold(0.0, f64::max).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, Object, Robot};
+    use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, Mimic};
+    use elbowroom_proximity::{Cuboid, Shape};
+    use elbowroom_spatial::{Pose, Rotation};
+
+    struct Random(u64);
+
+    impl Random {
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn vec3(&mut self, size: f64) -> Vec3 {
+            Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
+        }
+
+        fn pose(&mut self) -> Pose {
+            Pose::new(Rotation::from_rotation_vector(self.vec3(2.0)), self.vec3(0.3))
+        }
+    }
+
+    /// Turning, sliding, fixed and following joints at all angles, and a held object.
+    fn scene(r: &mut Random) -> Scene {
+        use JointKind::{Continuous, Fixed, Prismatic, Revolute};
+        let kinds = [Revolute, Prismatic, Fixed, Revolute, Continuous, Revolute, Prismatic];
+        let joint = |(i, kind): (usize, JointKind)| Joint {
+            name: format!("j{i}"),
+            kind,
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin: r.pose(),
+            axis: r.vec3(1.0),
+            limits: Limits::symmetric(2.0),
+            mimic: (i == 5).then(|| Mimic { joint: JointId(0), multiplier: -1.5, offset: 0.2 }),
+        };
+        let joints = kinds.into_iter().enumerate().map(joint).collect();
+        let links = (0..=kinds.len()).map(|i| format!("l{i}")).collect();
+        let mut robot = Robot::new(Chain::new("any", links, joints).unwrap());
+        let solid = |r: &mut Random| Shape::Cuboid(Cuboid { half_extents: r.vec3(0.1).abs() + Vec3::splat(0.01) });
+        for bodies in &mut robot.bodies {
+            bodies.push(Body { name: String::new(), shape: solid(r), in_link: r.pose() });
+        }
+        let mut builder = Scene::builder();
+        builder.reach(false);
+        builder.robot("any", robot, r.pose());
+        for name in ["held", "free"] {
+            builder.object(Object { name: name.into(), shape: solid(r), in_world: r.pose() });
+        }
+        builder.build().unwrap()
+    }
+
+    #[test]
+    fn no_point_goes_farther_than_the_bounds_say_seen_from_any_link() {
+        let mut r = Random(3);
+        let mut tightest: f64 = 0.0;
+        for _ in 0..60 {
+            let scene = scene(&mut r);
+            let mut start = SceneState::new(&scene);
+            let dof = scene.robots[0].robot.chain.dof();
+            let mut q = |size: f64| (0..dof).map(|_| r.between(-size, size)).collect::<Vec<_>>();
+            let to = q(2.0);
+            start.set_q(&scene, 0, &q(2.0)).unwrap();
+            let hand = LinkId(scene.robots[0].robot.chain.links().len() - 1);
+            start.attach(&scene, 0, 0, hand, &[]).unwrap();
+            let path = Steady { start: r.pose(), pivot: r.vec3(0.5), velocity: r.vec3(1.0), rotation: r.vec3(2.0) };
+            let moves = [Move::Robot { robot: 0, to: &to }, Move::Object { object: 1, path: &path }];
+            let mut travel = Travel::new(&scene, Level::L3);
+            travel.depart(&scene, &start, &moves).unwrap();
+            for (model, m) in scene.models.iter().enumerate() {
+                let carrier = start.carrier(m.member);
+                let above = carrier.map_or(0, |(_, link)| scene.robots[0].robot.chain.path(link).len());
+                for cut in 0..=above {
+                    let side = Side { model, cut };
+                    // The member as seen from the link that is so many joints above the root.
+                    let seen = |travel: &Travel| {
+                        let link = carrier.and_then(|(robot, link)| travel.levers.above(robot, link, cut));
+                        let from = link.map_or(Pose::IDENTITY, |l| travel.state.link_in_world(&scene, 0, l));
+                        from.inverse_mul(&travel.state.in_world[model])
+                    };
+                    let (t, u) = (r.between(0.0, 1.0), r.between(0.0, 1.0));
+                    travel.go(&scene, &moves, t);
+                    let (before, now, speed) = (seen(&travel), travel.speed_now(&scene, side), travel.speed(side));
+                    travel.go(&scene, &moves, u);
+                    let after = seen(&travel);
+                    let way = |p: &Vec3| before.transform_point(*p).distance(after.transform_point(*p));
+                    let farthest = travel.levers.corners(model).unwrap().iter().map(way).fold(0.0, f64::max);
+                    let bound = speed.over(now, (t - u).abs());
+                    assert!(farthest <= bound + 1e-12, "{farthest} {bound} {:?} {cut}", m.member);
+                    assert!(now <= speed.cap);
+                    if farthest > 1e-3 {
+                        tightest = tightest.max(farthest / bound);
+                    }
+                }
+            }
+        }
+        assert!(tightest > 0.9, "{tightest}");
+    }
 }
