@@ -62,6 +62,17 @@ impl Narrow {
         None
     }
 
+    /// Metres that the boxes around two members certainly have between them; -∞ where boxes are no cheaper than solids.
+    pub fn gap(&mut self, a: &Placed, b: &Placed) -> f64 {
+        match (a.obb(), b.obb()) {
+            (Some(x), Some(y)) if a.model.complex || b.model.complex => {
+                self.counts.pairs_tested.l2 += 1;
+                obb::gap(&x, &y)
+            }
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
     /// True where the models of a level are not certainly farther apart than `limit` metres.
     pub fn touch(&mut self, a: &Placed, b: &Placed, level: Level, limit: f64) -> bool {
         self.counts.pairs_tested.add(level, 1);
