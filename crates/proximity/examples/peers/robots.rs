@@ -5,7 +5,7 @@ use elbowroom_proximity::mesh::{Hint, Landmarks, PlacedLandmarks, Scratch, colli
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// Pairs of links that are guessed at.
-const GUESSES: usize = 3;
+const GUESSES: usize = 2;
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {

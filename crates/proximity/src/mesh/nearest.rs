@@ -129,13 +129,14 @@ pub fn guess(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scr
     if !pairing.is_usable() {
         return unknown;
     }
-    let found = promising_pair(scratch.level(), a, b, &pairing, DISTANCE_WIDTH, scratch);
+    let found = promising_pair(scratch.level(), a, b, &pairing, GUESS_WIDTH, scratch);
     found.map_or(unknown, |best| ((best.distance + pairing.slack) * a.tree.frame.unit, best.hint))
 }
 
 /// Pairs of nodes that landmarks follow in search of the nearest pair, and of one that is near enough.
 const DISTANCE_WIDTH: usize = 4;
 const WITHIN_WIDTH: usize = 2;
+const GUESS_WIDTH: usize = 2;
 
 /// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
 ///
