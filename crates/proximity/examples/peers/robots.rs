@@ -132,7 +132,7 @@ impl Arms {
         for (square, (a, b)) in nearest {
             if square < f32::INFINITY {
                 let (of_a, of_b) = (&poses[a], &poses[links + b]);
-                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, &mut self.scratch);
+                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, None, &mut self.scratch);
                 if metres < best.0 {
                     best = (metres, hint, (a, b));
                 }

@@ -71,6 +71,8 @@ pub(crate) struct Core<'s> {
     pub options: Options,
     pub narrow: Narrow,
     candidates: Vec<Candidate>,
+    /// The nearest pair is no farther, metres.
+    guessed: f64,
     /// The finest level that the present answer has needed.
     pub deepest: Level,
 }
@@ -90,7 +92,7 @@ impl<'s> Checker<'s> {
         let narrow = Narrow::new(scene);
         // Models that are made when first asked for are asked for now.
         scene.models.iter().for_each(|m| _ = m.at(options.level));
-        let core = Core { scene, options, narrow, candidates: Vec::new(), deepest: Level::L1 };
+        let core = Core { scene, options, narrow, candidates: Vec::new(), guessed: f64::INFINITY, deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new(), sweeper: None };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
         checker

@@ -146,6 +146,13 @@ impl Narrow {
         best
     }
 
+    /// An upper bound of the distance of the exact models, metres; `None` where it would not come cheap.
+    pub fn guess(&mut self, a: &Placed, b: &Placed, hint: &mut (u32, u32, Hint)) -> Option<f64> {
+        let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
+        let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+        self.scratch.guess(&x.shape, &in_a, &y.shape, &in_b, &mut hint.2)
+    }
+
     fn fill_bounds(&mut self, solids: &[Solid], in_world: &Pose) {
         self.bounds.clear();
         self.bounds.extend(solids.iter().map(|s| WorldBox::of_aabb(&s.bounds.transformed(in_world))));
