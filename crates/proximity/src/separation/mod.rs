@@ -190,8 +190,16 @@ pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
 
 #[inline]
 fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    match a {
+        Shape::Sphere(s) => point(*s, a_in_world, b, b_in_world, limit),
+        _ => extended(a, a_in_world, b, b_in_world, limit),
+    }
+}
+
+/// All but spheres, whose few steps would be slowed down by what these need of registers.
+#[inline(never)]
+fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
     match (a, b) {
-        (Shape::Sphere(s), _) => point(*s, a_in_world, b, b_in_world, limit),
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
             capsule(c, a_in_world, b, b_in_world, limit)
         }
@@ -215,14 +223,8 @@ fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f6
             let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius)?;
             Some(world(gap, [0.0, radius], b_in_world).swapped())
         }
-        _ => two_convex(a, a_in_world, b, b_in_world, limit),
+        _ => convex(a, b, &b_in_world.inverse_mul(a_in_world), limit).map(|(gap, radii)| world(gap, radii, b_in_world)),
     }
-}
-
-#[inline(never)]
-fn two_convex(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
-    let (gap, radii) = convex(a, b, &b_in_world.inverse_mul(a_in_world), limit)?;
-    Some(world(gap, radii, b_in_world))
 }
 
 /// A sphere is its centre with a radius, and the centre's distance has a closed form.
@@ -285,18 +287,38 @@ fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: 
         && (p - q).length_squared() <= (projections::CLOSE * scale).powi(2)
     {
         let points = Gap { lower: 0.0, ..Gap::closed(p, q, scale) };
-        return needle(c, b, a_in_world, b_in_world, points);
+        let proven = axis.box_gap(core_box(b)) - rounding(2.0 * size);
+        return needle(c, b, a_in_world, b_in_world, points, proven);
     }
     closed(p, q, scale, [c.radius, radius], limit, b_in_world)
 }
 
+/// Half the box around what is left of a shape without its rounding.
+#[cold]
+fn core_box(shape: &Shape) -> Vec3 {
+    match shape {
+        Shape::Capsule(c) => Vec3::Z * c.half_length,
+        Shape::Cylinder(c) => Vec3::new(c.radius, c.radius, c.half_length),
+        Shape::Cuboid(c) => c.half_extents,
+        _ => Vec3::splat(f64::INFINITY),
+    }
+}
+
 /// A capsule with hardly any radius, closer than the closed form tells: its root is lost in the rounding of the excess.
 #[cold]
-fn needle(c: &Capsule, b: &Shape, a_in_world: &Pose, b_in_world: &Pose, points: Gap) -> Option<Separation> {
+fn needle(
+    c: &Capsule,
+    b: &Shape,
+    a_in_world: &Pose,
+    b_in_world: &Pose,
+    points: Gap,
+    proven: f64,
+) -> Option<Separation> {
     // Whatever the limit, so that it changes nothing; the points of the closed form are as good as any others.
     let (gap, radii) = convex(&Shape::Capsule(*c), b, &b_in_world.inverse_mul(a_in_world), f64::INFINITY)?;
     let better = gap.lower > 0.0 && points.distance < gap.distance;
-    Some(world(if better { points.at_least(gap.lower) } else { gap }, radii, b_in_world))
+    let gap = if better { points.at_least(gap.lower) } else { gap };
+    Some(world(gap.at_least(proven), radii, b_in_world))
 }
 
 /// From exact witness points of the cores; `None`, without a root, where they are farther apart than the limit.
@@ -328,18 +350,17 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
 }
 
 /// Along the axes of the second's frame: never above the exact distance. 0 where nothing is known.
-#[inline]
+#[allow(clippy::inline_always, reason = "of two boxes it is most of the time")]
+#[inline(always)]
 fn bounds_gap(a: &Core, b: &Core, a_in_b: &Pose) -> f64 {
     let half_b = match b {
         Core::Cuboid(c) => c.half_extents,
-        Core::Segment(half) => Vec3::Z * *half,
         Core::Cylinder(c) => Vec3::new(c.radius, c.radius, c.half_length),
         _ => return 0.0,
     };
     let z = a_in_b.rotation.z_axis().abs();
     let half_a = match a {
         Core::Cuboid(c) => a_in_b.rotation.abs_mul(c.half_extents),
-        Core::Segment(half) => z * *half,
         Core::Cylinder(c) => z * c.half_length + Vec3::splat(c.radius),
         _ => return 0.0,
     };
