@@ -1,7 +1,7 @@
 //! Two arms against each other. One file, so that a faster way can take its place.
 
-use elbowroom_proximity::TriMesh;
 use elbowroom_proximity::mesh::{Hint, Landmarks, PlacedLandmarks, Scratch, collide, distance_at, farther, guess};
+use elbowroom_proximity::{Shape, TriMesh, fit, separation_within};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// Pairs of links that are guessed at.
@@ -13,12 +13,14 @@ pub struct Arms {
     /// Middle of each link and the farthest that it reaches from there, metres.
     balls: Vec<(Vec3, f64)>,
     landmarks: Vec<Landmarks>,
+    /// A capsule around each link, and where it is in the link.
+    capsules: Vec<Option<(Shape, Pose)>>,
     scratch: Scratch,
     /// Boxes of all links in the world, first arm first.
     boxes: Vec<Aabb>,
     /// Landmarks of all links, likewise.
     seen: Vec<PlacedLandmarks>,
-    /// Squared distance of the boxes, and the links.
+    /// How far apart at least, and the links.
     order: Vec<(f64, usize, usize)>,
 }
 
@@ -27,10 +29,13 @@ impl Arms {
         let ball = |link: &TriMesh| (link.aabb().center(), 0.5 * link.aabb().extent().length());
         let balls = links.iter().map(ball).collect();
         let landmarks = links.iter().map(Landmarks::of).collect();
+        let around = |link: &TriMesh| fit::capsule(link.vertices()).map(|fit| (fit.shape, fit.in_frame));
+        let capsules = links.iter().map(around).collect();
         Self {
             links,
             balls,
             landmarks,
+            capsules,
             scratch: Scratch::new(),
             boxes: Vec::new(),
             seen: Vec::new(),
@@ -72,7 +77,10 @@ impl Arms {
         for a in 0..links {
             let box_a = self.boxes[a].inflated(margin);
             for b in 0..links {
-                if box_a.overlaps(&self.boxes[links + b]) && close(&self.links, a, b, poses, &mut self.scratch) {
+                if box_a.overlaps(&self.boxes[links + b])
+                    && self.capsules_gap(poses, a, b, margin).is_some()
+                    && close(&self.links, a, b, poses, &mut self.scratch)
+                {
                     return true;
                 }
             }
@@ -90,21 +98,30 @@ impl Arms {
         self.order.clear();
         for x in 0..links {
             for y in (0..links).filter(|y| (x, *y) != (a, b)) {
-                let gap_squared = self.boxes[x].distance_squared(&self.boxes[links + y]);
-                if gap_squared < best * best {
-                    self.order.push((gap_squared, x, y));
+                let boxes = self.boxes[x].distance_squared(&self.boxes[links + y]);
+                if boxes < best * best
+                    && let Some(capsules) = self.capsules_gap(poses, x, y, best)
+                {
+                    self.order.push((capsules, x, y));
                 }
             }
         }
         self.order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
         for i in 0..self.order.len() {
-            let (gap_squared, a, b) = self.order[i];
-            if best <= 0.0 || gap_squared >= best * best {
+            let (gap, a, b) = self.order[i];
+            if best <= 0.0 || gap >= best {
                 break;
             }
             best = self.pair(poses, a, b, best, None);
         }
         best
+    }
+
+    /// How far apart two links are at least, by the capsules around them; `None` where that is more than `limit`.
+    fn capsules_gap(&self, poses: &[Pose], a: usize, b: usize, limit: f64) -> Option<f64> {
+        let (Some((x, x_in_a)), Some((y, y_in_b))) = (&self.capsules[a], &self.capsules[b]) else { return Some(0.0) };
+        let (in_a, in_b) = (poses[a] * *x_in_a, poses[self.links.len() + b] * *y_in_b);
+        separation_within(x, &in_a, y, &in_b, limit).map(|near| near.lower_bound)
     }
 
     fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64, hint: Option<Hint>) -> f64 {
@@ -121,6 +138,9 @@ impl Arms {
         let mut nearest = [(f32::INFINITY, (0, 0)); GUESSES];
         for a in 0..links {
             for b in 0..links {
+                if self.boxes[a].distance_squared(&self.boxes[links + b]) >= f64::from(nearest[GUESSES - 1].0) {
+                    continue;
+                }
                 let square = self.seen[a].distance_squared(&self.seen[links + b]);
                 if square < nearest[GUESSES - 1].0 {
                     nearest[GUESSES - 1] = (square, (a, b));
