@@ -34,6 +34,7 @@ pub struct RawLayout {
 /// # Errors
 /// Files that are missing, truncated, too large or of another kind: the file, what is wrong, what to write instead.
 pub fn read(path: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
+    frame.empty();
     let bytes = read_bytes(path)?;
     decode(&bytes, path, raw, frame)
 }
@@ -41,10 +42,18 @@ pub fn read(path: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<()
 /// As [`read`], from bytes; `file` is what messages call them.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`read`]; the frame is then empty: half a picture does not pass for one.
 pub fn decode(bytes: &[u8], file: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
     frame.name.clear();
     frame.name.push_str(&file.to_string_lossy());
+    let result = decode_any(bytes, file, raw, frame);
+    if result.is_err() {
+        frame.empty();
+    }
+    result
+}
+
+fn decode_any(bytes: &[u8], file: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
     if bytes.is_empty() {
         return Err(FormatError::new(file, None, "is empty").hint("a PNG, PGM or PPM picture, or raw bytes").into());
     }

@@ -108,6 +108,11 @@ impl Frame {
         Ok(())
     }
 
+    /// No picture any more; the memory stays.
+    pub(crate) fn empty(&mut self) {
+        (self.width, self.height) = (0, 0);
+    }
+
     /// Columns.
     pub fn width(&self) -> usize {
         self.width

@@ -20,6 +20,7 @@ mod obstacle;
 mod point;
 pub mod polygon;
 mod raster;
+pub mod render;
 mod report;
 mod settings;
 mod shadow;

@@ -133,15 +133,13 @@ impl PixelMask {
         let mut points = std::mem::take(&mut self.points);
         for part in arm {
             points.clear();
-            let (seen, behind) = slopes(camera, part, margin_m.max(0.0), &mut points);
-            if seen > 0 && behind > 0 {
-                self.hidden.fill(1);
-                self.is_empty = false;
-            } else if seen > 0 {
-                polygon::convex_hull(&mut points, &mut self.outline);
-                points.clear();
-                bend(camera, &self.outline, &mut points);
-                self.hide_polygon(&points, 1.0);
+            match silhouette(camera, part, margin_m.max(0.0), &mut points, &mut self.outline) {
+                Sight::All => self.hide_polygon(&points, 1.0),
+                Sight::Part => {
+                    self.hidden.fill(1);
+                    self.is_empty = false;
+                }
+                Sight::Nothing => {}
             }
         }
         self.points = points;
@@ -166,6 +164,37 @@ impl PixelMask {
     pub(crate) fn is_empty(&self) -> bool {
         self.is_empty
     }
+}
+
+/// How much of a part lies in front of the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sight {
+    All,
+    Part,
+    Nothing,
+}
+
+/// Adds to `points_px` points whose convex hull covers the part grown by a margin, where all of it lies in front of the
+/// camera; `outline` is scratch.
+pub(crate) fn silhouette(
+    camera: &Camera,
+    part: &ArmPart,
+    margin_m: f64,
+    points_px: &mut Vec<Point2>,
+    outline: &mut Vec<Point2>,
+) -> Sight {
+    let (seen, behind) = slopes(camera, part, margin_m, points_px);
+    let sight = match (seen > 0, behind > 0) {
+        (true, false) => Sight::All,
+        (true, true) => Sight::Part,
+        (false, _) => Sight::Nothing,
+    };
+    polygon::convex_hull(points_px, outline);
+    points_px.clear();
+    if sight == Sight::All {
+        bend(camera, outline, points_px);
+    }
+    sight
 }
 
 /// Points between the corners of an outline, so that a lens that bends lines bends it too.

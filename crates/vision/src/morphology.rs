@@ -5,6 +5,7 @@
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Morphology {
     along: Vec<u8>,
+    raw: Vec<u8>,
 }
 
 impl Morphology {
@@ -15,6 +16,19 @@ impl Morphology {
         }
         for _ in 0..radius {
             self.pass(plane, width, |a, b| a | b);
+        }
+    }
+
+    /// As [`Self::open`], but what remains gets back what it lost at its corners, up to `radius` pixels away.
+    pub(crate) fn open_and_restore(&mut self, plane: &mut [u8], width: usize, radius: usize) {
+        self.raw.clear();
+        self.raw.extend_from_slice(plane);
+        self.open(plane, width, radius);
+        for _ in 0..radius {
+            self.pass(plane, width, |a, b| a | b);
+        }
+        for (pixel, raw) in plane.iter_mut().zip(&self.raw) {
+            *pixel &= raw;
         }
     }
 

@@ -45,12 +45,16 @@ pub struct Settings {
     /// By how much footprints are grown, metres: errors of the calibration, of the outline (a pixel or two) and the way
     /// that a thing goes until the next frame.
     pub uncertainty_m: f64,
-    /// Obstacles are told this much larger still, so that noise and small steps do not make them move, metres.
+    /// Obstacles are told this much larger still, so that noise and small steps do not make them move, metres. About a
+    /// pixel's size on the floor.
     pub slack_m: f64,
     /// Most corners of a footprint; simplified outward.
     pub most_corners: usize,
     /// Known kinds of things. What fits none is `unbounded_height_m` high.
     pub templates: Vec<Template>,
+    /// Frames in a row in which a thing must fit a template before it is believed. One camera cannot tell a high, slim
+    /// thing from a lower, longer one at a single place.
+    pub frames_to_fit: u32,
     /// Least difference from the background that counts, grey levels.
     pub least_difference: f64,
     /// Difference that counts, in mean deviations of the pixel (1.25 of them are a standard deviation of normal noise).
@@ -88,6 +92,7 @@ impl Default for Settings {
             slack_m: 0.01,
             most_corners: 12,
             templates: Vec::new(),
+            frames_to_fit: 5,
             least_difference: 14.0,
             deviations: 6.0,
             shadows: None,

@@ -23,6 +23,8 @@ pub struct Template {
     pub width_m: f64,
     /// Its height, metres.
     pub height_m: f64,
+    /// Round (a cylinder) or square-cornered: a round footprint fills π/4 of its rectangle.
+    pub is_round: bool,
     /// How far each side as seen may be off, metres.
     pub tolerance_m: f64,
     /// How far the height of a single thing may be off, metres: obstacles are that much higher.
@@ -37,9 +39,25 @@ impl Template {
             length_m: length_m.max(width_m),
             width_m: length_m.min(width_m),
             height_m,
+            is_round: false,
             tolerance_m: 0.05,
             height_tolerance_m: 0.01,
         }
+    }
+
+    /// An upright cylinder, with the same tolerances.
+    pub fn round(name: &str, diameter_m: f64, height_m: f64) -> Self {
+        Self { is_round: true, ..Self::new(name, diameter_m, diameter_m, height_m) }
+    }
+
+    /// Whether a convex footprint has this size and shape: the sides of the rectangle around it within the tolerance, and
+    /// its area within what that tolerance makes of it.
+    fn fits_footprint(&self, footprint_m: &[Point2]) -> bool {
+        let (length, width) = polygon::rectangle(footprint_m);
+        let share = if self.is_round { std::f64::consts::FRAC_PI_4 } else { 1.0 };
+        let area = |by: f64| share * (self.length_m + by).max(0.0) * (self.width_m + by).max(0.0);
+        let tolerance = self.tolerance_m;
+        self.fits(length, width) && (area(-tolerance)..=area(tolerance)).contains(&polygon::area(footprint_m))
     }
 
     /// Whether a rectangle with these sides, the longer one first, is this kind of thing.
@@ -86,9 +104,8 @@ impl Footprints {
         let mut best: Option<usize> = None;
         for (i, template) in templates.iter().enumerate() {
             self.refine(outline_m, template, eye_above_floor);
-            let (length, width) = polygon::rectangle(&self.candidate);
             let is_higher = best.is_none_or(|b| templates[b].top_m() < template.top_m());
-            if template.fits(length, width) && is_higher {
+            if is_higher && template.fits_footprint(&self.candidate) {
                 best = Some(i);
                 std::mem::swap(footprint, &mut self.candidate);
             }

@@ -16,6 +16,8 @@ use crate::{Change, Obstacle, ObstacleId, Point2, Settings, polygon};
 pub(crate) struct Track {
     /// What it covers on the floor as seen, convex, metres.
     pub(crate) outline_m: Vec<Point2>,
+    /// What it covered when it was last seen whole, carried on with its velocity while the arm hides a part of it.
+    whole_m: Vec<Point2>,
     /// Some of that is behind the arm in this frame: set by the caller before [`Tracker::update`].
     pub(crate) is_hidden: bool,
     obstacle: Obstacle,
@@ -25,13 +27,17 @@ pub(crate) struct Track {
     area: f64,
     brightness: f64,
     is_cut: bool,
+    /// The template that it has been fitting, and for how many frames in a row.
+    fits: Option<usize>,
+    frames_fit: u32,
+    frames_whole: u32,
+    frames_misfit: u32,
     template: Option<usize>,
     frames_seen: u32,
     frames_missed: u32,
     is_told: bool,
-    /// The footprint as it was when the obstacle was last told: its area and middle.
+    /// Area of the footprint when the obstacle was last told.
     told_area: f64,
-    told_centre_m: Point2,
     z_from_m: f64,
     z_to_m: f64,
     /// While several are seen as one, the highest of them: the line between them is a guess.
@@ -52,6 +58,12 @@ pub(crate) struct Tracker {
     cut: Vec<Point2>,
     spare: Vec<Point2>,
 }
+
+/// Slower things stand: pixels make up as much, metres per second.
+const STANDS_MPS: f64 = 0.05;
+
+/// One frame in so many may fit no template.
+const MOST_MISFITS: u32 = 10;
 
 /// How much of a surprise is believed: of place, and of velocity.
 const ALONE: (f64, f64) = (1.0, 0.4);
@@ -100,12 +112,12 @@ impl Tracker {
         self.tracks[t].together_to_m = None;
         if detection.is_cut_by_arm {
             self.add_piece(t, detection, settings);
-            self.tracks[t].velocity_mps = Point2::default();
-            self.tracks[t].frames_seen += 1;
+            self.carry_on(t, dt_s);
             return;
         }
         let track = &mut self.tracks[t];
         track.outline_m.clone_from(&detection.outline_m);
+        track.whole_m.clone_from(&detection.outline_m);
         (track.z_from_m, track.z_to_m) = (detection.z_from_m, detection.z_to_m);
         track.is_cut = detection.is_cut_by_border;
         if !track.is_cut {
@@ -177,6 +189,22 @@ impl Tracker {
         track.centre_m = polygon::centroid(&track.outline_m);
     }
 
+    /// A moving thing that is hidden in part: adds what its velocity adds to it behind the arm.
+    fn carry_on(&mut self, t: usize, dt_s: f64) {
+        let track = &mut self.tracks[t];
+        track.frames_seen = track.frames_seen.saturating_add(1);
+        if track.velocity_mps.length() < STANDS_MPS || track.whole_m.is_empty() {
+            return;
+        }
+        let step = track.velocity_mps * dt_s;
+        track.whole_m.iter_mut().for_each(|p| *p = *p + step);
+        self.cut.clone_from(&track.whole_m);
+        self.cut.extend_from_slice(&track.outline_m);
+        polygon::convex_hull(&mut self.cut, &mut track.outline_m);
+        track.is_cut = true;
+        track.centre_m = polygon::centroid(&track.whole_m);
+    }
+
     fn start(&mut self, detection: &Detection) {
         let mut track = self.pool.pop().unwrap_or_default();
         self.next_id += 1;
@@ -232,7 +260,11 @@ impl Tracker {
         // The outline of a part says nothing about the size, and what it stands on does not follow from it.
         footprint.clone_from(&track.outline_m);
         if is_whole {
-            track.template = self.footprints.find(&settings.templates, &track.outline_m, eye_above_floor, footprint);
+            let fits = self.footprints.find(&settings.templates, &track.outline_m, eye_above_floor, footprint);
+            track.decide_on(fits, settings.frames_to_fit);
+            if track.template.is_none() {
+                footprint.clone_from(&track.outline_m);
+            }
         }
         polygon::grown(footprint, settings.uncertainty_m, &mut self.wanted, &mut self.spare);
         let (z_from_m, z_to_m) = track.heights(settings);
@@ -241,7 +273,7 @@ impl Tracker {
         obstacle.velocity_mps = track.velocity_mps;
         obstacle.is_remembered = track.frames_missed > 0 || track.is_hidden;
         let is_same = track.is_told && (obstacle.z_from_m, obstacle.z_to_m) == (z_from_m, z_to_m);
-        if is_same && track.still_covers(&self.wanted, settings.slack_m) {
+        if is_same && track.still_covers(&self.wanted) {
             track.obstacle.change = Change::Still;
             return;
         }
@@ -253,13 +285,13 @@ impl Tracker {
         polygon::simplify_outward(&mut obstacle.footprint_m, settings.most_corners);
         track.is_told = true;
         track.told_area = polygon::area(&self.wanted);
-        track.told_centre_m = polygon::centroid(&self.wanted);
     }
 }
 
 impl Track {
     fn restart(&mut self, id: ObstacleId, detection: &Detection) {
         self.outline_m.clone_from(&detection.outline_m);
+        self.whole_m.clear();
         self.is_hidden = false;
         self.obstacle.id = id;
         self.centre_m = detection.centre_m;
@@ -268,7 +300,8 @@ impl Track {
         self.brightness = detection.brightness;
         self.is_cut = detection.is_cut_by_arm || detection.is_cut_by_border;
         self.together_to_m = None;
-        self.template = None;
+        (self.template, self.fits, self.frames_fit) = (None, None, 0);
+        (self.frames_whole, self.frames_misfit) = (0, 0);
         (self.frames_seen, self.frames_missed, self.is_told) = (1, 0, false);
         (self.z_from_m, self.z_to_m) = (detection.z_from_m, detection.z_to_m);
     }
@@ -299,6 +332,17 @@ impl Track {
         self.obstacle.is_remembered = true;
     }
 
+    /// A template must fit for some frames in a row, and must have been fitting nearly whenever the thing was in full
+    /// sight: on its way a high, slim thing covers for a while what a lower, longer one would.
+    fn decide_on(&mut self, fits: Option<usize>, frames_to_fit: u32) {
+        self.frames_fit = if fits == self.fits { self.frames_fit.saturating_add(1) } else { 1 };
+        self.fits = fits;
+        self.frames_whole = self.frames_whole.saturating_add(1);
+        self.frames_misfit += u32::from(fits.is_none());
+        let is_believed = self.frames_fit >= frames_to_fit && self.frames_misfit <= self.frames_whole / MOST_MISFITS;
+        self.template = fits.filter(|_| is_believed);
+    }
+
     fn heights(&self, settings: &Settings) -> (f64, f64) {
         let (from, to) = self.own_heights(settings);
         (from, to.max(self.together_to_m.unwrap_or(to)))
@@ -312,11 +356,10 @@ impl Track {
     }
 
     /// Whether the prism told last contains what is wanted now, and is not needlessly large.
-    fn still_covers(&self, wanted: &[Point2], slack_m: f64) -> bool {
+    fn still_covers(&self, wanted: &[Point2]) -> bool {
         let has_shrunk = polygon::area(wanted) < 0.8 * self.told_area;
-        let has_moved = (polygon::centroid(wanted) - self.told_centre_m).length() > slack_m;
         let covers = || wanted.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
-        !has_shrunk && !has_moved && covers()
+        !has_shrunk && covers()
     }
 }
 

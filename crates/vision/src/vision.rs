@@ -321,7 +321,7 @@ impl Vision {
     }
 
     fn clean(&mut self, mask: &PixelMask) -> Result<(), Blindness> {
-        self.morphology.open(&mut self.foreground, self.width, self.settings.open_px);
+        self.morphology.open_and_restore(&mut self.foreground, self.width, self.settings.open_px);
         self.morphology.close(&mut self.foreground, self.width, self.settings.close_px);
         apply_mask(&mut self.foreground, mask);
         let covered: usize = self.foreground.chunks(255).map(|c| usize::from(c.iter().sum::<u8>())).sum();
