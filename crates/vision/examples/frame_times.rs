@@ -80,8 +80,8 @@ fn things(t: f64) -> Vec<Solid> {
     let gap = 0.75 + 0.5 * (t * TAU / 6.0).cos();
     vec![
         Solid::cuboid(Point2::new(-gap / 2.0, -0.6), crate_size, 0.0, 200),
-        Solid::cuboid(Point2::new(gap / 2.0, -0.6), crate_size, 0.0, 60),
+        Solid::cuboid(Point2::new(gap / 2.0, -0.6), crate_size, 0.0, 25),
         Solid::cylinder(Point2::new(0.9 * (t / 2.0).cos(), 0.4 + 0.4 * (t / 2.0).sin()), 0.25, 0.5, 230),
-        Solid::cuboid(Point2::new(-1.2, 0.6), Vec3::new(0.3, 0.7, 1.2), t / 4.0, 40),
+        Solid::cuboid(Point2::new(-1.2, 0.6), Vec3::new(0.3, 0.7, 1.2), t / 4.0, 12),
     ]
 }

@@ -41,8 +41,16 @@ pub(crate) struct Association {
     pub(crate) piece_of: Vec<Option<usize>>,
     /// For each thing known: the only one of its detection.
     pub(crate) is_alone: Vec<bool>,
+    /// By thing known, then by thing seen.
     pairs: Vec<Pair>,
+    by_cost: Vec<usize>,
     taken: Vec<bool>,
+    owner_of: Vec<Option<usize>>,
+    /// How many things known each thing seen is.
+    pub(crate) sharers: Vec<u32>,
+    piece_share: Vec<f64>,
+    radii: Vec<f64>,
+    near: Vec<(f64, usize)>,
     common: Vec<Point2>,
     spare: Vec<Point2>,
 }
@@ -57,6 +65,9 @@ struct Pair {
     share_of_seen: f64,
 }
 
+/// Of the things seen that a thing known could have jumped to, so many of the nearest are looked at.
+const MOST_NEAR: usize = 6;
+const MOST_ROUNDS: usize = 8;
 /// A thing known whose place is covered to this share by a thing seen is in it, though another one is too.
 const IN_IT: f64 = 0.3;
 /// A thing seen that lies to this share where a thing known is expected is a piece of it.
@@ -67,37 +78,61 @@ impl Association {
     pub(crate) fn find(&mut self, known: &[Expected], seen: &[Detection]) {
         self.list_pairs(known, seen);
         self.pair_off(known.len(), seen.len());
-        self.swap_where_better();
+        self.swap_where_better(seen.len());
         self.share(seen.len());
     }
 
     fn list_pairs(&mut self, known: &[Expected], seen: &[Detection]) {
         self.pairs.clear();
+        self.radii.clear();
+        self.radii.extend(seen.iter().map(|detection| radius(&detection.outline_m, detection.centre_m)));
         for (k, expected) in known.iter().enumerate() {
+            let own = radius(&expected.outline_m, expected.centre_m);
+            let first = self.pairs.len();
+            self.near.clear();
             for (s, detection) in seen.iter().enumerate() {
                 let distance = (expected.centre_m - detection.centre_m).length();
-                polygon::intersection(&expected.outline_m, &detection.outline_m, &mut self.common, &mut self.spare);
-                let common = polygon::area(&self.common);
-                let is_near = distance <= expected.reach_m && !expected.is_hidden;
-                if common > 0.0 || is_near {
-                    self.pairs.push(Pair {
-                        known: k,
-                        seen: s,
-                        cost: cost(expected, detection, distance),
-                        share_of_known: common / expected.area.max(1e-12),
-                        share_of_seen: common / detection.area.max(1e-12),
-                    });
+                if distance <= own + self.radii[s] && self.push_common(k, s, expected, detection, distance) {
+                    continue;
+                }
+                if distance <= expected.reach_m && !expected.is_hidden {
+                    self.near.push((distance, s));
                 }
             }
+            self.near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for &(distance, s) in self.near.iter().take(MOST_NEAR) {
+                let cost = cost(expected, &seen[s], distance);
+                self.pairs.push(Pair { known: k, seen: s, cost, share_of_known: 0.0, share_of_seen: 0.0 });
+            }
+            self.pairs[first..].sort_unstable_by_key(|pair| pair.seen);
         }
-        self.pairs.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.known.cmp(&b.known)).then(a.seen.cmp(&b.seen)));
+        self.by_cost.clear();
+        self.by_cost.extend(0..self.pairs.len());
+        let pairs = &self.pairs;
+        self.by_cost.sort_unstable_by(|&a, &b| pairs[a].cost.total_cmp(&pairs[b].cost).then(a.cmp(&b)));
+    }
+
+    /// Lists a pair where the two have an area in common.
+    fn push_common(&mut self, k: usize, s: usize, expected: &Expected, detection: &Detection, distance: f64) -> bool {
+        polygon::intersection(&expected.outline_m, &detection.outline_m, &mut self.common, &mut self.spare);
+        let common = polygon::area(&self.common);
+        if common > 0.0 {
+            self.pairs.push(Pair {
+                known: k,
+                seen: s,
+                cost: cost(expected, detection, distance),
+                share_of_known: common / expected.area.max(1e-12),
+                share_of_seen: common / detection.area.max(1e-12),
+            });
+        }
+        common > 0.0
     }
 
     /// Each takes the cheapest that is still free.
     fn pair_off(&mut self, known: usize, seen: usize) {
         reset(&mut self.seen_of, known, None);
         reset(&mut self.taken, seen, false);
-        for pair in &self.pairs {
+        for pair in self.by_cost.iter().map(|&i| self.pairs[i]) {
             if self.seen_of[pair.known].is_none() && !self.taken[pair.seen] {
                 self.seen_of[pair.known] = Some(pair.seen);
                 self.taken[pair.seen] = true;
@@ -106,14 +141,17 @@ impl Association {
     }
 
     /// The cheapest first is not the cheapest in all: swaps two where that costs less together.
-    fn swap_where_better(&mut self) {
-        let n = self.seen_of.len();
-        for _round in 0..n {
+    fn swap_where_better(&mut self, seen: usize) {
+        reset(&mut self.owner_of, seen, None);
+        for (known, &seen) in self.seen_of.iter().enumerate() {
+            if let Some(seen) = seen {
+                self.owner_of[seen] = Some(known);
+            }
+        }
+        for _round in 0..MOST_ROUNDS {
             let mut swapped = false;
-            for a in 0..n {
-                for b in a + 1..n {
-                    swapped |= self.swap_if_better(a, b);
-                }
+            for i in 0..self.pairs.len() {
+                swapped |= self.swap_if_better(self.pairs[i]);
             }
             if !swapped {
                 return;
@@ -121,17 +159,31 @@ impl Association {
         }
     }
 
-    fn swap_if_better(&mut self, a: usize, b: usize) -> bool {
-        let (Some(i), Some(j)) = (self.seen_of[a], self.seen_of[b]) else { return false };
-        let cost = |known, seen| self.pairs.iter().find(|p| p.known == known && p.seen == seen).map(|p| p.cost);
-        let (Some(ai), Some(bj), Some(aj), Some(bi)) = (cost(a, i), cost(b, j), cost(a, j), cost(b, i)) else {
+    /// Gives the thing known of a pair the thing seen of it, and that one's owner the other.
+    fn swap_if_better(&mut self, pair: Pair) -> bool {
+        let (a, j) = (pair.known, pair.seen);
+        let (Some(i), Some(b)) = (self.seen_of[a], self.owner_of[j]) else { return false };
+        let (Some(ai), Some(bj), Some(bi)) = (self.cost_of(a, i), self.cost_of(b, j), self.cost_of(b, i)) else {
             return false;
         };
-        if aj + bi + 1e-12 < ai + bj {
-            self.seen_of.swap(a, b);
-            return true;
+        if a == b || pair.cost + bi + 1e-12 >= ai + bj {
+            return false;
         }
-        false
+        (self.seen_of[a], self.seen_of[b]) = (Some(j), Some(i));
+        (self.owner_of[j], self.owner_of[i]) = (Some(a), Some(b));
+        true
+    }
+
+    /// Pairs are listed by thing known, then by thing seen.
+    fn cost_of(&self, known: usize, seen: usize) -> Option<f64> {
+        let place = self.pairs.binary_search_by(|p| p.known.cmp(&known).then(p.seen.cmp(&seen)));
+        place.ok().map(|i| self.pairs[i].cost)
+    }
+
+    fn of_known(&self, known: usize) -> &[Pair] {
+        let from = self.pairs.partition_point(|p| p.known < known);
+        let to = self.pairs.partition_point(|p| p.known <= known);
+        &self.pairs[from..to]
     }
 
     /// Leftovers: things known that are within another's detection, and detections that are pieces of a thing known.
@@ -139,21 +191,23 @@ impl Association {
         reset(&mut self.piece_of, seen, None);
         for k in 0..self.seen_of.len() {
             if self.seen_of[k].is_none() {
-                let within = self.pairs.iter().filter(|p| p.known == k && p.share_of_known > IN_IT);
+                let within = self.of_known(k).iter().filter(|p| p.share_of_known > IN_IT);
                 let best = within.max_by(|a, b| a.share_of_known.total_cmp(&b.share_of_known));
                 self.seen_of[k] = best.map(|p| p.seen);
             }
         }
-        for s in 0..seen {
-            if !self.seen_of.contains(&Some(s)) {
-                let pieces = self.pairs.iter().filter(|p| p.seen == s && p.share_of_seen > A_PIECE);
-                let best = pieces.max_by(|a, b| a.share_of_seen.total_cmp(&b.share_of_seen));
-                self.piece_of[s] = best.map(|p| p.known);
+        reset(&mut self.sharers, seen, 0);
+        self.seen_of.iter().flatten().for_each(|&s| self.sharers[s] += 1);
+        reset(&mut self.piece_share, seen, 0.0);
+        for pair in &self.pairs {
+            let s = pair.seen;
+            if self.sharers[s] == 0 && pair.share_of_seen > A_PIECE && pair.share_of_seen > self.piece_share[s] {
+                self.piece_share[s] = pair.share_of_seen;
+                self.piece_of[s] = Some(pair.known);
             }
         }
         self.is_alone.clear();
-        let count = |seen: &Option<usize>| self.seen_of.iter().filter(|s| *s == seen).count();
-        self.is_alone.extend(self.seen_of.iter().map(|seen| seen.is_some() && count(seen) == 1));
+        self.is_alone.extend(self.seen_of.iter().map(|seen| seen.is_some_and(|s| self.sharers[s] == 1)));
     }
 }
 
@@ -163,6 +217,10 @@ fn cost(expected: &Expected, detection: &Detection, distance: f64) -> f64 {
     let brightness = (expected.brightness - detection.brightness).abs();
     let radius = (expected.area / std::f64::consts::PI).sqrt();
     distance / (radius + 1e-6) + 0.5 * size.min(2.0) + (brightness / 40.0).min(2.0)
+}
+
+fn radius(outline_m: &[Point2], centre_m: Point2) -> f64 {
+    outline_m.iter().map(|&p| (p - centre_m).length()).fold(0.0, f64::max)
 }
 
 fn reset<T: Clone>(list: &mut Vec<T>, n: usize, value: T) {

@@ -7,6 +7,7 @@ mod associate;
 mod background;
 mod calibration;
 mod camera;
+pub mod cloud;
 mod components;
 mod decode;
 mod detection;

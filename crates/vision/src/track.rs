@@ -38,8 +38,8 @@ pub(crate) struct Track {
     is_told: bool,
     /// Area of the footprint when the obstacle was last told.
     told_area: f64,
-    z_from_m: f64,
-    z_to_m: f64,
+    pub(crate) z_from_m: f64,
+    pub(crate) z_to_m: f64,
     /// While several are seen as one, the highest of them: the line between them is a guess.
     together_to_m: Option<f64>,
 }
@@ -65,6 +65,9 @@ const STANDS_MPS: f64 = 0.05;
 /// One frame in so many may fit no template.
 const MOST_MISFITS: u32 = 10;
 
+/// Heights told may be that many times the slack too large before they are told anew.
+const HEIGHT_SLACKS: f64 = 2.0;
+
 /// How much of a surprise is believed: of place, and of velocity.
 const ALONE: (f64, f64) = (1.0, 0.4);
 const TOGETHER: (f64, f64) = (0.35, 0.08);
@@ -86,7 +89,7 @@ impl Tracker {
         for (s, detection) in seen.iter().enumerate() {
             if let Some(t) = association.piece_of[s] {
                 self.add_piece(t, detection, settings);
-            } else if !association.seen_of.contains(&Some(s)) {
+            } else if association.sharers[s] == 0 {
                 self.start(detection);
             }
         }
@@ -272,8 +275,9 @@ impl Tracker {
         obstacle.centre_m = polygon::centroid(footprint);
         obstacle.velocity_mps = track.velocity_mps;
         obstacle.is_remembered = track.frames_missed > 0 || track.is_hidden;
-        let is_same = track.is_told && (obstacle.z_from_m, obstacle.z_to_m) == (z_from_m, z_to_m);
-        if is_same && track.still_covers(&self.wanted) {
+        let is_same = |told: f64, wanted: f64| (0.0..=HEIGHT_SLACKS * settings.slack_m).contains(&(told - wanted));
+        let is_as_high = is_same(obstacle.z_to_m, z_to_m) && is_same(z_from_m, obstacle.z_from_m);
+        if track.is_told && is_as_high && track.still_covers(&self.wanted) {
             track.obstacle.change = Change::Still;
             return;
         }

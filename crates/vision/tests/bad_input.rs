@@ -201,7 +201,7 @@ fn a_homography_alone_cannot_place_the_arm() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Damaged files are refused or read; they never panic.
     #[test]

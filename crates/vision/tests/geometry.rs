@@ -25,6 +25,8 @@ fn camera() -> impl Strategy<Value = Camera> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn world_to_pixel_and_back(camera in camera(), u in 0.0..640.0, v in 0.0..480.0, z in 0.0..1.0) {
         let on_floor = camera.pixel_to_plane(p(u, v), z).unwrap();
