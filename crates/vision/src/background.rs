@@ -45,7 +45,7 @@ pub(crate) struct Kernel {
 pub(crate) const SHADOW: u8 = 1;
 pub(crate) const OBJECT: u8 = 3;
 
-#[inline(always)]
+#[inline]
 fn high_product(a: i16, b: i16) -> i16 {
     ((i32::from(a) * i32::from(b)) >> 16) as i16
 }
@@ -63,17 +63,18 @@ impl Kernel {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn expected_q4(&self, mean_q7: i16) -> i16 {
         high_product(mean_q7, self.gain_q13).saturating_add(self.offset_q4).clamp(0, WHITE_Q4)
     }
 
-    #[inline(always)]
+    #[inline]
     fn limit_q4(&self, deviation_q9: i16) -> i16 {
         high_product(deviation_q9, self.factor_q11).max(self.least_q4)
     }
 
     /// Adds the class of each pixel of a row to `class` (by `|`, so that planes add up).
+    #[expect(clippy::needless_bitwise_bool, reason = "branches would keep the loop from becoming vector instructions")]
     fn classify(&self, row: &[u8], mean_q7: &[i16], deviation_q9: &[i16], class: &mut [u8]) {
         let n = class.len();
         let (row, mean_q7, deviation_q9) = (&row[..n], &mean_q7[..n], &deviation_q9[..n]);

@@ -64,7 +64,8 @@ impl Intrinsics {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     intrinsics: Intrinsics,
-    camera_in_world: Pose,
+    /// Its pose.
+    in_world: Pose,
     /// Largest slope of a ray up to which distortion is one to one; beyond it goes on straight.
     straight_from: f64,
 }
@@ -88,7 +89,7 @@ impl Camera {
         if i.fx <= 0.0 || i.fy <= 0.0 {
             return refuse("its focal lengths must be positive; they are in pixels, some hundreds for most lenses");
         }
-        let mut camera = Self { intrinsics, camera_in_world, straight_from: f64::INFINITY };
+        let mut camera = Self { intrinsics, in_world: camera_in_world, straight_from: f64::INFINITY };
         camera.straight_from = camera.limit_of_distortion();
         let [width, height] = [i.width as f64, i.height as f64];
         let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
@@ -121,17 +122,17 @@ impl Camera {
 
     /// Where the camera is and looks.
     pub fn camera_in_world(&self) -> &Pose {
-        &self.camera_in_world
+        &self.in_world
     }
 
     /// The centre of projection, world frame, metres.
     pub fn eye_in_world(&self) -> Vec3 {
-        self.camera_in_world.translation
+        self.in_world.translation
     }
 
     /// Where a point of the world appears, also beside the picture; `None` behind the camera or for a point that is none.
     pub fn world_to_pixel(&self, p_in_world: Vec3) -> Option<Point2> {
-        self.camera_to_pixel(self.camera_in_world.inverse_transform_point(p_in_world))
+        self.camera_to_pixel(self.in_world.inverse_transform_point(p_in_world))
     }
 
     /// As [`Camera::world_to_pixel`], for a point in the camera's frame.
@@ -158,7 +159,7 @@ impl Camera {
     /// Where the ray through a pixel meets the horizontal plane at height `z_m`; `None` where it does not.
     pub fn pixel_to_plane(&self, seen_px: Point2, z_m: f64) -> Option<Point2> {
         let eye = self.eye_in_world();
-        let along = self.camera_in_world.transform_vector(self.pixel_to_ray(seen_px));
+        let along = self.in_world.transform_vector(self.pixel_to_ray(seen_px));
         let t = (z_m - eye.z) / along.z;
         let p = eye + along * t;
         (t > 0.0 && p.is_finite()).then_some(Point2::new(p.x, p.y))

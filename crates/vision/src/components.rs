@@ -191,12 +191,15 @@ fn outline(runs: impl Iterator<Item = Run>, corners: &mut Vec<Point2>, hull: &mu
         match &mut row {
             Some(whole) if whole.row == run.row => whole.end = run.end,
             _ => {
-                row.iter().for_each(|whole| push_corners(*whole, corners));
-                row = Some(run);
+                if let Some(whole) = row.replace(run) {
+                    push_corners(whole, corners);
+                }
             }
         }
     }
-    row.iter().for_each(|whole| push_corners(*whole, corners));
+    if let Some(whole) = row {
+        push_corners(whole, corners);
+    }
     polygon::convex_hull(corners, hull);
 }
 

@@ -43,7 +43,7 @@ impl Morphology {
     }
 
     /// Each pixel becomes the combination of its 3 × 3 neighbourhood within the picture.
-    #[inline(always)]
+    #[inline]
     fn pass(&mut self, plane: &mut [u8], width: usize, join: impl Fn(u8, u8) -> u8 + Copy) {
         self.along.resize(plane.len(), 0);
         for (row, out) in plane.chunks_exact(width).zip(self.along.chunks_exact_mut(width)) {
@@ -62,7 +62,7 @@ impl Morphology {
     }
 }
 
-#[inline(always)]
+#[inline]
 fn along_row(row: &[u8], out: &mut [u8], join: impl Fn(u8, u8) -> u8) {
     let n = row.len();
     if n < 2 {

@@ -26,7 +26,7 @@ pub trait Source {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Files {
-    files: Vec<PathBuf>,
+    paths: Vec<PathBuf>,
     next: usize,
     period_s: f64,
     raw: Option<RawLayout>,
@@ -35,8 +35,8 @@ pub struct Files {
 impl Files {
     /// These files in this order, `period_s` seconds apart, the first at 0 s.
     pub fn list(files: impl IntoIterator<Item = impl AsRef<Path>>, period_s: f64) -> Self {
-        let files = files.into_iter().map(|file| file.as_ref().to_owned()).collect();
-        Self { files, next: 0, period_s, raw: None }
+        let paths = files.into_iter().map(|file| file.as_ref().to_owned()).collect();
+        Self { paths, next: 0, period_s, raw: None }
     }
 
     /// The pictures of a folder in the order of their names (byte by byte: number them with leading zeros); other
@@ -71,7 +71,7 @@ impl Files {
 
     /// The files, in order.
     pub fn paths(&self) -> &[PathBuf] {
-        &self.files
+        &self.paths
     }
 }
 
@@ -82,7 +82,7 @@ fn is_picture(path: &Path) -> bool {
 
 impl Source for Files {
     fn next_frame(&mut self, frame: &mut Frame) -> Result<bool, VisionError> {
-        let Some(file) = self.files.get(self.next) else { return Ok(false) };
+        let Some(file) = self.paths.get(self.next) else { return Ok(false) };
         frame.stamp_s = self.next as f64 * self.period_s;
         self.next += 1;
         decode::read(file, self.raw, frame)?;

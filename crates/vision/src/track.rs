@@ -49,6 +49,7 @@ pub(crate) struct Track {
 pub(crate) struct Tracker {
     pub(crate) tracks: Vec<Track>,
     pool: Vec<Track>,
+    told_before: Vec<Obstacle>,
     next_id: u64,
     expected: Vec<Expected>,
     association: Association,
@@ -76,7 +77,7 @@ impl Tracker {
     /// Takes in what is seen `dt_s` seconds after the last call.
     pub(crate) fn update(&mut self, seen: &[Detection], dt_s: f64, settings: &Settings) {
         self.expect(dt_s, settings);
-        let known = self.expected.len();
+        let known = self.tracks.len();
         let mut association = std::mem::take(&mut self.association);
         association.find(&self.expected[..known], seen);
         for t in 0..self.tracks.len() {
@@ -97,7 +98,9 @@ impl Tracker {
     }
 
     fn expect(&mut self, dt_s: f64, settings: &Settings) {
-        self.expected.resize_with(self.tracks.len(), Expected::default);
+        // Never fewer: each keeps a list.
+        let most = self.expected.len().max(self.tracks.len());
+        self.expected.resize_with(most, Expected::default);
         for (track, expected) in self.tracks.iter().zip(&mut self.expected) {
             let step = if track.frames_missed == 0 { track.velocity_mps * dt_s } else { Point2::default() };
             expected.outline_m.clear();
@@ -143,7 +146,7 @@ impl Tracker {
         self.tracks[t].together_to_m = self.highest_of(s, association, settings);
         self.cut.clone_from(&detection.outline_m);
         let own = &self.expected[t];
-        for (other, expected) in self.expected.iter().enumerate() {
+        for (other, expected) in self.expected.iter().enumerate().take(association.seen_of.len()) {
             if other != t && association.seen_of[other] == Some(s) {
                 let (normal, offset) = power_line(own, expected);
                 if normal != Point2::default() {
@@ -223,7 +226,7 @@ impl Tracker {
                 let mut track = self.tracks.remove(t);
                 track.obstacle.change = Change::Left;
                 if track.is_told {
-                    write(&track.obstacle, &mut told, out);
+                    write(&track.obstacle, &mut told, out, &mut self.told_before);
                 }
                 self.pool.push(track);
             }
@@ -231,11 +234,11 @@ impl Tracker {
         for t in 0..self.tracks.len() {
             if self.tracks[t].is_told || self.tracks[t].frames_seen >= settings.frames_to_enter.max(1) {
                 self.shape(t, settings, eye_above_floor);
-                write(&self.tracks[t].obstacle, &mut told, out);
+                write(&self.tracks[t].obstacle, &mut told, out, &mut self.told_before);
             }
         }
-        out.truncate(told);
-        out.sort_by_key(|obstacle| obstacle.id);
+        self.told_before.extend(out.drain(told..));
+        out.sort_unstable_by_key(|obstacle| obstacle.id);
     }
 
     /// Repeats the obstacles as they are: for frames that tell nothing.
@@ -245,10 +248,10 @@ impl Tracker {
             if track.is_told {
                 track.obstacle.change = Change::Still;
                 track.obstacle.is_remembered = true;
-                write(&track.obstacle, &mut told, out);
+                write(&track.obstacle, &mut told, out, &mut self.told_before);
             }
         }
-        out.truncate(told);
+        self.told_before.extend(out.drain(told..));
     }
 
     /// Decides on template and prism of a thing.
@@ -373,9 +376,10 @@ fn power_line(own: &Expected, other: &Expected) -> (Point2, f64) {
     ((other.centre_m - own.centre_m) * 2.0, power(other) - power(own))
 }
 
-fn write(obstacle: &Obstacle, told: &mut usize, out: &mut Vec<Obstacle>) {
+/// Writes the next obstacle of a list; `spare` are obstacles whose memory can be had.
+fn write(obstacle: &Obstacle, told: &mut usize, out: &mut Vec<Obstacle>, spare: &mut Vec<Obstacle>) {
     if *told == out.len() {
-        out.push(Obstacle::default());
+        out.push(spare.pop().unwrap_or_default());
     }
     out[*told].copy_from(obstacle);
     *told += 1;

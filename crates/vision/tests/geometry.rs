@@ -86,7 +86,7 @@ proptest! {
         polygon::grown(&hull, margin, &mut grown, &mut spare);
         let mut simple = grown.clone();
         polygon::simplify_outward(&mut simple, 6);
-        prop_assert!(simple.len() <= 6.max(4) && polygon::area(&simple) >= polygon::area(&grown) - 1e-9);
+        prop_assert!(simple.len() <= 6 && polygon::area(&simple) >= polygon::area(&grown) - 1e-9);
         for &q in &points {
             let edge_slack = polygon::edges(&hull).all(|(a, b)| (b - a).cross(q - a) >= -1e-9);
             prop_assert!(edge_slack);
@@ -120,7 +120,7 @@ proptest! {
         let mut random = || { state ^= state << 13; state ^= state >> 7; state ^= state << 17; state };
         let plane: Vec<u8> = (0..width * height).map(|_| u8::from(random() % 5 < share)).collect();
         let mut labeller = Labeller::default();
-        labeller.blobs(&vec![1; 50], 10, 1); // memory of another picture must not matter
+        labeller.blobs(&[1; 50], 10, 1); // memory of another picture must not matter
         let found: Vec<_> = labeller.blobs(&plane, width, 1)
             .iter().map(|b| (b.area_px, b.columns.clone(), b.rows.clone(), b.centre_px, b.outline_px.clone())).collect();
         let truth = flood_fill(&plane, width);

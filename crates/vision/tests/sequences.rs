@@ -64,7 +64,7 @@ fn crosses(mut stage: Stage, make: impl Fn(Point2, f64) -> Solid, most_error_m: 
     assert_eq!(covered, in_sight, "recall");
     let worst = errors.iter().fold(0.0_f64, |s, &e| s.max(e));
     let usual = median(&mut errors);
-    println!("recall {covered}/{in_sight}, place: median {:.1} mm, worst {:.1} mm", usual * 1e3, worst * 1e3);
+    eprintln!("recall {covered}/{in_sight}, place: median {:.1} mm, worst {:.1} mm", usual * 1e3, worst * 1e3);
     assert!(worst < most_error_m, "{worst}");
 }
 
@@ -111,7 +111,7 @@ fn keep_identities(ways: impl Fn(f64) -> [Solid; 2], frames: u32) {
             obstacles.iter().min_by(|a, b| distance(a.centre_m).total_cmp(&distance(b.centre_m))).unwrap().id
         };
         let now = [nearest(&truth[0]), nearest(&truth[1])];
-        merged += u32::from(stage.vision.foreground().iter().any(|&p| p == 1) && one_blob(&stage));
+        merged += u32::from(stage.vision.foreground().contains(&1) && one_blob(&stage));
         if i == 0 {
             ids = Some(now);
         }
@@ -120,7 +120,7 @@ fn keep_identities(ways: impl Fn(f64) -> [Solid; 2], frames: u32) {
             assert_ne!(now[0], now[1]);
         }
     }
-    println!("seen as one in {merged} of {frames} frames");
+    eprintln!("seen as one in {merged} of {frames} frames");
     assert!(merged > 3, "they never touched: the test tests nothing");
 }
 

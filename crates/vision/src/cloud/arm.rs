@@ -61,14 +61,14 @@ impl Solid {
 fn solid(part: &ArmPart) -> (Shape, Pose) {
     match part {
         ArmPart::Capsule { from, to, radius_m } => segment(*from, *to, *radius_m),
-        ArmPart::Hull(points) => match ConvexHull::from_points(points) {
-            Ok(hull) => (Shape::Hull(hull.into()), Pose::IDENTITY),
-            Err(_) => {
-                let bounds = Aabb::from_points(points.iter().copied());
-                let half_extents = bounds.extent() * 0.5;
-                (Shape::Cuboid(Cuboid { half_extents }), Pose::from_translation(bounds.center()))
+        ArmPart::Hull(points) => {
+            if let Ok(hull) = ConvexHull::from_points(points) {
+                return (Shape::Hull(hull.into()), Pose::IDENTITY);
             }
-        },
+            let bounds = Aabb::from_points(points.iter().copied());
+            let half_extents = bounds.extent() * 0.5;
+            (Shape::Cuboid(Cuboid { half_extents }), Pose::from_translation(bounds.center()))
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! LZF, the packing of compressed PCD files (M. Lehmann's LibLZF format).
+//! LZF, the packing of compressed PCD files: literal runs, and copies of what was unpacked before.
 
 /// Unpacks to exactly `length` bytes; `None` where the packing is damaged.
 pub(super) fn unpack(packed: &[u8], length: usize) -> Option<Vec<u8>> {
