@@ -6,8 +6,9 @@
 
 use crate::light::Light;
 
-/// Deviations beyond this are cut: 32 grey levels.
-const MOST_DEVIATION_Q4: i16 = 32 << 4;
+/// Deviations beyond this are cut: 12 grey levels. A pixel that flickers more is foreground now and then, which is safe; one
+/// that were allowed to would see nothing any more.
+const MOST_DEVIATION_Q4: i16 = 12 << 4;
 /// The brightest expectation, 255 grey levels.
 const WHITE_Q4: i16 = 255 << 4;
 const WHITE_Q7: i16 = 255 << 7;
@@ -90,7 +91,8 @@ impl Kernel {
         }
     }
 
-    /// Moves a row of the model towards what is seen, except where something is `held`.
+    /// Moves a row of the model towards what is seen, except where something is `held` and where what is seen is not the
+    /// floor: a shadow that stays must not make the floor under it look noisy, and so blind.
     fn adapt(&self, row: &[u8], held: &[u8], mean_q7: &mut [i16], deviation_q9: &mut [i16], shift: u32) {
         let n = row.len();
         let (held, mean_q7, deviation_q9) = (&held[..n], &mut mean_q7[..n], &mut deviation_q9[..n]);
@@ -103,7 +105,7 @@ impl Kernel {
             let step = (difference << 3).saturating_add(half) >> shift;
             mean_q7[i] = (mean_q7[i].saturating_add(step & free & alike)).clamp(0, WHITE_Q7);
             let towards = (size.min(MOST_DEVIATION_Q4) << 5) - deviation_q9[i];
-            deviation_q9[i] += (towards.saturating_add(half) >> shift) & free;
+            deviation_q9[i] += (towards.saturating_add(half) >> shift) & free & alike;
         }
     }
 }
