@@ -53,6 +53,7 @@ mod associate;
 mod background;
 mod calibration;
 mod camera;
+mod check;
 pub mod cloud;
 mod components;
 mod decode;
@@ -74,6 +75,7 @@ mod shadow;
 mod source;
 mod template;
 mod track;
+mod tracker;
 mod vision;
 
 pub use calibration::Calibration;

@@ -1,14 +1,6 @@
-//! Things with an identity from frame to frame.
-//!
-//! A thing is expected where its velocity takes it. Two that touch are seen as one: each then gets its part of what is
-//! seen, cut by the power diagram of the two (the line where squared distance less squared radius is equal), so that
-//! together they cover all of it, and each keeps its size and brightness for the moment they part. What the arm hides
-//! stays where it was, however long.
+//! One thing with an identity: what is known of it.
 
-use elbowroom_spatial::Vec3;
-
-use crate::associate::{Association, Detection, Expected};
-use crate::template::Footprints;
+use crate::associate::Detection;
 use crate::{Change, Obstacle, ObstacleId, Point2, Settings, polygon};
 
 /// One thing.
@@ -17,286 +9,38 @@ pub(crate) struct Track {
     /// What it covers on the floor as seen, convex, metres.
     pub(crate) outline_m: Vec<Point2>,
     /// What it covered when it was last seen whole, carried on with its velocity while the arm hides a part of it.
-    whole_m: Vec<Point2>,
+    pub(crate) whole_m: Vec<Point2>,
     /// Some of that is behind the arm in this frame: set by the caller before [`Tracker::update`].
     pub(crate) is_hidden: bool,
-    obstacle: Obstacle,
-    centre_m: Point2,
-    velocity_mps: Point2,
+    pub(crate) obstacle: Obstacle,
+    pub(crate) centre_m: Point2,
+    pub(crate) velocity_mps: Point2,
     /// Of the time when it was last seen alone and whole.
-    area: f64,
-    brightness: f64,
-    is_cut: bool,
+    pub(crate) area: f64,
+    pub(crate) brightness: f64,
+    pub(crate) is_cut: bool,
     /// The template that it has been fitting, and for how many frames in a row.
-    fits: Option<usize>,
-    frames_fit: u32,
-    frames_whole: u32,
-    frames_misfit: u32,
-    template: Option<usize>,
-    frames_seen: u32,
-    frames_missed: u32,
-    is_told: bool,
+    pub(crate) fits: Option<usize>,
+    pub(crate) frames_fit: u32,
+    pub(crate) frames_whole: u32,
+    pub(crate) frames_misfit: u32,
+    pub(crate) template: Option<usize>,
+    pub(crate) frames_seen: u32,
+    pub(crate) frames_missed: u32,
+    pub(crate) is_told: bool,
     /// Area of the footprint when the obstacle was last told.
-    told_area: f64,
+    pub(crate) told_area: f64,
     pub(crate) z_from_m: f64,
     pub(crate) z_to_m: f64,
     /// While several are seen as one, the highest of them: the line between them is a guess.
-    together_to_m: Option<f64>,
+    pub(crate) together_to_m: Option<f64>,
 }
-
-/// All things; memory is reused.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Tracker {
-    pub(crate) tracks: Vec<Track>,
-    pool: Vec<Track>,
-    told_before: Vec<Obstacle>,
-    next_id: u64,
-    expected: Vec<Expected>,
-    association: Association,
-    footprints: Footprints,
-    footprint: Vec<Point2>,
-    wanted: Vec<Point2>,
-    cut: Vec<Point2>,
-    spare: Vec<Point2>,
-}
-
-/// Slower things stand: pixels make up as much, metres per second.
-const STANDS_MPS: f64 = 0.05;
 
 /// One frame in so many may fit no template.
 const MOST_MISFITS: u32 = 10;
 
-/// Heights told may be that many times the slack too large before they are told anew.
-const HEIGHT_SLACKS: f64 = 2.0;
-
-/// How much of a surprise is believed: of place, and of velocity.
-const ALONE: (f64, f64) = (1.0, 0.4);
-const TOGETHER: (f64, f64) = (0.35, 0.08);
-
-impl Tracker {
-    /// Takes in what is seen `dt_s` seconds after the last call.
-    pub(crate) fn update(&mut self, seen: &[Detection], dt_s: f64, settings: &Settings) {
-        self.expect(dt_s, settings);
-        let known = self.tracks.len();
-        let mut association = std::mem::take(&mut self.association);
-        association.find(&self.expected[..known], seen);
-        for t in 0..self.tracks.len() {
-            match association.seen_of[t] {
-                Some(s) if association.is_alone[t] => self.follow(t, &seen[s], dt_s, settings),
-                Some(s) => self.follow_share(t, s, &seen[s], &association, dt_s, settings),
-                None => self.tracks[t].miss(),
-            }
-        }
-        for (s, detection) in seen.iter().enumerate() {
-            if let Some(t) = association.piece_of[s] {
-                self.add_piece(t, detection, settings);
-            } else if association.sharers[s] == 0 {
-                self.start(detection);
-            }
-        }
-        self.association = association;
-    }
-
-    fn expect(&mut self, dt_s: f64, settings: &Settings) {
-        // Never fewer: each keeps a list.
-        let most = self.expected.len().max(self.tracks.len());
-        self.expected.resize_with(most, Expected::default);
-        for (track, expected) in self.tracks.iter().zip(&mut self.expected) {
-            let step = if track.frames_missed == 0 { track.velocity_mps * dt_s } else { Point2::default() };
-            expected.outline_m.clear();
-            expected.outline_m.extend(track.outline_m.iter().map(|&p| p + step));
-            expected.centre_m = track.centre_m + step;
-            expected.area = track.area;
-            expected.brightness = track.brightness;
-            expected.reach_m = settings.most_speed_mps * dt_s * f64::from(track.frames_missed + 1);
-            expected.is_hidden = track.is_hidden;
-        }
-    }
-
-    /// A thing that is seen alone.
-    fn follow(&mut self, t: usize, detection: &Detection, dt_s: f64, settings: &Settings) {
-        self.tracks[t].together_to_m = None;
-        if detection.is_cut_by_arm {
-            self.add_piece(t, detection, settings);
-            self.carry_on(t, dt_s);
-            return;
-        }
-        let track = &mut self.tracks[t];
-        track.outline_m.clone_from(&detection.outline_m);
-        track.whole_m.clone_from(&detection.outline_m);
-        (track.z_from_m, track.z_to_m) = (detection.z_from_m, detection.z_to_m);
-        track.is_cut = detection.is_cut_by_border;
-        if !track.is_cut {
-            track.area = detection.area;
-            track.brightness = detection.brightness;
-        }
-        track.correct(self.expected[t].centre_m, detection.centre_m, dt_s, ALONE, settings.most_speed_mps);
-    }
-
-    /// One of several that are seen as one: takes its part of the outline.
-    fn follow_share(
-        &mut self,
-        t: usize,
-        s: usize,
-        detection: &Detection,
-        association: &Association,
-        dt_s: f64,
-        settings: &Settings,
-    ) {
-        self.tracks[t].together_to_m = self.highest_of(s, association, settings);
-        self.cut.clone_from(&detection.outline_m);
-        let own = &self.expected[t];
-        for (other, expected) in self.expected.iter().enumerate().take(association.seen_of.len()) {
-            if other != t && association.seen_of[other] == Some(s) {
-                let (normal, offset) = power_line(own, expected);
-                if normal != Point2::default() {
-                    std::mem::swap(&mut self.cut, &mut self.spare);
-                    polygon::clip(&self.spare, normal, offset, &mut self.cut);
-                }
-            }
-        }
-        let track = &mut self.tracks[t];
-        if polygon::area(&self.cut) < 0.1 * track.area {
-            track.miss();
-            return;
-        }
-        if track.is_hidden || detection.is_cut_by_arm {
-            self.cut.extend_from_slice(&track.outline_m);
-        }
-        polygon::convex_hull(&mut self.cut, &mut track.outline_m);
-        track.z_from_m = track.z_from_m.min(detection.z_from_m);
-        track.z_to_m = track.z_to_m.max(detection.z_to_m);
-        track.is_cut = true;
-        let at = polygon::centroid(&track.outline_m);
-        track.correct(own.centre_m, at, dt_s, TOGETHER, f64::INFINITY);
-    }
-
-    /// The upper end of the highest of the things in detection `s`.
-    fn highest_of(&self, s: usize, association: &Association, settings: &Settings) -> Option<f64> {
-        let together = self.tracks.iter().zip(&association.seen_of).filter(|(_, seen)| **seen == Some(s));
-        together.map(|(track, _)| track.own_heights(settings).1).max_by(f64::total_cmp)
-    }
-
-    /// Adds what is seen of a thing to what was known of it; nothing changes where it is within that.
-    fn add_piece(&mut self, t: usize, detection: &Detection, settings: &Settings) {
-        let track = &mut self.tracks[t];
-        track.frames_missed = 0;
-        let (outline_m, tolerance_m) = (&track.outline_m, settings.uncertainty_m.min(settings.slack_m));
-        polygon::grown(outline_m, tolerance_m, &mut self.wanted, &mut self.spare);
-        if detection.outline_m.iter().all(|&p| polygon::convex_contains(&self.wanted, p)) {
-            return;
-        }
-        self.cut.clone_from(&detection.outline_m);
-        self.cut.extend_from_slice(&track.outline_m);
-        polygon::convex_hull(&mut self.cut, &mut track.outline_m);
-        track.z_from_m = track.z_from_m.min(detection.z_from_m);
-        track.z_to_m = track.z_to_m.max(detection.z_to_m);
-        track.is_cut = true;
-        track.centre_m = polygon::centroid(&track.outline_m);
-    }
-
-    /// A moving thing that is hidden in part: adds what its velocity adds to it behind the arm.
-    fn carry_on(&mut self, t: usize, dt_s: f64) {
-        let track = &mut self.tracks[t];
-        track.frames_seen = track.frames_seen.saturating_add(1);
-        if track.velocity_mps.length() < STANDS_MPS || track.whole_m.is_empty() {
-            return;
-        }
-        let step = track.velocity_mps * dt_s;
-        track.whole_m.iter_mut().for_each(|p| *p = *p + step);
-        self.cut.clone_from(&track.whole_m);
-        self.cut.extend_from_slice(&track.outline_m);
-        polygon::convex_hull(&mut self.cut, &mut track.outline_m);
-        track.is_cut = true;
-        track.centre_m = polygon::centroid(&track.whole_m);
-    }
-
-    fn start(&mut self, detection: &Detection) {
-        let mut track = self.pool.pop().unwrap_or_default();
-        self.next_id += 1;
-        track.restart(ObstacleId(self.next_id), detection);
-        self.tracks.push(track);
-    }
-
-    /// Writes the obstacles of this frame, those that have left included, and forgets the latter.
-    pub(crate) fn tell(&mut self, settings: &Settings, eye_above_floor: Option<Vec3>, out: &mut Vec<Obstacle>) {
-        let mut told = 0;
-        for t in (0..self.tracks.len()).rev() {
-            if self.tracks[t].frames_missed >= settings.frames_to_leave.max(1) && !self.tracks[t].is_hidden {
-                let mut track = self.tracks.remove(t);
-                track.obstacle.change = Change::Left;
-                if track.is_told {
-                    write(&track.obstacle, &mut told, out, &mut self.told_before);
-                }
-                self.pool.push(track);
-            }
-        }
-        for t in 0..self.tracks.len() {
-            if self.tracks[t].is_told || self.tracks[t].frames_seen >= settings.frames_to_enter.max(1) {
-                self.shape(t, settings, eye_above_floor);
-                write(&self.tracks[t].obstacle, &mut told, out, &mut self.told_before);
-            }
-        }
-        self.told_before.extend(out.drain(told..));
-        out.sort_unstable_by_key(|obstacle| obstacle.id);
-    }
-
-    /// Repeats the obstacles as they are: for frames that tell nothing.
-    pub(crate) fn repeat(&mut self, out: &mut Vec<Obstacle>) {
-        let mut told = 0;
-        for track in &mut self.tracks {
-            if track.is_told {
-                track.obstacle.change = Change::Still;
-                track.obstacle.is_remembered = true;
-                write(&track.obstacle, &mut told, out, &mut self.told_before);
-            }
-        }
-        self.told_before.extend(out.drain(told..));
-    }
-
-    /// Decides on template and prism of a thing.
-    fn shape(&mut self, t: usize, settings: &Settings, eye_above_floor: Option<Vec3>) {
-        let track = &mut self.tracks[t];
-        let footprint = &mut self.footprint;
-        let is_whole = !track.is_cut && track.frames_missed == 0 && !track.is_hidden;
-        if !is_whole && !track.is_cut && track.is_told {
-            track.stay();
-            return;
-        }
-        // The outline of a part says nothing about the size, and what it stands on does not follow from it.
-        footprint.clone_from(&track.outline_m);
-        if is_whole {
-            let fits = self.footprints.find(&settings.templates, &track.outline_m, eye_above_floor, footprint);
-            track.decide_on(fits, settings.frames_to_fit);
-            if track.template.is_none() {
-                footprint.clone_from(&track.outline_m);
-            }
-        }
-        polygon::grown(footprint, settings.uncertainty_m, &mut self.wanted, &mut self.spare);
-        let (z_from_m, z_to_m) = track.heights(settings);
-        let obstacle = &mut track.obstacle;
-        obstacle.centre_m = polygon::centroid(footprint);
-        obstacle.velocity_mps = track.velocity_mps;
-        obstacle.is_remembered = track.frames_missed > 0 || track.is_hidden;
-        let is_same = |told: f64, wanted: f64| (0.0..=HEIGHT_SLACKS * settings.slack_m).contains(&(told - wanted));
-        let is_as_high = is_same(obstacle.z_to_m, z_to_m) && is_same(z_from_m, obstacle.z_from_m);
-        if track.is_told && is_as_high && track.still_covers(&self.wanted) {
-            track.obstacle.change = Change::Still;
-            return;
-        }
-        let obstacle = &mut track.obstacle;
-        obstacle.change = if track.is_told { Change::Moved } else { Change::Entered };
-        (obstacle.z_from_m, obstacle.z_to_m) = (z_from_m, z_to_m);
-        obstacle.kind = track.template.map(|kind| settings.templates[kind].name.clone());
-        polygon::grown(&self.wanted, settings.slack_m, &mut obstacle.footprint_m, &mut self.spare);
-        polygon::simplify_outward(&mut obstacle.footprint_m, settings.most_corners);
-        track.is_told = true;
-        track.told_area = polygon::area(&self.wanted);
-    }
-}
-
 impl Track {
-    fn restart(&mut self, id: ObstacleId, detection: &Detection) {
+    pub(crate) fn restart(&mut self, id: ObstacleId, detection: &Detection) {
         self.outline_m.clone_from(&detection.outline_m);
         self.whole_m.clear();
         self.is_hidden = false;
@@ -313,7 +57,14 @@ impl Track {
         (self.z_from_m, self.z_to_m) = (detection.z_from_m, detection.z_to_m);
     }
 
-    fn correct(&mut self, expected_m: Point2, seen_m: Point2, dt_s: f64, (place, speed): (f64, f64), most: f64) {
+    pub(crate) fn correct(
+        &mut self,
+        expected_m: Point2,
+        seen_m: Point2,
+        dt_s: f64,
+        (place, speed): (f64, f64),
+        most: f64,
+    ) {
         let surprise = seen_m - expected_m;
         self.centre_m = expected_m + surprise * place;
         if dt_s > 0.0 {
@@ -324,7 +75,7 @@ impl Track {
         self.frames_missed = 0;
     }
 
-    fn miss(&mut self) {
+    pub(crate) fn miss(&mut self) {
         self.velocity_mps = Point2::default();
         if !self.is_hidden {
             self.frames_missed = self.frames_missed.saturating_add(1);
@@ -333,7 +84,7 @@ impl Track {
     }
 
     /// The prism told last is told again.
-    fn stay(&mut self) {
+    pub(crate) fn stay(&mut self) {
         self.obstacle.change = Change::Still;
         self.obstacle.velocity_mps = self.velocity_mps;
         self.obstacle.is_remembered = true;
@@ -341,7 +92,7 @@ impl Track {
 
     /// A template must fit for some frames in a row, and must have been fitting nearly whenever the thing was in full
     /// sight: on its way a high, slim thing covers for a while what a lower, longer one would.
-    fn decide_on(&mut self, fits: Option<usize>, frames_to_fit: u32) {
+    pub(crate) fn decide_on(&mut self, fits: Option<usize>, frames_to_fit: u32) {
         self.frames_fit = if fits == self.fits { self.frames_fit.saturating_add(1) } else { 1 };
         self.fits = fits;
         self.frames_whole = self.frames_whole.saturating_add(1);
@@ -350,12 +101,12 @@ impl Track {
         self.template = fits.filter(|_| is_believed);
     }
 
-    fn heights(&self, settings: &Settings) -> (f64, f64) {
+    pub(crate) fn heights(&self, settings: &Settings) -> (f64, f64) {
         let (from, to) = self.own_heights(settings);
         (from, to.max(self.together_to_m.unwrap_or(to)))
     }
 
-    fn own_heights(&self, settings: &Settings) -> (f64, f64) {
+    pub(crate) fn own_heights(&self, settings: &Settings) -> (f64, f64) {
         match self.template {
             Some(kind) => (self.z_from_m, settings.floor_z_m + settings.templates[kind].top_m()),
             None => (self.z_from_m, self.z_to_m),
@@ -363,24 +114,9 @@ impl Track {
     }
 
     /// Whether the prism told last contains what is wanted now, and is not needlessly large.
-    fn still_covers(&self, wanted: &[Point2]) -> bool {
+    pub(crate) fn still_covers(&self, wanted: &[Point2]) -> bool {
         let has_shrunk = polygon::area(wanted) < 0.8 * self.told_area;
         let covers = || wanted.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
         !has_shrunk && covers()
     }
-}
-
-/// The line between two things that are seen as one: `normal · p <= offset` is the first one's side.
-fn power_line(own: &Expected, other: &Expected) -> (Point2, f64) {
-    let power = |e: &Expected| e.centre_m.dot(e.centre_m) - e.area / std::f64::consts::PI;
-    ((other.centre_m - own.centre_m) * 2.0, power(other) - power(own))
-}
-
-/// Writes the next obstacle of a list; `spare` are obstacles whose memory can be had.
-fn write(obstacle: &Obstacle, told: &mut usize, out: &mut Vec<Obstacle>, spare: &mut Vec<Obstacle>) {
-    if *told == out.len() {
-        out.push(spare.pop().unwrap_or_default());
-    }
-    out[*told].copy_from(obstacle);
-    *told += 1;
 }

@@ -9,9 +9,9 @@ use crate::detection::{Detections, Hidden};
 use crate::light::Estimator;
 use crate::morphology::Morphology;
 use crate::report::{Blindness, Report, Sight, Timings};
-use crate::track::Tracker;
+use crate::tracker::Tracker;
 use crate::{Calibration, Channels, Frame, Labeller, Light, PixelMask, Point2, Settings, VisionError};
-use crate::{polygon, raster, shadow};
+use crate::{check, polygon, raster, shadow};
 
 /// Rows between those that adapt in one frame; the next frame takes the rows beside them.
 const ROWS_IN_TURN: usize = 4;
@@ -90,7 +90,7 @@ impl Vision {
     pub fn new(calibration: Calibration, settings: Settings) -> Result<Self, VisionError> {
         settings.check()?;
         let (width, height) = calibration.size()?;
-        check_floor_in_sight(&calibration, &settings, width, height)?;
+        check::floor_in_sight(&calibration, &settings, width, height)?;
         let pixels = width * height;
         Ok(Self {
             calibration,
@@ -159,7 +159,7 @@ impl Vision {
     /// # Errors
     /// Frames of the wrong size or kind, or out of order. What is known stays as it was.
     pub fn process(&mut self, frame: &Frame, arm: Option<&PixelMask>) -> Result<&Report, VisionError> {
-        self.check(frame, arm)?;
+        check::frame(frame, arm, (self.width, self.height), self.channels, self.last_s)?;
         self.last_s = Some(frame.stamp_s);
         self.report.stamp_s = frame.stamp_s;
         self.report.timings = Timings::default();
@@ -179,35 +179,6 @@ impl Vision {
         }
         self.no_mask = no_mask;
         Ok(&self.report)
-    }
-
-    fn check(&self, frame: &Frame, arm: Option<&PixelMask>) -> Result<(), VisionError> {
-        let name = || frame.name.clone();
-        let (found_width, found_height) = (frame.width(), frame.height());
-        if found_width == 0 || found_height == 0 {
-            return Err(VisionError::Empty { frame: name(), width: found_width, height: found_height });
-        }
-        let (width, height) = (self.width, self.height);
-        if (found_width, found_height) != (width, height) {
-            return Err(VisionError::WrongSize { frame: name(), width, height, found_width, found_height });
-        }
-        if let Some(mask) = arm
-            && mask.size() != (width, height)
-        {
-            let (found_width, found_height) = mask.size();
-            let frame = format!("{}, mask of the arm", frame.name);
-            return Err(VisionError::WrongSize { frame, width, height, found_width, found_height });
-        }
-        if let Some(channels) = self.channels.filter(|&channels| channels != frame.channels()) {
-            let (expected, found) = (channels.name(), frame.channels().name());
-            return Err(VisionError::WrongChannels { frame: name(), expected, found });
-        }
-        let stamp_s = frame.stamp_s;
-        match self.last_s {
-            _ if !stamp_s.is_finite() => Err(VisionError::OutOfOrder { frame: name(), stamp_s, last_s: stamp_s }),
-            Some(last_s) if stamp_s <= last_s => Err(VisionError::OutOfOrder { frame: name(), stamp_s, last_s }),
-            _ => Ok(()),
-        }
     }
 
     /// One plane per colour.
@@ -393,25 +364,6 @@ fn apply_mask(plane: &mut [u8], mask: &PixelMask) {
             *pixel &= hidden.wrapping_sub(1);
         }
     }
-}
-
-fn check_floor_in_sight(
-    calibration: &Calibration,
-    settings: &Settings,
-    width: usize,
-    height: usize,
-) -> Result<(), VisionError> {
-    let (w, h) = (width as f64, height as f64);
-    let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
-    let sees_floor = |&(x, y): &(f64, f64)| calibration.pixel_to_floor(Point2::new(x, y), settings.floor_z_m).is_some();
-    if corners.iter().all(sees_floor) {
-        return Ok(());
-    }
-    Err(VisionError::Calibration(
-        "a corner of its picture sees no floor (the horizon is in sight, or the floor's height is wrong); tilt the \
-         camera down, crop the picture, or check floor_z_m"
-            .into(),
-    ))
 }
 
 struct Clock(Instant);

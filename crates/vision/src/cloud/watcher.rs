@@ -9,7 +9,7 @@ use super::clusters::Clusters;
 use super::voxels::Voxels;
 use super::{Cloud, CloudSettings};
 use crate::associate::Detection;
-use crate::track::Tracker;
+use crate::tracker::Tracker;
 use crate::{ArmPart, Obstacle, Point2, Settings, VisionError, polygon};
 
 /// Whether a cloud can be believed.
@@ -94,7 +94,9 @@ pub struct CloudVision {
     arm: Arm,
     voxels: Voxels,
     clusters: Clusters,
+    /// The first `found` of them are this cloud's.
     detections: Vec<Detection>,
+    found: usize,
     corners: Vec<Point2>,
     tracker: Tracker,
     last_s: Option<f64>,
@@ -116,6 +118,7 @@ impl CloudVision {
             voxels: Voxels::default(),
             clusters: Clusters::default(),
             detections: Vec::new(),
+            found: 0,
             corners: Vec::new(),
             tracker: Tracker::default(),
             last_s: None,
@@ -183,7 +186,7 @@ impl CloudVision {
         self.detect();
         self.mark_hidden();
         let dt_s = self.clear_s.map_or(0.0, |clear_s| cloud.stamp_s - clear_s);
-        self.tracker.update(&self.detections, dt_s, &self.for_tracks);
+        self.tracker.update(&self.detections[..self.found], dt_s, &self.for_tracks);
         self.tracker.tell(&self.for_tracks, None, &mut self.report.obstacles);
         self.report.timings =
             CloudTimings { filter: filtered - began, cluster: clustered - filtered, track: clustered.elapsed() };
@@ -244,7 +247,7 @@ impl CloudVision {
             }
             found += 1;
         }
-        self.detections.truncate(found);
+        self.found = found;
     }
 
     /// Things that the arm stands before, or in, cannot have been seen to leave, or to end where they seem to.
@@ -260,7 +263,7 @@ impl CloudVision {
         for track in &mut self.tracker.tracks {
             track.is_hidden = hides(&track.outline_m, track.z_from_m, track.z_to_m);
         }
-        for detection in &mut self.detections {
+        for detection in &mut self.detections[..self.found] {
             detection.is_cut_by_arm = hides(&detection.outline_m, detection.z_from_m, detection.z_to_m);
         }
     }
