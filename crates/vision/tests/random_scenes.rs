@@ -61,7 +61,7 @@ fn what_is_there_is_covered_and_what_is_told_is_there() {
         stage.conditions.light = shadows.map(|_| Vec3::new(random.between(-0.5, 0.5), random.between(-0.5, 0.5), -1.0));
         stage.conditions.noise = random.between(1.0, 4.0);
         let drift = random.between(-0.01, 0.01);
-        let movers: Vec<Mover> = (0..1 + scene as usize % 4).map(|_| Mover::random(&mut random)).collect();
+        let movers: Vec<Mover> = (0..=scene % 4).map(|_| Mover::random(&mut random)).collect();
         for frame in 0..25 {
             stage.conditions.gain += drift;
             let solids: Vec<Solid> = movers.iter().map(|mover| mover.at(frame)).collect();
