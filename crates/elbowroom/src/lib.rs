@@ -8,6 +8,7 @@
 //! | [`scene`] | robots and objects together |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
 //! | [`monitor`] | interference regions, checked every control tick |
+//! | [`vision`] | camera frames and point clouds to obstacles with an identity |
 //! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
 //!
 //! # A guarded controller
@@ -69,3 +70,4 @@ pub use elbowroom_monitor as monitor;
 pub use elbowroom_proximity as proximity;
 pub use elbowroom_scene as scene;
 pub use elbowroom_spatial as spatial;
+pub use elbowroom_vision as vision;

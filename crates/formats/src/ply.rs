@@ -27,7 +27,10 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     for element in &header.elements {
         values.check_room(element)?;
         match element.name.as_str() {
-            "vertex" => read_vertices(&mut values, element, file, &mut mesh.vertices)?,
+            "vertex" => {
+                read_vertices(&mut values, element, file, &mut mesh.vertices)?;
+                refuse_no_places(&values, &mesh.vertices)?;
+            }
             "face" => faces.read(&mut values, element)?,
             "tristrips" => strips.read(&mut values, element)?,
             _ => skip(&mut values, element)?,
@@ -37,6 +40,43 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     strips.triangulate(&mut mesh, file)?;
     refuse_bare_points(&header, &mesh, file)?;
     Ok(LoadedMeshes { meshes: vec![mesh], warnings: Vec::new() })
+}
+
+/// The vertices of a PLY file, faces or not, as they are written: sensors write NaN where they measured nothing. Numbers are
+/// taken as metres.
+///
+/// ```
+/// let text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+/// let points = elbowroom_formats::ply::parse_points(text, "one.ply".as_ref())?;
+/// assert_eq!(points, [elbowroom_spatial::Vec3::new(1.0, 2.0, 3.0)]);
+/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// ```
+///
+/// # Errors
+/// Headers that make no sense, more elements announced than the file can hold, words that are no numbers.
+pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+    source::check_content(bytes, file)?;
+    let (header, body) = header::parse(bytes, file)?;
+    let mut values = Values::new(body, header.encoding, header.lines, file);
+    let mut points = Vec::new();
+    for element in &header.elements {
+        values.check_room(element)?;
+        if element.name == "vertex" {
+            read_vertices(&mut values, element, file, &mut points)?;
+            break;
+        }
+        skip(&mut values, element)?;
+    }
+    Ok(points)
+}
+
+fn refuse_no_places(values: &Values<'_>, vertices: &[Vec3]) -> Result<(), FormatError> {
+    match vertices.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(values
+            .error(format!("vertex {i} (from 0) is no place: {:?}", vertices[i]))
+            .hint("finite numbers; export the mesh again")),
+    }
 }
 
 fn refuse_bare_points(header: &Header, mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
@@ -75,7 +115,7 @@ fn read_vertices(
         })?;
     }
     out.reserve(element.count);
-    for i in 0..element.count {
+    for _ in 0..element.count {
         let mut v = Vec3::ZERO.to_array();
         for (p, property) in element.properties.iter().enumerate() {
             match axes.iter().position(|&a| a == p) {
@@ -83,13 +123,7 @@ fn read_vertices(
                 None => values.skip(property)?,
             }
         }
-        let v = Vec3::from(v);
-        if !v.is_finite() {
-            return Err(values
-                .error(format!("vertex {i} (from 0) is no place: {v:?}"))
-                .hint("finite numbers; export the mesh again"));
-        }
-        out.push(v);
+        out.push(v.into());
     }
     Ok(())
 }

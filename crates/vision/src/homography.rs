@@ -1,0 +1,232 @@
+//! Pixels to places on the floor from pairs of both: the normalized direct linear transform.
+//!
+//! Hartley and Zisserman, Multiple View Geometry, 2nd edition, algorithm 4.2.
+
+use elbowroom_spatial::Vec3;
+
+use crate::{Point2, VisionError};
+
+type Matrix = [[f64; 3]; 3];
+
+/// A map from the picture to the floor, straight lines to straight lines (no lens distortion).
+///
+/// ```
+/// use elbowroom_vision::{FloorHomography, Point2};
+/// let p = Point2::new;
+/// let seen_px = [p(0.0, 0.0), p(640.0, 0.0), p(640.0, 480.0), p(0.0, 480.0)];
+/// let at_m = [p(-2.0, 1.5), p(2.0, 1.5), p(2.0, -1.5), p(-2.0, -1.5)];
+/// let floor = FloorHomography::from_points(640, 480, &seen_px, &at_m)?;
+/// assert!((floor.pixel_to_floor(p(320.0, 240.0)).unwrap() - p(0.0, 0.0)).length() < 1e-12);
+/// assert!(FloorHomography::from_points(640, 480, &seen_px[..3], &at_m[..3]).is_err());
+/// # Ok::<(), elbowroom_vision::VisionError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct FloorHomography {
+    width: usize,
+    height: usize,
+    to_floor: Matrix,
+    to_pixel: Matrix,
+    /// Sign of the denominator on the near side of the horizon.
+    near: f64,
+    worst_m: f64,
+    eye_in_world: Option<Vec3>,
+}
+
+impl FloorHomography {
+    /// The map for a picture of `width` × `height` pixels from points of the floor: where they are seen (pixels) and
+    /// where they lie (metres, world x and y). Four pairs decide it; more are averaged.
+    ///
+    /// # Errors
+    /// Fewer than four pairs, lists of different length, numbers that are not finite, three of four points on one line
+    /// (the pairs then leave the map open), or points on both sides of the horizon.
+    pub fn from_points(width: usize, height: usize, seen_px: &[Point2], at_m: &[Point2]) -> Result<Self, VisionError> {
+        check_pairs(width, height, seen_px, at_m)?;
+        let (seen, undo_seen) = normalized(seen_px).ok_or_else(coincide)?;
+        let (at, undo_at) = normalized(at_m).ok_or_else(coincide)?;
+        let unit = direct_linear_transform(&seen, &at)?;
+        let back = inverse(&undo_at).ok_or_else(coincide)?;
+        let to_floor = scaled(product(&back, &product(&unit, &undo_seen)));
+        let to_pixel = inverse(&to_floor).map(scaled).ok_or_else(on_a_line)?;
+        let denominators = || seen_px.iter().map(|&p| denominator(&to_floor, p));
+        let near = denominators().next().unwrap_or(1.0).signum();
+        if denominators().any(|w| w * near <= 0.0) {
+            return Err(VisionError::Calibration(
+                "its points lie on both sides of the horizon, which no picture shows; a pair is mixed up".into(),
+            ));
+        }
+        let mut map = Self { width, height, to_floor, to_pixel, near, worst_m: 0.0, eye_in_world: None };
+        let miss = |(&p, &q)| map.pixel_to_floor(p).map_or(f64::INFINITY, |found| (found - q).length());
+        map.worst_m = seen_px.iter().zip(at_m).map(miss).fold(0.0, f64::max);
+        Ok(map)
+    }
+
+    /// The same map with the camera's place, metres, world frame: heights of templates can then be taken into account.
+    #[must_use]
+    pub fn seen_from(mut self, eye_in_world: Vec3) -> Self {
+        self.eye_in_world = Some(eye_in_world);
+        self
+    }
+
+    /// The camera's place, where it was told.
+    pub fn eye_in_world(&self) -> Option<Vec3> {
+        self.eye_in_world
+    }
+
+    /// Columns and rows of the picture it belongs to.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// How far the worst pair lies from where the map takes it, metres. With four pairs always about 0; with more it
+    /// tells a slip of the pen, or a lens that bends lines (then use [`crate::Camera`]).
+    pub fn worst_m(&self) -> f64 {
+        self.worst_m
+    }
+
+    /// The place of the floor seen at a pixel; `None` on or above the horizon.
+    pub fn pixel_to_floor(&self, seen_px: Point2) -> Option<Point2> {
+        (denominator(&self.to_floor, seen_px) * self.near > 0.0).then(|| apply(&self.to_floor, seen_px))
+    }
+
+    /// Where a place of the floor is seen; `None` behind the camera.
+    pub fn floor_to_pixel(&self, at_m: Point2) -> Option<Point2> {
+        let seen_px = apply(&self.to_pixel, at_m);
+        self.pixel_to_floor(seen_px).is_some().then_some(seen_px).filter(|p| p.is_finite())
+    }
+}
+
+fn coincide() -> VisionError {
+    VisionError::Calibration("its points coincide; spread four or more over the floor".into())
+}
+
+fn on_a_line() -> VisionError {
+    VisionError::Calibration(
+        "its points leave the map open: three or more of them lie on one line; spread them over the floor".into(),
+    )
+}
+
+fn check_pairs(width: usize, height: usize, seen_px: &[Point2], at_m: &[Point2]) -> Result<(), VisionError> {
+    let refuse = |why: String| Err(VisionError::Calibration(why));
+    if width == 0 || height == 0 {
+        return refuse("its picture is empty; write the columns and rows that the camera sends".into());
+    }
+    if seen_px.len() != at_m.len() {
+        let (a, b) = (seen_px.len(), at_m.len());
+        return refuse(format!("{a} pixels but {b} places; write one place for each pixel"));
+    }
+    if seen_px.len() < 4 {
+        return refuse(format!("a floor needs at least 4 points with their pixels, not {}", seen_px.len()));
+    }
+    match seen_px.iter().zip(at_m).position(|(p, q)| !p.is_finite() || !q.is_finite()) {
+        Some(i) => refuse(format!("pair {i} (from 0) has a number that is not finite; write it again")),
+        None => Ok(()),
+    }
+}
+
+/// Points moved to the origin and scaled to a mean distance of √2, and the matrix that does it.
+fn normalized(points: &[Point2]) -> Option<(Vec<Point2>, Matrix)> {
+    let n = points.len() as f64;
+    let middle = points.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / n);
+    let mean = points.iter().map(|&p| (p - middle).length()).sum::<f64>() / n;
+    let k = std::f64::consts::SQRT_2 / mean;
+    if !k.is_finite() {
+        return None;
+    }
+    let moved = points.iter().map(|&p| (p - middle) * k).collect();
+    Some((moved, [[k, 0.0, -k * middle.x], [0.0, k, -k * middle.y], [0.0, 0.0, 1.0]]))
+}
+
+fn direct_linear_transform(from: &[Point2], to: &[Point2]) -> Result<Matrix, VisionError> {
+    let mut normal = [[0.0; 9]; 9];
+    for (&p, &q) in from.iter().zip(to) {
+        let rows = [
+            [-p.x, -p.y, -1.0, 0.0, 0.0, 0.0, q.x * p.x, q.x * p.y, q.x],
+            [0.0, 0.0, 0.0, -p.x, -p.y, -1.0, q.y * p.x, q.y * p.y, q.y],
+        ];
+        for row in rows {
+            for (i, &a) in row.iter().enumerate() {
+                for (j, &b) in row.iter().enumerate() {
+                    normal[i][j] += a * b;
+                }
+            }
+        }
+    }
+    let (values, vectors) = eigen(normal);
+    let mut order: Vec<usize> = (0..9).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    // A second direction that costs (almost) nothing: more than one map fits the pairs.
+    if values[order[1]] < 1e-9 * values[order[8]] {
+        return Err(on_a_line());
+    }
+    let h: [f64; 9] = std::array::from_fn(|i| vectors[i][order[0]]);
+    let matrix = [[h[0], h[1], h[2]], [h[3], h[4], h[5]], [h[6], h[7], h[8]]];
+    // The pairs are of size 1 here, so a map that squeezes the floor into a line shows in its determinant.
+    if determinant(&matrix).abs() < 1e-7 {
+        return Err(on_a_line());
+    }
+    Ok(matrix)
+}
+
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix: cyclic Jacobi rotations (Golub and Van Loan, 8.5).
+fn eigen(mut a: [[f64; 9]; 9]) -> ([f64; 9], [[f64; 9]; 9]) {
+    let mut v = [[0.0; 9]; 9];
+    for i in 0..9 {
+        v[i][i] = 1.0;
+    }
+    for _sweep in 0..30 {
+        for p in 0..9 {
+            for q in p + 1..9 {
+                rotate(&mut a, &mut v, p, q);
+            }
+        }
+    }
+    (std::array::from_fn(|i| a[i][i]), v)
+}
+
+fn rotate(a: &mut [[f64; 9]; 9], v: &mut [[f64; 9]; 9], p: usize, q: usize) {
+    if a[p][q].abs() < 1e-300 {
+        return;
+    }
+    let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+    let t = tau.signum() / (tau.abs() + tau.hypot(1.0));
+    let c = 1.0 / t.hypot(1.0);
+    let s = t * c;
+    for k in 0..9 {
+        (a[k][p], a[k][q]) = (c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]);
+        (v[k][p], v[k][q]) = (c * v[k][p] - s * v[k][q], s * v[k][p] + c * v[k][q]);
+    }
+    for k in 0..9 {
+        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+    }
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+fn determinant(m: &Matrix) -> f64 {
+    let [a, b, c] = m.map(Vec3::from);
+    a.dot(b.cross(c))
+}
+
+fn inverse(m: &Matrix) -> Option<Matrix> {
+    let [a, b, c] = m.map(Vec3::from);
+    let columns = [b.cross(c), c.cross(a), a.cross(b)].map(|v| (v * (1.0 / a.dot(b.cross(c)))).to_array());
+    let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+    transposed.iter().flatten().all(|x| x.is_finite()).then_some(transposed)
+}
+
+/// The same map with its largest entry 1.
+fn scaled(m: Matrix) -> Matrix {
+    let largest = m.iter().flatten().fold(0.0_f64, |s, x| s.max(x.abs()));
+    m.map(|row| row.map(|x| x / largest))
+}
+
+fn denominator(m: &Matrix, p: Point2) -> f64 {
+    m[2][0] * p.x + m[2][1] * p.y + m[2][2]
+}
+
+fn apply(m: &Matrix, p: Point2) -> Point2 {
+    let w = denominator(m, p);
+    Point2::new((m[0][0] * p.x + m[0][1] * p.y + m[0][2]) / w, (m[1][0] * p.x + m[1][1] * p.y + m[1][2]) / w)
+}

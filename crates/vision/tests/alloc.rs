@@ -1,0 +1,48 @@
+//! Frames take no memory once lists have grown. Alone in its file: the counter counts the whole process.
+
+use std::alloc::System;
+
+use elbowroom_spatial::Vec3;
+use elbowroom_vision::render::{Conditions, Renderer, Solid};
+use elbowroom_vision::{
+    ArmPart, Camera, Channels, Frame, Intrinsics, PixelMask, Point2, Settings, Shadows, Template, Vision,
+};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+#[test]
+fn frames_take_no_memory() {
+    let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::ideal(160, 120, 1.1) };
+    let camera = Camera::looking_at(lens, Vec3::new(0.0, -0.2, 4.0), Vec3::ZERO, Vec3::Y).unwrap();
+    let templates = vec![Template::new("crate", 0.6, 0.4, 0.3)];
+    let settings = Settings { templates, shadows: Some(Shadows::default()), learning_frames: 5, ..Settings::default() };
+    let mut vision = Vision::new(camera.clone().into(), settings).unwrap();
+    let mut renderer = Renderer::new(camera, Channels::Rgb, 1);
+    let (mut frame, mut mask) = (Frame::default(), PixelMask::new(160, 120));
+    let (mut measured, mut told) = (0, 0);
+    // Rounds of the same: the first ones let the lists, which change places, grow.
+    for i in 0..325_u32 {
+        let t = f64::from(i.saturating_sub(5) % 80) / 80.0;
+        let solids = [
+            Solid::cuboid(Point2::new(-1.0 + 2.0 * t, 0.1), Vec3::new(0.6, 0.4, 0.3), t, 220),
+            Solid::cuboid(Point2::new(1.0 - 2.0 * t, -0.3), Vec3::new(0.4, 0.4, 0.3), t, 20),
+        ];
+        let arm = [ArmPart::Capsule { from: Vec3::new(0.0, 1.5, 1.0), to: Vec3::new(t, 0.0, 1.0), radius_m: 0.1 }];
+        let conditions = Conditions { seed: 9 + u64::from(i.saturating_sub(5) % 80), ..Conditions::default() };
+        let painted = [(arm[0].clone(), 230)];
+        renderer.render(if i < 5 { &[] } else { &solids }, &painted, &conditions, &mut frame).unwrap();
+        frame.stamp_s = f64::from(i) * 0.04;
+        let region = Region::new(ALLOCATOR);
+        mask.clear();
+        mask.hide_arm(vision.calibration(), &arm, 0.02).unwrap();
+        told += vision.process(&frame, Some(&mask)).unwrap().obstacles.len();
+        let change = region.change();
+        if i >= 245 {
+            measured += change.allocations + change.reallocations;
+        }
+    }
+    assert!(told > 200, "{told}");
+    assert_eq!(measured, 0);
+}
