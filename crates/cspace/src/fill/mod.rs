@@ -11,16 +11,23 @@
 //!
 //! The upper arm blocks whole rows. Backwards (`r < 0`) is a second wedge, opposite to the first.
 
+mod arcs;
+mod body;
+mod convex;
+mod fan;
 mod lanes;
+mod outline;
 mod row;
 mod slice;
 mod sphere;
+mod support;
 mod upper;
 
 use fearless_simd::{Level, dispatch};
 
 use crate::obstacle::Solid;
-use crate::{ArmError, Grid, Layer, Obstacle, PlanarArm};
+use crate::{ArmError, Axis, Grid, Layer, Obstacle, PlanarArm};
+use body::{BoxBody, HullBody};
 use lanes::WIDTH;
 
 /// Turns obstacles into layers for one arm and one grid; holds what does not change, sines and cosines above all.
@@ -59,6 +66,8 @@ pub struct Filler {
 struct Directions {
     cos: Vec<f32>,
     sin: Vec<f32>,
+    /// Cell of θ3, at this θ2, in which the forearm points outward (angle 0 in the shoulder's frame).
+    zero: Vec<f32>,
 }
 
 /// Why an arm and a grid cannot be filled fast.
@@ -82,11 +91,16 @@ pub(crate) const MOST_DEGREES: f64 = 15.0;
 
 impl Directions {
     /// Of the upper arm, at `count` values of θ2.
-    fn new(count: usize, theta2: impl Fn(usize) -> f64) -> Self {
+    fn new(count: usize, elbow: &Axis, theta2: impl Fn(usize) -> f64) -> Self {
         let padded = count.next_multiple_of(WIDTH) + WIDTH;
         // The last value is repeated into the padding: as good as any, and finite.
-        let at = |i: usize| theta2(i.min(count - 1)).sin_cos();
-        Self { cos: (0..padded).map(|i| at(i).0 as f32).collect(), sin: (0..padded).map(|i| -at(i).1 as f32).collect() }
+        let theta2 = |i: usize| theta2(i.min(count - 1));
+        let at = |i: usize| theta2(i).sin_cos();
+        Self {
+            zero: (0..padded).map(|i| ((-theta2(i) - elbow.min()) / elbow.step()) as f32).collect(),
+            cos: (0..padded).map(|i| at(i).0 as f32).collect(),
+            sin: (0..padded).map(|i| -at(i).1 as f32).collect(),
+        }
     }
 }
 
@@ -103,14 +117,14 @@ impl Filler {
                 return Err(FillError::Coarse { joint: axis.joint().to_owned(), degrees });
             }
         }
-        let [base, shoulder, _] = grid.axes();
+        let [base, shoulder, elbow] = grid.axes();
         let planes = (0..base.count()).map(|i| base.center(i).sin_cos()).map(|(sin, cos)| [cos, sin]).collect();
         Ok(Self {
             arm,
             level: Level::new(),
             planes,
-            borders: Directions::new(shoulder.count() + 1, |i| shoulder.border(i)),
-            middles: Directions::new(shoulder.count(), |i| shoulder.center(i)),
+            borders: Directions::new(shoulder.count() + 1, elbow, |i| shoulder.border(i)),
+            middles: Directions::new(shoulder.count(), elbow, |i| shoulder.center(i)),
             scratch: slice::Scratch::new(shoulder.count()),
             grid: grid.clone(),
         })
@@ -130,15 +144,19 @@ impl Filler {
     pub fn fill(&mut self, obstacle: &Obstacle, layer: &mut Layer) {
         layer.spans.clear();
         let level = self.level;
+        let shoulder = [self.arm.offset_m, self.arm.height_m];
         match &obstacle.solid {
             Solid::Sphere { center, radius } => {
                 let ball = sphere::Ball { center: *center, radius: *radius };
                 dispatch!(level, simd => sphere::fill(simd, self, &ball, layer));
             }
-            Solid::Cuboid { .. } | Solid::Hull { .. } => {
-                let (center, radius) = obstacle.enclosing_sphere();
-                let ball = sphere::Ball { center, radius };
-                dispatch!(level, simd => sphere::fill(simd, self, &ball, layer));
+            Solid::Cuboid { in_base, half_extents } => {
+                let mut body = BoxBody::new(in_base, *half_extents, shoulder);
+                dispatch!(level, simd => convex::fill(simd, self, &mut body, obstacle.enclosing_sphere(), layer));
+            }
+            Solid::Hull { in_base, hull } => {
+                let mut body = HullBody::of(in_base, hull, shoulder);
+                dispatch!(level, simd => convex::fill(simd, self, &mut body, obstacle.enclosing_sphere(), layer));
             }
         }
     }

@@ -52,7 +52,7 @@ impl Rows {
         let (a, b) = (lo - turns, hi - turns);
         let all = (b - a).simd_ge(turn).to_bitmask() as u16 & hit;
         let first: i32x16<S> = a.min(splat(simd, self.count)).floor().to_int();
-        let last: i32x16<S> = b.min(splat(simd, self.count)).floor().to_int();
+        let last: i32x16<S> = b.min(turn + turn).floor().to_int();
         let again: i32x16<S> = (b - turn).max(splat(simd, -1.0)).min(splat(simd, self.count)).floor().to_int();
         let (first, last, again) = (first.to_array(), last.to_array(), again.to_array());
         let full = full | all;
@@ -67,6 +67,23 @@ impl Rows {
             }
             let lane = lane as usize;
             self.pieces(row, first[lane], last[lane], again[lane], layer);
+        }
+    }
+
+    /// One row, angles in radians in f64; `base` is the cell coordinate of angle 0.
+    pub fn emit_one(&self, row: u32, base: f32, [lo, hi]: [f64; 2], layer: &mut Layer) {
+        let (scale, turn, margin) = (f64::from(self.scale), f64::from(self.turn), f64::from(self.margin));
+        let lo = lo * scale + f64::from(base) - margin;
+        let hi = hi * scale + f64::from(base) + margin;
+        let (lo, hi) = if hi - lo >= turn { (0.0, f64::from(self.count)) } else { (lo, hi) };
+        let from = (-hi / turn).ceil() as i32;
+        for k in from.. {
+            let shift = turn * f64::from(k);
+            if lo + shift >= f64::from(self.count) {
+                break;
+            }
+            let (first, last) = ((lo + shift).max(0.0) as u16, (hi + shift).min(f64::from(self.last)) as u16);
+            layer.spans.push(Span { row, first, last });
         }
     }
 
