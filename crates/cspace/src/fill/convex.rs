@@ -75,7 +75,6 @@ pub(super) fn fill<S: Simd, B: Body>(
             if !shared.may_reach(plane, side) {
                 continue;
             }
-            let between = layer.spans.len();
             body.turn(plane);
             if !outlines.of(simd, &shared, body, side) {
                 continue;
@@ -86,9 +85,9 @@ pub(super) fn fill<S: Simd, B: Body>(
             {
                 upper::mark(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, &mut scratch.full);
             }
-            let first = i * shoulder.count();
-            ordered &= between == before;
-            ordered &= rows(simd, &shared, &outlines, middles, (first, shoulder.count()), &scratch.full, layer);
+            let plane = Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles };
+            ordered &= before == layer.spans.len();
+            ordered &= outlines.parts(simd, &shared, body, side, &plane, layer);
         }
         if !ordered {
             layer.spans[before..].sort_unstable();
@@ -111,36 +110,113 @@ impl Shared {
 }
 
 impl Outlines {
-    /// False where nothing of the arm reaches.
+    /// The whole outlines of one plane; false where nothing of the arm reaches.
     #[inline(always)]
     fn of<S: Simd, B: Body>(&mut self, simd: S, shared: &Shared, body: &B, side: f64) -> bool {
         let lean = (shared.tangent * side) as f32;
         let gap = gap(simd, body, lean, side as f32, shared) - shared.margin;
         let arm = &shared.arm;
-        let radii = [arm.upper_radius_m, arm.fore_radius_m, arm.wrist_radius_m].map(|r| r as f32);
-        if !radii.iter().any(|&radius| radius >= gap) {
+        let [upper, fore, wrist] = [arm.upper_radius_m, arm.fore_radius_m, arm.wrist_radius_m].map(|r| r as f32);
+        (self.upper.exists, self.fore.exists, self.wrist.exists) = (upper >= gap, fore >= gap, wrist >= gap);
+        if !(self.upper.exists || self.fore.exists || self.wrist.exists) {
             return false;
         }
         // y is down in the shoulder's frame, z up in the body's.
         self.fan = Fan::new(body.own_directions(lean).map(|[x, z]| [x, -z]));
-        let Self { fan, raw, upper, fore, wrist } = self;
-        for (part, radius) in [&mut *upper, &mut *fore, &mut *wrist].into_iter().zip(radii) {
-            part.exists = radius >= gap;
-        }
-        if upper.exists {
-            far(simd, shared, body, fan, (lean, radii[0]), &mut upper.far);
-            upper.close(simd, fan);
-        }
-        for (part, radius) in [(fore, radii[1]), (wrist, radii[2])] {
-            if part.exists {
-                raw.exists = true;
-                far(simd, shared, body, fan, (lean, radius), &mut raw.far);
-                raw.close(simd, fan);
-                raw.turned_both_ways(simd, fan, shared.turn, part);
-            }
+        if self.upper.exists {
+            far(simd, shared, body, &self.fan, (lean, upper), &mut self.upper.far);
+            self.upper.exists = self.upper.close(simd, &self.fan);
         }
         true
     }
+
+    /// Spans of one plane; false where they do not ascend.
+    ///
+    /// Turning a solid about the shoulder and taking what is convex around it adds little to a solid that is seen within a
+    /// narrow angle, and much to one around the shoulder: such a one is cut into sectors.
+    #[inline(always)]
+    fn parts<S: Simd, B: Body>(
+        &mut self,
+        simd: S,
+        shared: &Shared,
+        body: &B,
+        side: f64,
+        plane: &Plane,
+        layer: &mut Layer,
+    ) -> bool {
+        let lean = (shared.tangent * side) as f32;
+        if !(self.fore.exists || self.wrist.exists) {
+            return rows(simd, shared, self, plane, true, layer);
+        }
+        let spread = self.grown(simd, shared, body, lean, None);
+        let (lo, hi) = spread.unwrap_or((0.0, std::f64::consts::TAU));
+        if hi - lo < NARROW {
+            return rows(simd, shared, self, plane, true, layer);
+        }
+        let sectors = ((hi - lo) / SECTOR).ceil();
+        let exist = (self.fore.exists, self.wrist.exists);
+        for k in 0..sectors as u32 {
+            let border = |k: u32| (lo + (hi - lo) * f64::from(k) / sectors).sin_cos();
+            let ((sin, cos), (next_sin, next_cos)) = (border(k), border(k + 1));
+            let sides = [[sin as f32, -cos as f32], [-next_sin as f32, next_cos as f32]];
+            self.fan = Fan::new(sides.into_iter().chain(body.own_directions(lean).map(|[x, z]| [x, -z])));
+            (self.fore.exists, self.wrist.exists) = exist;
+            self.grown(simd, shared, body, lean, Some(sides));
+            rows(simd, shared, self, plane, k == 0, layer);
+        }
+        false
+    }
+
+    /// The outlines of forearm and wrist, or what of them lies in a sector of these two normals, turned by half a step of
+    /// θ2; the directions in which the larger lies before it is turned.
+    #[inline(always)]
+    fn grown<S: Simd, B: Body>(
+        &mut self,
+        simd: S,
+        shared: &Shared,
+        body: &B,
+        lean: f32,
+        sector: Option<[[f32; 2]; 2]>,
+    ) -> Option<(f64, f64)> {
+        let Self { fan, raw, fore, wrist, .. } = self;
+        let mut spread: Option<Option<(f64, f64)>> = None;
+        for (part, radius) in [(wrist, shared.arm.wrist_radius_m), (fore, shared.arm.fore_radius_m)] {
+            if !part.exists {
+                continue;
+            }
+            far(simd, shared, body, fan, (lean, radius as f32), &mut raw.far);
+            for [x, y] in sector.into_iter().flatten() {
+                let along = |k: &usize| fan.x[*k] * x + fan.y[*k] * y > 1.0 - 1e-5;
+                (0..fan.count).filter(along).for_each(|k| raw.far[k] = raw.far[k].min(shared.margin));
+            }
+            raw.exists = raw.close(simd, fan);
+            if !raw.exists {
+                part.exists = false;
+                continue;
+            }
+            let seen = raw.spread(fan);
+            spread = Some(match (spread, seen) {
+                (None, seen) => seen,
+                (Some(Some(a)), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
+                _ => None,
+            });
+            raw.turned_both_ways(simd, fan, shared.turn, part);
+        }
+        spread.flatten()
+    }
+}
+
+/// Seen within this angle from the shoulder a solid is taken whole, otherwise in sectors of about this many radians.
+const NARROW: f64 = 2.0;
+const SECTOR: f64 = 0.5;
+
+/// The rows of one plane.
+struct Plane<'a> {
+    /// Number of the first row, and how many there are.
+    row: usize,
+    rows: usize,
+    full: &'a [u16],
+    middles: &'a Directions,
 }
 
 /// The radius from which on the grown solid reaches into the wedge, metres; negative where it does by itself.
@@ -177,6 +253,9 @@ fn far<S: Simd, B: Body>(
     // A point at x along the wedge's middle may be x/cos δ1 from the axis.
     let farthest = shared.center.x.hypot(shared.center.y) + shared.around;
     let stretch = splat(simd, (farthest * shared.stretch) as f32);
+    // What the arm cannot reach is of no use, and far corners would be turned far.
+    let length = (shared.arm.upper_length_m + shared.arm.fore_length_m) as f32;
+    let limit = splat(simd, length * (1.0 + 1e-5) + shared.margin);
     for at in (0..fan.count).step_by(WIDTH) {
         let (x, z) = (load(simd, &fan.x[at..]), -load(simd, &fan.y[at..]));
         let reached = reach(simd, body, [x, z], lean, radius);
@@ -186,7 +265,7 @@ fn far<S: Simd, B: Body>(
         let inward = (x * side).simd_lt(zero);
         let reached = inward.select(reached.min(axis), reached);
         let outward = (x * side).max(zero) * stretch;
-        (reached + outward).store_slice(&mut out[at..at + WIDTH]);
+        (reached + outward).min(limit).store_slice(&mut out[at..at + WIDTH]);
     }
 }
 
@@ -196,22 +275,23 @@ fn rows<S: Simd>(
     simd: S,
     shared: &Shared,
     outlines: &Outlines,
-    middles: &Directions,
-    (first, count): (usize, usize),
-    full: &[u16],
+    plane: &Plane,
+    tell_full: bool,
     layer: &mut Layer,
 ) -> bool {
     let mut ordered = true;
-    for (chunk, start) in (0..count).step_by(WIDTH).enumerate() {
-        let inside = if count - start < WIDTH { (1u16 << (count - start)) - 1 } else { !0 };
-        let full = full[chunk] & inside;
-        let row = (first + start) as u32;
-        if full == inside {
+    for (chunk, start) in (0..plane.rows).step_by(WIDTH).enumerate() {
+        let left = plane.rows - start;
+        let inside = if left < WIDTH { (1u16 << left) - 1 } else { !0 };
+        let known = plane.full[chunk] & inside;
+        let full = if tell_full { known } else { 0 };
+        let row = (plane.row + start) as u32;
+        if known == inside {
             let none = [splat(simd, 0.0); 2];
             shared.rows.emit(simd, row, full, 0, none, layer);
             continue;
         }
-        ordered &= sixteen(simd, shared, outlines, middles, (row, start), (full, inside & !full), layer);
+        ordered &= sixteen(simd, shared, outlines, plane.middles, (row, start), (full, inside & !known), layer);
     }
     ordered
 }

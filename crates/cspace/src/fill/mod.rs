@@ -13,6 +13,7 @@
 
 mod arcs;
 mod body;
+mod clip;
 mod convex;
 mod fan;
 mod lanes;

@@ -1,9 +1,13 @@
 //! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
 
-use fearless_simd::{Simd, SimdBase};
+use fearless_simd::{Simd, SimdBase, SimdMask};
 
+use super::clip;
 use super::fan::{Fan, SIZE};
 use super::lanes::{F, WIDTH, load, mad, splat};
+
+/// A line beside the outline whose neighbours meet before it by more than this is drawn in, metres.
+const LOOSE: f32 = 2e-4;
 
 /// A convex outline, shoulder's frame (x outward, y down): points with `normal·p ≤ far` for every direction of a [`Fan`].
 ///
@@ -31,9 +35,27 @@ impl Outline {
         exists: false,
     };
 
-    /// Corners and stretches from the lines' distances.
+    /// Corners and stretches from the lines' distances; lines that do not touch are drawn in first. False where nothing is
+    /// inside.
     #[inline(always)]
-    pub fn close<S: Simd>(&mut self, simd: S, fan: &Fan) {
+    pub fn close<S: Simd>(&mut self, simd: S, fan: &Fan) -> bool {
+        self.corners(simd, fan);
+        let mut loose = false;
+        for at in (0..fan.count).step_by(WIDTH) {
+            let by = load(simd, &self.from[at..]) - load(simd, &self.to[at..]);
+            loose |= by.simd_gt(splat(simd, LOOSE)).any_true();
+        }
+        if loose {
+            if !clip::tighten(fan, &mut self.far) {
+                return false;
+            }
+            self.corners(simd, fan);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn corners<S: Simd>(&mut self, simd: S, fan: &Fan) {
         let first = self.far[0];
         self.far[fan.count..].fill(first);
         for at in (0..fan.count).step_by(WIDTH) {
@@ -73,8 +95,26 @@ impl Outline {
             }
             most.store_slice(&mut out.far[at..][..WIDTH]);
         }
-        out.close(simd, fan);
+        out.corners(simd, fan);
         out.exists = self.exists;
+    }
+
+    /// Directions from the shoulder in which the outline lies, lowest and highest angle, radians; `None` where the
+    /// shoulder is inside.
+    pub fn spread(&self, fan: &Fan) -> Option<(f64, f64)> {
+        let (k, nearest) = (0..fan.count).map(|k| (k, self.far[k])).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        if !(nearest < 0.0) {
+            return None;
+        }
+        let ahead = [-f64::from(fan.x[k]), -f64::from(fan.y[k])];
+        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+        for k in 0..fan.count {
+            let (x, y) = (f64::from(self.corner_x[k]), f64::from(self.corner_y[k]));
+            let tangent = (ahead[0] * y - ahead[1] * x) / (ahead[0] * x + ahead[1] * y).max(1e-12);
+            (lo, hi) = (lo.min(tangent), hi.max(tangent));
+        }
+        let middle = ahead[1].atan2(ahead[0]);
+        Some((middle + lo.atan(), middle + hi.atan()))
     }
 
     /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
