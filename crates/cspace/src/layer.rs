@@ -42,3 +42,12 @@ impl Layer {
         self.spans.capacity() * size_of::<Span>()
     }
 }
+
+/// Takes the spans of one row from the front of a list, and those of earlier rows with them.
+pub(crate) fn group<'a>(spans: &mut &'a [Span], row: u32) -> &'a [Span] {
+    let skip = spans.iter().take_while(|span| span.row < row).count();
+    let rest = &spans[skip..];
+    let (here, later) = rest.split_at(rest.iter().take_while(|span| span.row == row).count());
+    *spans = later;
+    here
+}

@@ -5,16 +5,23 @@
 
 mod arm;
 mod axis;
+mod changes;
 mod fill;
 mod grid;
 mod layer;
+mod map;
+mod npy;
 mod obstacle;
+mod reader;
 mod table;
 
 pub use arm::{ArmError, PlanarArm};
 pub use axis::{Axis, AxisError, MOST_CELLS};
+pub use changes::Changes;
 pub use fill::{FillError, Filler};
 pub use grid::{Cell, Grid, TooManyCells};
 pub use layer::{Layer, Span};
+pub use map::JointMap;
 pub use obstacle::{Obstacle, ObstacleError};
+pub use reader::{Reader, Snapshot};
 pub use table::Table;

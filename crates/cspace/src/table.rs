@@ -108,15 +108,21 @@ impl Table {
         }
     }
 
-    /// Replaces a row; true where that changed it.
-    pub(crate) fn replace_row(&mut self, row: usize, words: &[u64]) -> bool {
+    /// True where both tables have one and the same plane in memory.
+    pub(crate) fn shares(&self, other: &Self, plane: usize) -> bool {
+        match (self.planes.get(plane), other.planes.get(plane)) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+
+    pub(crate) fn replace_row(&mut self, row: usize, words: &[u64]) {
         if self.row(row) == words {
-            return false;
+            return;
         }
         let start = row % self.shape[1] * self.words_per_row;
         let plane = Arc::make_mut(&mut self.planes[row / self.shape[1]]);
         plane[start..start + self.words_per_row].copy_from_slice(words);
-        true
     }
 
     /// Blocked cells in order.
