@@ -150,9 +150,11 @@ impl JointMap {
         let mut others: Vec<&[Span]> =
             self.layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, l))| l.spans()).collect();
         let last = self.table.shape()[2] as u16 - 1;
+        let rows = self.table.shape()[0] * self.table.shape()[1];
         while let Some(row) = first_row(was, now) {
             let (before, after) = (group(&mut was, row), group(&mut now, row));
-            if before == after {
+            // A layer made for another grid may know rows that this one has not.
+            if before == after || row as usize >= rows {
                 continue;
             }
             self.row.copy_from_slice(self.fixed.row(row as usize));

@@ -1,5 +1,7 @@
 //! Boxes and convex polyhedra: outlines plane by plane, intervals row by row.
 
+use std::ops::Range;
+
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
@@ -26,6 +28,8 @@ struct Shared {
     turn: [f32; 2],
     /// Margin for single precision, metres.
     margin: f32,
+    sectors: [f64; 2],
+    apart: f32,
 }
 
 /// Outlines for the radii of the three parts: the upper arm's as it is, the others turned by half a step of θ2.
@@ -43,6 +47,7 @@ pub(super) fn fill<S: Simd, B: Body>(
     filler: &mut Filler,
     body: &mut B,
     (center, radius): (Vec3, f64),
+    which: Range<usize>,
     layer: &mut Layer,
 ) {
     let [half1, half2, _] = filler.grid.half_widths();
@@ -58,9 +63,11 @@ pub(super) fn fill<S: Simd, B: Body>(
         stretch: 1.0 / half1.cos() - 1.0,
         turn: [half2.sin() as f32, half2.cos() as f32],
         margin: (4e-6 * size) as f32,
+        sectors: sectors(half2 * 2.0),
+        apart: apart(half2 * 2.0),
     };
     let mut outlines = Outlines {
-        fan: Fan::new([[1.0, 0.0]].into_iter()),
+        fan: Fan::new([[1.0, 0.0]].into_iter(), shared.apart),
         raw: Outline::EMPTY,
         upper: Outline::EMPTY,
         fore: Outline::EMPTY,
@@ -68,7 +75,7 @@ pub(super) fn fill<S: Simd, B: Body>(
     };
     let Filler { grid, planes, middles, scratch, .. } = filler;
     let shoulder = &grid.axes()[1];
-    for (i, &plane) in planes.iter().enumerate() {
+    for (i, &plane) in planes.iter().enumerate().take(which.end).skip(which.start) {
         let before = layer.spans.len();
         let mut ordered = true;
         for side in [1.0, -1.0] {
@@ -122,7 +129,7 @@ impl Outlines {
             return false;
         }
         // y is down in the shoulder's frame, z up in the body's.
-        self.fan = Fan::new(body.own_directions(lean).map(|[x, z]| [x, -z]));
+        self.fan = Fan::new(body.own_directions(lean).map(|[x, z]| [x, -z]), shared.apart);
         if self.upper.exists {
             far(simd, shared, body, &self.fan, (lean, upper), &mut self.upper.far);
             self.upper.exists = self.upper.close(simd, &self.fan);
@@ -150,16 +157,16 @@ impl Outlines {
         }
         let spread = self.grown(simd, shared, body, lean, None);
         let (lo, hi) = spread.unwrap_or((0.0, std::f64::consts::TAU));
-        if hi - lo < NARROW {
+        if hi - lo < shared.sectors[0] {
             return rows(simd, shared, self, plane, true, layer);
         }
-        let sectors = ((hi - lo) / SECTOR).ceil();
+        let sectors = ((hi - lo) / shared.sectors[1]).ceil();
         let exist = (self.fore.exists, self.wrist.exists);
         for k in 0..sectors as u32 {
             let border = |k: u32| (lo + (hi - lo) * f64::from(k) / sectors).sin_cos();
             let ((sin, cos), (next_sin, next_cos)) = (border(k), border(k + 1));
             let sides = [[sin as f32, -cos as f32], [-next_sin as f32, next_cos as f32]];
-            self.fan = Fan::new(sides.into_iter().chain(body.own_directions(lean).map(|[x, z]| [x, -z])));
+            self.fan = Fan::new(sides.into_iter().chain(body.own_directions(lean).map(|[x, z]| [x, -z])), shared.apart);
             (self.fore.exists, self.wrist.exists) = exist;
             self.grown(simd, shared, body, lean, Some(sides));
             rows(simd, shared, self, plane, k == 0, layer);
@@ -186,8 +193,11 @@ impl Outlines {
             }
             far(simd, shared, body, fan, (lean, radius as f32), &mut raw.far);
             for [x, y] in sector.into_iter().flatten() {
-                let along = |k: &usize| fan.x[*k] * x + fan.y[*k] * y > 1.0 - 1e-5;
-                (0..fan.count).filter(along).for_each(|k| raw.far[k] = raw.far[k].min(shared.margin));
+                // The nearest direction is this one: sides come first into the fan.
+                let along = |k: &usize| fan.x[*k] * x + fan.y[*k] * y;
+                if let Some(k) = (0..fan.count).max_by(|a, b| along(a).total_cmp(&along(b))) {
+                    raw.far[k] = raw.far[k].min(shared.margin);
+                }
             }
             raw.exists = raw.close(simd, fan);
             if !raw.exists {
@@ -206,9 +216,17 @@ impl Outlines {
     }
 }
 
-/// Seen within this angle from the shoulder a solid is taken whole, otherwise in sectors of about this many radians.
-const NARROW: f64 = 2.0;
-const SECTOR: f64 = 0.5;
+/// Seen within the first angle from the shoulder a solid is taken whole, otherwise in sectors of about the second; radians.
+/// Coarse tables have few cells inside for those that are blocked needlessly at the border, and few rows to pay for.
+fn sectors(step2: f64) -> [f64; 2] {
+    let whole = (0.08 / step2).clamp(0.6, 2.0);
+    [whole, (whole / 3.0).clamp(0.25, 0.5)]
+}
+
+/// Cosine of the angle between neighbouring lines: 24 degrees, 12 in coarse tables.
+fn apart(step2: f64) -> f32 {
+    if step2 > 0.045 { 0.978 } else { 0.9135 }
+}
 
 /// The rows of one plane.
 struct Plane<'a> {

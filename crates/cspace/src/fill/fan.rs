@@ -3,13 +3,11 @@
 use super::lanes::WIDTH;
 
 /// Most directions of an outline: sixteen of the obstacle's own, the rest to round corners.
-pub(super) const MOST: usize = 48;
+pub(super) const MOST: usize = 80;
 /// Room for them and a whole vector of padding.
 pub(super) const SIZE: usize = MOST + WIDTH;
 /// Directions of the obstacle's own that are used.
 const OWN: usize = 16;
-/// Corners are rounded by lines at most 24 degrees apart.
-const APART: f32 = 0.9135;
 /// Closer directions than 0.1 degrees (sine) are taken as one.
 const SAME: f32 = 0.0017;
 
@@ -22,14 +20,15 @@ pub(super) struct Fan {
 }
 
 impl Fan {
-    /// The directions given (any length, any order; zeros are left out) and more between them.
-    pub fn new(own: impl Iterator<Item = [f32; 2]>) -> Self {
+    /// The directions given (any length, any order; zeros are left out) and more between them, so that neighbours are at
+    /// most an angle of cosine `apart` (0.97 or less) apart: lines that far apart round the corners.
+    pub fn new(own: impl Iterator<Item = [f32; 2]>, apart: f32) -> Self {
         let (sorted, count) = sorted(own);
         let mut fan = Self { count: 0, x: [0.0; SIZE], y: [0.0; SIZE] };
         for i in 0..count {
             let next = sorted[(i + 1) % count];
             fan.push(sorted[i]);
-            fan.round(sorted[i], next, 5);
+            fan.round(sorted[i], next, apart, 5);
         }
         let (x, y) = (fan.x[0], fan.y[0]);
         fan.x[fan.count..].fill(x);
@@ -45,16 +44,16 @@ impl Fan {
     }
 
     /// Directions between `a` and `b`, halving.
-    fn round(&mut self, a: [f32; 2], b: [f32; 2], depth: u32) {
+    fn round(&mut self, a: [f32; 2], b: [f32; 2], apart: f32, depth: u32) {
         let (dot, cross) = (a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0]);
-        if depth == 0 || (dot > APART && cross >= 0.0) {
+        if depth == 0 || (dot > apart && cross >= 0.0) {
             return;
         }
         // Beyond half a turn the sum points the wrong way; close to it, nowhere.
         let middle = if dot < -0.9 || cross < 0.0 { [-a[1], a[0]] } else { unit([a[0] + b[0], a[1] + b[1]]) };
-        self.round(a, middle, depth - 1);
+        self.round(a, middle, apart, depth - 1);
         self.push(middle);
-        self.round(middle, b, depth - 1);
+        self.round(middle, b, apart, depth - 1);
     }
 }
 
@@ -113,13 +112,13 @@ mod tests {
     use super::*;
 
     fn check(own: &[[f32; 2]]) -> usize {
-        let fan = Fan::new(own.iter().copied());
+        let fan = Fan::new(own.iter().copied(), 0.92);
         for i in 0..fan.count {
             let j = (i + 1) % fan.count;
             let (a, b) = ([fan.x[i], fan.y[i]], [fan.x[j], fan.y[j]]);
             assert!((a[0].hypot(a[1]) - 1.0).abs() < 1e-6);
             let (dot, cross) = (a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0]);
-            assert!(cross > 0.0 && dot > 0.9, "{own:?}: {a:?} {b:?}");
+            assert!(cross > 0.0 && dot > 0.92, "{own:?}: {a:?} {b:?}");
         }
         fan.count
     }
@@ -134,9 +133,16 @@ mod tests {
     }
 
     #[test]
+    fn there_is_always_room() {
+        let own = |i: u32| if i < 16 { [(0.023 * i as f32).cos(), (0.023 * i as f32).sin()] } else { [0.0; 2] };
+        let fan = Fan::new((0..40).map(own), 0.978);
+        assert!(fan.count < MOST, "{}", fan.count);
+    }
+
+    #[test]
     fn own_directions_are_kept() {
         let own = [[1.0, 0.13], [-0.7, 0.3], [0.2, -1.0]];
-        let fan = Fan::new(own.into_iter());
+        let fan = Fan::new(own.into_iter(), 0.97);
         for o in own {
             let found = (0..fan.count).any(|i| (fan.x[i] * o[1] - fan.y[i] * o[0]).abs() < 1e-6);
             assert!(found, "{o:?}");

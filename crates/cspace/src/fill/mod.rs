@@ -24,6 +24,8 @@ mod sphere;
 mod support;
 mod upper;
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
 use crate::obstacle::Solid;
@@ -143,21 +145,27 @@ impl Filler {
 
     /// Replaces a layer by what an obstacle blocks: every cell in whose box any configuration touches it.
     pub fn fill(&mut self, obstacle: &Obstacle, layer: &mut Layer) {
+        self.fill_planes(obstacle, 0..self.planes.len(), layer);
+    }
+
+    /// The same for some cells of θ1 only; the others stay free.
+    pub(crate) fn fill_planes(&mut self, obstacle: &Obstacle, which: Range<usize>, layer: &mut Layer) {
         layer.spans.clear();
         let level = self.level;
         let shoulder = [self.arm.offset_m, self.arm.height_m];
+        let around = obstacle.enclosing_sphere();
         match &obstacle.solid {
             Solid::Sphere { center, radius } => {
                 let ball = sphere::Ball { center: *center, radius: *radius };
-                dispatch!(level, simd => sphere::fill(simd, self, &ball, layer));
+                dispatch!(level, simd => sphere::fill(simd, self, &ball, which, layer));
             }
             Solid::Cuboid { in_base, half_extents } => {
                 let mut body = BoxBody::new(in_base, *half_extents, shoulder);
-                dispatch!(level, simd => convex::fill(simd, self, &mut body, obstacle.enclosing_sphere(), layer));
+                dispatch!(level, simd => convex::fill(simd, self, &mut body, around, which, layer));
             }
             Solid::Hull { in_base, hull } => {
                 let mut body = HullBody::of(in_base, hull, shoulder);
-                dispatch!(level, simd => convex::fill(simd, self, &mut body, obstacle.enclosing_sphere(), layer));
+                dispatch!(level, simd => convex::fill(simd, self, &mut body, around, which, layer));
             }
         }
     }

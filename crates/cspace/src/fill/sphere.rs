@@ -1,5 +1,7 @@
 //! A ball: its outline in the plane is a disk, and everything has a closed form.
 
+use std::ops::Range;
+
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
@@ -51,12 +53,12 @@ impl Wedge {
 }
 
 #[inline(always)]
-pub(super) fn fill<S: Simd>(simd: S, filler: &mut Filler, ball: &Ball, layer: &mut Layer) {
+pub(super) fn fill<S: Simd>(simd: S, filler: &mut Filler, ball: &Ball, which: Range<usize>, layer: &mut Layer) {
     let wedge = Wedge::new(filler, ball);
     let rows = Rows::new(&filler.grid.axes()[2]);
     let Filler { arm, grid, planes, borders, scratch, .. } = filler;
     let shoulder = &grid.axes()[1];
-    for (i, &[cos, sin]) in planes.iter().enumerate() {
+    for (i, &[cos, sin]) in planes.iter().enumerate().take(which.end).skip(which.start) {
         let first = i * shoulder.count();
         let before = layer.spans.len();
         for side in [1.0, -1.0] {
