@@ -88,31 +88,53 @@ fn no_configuration_that_touches_a_hard_box_lies_in_a_free_cell() {
 #[test]
 fn no_configuration_that_touches_a_random_solid_lies_in_a_free_cell() {
     let mut random = Random(77);
-    for round in 0..40 {
+    for round in 0..48 {
         let step = [3.0, 4.0, 7.0, 12.0][round % 4];
         let ranges = [[-185.0, 185.0], [-140.0, 155.0], [-240.0, 200.0]];
         let grid = if round % 2 == 0 { grid(step) } else { grid_of(step, ranges) };
-        let arm = if round % 3 == 0 { PlanarArm { offset_m: -0.1, wrist_radius_m: 0.05, ..ARM } } else { ARM };
+        let arm = match round % 3 {
+            0 => PlanarArm { offset_m: -0.1, wrist_radius_m: 0.05, ..ARM },
+            1 => PlanarArm { upper_radius_m: 0.0, fore_radius_m: 0.001, wrist_radius_m: 0.0, ..ARM },
+            _ => ARM,
+        };
         let obstacle = random_obstacle(&mut random);
         check(&arm, &grid, &obstacle, (1_500, 2_500), &mut random);
     }
 }
 
 #[test]
-fn a_box_smaller_by_2_mm_would_be_noticed() {
+fn a_hundred_thousand_configurations_of_the_baseline() {
+    let mut random = Random(13);
+    check(&ARM, &grid(2.0), &baseline(0.0), (100_000, 100_000), &mut random);
+}
+
+#[test]
+fn solids_smaller_by_2_mm_would_be_noticed() {
     let mut random = Random(7);
     let grid = grid(2.0);
-    let table = fill(&ARM, &grid, &baseline(0.002));
-    assert!(misses(&ARM, &grid, &table, &baseline(0.0), (0, 20_000), &mut random) > 0);
+    let places = [
+        ([1.3, 0.4, 0.9], [0.0, 0.0, 0.52]),
+        ([1.3, 0.4, 0.9], [0.4, 0.7, 0.5]),
+        ([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9]),
+    ];
+    for (at, rpy) in places {
+        let table = fill(&ARM, &grid, &cuboid(at, rpy, [0.248, 0.198, 0.298]));
+        let whole = cuboid(at, rpy, [0.25, 0.2, 0.3]);
+        assert!(misses(&ARM, &grid, &table, &whole, (0, 20_000), &mut random) > 0, "{at:?}");
+    }
 }
 
 #[test]
 fn few_cells_are_blocked_needlessly() {
     let mut random = Random(11);
+    let grid = grid(2.0);
     for (i, obstacle) in hard_cases().iter().enumerate() {
-        let grid = grid(2.0);
         let table = fill(&ARM, &grid, obstacle);
-        let share = needless(&ARM, &grid, &table, obstacle, 400, &mut random);
+        let samples = if i == 0 { 4000 } else { 500 };
+        let share = needless(&ARM, &grid, &table, obstacle, samples, &mut random);
         println!("case {i}: {} blocked, {:.2} % needlessly", table.blocked(), share * 100.0);
+        // A floor that only the wrist reaches blocks a thin shell: nearly every cell is at the border.
+        let most = [0.006, 0.03, 0.06][usize::from(i > 0) + usize::from(i == 11)];
+        assert!(share <= most, "case {i}: {share}");
     }
 }

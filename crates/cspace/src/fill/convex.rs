@@ -28,6 +28,9 @@ struct Shared {
     turn: [f32; 2],
     /// Margin for single precision, metres.
     margin: f32,
+    /// From an elbow farther than this from the enclosing ball's middle nothing is reached, whatever θ1 and θ2 within their
+    /// cells, metres.
+    reach: f32,
     sectors: [f64; 2],
     apart: f32,
 }
@@ -63,7 +66,8 @@ pub(super) fn fill<S: Simd, B: Body>(
         stretch: 1.0 / half1.cos() - 1.0,
         turn: [half2.sin() as f32, half2.cos() as f32],
         margin: (4e-6 * size) as f32,
-        sectors: sectors(half2 * 2.0),
+        reach: ((radius + thickest + arm.fore_length_m) * 1.001 + size * (half1 + half2)) as f32,
+        sectors: sectors(half2 * 2.0, radius > arm.fore_length_m),
         apart: apart(half2 * 2.0),
     };
     let mut outlines = Outlines {
@@ -92,7 +96,9 @@ pub(super) fn fill<S: Simd, B: Body>(
             {
                 upper::mark(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, &mut scratch.full);
             }
-            let plane = Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles };
+            let out = center.x * plane[0] + center.y * plane[1] - arm.offset_m;
+            let middle = [out as f32, (arm.height_m - center.z) as f32];
+            let plane = Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, middle };
             ordered &= before == layer.spans.len();
             ordered &= outlines.parts(simd, &shared, body, side, &plane, layer);
         }
@@ -217,10 +223,11 @@ impl Outlines {
 }
 
 /// Seen within the first angle from the shoulder a solid is taken whole, otherwise in sectors of about the second; radians.
-/// Coarse tables have few cells inside for those that are blocked needlessly at the border, and few rows to pay for.
-fn sectors(step2: f64) -> [f64; 2] {
-    let whole = (0.08 / step2).clamp(0.6, 2.0);
-    [whole, (whole / 3.0).clamp(0.25, 0.5)]
+/// Coarse tables have few cells inside for those that are blocked needlessly at the border, and few rows to pay for; floors
+/// and walls that the arm just reaches are all border.
+fn sectors(step2: f64, large: bool) -> [f64; 2] {
+    let whole = if large { 0.6 } else { (0.08 / step2).clamp(0.6, 2.0) };
+    [whole, 0.25]
 }
 
 /// Cosine of the angle between neighbouring lines: 24 degrees, 12 in coarse tables.
@@ -235,21 +242,20 @@ struct Plane<'a> {
     rows: usize,
     full: &'a [u16],
     middles: &'a Directions,
+    /// The enclosing ball's middle, shoulder's frame.
+    middle: [f32; 2],
 }
 
 /// The radius from which on the grown solid reaches into the wedge, metres; negative where it does by itself.
 #[inline(always)]
 fn gap<S: Simd, B: Body>(simd: S, body: &B, lean: f32, side: f32, shared: &Shared) -> f32 {
-    let s = |value: f32| splat(simd, value);
-    let none = s(0.0);
-    let reach_beside = |across: f32| {
-        let tilt = Tilt { x: none, z: none, lean: s(lean), side: s(across) };
-        body.piece(simd, &tilt, s(1.0)).slope
-    };
-    let over = 1.0 / (1.0 + lean * lean).sqrt();
-    let beside = reach_beside(1.0).min(reach_beside(-1.0)) * s(over);
-    let tilt = Tilt { x: s(side), z: none, lean: none, side: none };
-    let ahead = body.piece(simd, &tilt, none).at + s(side * shared.arm.offset_m as f32);
+    let (none, one) = (splat(simd, 0.0), splat(simd, 1.0));
+    let right = Tilt { x: none, z: none, lean: splat(simd, lean), side: one };
+    let left = Tilt { side: -one, ..right };
+    let over = splat(simd, 1.0 / (1.0 + lean * lean).sqrt());
+    let beside = body.piece(simd, &right, one).slope.min(body.piece(simd, &left, one).slope) * over;
+    let ahead = Tilt { x: splat(simd, side), z: none, lean: none, side: none };
+    let ahead = body.piece(simd, &ahead, none).at + splat(simd, side * shared.arm.offset_m as f32);
     -beside.min(ahead).to_array()[0]
 }
 
@@ -309,7 +315,7 @@ fn rows<S: Simd>(
             shared.rows.emit(simd, row, full, 0, none, layer);
             continue;
         }
-        ordered &= sixteen(simd, shared, outlines, plane.middles, (row, start), (full, inside & !known), layer);
+        ordered &= sixteen(simd, shared, outlines, plane, (row, start), (full, inside & !known), layer);
     }
     ordered
 }
@@ -327,13 +333,18 @@ fn sixteen<S: Simd>(
     simd: S,
     shared: &Shared,
     outlines: &Outlines,
-    middles: &Directions,
+    plane: &Plane,
     (row, start): (u32, usize),
     (full, open): (u16, u16),
     layer: &mut Layer,
 ) -> bool {
     let upper = splat(simd, shared.arm.upper_length_m as f32);
+    let middles = plane.middles;
     let elbow = [load(simd, &middles.cos[start..]) * upper, load(simd, &middles.sin[start..]) * upper];
+    if !in_reach(simd, shared, plane.middle, elbow) {
+        shared.rows.emit(simd, row, full, 0, elbow, layer);
+        return true;
+    }
     let fore = Forearm::of(simd, shared, outlines, elbow);
     let wrist = Wrist::of(simd, shared, outlines, elbow);
     let full = full | (fore.all | wrist.all) & open;
@@ -368,6 +379,14 @@ fn sixteen<S: Simd>(
         ordered = false;
     }
     ordered
+}
+
+/// False where the forearm is too short for all of the rows.
+#[inline(always)]
+fn in_reach<S: Simd>(simd: S, shared: &Shared, middle: [f32; 2], elbow: [F<S>; 2]) -> bool {
+    let [x, y] = [elbow[0] - splat(simd, middle[0]), elbow[1] - splat(simd, middle[1])];
+    let reach = splat(simd, shared.reach);
+    mad(x, x, y * y).simd_le(reach * reach).any_true()
 }
 
 #[inline(always)]

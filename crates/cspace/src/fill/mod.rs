@@ -170,3 +170,30 @@ impl Filler {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::{Pose, Vec3};
+
+    use super::*;
+
+    #[test]
+    fn every_instruction_set_blocks_the_same_cells() {
+        let axis = |name: &str, half: f64| Axis::from_degrees(name, -half, half, 3.0).unwrap();
+        let grid = Grid::new([axis("a", 170.0), axis("b", 100.0), axis("c", 140.0)]).unwrap();
+        let tilted = Pose::from_xyz_rpy([0.9, 0.3, 1.2], [0.3, 0.5, 0.7]);
+        let obstacles = [
+            Obstacle::sphere(Vec3::new(0.2, -1.1, 0.8), 0.3).unwrap(),
+            Obstacle::cuboid(tilted, Vec3::new(0.4, 0.2, 0.6)).unwrap(),
+        ];
+        for obstacle in &obstacles {
+            let (mut best, mut plain) = (Layer::new(), Layer::new());
+            let mut filler = Filler::new(PlanarArm::KR125_SIZED, &grid).unwrap();
+            filler.fill(obstacle, &mut best);
+            filler.level = Level::baseline();
+            filler.fill(obstacle, &mut plain);
+            assert_eq!(best, plain);
+            assert!(!best.spans().is_empty());
+        }
+    }
+}

@@ -155,7 +155,7 @@ pub fn border(table: &Table) -> Vec<Cell> {
 }
 
 /// How many samples contradict the table: an arm that touches in a free cell. `uniform` samples anywhere, `beside` samples
-/// in free cells beside blocked ones.
+/// in free cells beside blocked ones; a third as many as `uniform` again turn their back on the obstacle.
 pub fn misses(
     arm: &PlanarArm,
     grid: &Grid,
@@ -170,6 +170,15 @@ pub fn misses(
         let q = random.configuration(grid);
         let cell = grid.cell(q).unwrap();
         missed += usize::from(!table.is_blocked(cell) && touches(arm, q, &shape));
+    }
+    // An arm bent backwards reaches what is behind its base.
+    let center = obstacle.enclosing_sphere().0;
+    let behind = center.y.atan2(center.x) + std::f64::consts::PI;
+    for _ in 0..uniform / 3 {
+        let mut q = random.configuration(grid);
+        q[0] = (behind + random.within(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
+        missed += usize::from(grid.cell(q).is_some_and(|cell| !table.is_blocked(cell)) && touches(arm, q, &shape));
     }
     let cells = border(table);
     for _ in 0..beside {
