@@ -7,7 +7,7 @@ use crate::{Cell, Table};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Word {
     row: u32,
-    word: u16,
+    index: u16,
     was: u64,
     now: u64,
 }
@@ -28,9 +28,9 @@ impl Changes {
     /// Notes a row before and after.
     #[inline]
     pub(crate) fn note(&mut self, row: usize, was: &[u64], now: &[u64]) {
-        for (word, (&was, &now)) in was.iter().zip(now).enumerate() {
+        for (index, (&was, &now)) in was.iter().zip(now).enumerate() {
             if was != now {
-                self.words.push(Word { row: row as u32, word: word as u16, was, now });
+                self.words.push(Word { row: row as u32, index: index as u16, was, now });
             }
         }
     }
@@ -77,7 +77,7 @@ impl Changes {
         self.words.iter().flat_map(move |w| {
             let (plane, row) = (w.row / self.rows_per_plane, w.row % self.rows_per_plane);
             ones(w.was ^ w.now).map(move |bit| {
-                let cell = usize::from(w.word) * 64 + bit;
+                let cell = usize::from(w.index) * 64 + bit;
                 ([plane as u16, row as u16, cell as u16], w.now >> bit & 1 == 1)
             })
         })

@@ -52,7 +52,9 @@ impl Layer {
             }
             for (list, spans) in words.iter_mut().zip([here, there]) {
                 list.fill(0);
-                spans.iter().for_each(|s| mark_row(list, s.first, s.last.min(cells as u16 - 1)));
+                for span in spans {
+                    mark_row(list, span.first, span.last.min(cells as u16 - 1));
+                }
             }
             let both: Vec<u64> = words[0].iter().zip(&words[1]).map(|(a, b)| a & b).collect();
             runs(&both, |first, last| kept.push(Span { row, first, last }));

@@ -107,7 +107,7 @@ fn neighbours(cell: Cell, shape: [usize; 3]) -> impl Iterator<Item = Cell> {
     (0..6).filter_map(move |n: usize| {
         let mut beside = cell;
         let value = &mut beside[n / 2];
-        *value = if n % 2 == 0 { value.checked_sub(1)? } else { *value + 1 };
+        *value = if n.is_multiple_of(2) { value.checked_sub(1)? } else { *value + 1 };
         (usize::from(*value) < shape[n / 2]).then_some(beside)
     })
 }

@@ -112,11 +112,8 @@ fn a_hundred_thousand_configurations_of_the_baseline() {
 fn solids_smaller_by_2_mm_would_be_noticed() {
     let mut random = Random(7);
     let grid = grid(2.0);
-    let places = [
-        ([1.3, 0.4, 0.9], [0.0, 0.0, 0.52]),
-        ([1.3, 0.4, 0.9], [0.4, 0.7, 0.5]),
-        ([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9]),
-    ];
+    let places =
+        [([1.3, 0.4, 0.9], [0.0, 0.0, 0.52]), ([1.3, 0.4, 0.9], [0.4, 0.7, 0.5]), ([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9])];
     for (at, rpy) in places {
         let table = fill(&ARM, &grid, &cuboid(at, rpy, [0.248, 0.198, 0.298]));
         let whole = cuboid(at, rpy, [0.25, 0.2, 0.3]);

@@ -105,7 +105,7 @@ fn best(rounds: usize, mut run: impl FnMut()) -> Duration {
     let once = |_| {
         let start = processor_time();
         run();
-        processor_time() - start
+        processor_time().saturating_sub(start)
     };
     (0..rounds).map(once).min().unwrap_or_default()
 }

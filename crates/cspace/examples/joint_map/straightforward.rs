@@ -1,5 +1,11 @@
 //! What one would write first: forward kinematics per row, distances cell by cell, one byte per cell.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the dispatched loop is compiled without its instructions"
+)]
+#![allow(clippy::needless_bitwise_bool, reason = "branches would keep the loop from being vectorized")]
+
 use elbowroom_cspace::{Axis, Grid, PlanarArm};
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Level, dispatch};

@@ -3,45 +3,46 @@
 use std::ops::Range;
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use fearless_simd::{Select, Simd, SimdBase};
 
 use super::body::{Body, Tilt};
 use super::fan::{Fan, SIZE};
-use super::lanes::{F, WIDTH, atan2, load, mad, splat};
+use super::intervals::{Plane, rows};
+use super::lanes::{WIDTH, load, mad, splat};
 use super::outline::Outline;
 use super::row::Rows;
 use super::support::reach;
-use super::{Directions, Filler, arcs, upper};
+use super::{Filler, upper};
 use crate::{Layer, PlanarArm};
 
 /// What all planes share.
-struct Shared {
-    arm: PlanarArm,
-    rows: Rows,
+pub(super) struct Shared {
+    pub arm: PlanarArm,
+    pub rows: Rows,
     /// The obstacle's enclosing ball, and the largest radius of the arm.
-    center: Vec3,
-    around: f64,
+    pub center: Vec3,
+    pub around: f64,
     /// Tangent of half a step of θ1, and 1/cos − 1.
-    tangent: f64,
-    stretch: f64,
+    pub tangent: f64,
+    pub stretch: f64,
     /// Sine and cosine of half a step of θ2.
-    turn: [f32; 2],
+    pub turn: [f32; 2],
     /// Margin for single precision, metres.
-    margin: f32,
+    pub margin: f32,
     /// From an elbow farther than this from the enclosing ball's middle nothing is reached, whatever θ1 and θ2 within their
     /// cells, metres.
-    reach: f32,
-    sectors: [f64; 2],
-    apart: f32,
+    pub reach: f32,
+    pub sectors: [f64; 2],
+    pub apart: f32,
 }
 
 /// Outlines for the radii of the three parts: the upper arm's as it is, the others turned by half a step of θ2.
-struct Outlines {
-    fan: Fan,
-    raw: Outline,
-    upper: Outline,
-    fore: Outline,
-    wrist: Outline,
+pub(super) struct Outlines {
+    pub fan: Fan,
+    pub raw: Outline,
+    pub upper: Outline,
+    pub fore: Outline,
+    pub wrist: Outline,
 }
 
 #[inline(always)]
@@ -98,7 +99,8 @@ pub(super) fn fill<S: Simd, B: Body>(
             }
             let out = center.x * plane[0] + center.y * plane[1] - arm.offset_m;
             let middle = [out as f32, (arm.height_m - center.z) as f32];
-            let plane = Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, middle };
+            let plane =
+                Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, middle };
             ordered &= before == layer.spans.len();
             ordered &= outlines.parts(simd, &shared, body, side, &plane, layer);
         }
@@ -235,17 +237,6 @@ fn apart(step2: f64) -> f32 {
     if step2 > 0.045 { 0.978 } else { 0.9135 }
 }
 
-/// The rows of one plane.
-struct Plane<'a> {
-    /// Number of the first row, and how many there are.
-    row: usize,
-    rows: usize,
-    full: &'a [u16],
-    middles: &'a Directions,
-    /// The enclosing ball's middle, shoulder's frame.
-    middle: [f32; 2],
-}
-
 /// The radius from which on the grown solid reaches into the wedge, metres; negative where it does by itself.
 #[inline(always)]
 fn gap<S: Simd, B: Body>(simd: S, body: &B, lean: f32, side: f32, shared: &Shared) -> f32 {
@@ -290,239 +281,5 @@ fn far<S: Simd, B: Body>(
         let reached = inward.select(reached.min(axis), reached);
         let outward = (x * side).max(zero) * stretch;
         (reached + outward).min(limit).store_slice(&mut out[at..at + WIDTH]);
-    }
-}
-
-/// Spans of all rows of one plane; false where they do not ascend.
-#[inline(always)]
-fn rows<S: Simd>(
-    simd: S,
-    shared: &Shared,
-    outlines: &Outlines,
-    plane: &Plane,
-    tell_full: bool,
-    layer: &mut Layer,
-) -> bool {
-    let mut ordered = true;
-    for (chunk, start) in (0..plane.rows).step_by(WIDTH).enumerate() {
-        let left = plane.rows - start;
-        let inside = if left < WIDTH { (1u16 << left) - 1 } else { !0 };
-        let known = plane.full[chunk] & inside;
-        let full = if tell_full { known } else { 0 };
-        let row = (plane.row + start) as u32;
-        if known == inside {
-            let none = [splat(simd, 0.0); 2];
-            shared.rows.emit(simd, row, full, 0, none, layer);
-            continue;
-        }
-        ordered &= sixteen(simd, shared, outlines, plane, (row, start), (full, inside & !known), layer);
-    }
-    ordered
-}
-
-/// The least and the greatest direction seen so far, as points.
-#[derive(Clone, Copy)]
-struct Seen<S: Simd> {
-    lo: [F<S>; 2],
-    hi: [F<S>; 2],
-}
-
-/// Sixteen rows.
-#[inline(always)]
-fn sixteen<S: Simd>(
-    simd: S,
-    shared: &Shared,
-    outlines: &Outlines,
-    plane: &Plane,
-    (row, start): (u32, usize),
-    (full, open): (u16, u16),
-    layer: &mut Layer,
-) -> bool {
-    let upper = splat(simd, shared.arm.upper_length_m as f32);
-    let middles = plane.middles;
-    let elbow = [load(simd, &middles.cos[start..]) * upper, load(simd, &middles.sin[start..]) * upper];
-    if !in_reach(simd, shared, plane.middle, elbow) {
-        shared.rows.emit(simd, row, full, 0, elbow, layer);
-        return true;
-    }
-    let fore = Forearm::of(simd, shared, outlines, elbow);
-    let wrist = Wrist::of(simd, shared, outlines, elbow);
-    let full = full | (fore.all | wrist.all) & open;
-    let open = open & !full;
-    let base = load(simd, &middles.zero[start..]);
-    let to_cells = |angle: F<S>| mad(angle, splat(simd, shared.rows.scale), base);
-    let mut ordered = true;
-    let (fore_hit, wrist_hit) = (fore.hit & open, wrist.hit & open);
-    if full | fore_hit | wrist_hit != 0 {
-        let [fore_lo, fore_hi] = angles(simd, fore.seen).map(to_cells);
-        let [wrist_lo, wrist_hi] = angles(simd, wrist.arc).map(to_cells);
-        // The wrist's interval in the turn of the forearm's, and both as one where they meet.
-        let turn = splat(simd, std::f32::consts::TAU * shared.rows.scale);
-        let apart = (fore_lo + fore_hi - wrist_lo - wrist_hi) * splat(simd, 0.5);
-        let shift = (apart / turn).round_ties_even() * turn;
-        let (wrist_lo, wrist_hi) = (wrist_lo + shift, wrist_hi + shift);
-        let meet = (wrist_lo.simd_le(fore_hi) & fore_lo.simd_le(wrist_hi)).to_bitmask() as u16;
-        let both = fore_hit & wrist_hit & meet;
-        let in_both = |x: F<S>, y: F<S>| simd_mask(simd, both).select(x, y);
-        let lo = in_both(fore_lo.min(wrist_lo), simd_mask(simd, fore_hit).select(fore_lo, wrist_lo));
-        let hi = in_both(fore_hi.max(wrist_hi), simd_mask(simd, fore_hit).select(fore_hi, wrist_hi));
-        shared.rows.emit(simd, row, full, fore_hit | wrist_hit, [lo, hi], layer);
-        let twice = fore_hit & wrist_hit & !meet;
-        if twice != 0 {
-            shared.rows.emit(simd, row, 0, twice, [wrist_lo, wrist_hi], layer);
-            ordered = false;
-        }
-    }
-    let several = wrist.several & open;
-    if several != 0 {
-        one_by_one(simd, shared, outlines, elbow, (row, several), base, layer);
-        ordered = false;
-    }
-    ordered
-}
-
-/// False where the forearm is too short for all of the rows.
-#[inline(always)]
-fn in_reach<S: Simd>(simd: S, shared: &Shared, middle: [f32; 2], elbow: [F<S>; 2]) -> bool {
-    let [x, y] = [elbow[0] - splat(simd, middle[0]), elbow[1] - splat(simd, middle[1])];
-    let reach = splat(simd, shared.reach);
-    mad(x, x, y * y).simd_le(reach * reach).any_true()
-}
-
-#[inline(always)]
-fn simd_mask<S: Simd>(simd: S, bits: u16) -> fearless_simd::mask32x16<S> {
-    fearless_simd::mask32x16::from_bitmask(simd, u64::from(bits))
-}
-
-/// Angles of both ends, the second not below the first.
-#[inline(always)]
-fn angles<S: Simd>(simd: S, seen: Seen<S>) -> [F<S>; 2] {
-    let lo = atan2(simd, seen.lo[1], seen.lo[0]);
-    let hi = atan2(simd, seen.hi[1], seen.hi[0]);
-    let around = splat(simd, std::f32::consts::TAU);
-    [lo, hi.simd_lt(lo).select(hi + around, hi)]
-}
-
-/// Rows of which the wrist meets the outline in several arcs.
-#[cold]
-#[inline(never)]
-fn one_by_one<S: Simd>(
-    _: S,
-    shared: &Shared,
-    outlines: &Outlines,
-    elbow: [F<S>; 2],
-    (row, rows): (u32, u16),
-    base: F<S>,
-    layer: &mut Layer,
-) {
-    let ([x, y], base) = (elbow.map(SimdBase::to_array), base.to_array());
-    for lane in (0..WIDTH).filter(|lane| rows >> lane & 1 == 1) {
-        let at = [f64::from(x[lane]), f64::from(y[lane])];
-        arcs::each(&outlines.wrist, &outlines.fan, at, shared.arm.fore_length_m, |lo, hi| {
-            shared.rows.emit_one(row + lane as u32, base[lane], [lo, hi], layer);
-        });
-    }
-}
-
-/// Where the forearm's axis meets its outline, sixteen rows.
-struct Forearm<S: Simd> {
-    /// All directions: the elbow is inside.
-    all: u16,
-    hit: u16,
-    seen: Seen<S>,
-}
-
-impl<S: Simd> Forearm<S> {
-    #[inline(always)]
-    fn of(simd: S, shared: &Shared, outlines: &Outlines, elbow: [F<S>; 2]) -> Self {
-        let (fan, outline) = (&outlines.fan, &outlines.fore);
-        let s = |value: f32| splat(simd, value);
-        let (zero, length) = (s(0.0), shared.arm.fore_length_m as f32);
-        let mut seen = Seen { lo: [zero; 2], hi: [zero; 2] };
-        if !outline.exists {
-            return Self { all: 0, hit: 0, seen };
-        }
-        let mut least = s(f32::INFINITY);
-        let mut any = zero.simd_lt(zero);
-        for k in 0..fan.count {
-            let (x, y) = (s(fan.x[k]), s(fan.y[k]));
-            let gap = s(outline.far[k]) - mad(x, elbow[0], y * elbow[1]);
-            let along = x * elbow[1] - y * elbow[0];
-            least = least.min(gap);
-            let square = s(length * length) - gap * gap;
-            let half = square.max(zero).sqrt();
-            let from = (s(outline.from[k]) - along).max(-half);
-            let to = (s(outline.to[k]) - along).min(half);
-            let meets = square.simd_ge(zero) & from.simd_le(to);
-            // Seen from the elbow, a line in front runs clockwise, one behind counter-clockwise.
-            let front = gap.simd_lt(zero);
-            let (first, last) = (front.select(to, from), front.select(from, to));
-            let (foot_x, foot_y) = (gap * x, gap * y);
-            let lo = [foot_x - first * y, mad(first, x, foot_y)];
-            let hi = [foot_x - last * y, mad(last, x, foot_y)];
-            let before = meets & (!any | cross(seen.lo, lo).simd_lt(zero));
-            let after = meets & (!any | cross(seen.hi, hi).simd_gt(zero));
-            seen.lo = [before.select(lo[0], seen.lo[0]), before.select(lo[1], seen.lo[1])];
-            seen.hi = [after.select(hi[0], seen.hi[0]), after.select(hi[1], seen.hi[1])];
-            any |= meets;
-        }
-        Self { all: least.simd_ge(zero).to_bitmask() as u16, hit: any.to_bitmask() as u16, seen }
-    }
-}
-
-#[inline(always)]
-fn cross<S: Simd>(a: [F<S>; 2], b: [F<S>; 2]) -> F<S> {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-/// Where the wrist, on its circle about the elbow, lies in its outline, sixteen rows.
-struct Wrist<S: Simd> {
-    all: u16,
-    /// Rows with one arc.
-    hit: u16,
-    arc: Seen<S>,
-    /// Rows with several arcs, or where single precision cannot tell.
-    several: u16,
-}
-
-/// A circle that crosses a line this near to its end crosses it, metres.
-const CROSSING: f32 = 1e-5;
-
-impl<S: Simd> Wrist<S> {
-    #[inline(always)]
-    fn of(simd: S, shared: &Shared, outlines: &Outlines, elbow: [F<S>; 2]) -> Self {
-        let (fan, outline) = (&outlines.fan, &outlines.wrist);
-        let s = |value: f32| splat(simd, value);
-        let (zero, one, length) = (s(0.0), s(1.0), shared.arm.fore_length_m as f32);
-        let mut arc = Seen { lo: [zero; 2], hi: [zero; 2] };
-        if !outline.exists {
-            return Self { all: 0, hit: 0, arc, several: 0 };
-        }
-        let mut least = s(f32::INFINITY);
-        let (mut enters, mut leaves) = (zero, zero);
-        for k in 0..fan.count {
-            let (x, y) = (s(fan.x[k]), s(fan.y[k]));
-            let gap = s(outline.far[k]) - mad(x, elbow[0], y * elbow[1]);
-            let along = x * elbow[1] - y * elbow[0];
-            least = least.min(gap);
-            let square = s(length * length) - gap * gap;
-            let half = square.max(zero).sqrt();
-            let from = s(outline.from[k] - CROSSING) - along;
-            let to = s(outline.to[k] + CROSSING) - along;
-            let reached = square.simd_ge(zero);
-            // Counter-clockwise, the circle enters at the far end of the chord and leaves at its near end.
-            let enter = reached & from.simd_le(half) & half.simd_le(to);
-            let leave = reached & from.simd_le(-half) & (-half).simd_le(to);
-            let (foot_x, foot_y) = (gap * x, gap * y);
-            let (side_x, side_y) = (half * y, half * x);
-            arc.lo = [enter.select(foot_x - side_x, arc.lo[0]), enter.select(foot_y + side_y, arc.lo[1])];
-            arc.hi = [leave.select(foot_x + side_x, arc.hi[0]), leave.select(foot_y - side_y, arc.hi[1])];
-            enters += enter.select(one, zero);
-            leaves += leave.select(one, zero);
-        }
-        let single = (enters.simd_eq(one) & leaves.simd_eq(one)).to_bitmask() as u16;
-        let none = (enters + leaves).simd_eq(zero).to_bitmask() as u16;
-        let all = least.simd_ge(s(length)).to_bitmask() as u16;
-        Self { all, hit: single, arc, several: !single & !none & !all }
     }
 }

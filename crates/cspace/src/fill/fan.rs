@@ -87,7 +87,9 @@ fn sorted(own: impl Iterator<Item = [f32; 2]>) -> ([[f32; 2]; OWN], usize) {
     own.for_each(|direction| list.insert(direction));
     if list.count < 3 {
         // One or two would leave the outline open.
-        [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].into_iter().for_each(|axis| list.insert(axis));
+        for axis in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
+            list.insert(axis);
+        }
     }
     (list.found, list.count)
 }

@@ -11,12 +11,19 @@
 //!
 //! The upper arm blocks whole rows. Backwards (`r < 0`) is a second wedge, opposite to the first.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the dispatched kernel is compiled without its instructions"
+)]
+
 mod arcs;
 mod body;
 mod clip;
 mod convex;
 mod fan;
+mod intervals;
 mod lanes;
+mod links;
 mod outline;
 mod row;
 mod slice;

@@ -136,13 +136,13 @@ pub fn border(table: &Table) -> Vec<Cell> {
     let mut found = Vec::new();
     for cell in table.iter() {
         for axis in 0..3 {
-            for step in [-1i32, 1] {
-                let moved = i32::from(cell[axis]) + step;
-                if moved < 0 || moved >= shape[axis] as i32 {
+            let here = cell[axis];
+            for moved in [here.checked_sub(1), here.checked_add(1)].into_iter().flatten() {
+                if usize::from(moved) >= shape[axis] {
                     continue;
                 }
                 let mut beside = cell;
-                beside[axis] = moved as u16;
+                beside[axis] = moved;
                 if !table.is_blocked(beside) {
                     found.push(beside);
                 }
