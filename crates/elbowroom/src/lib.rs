@@ -8,6 +8,7 @@
 //! | [`scene`] | robots and objects together |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
 //! | [`monitor`] | interference regions, checked every control tick |
+//! | [`cspace`] | obstacles as blocked cells of joint space |
 //! | [`vision`] | camera frames and point clouds to obstacles with an identity |
 //! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
 //!
@@ -70,4 +71,5 @@ pub use elbowroom_monitor as monitor;
 pub use elbowroom_proximity as proximity;
 pub use elbowroom_scene as scene;
 pub use elbowroom_spatial as spatial;
+pub use elbowroom_cspace as cspace;
 pub use elbowroom_vision as vision;

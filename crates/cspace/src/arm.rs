@@ -1,0 +1,137 @@
+//! The arm of the joint map: two capsules and a sphere in a plane that turns about the base axis.
+
+use elbowroom_spatial::Vec3;
+
+/// A base axis (z, through the origin), a shoulder, an elbow; upper arm and forearm are capsules, wrist, tool and
+/// work-piece one sphere (S2, section II).
+///
+/// In the plane of θ1, with `r` away from the base axis:
+///
+/// - shoulder `(r, z) = (offset_m, height_m)`;
+/// - elbow = shoulder + `upper_length_m` · (sin θ2, cos θ2): θ2 is measured from the vertical, positive forward;
+/// - wrist = elbow + `fore_length_m` · (cos(θ2 + θ3), −sin(θ2 + θ3)): at θ3 = 0 the forearm is square to the upper arm.
+///
+/// An arm bent backwards has negative `r`.
+///
+/// ```
+/// use elbowroom_cspace::PlanarArm;
+/// let arm = PlanarArm::KR125_SIZED;
+/// let [shoulder, elbow, wrist] = arm.joints_in_base([0.0, 0.0, 0.0]);
+/// assert_eq!((shoulder.x, shoulder.z), (0.35, 0.675));
+/// assert!((elbow.z - (0.675 + 1.15)).abs() < 1e-12 && (wrist.x - (0.35 + 1.2)).abs() < 1e-12);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarArm {
+    /// Distance of the shoulder from the base axis, metres.
+    pub offset_m: f64,
+    /// Height of the shoulder above the base frame, metres.
+    pub height_m: f64,
+    /// Length of the upper arm, metres.
+    pub upper_length_m: f64,
+    /// Radius of the upper arm, metres.
+    pub upper_radius_m: f64,
+    /// Length of the forearm, metres.
+    pub fore_length_m: f64,
+    /// Radius of the forearm, metres.
+    pub fore_radius_m: f64,
+    /// Radius of the sphere around wrist, tool and work-piece, metres.
+    pub wrist_radius_m: f64,
+}
+
+/// Why an arm cannot be used.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the arm's {what} is {value} m: it must be a finite number, {least}")]
+pub struct ArmError {
+    /// Which dimension.
+    pub what: &'static str,
+    /// Its value, metres.
+    pub value: f64,
+    /// What is asked of it.
+    pub least: &'static str,
+}
+
+impl PlanarArm {
+    /// An arm with the main dimensions of a large welding robot (shoulder 350 mm from the axis, links of about 1.2 m).
+    pub const KR125_SIZED: Self = Self {
+        offset_m: 0.35,
+        height_m: 0.675,
+        upper_length_m: 1.15,
+        upper_radius_m: 0.16,
+        fore_length_m: 1.2,
+        fore_radius_m: 0.13,
+        wrist_radius_m: 0.22,
+    };
+
+    /// The small arm of S2: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are θ2 ≥ −30° above the
+    /// horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
+    pub const PAPER: Self = Self {
+        offset_m: 0.0,
+        height_m: 0.0,
+        upper_length_m: 0.225,
+        upper_radius_m: 0.085,
+        fore_length_m: 0.165,
+        fore_radius_m: 0.08,
+        wrist_radius_m: 0.08,
+    };
+
+    /// The joint values of the paper in those of this crate, radians: the paper measures θ2 up from the horizontal and θ3
+    /// as the angle between the links (π is stretched).
+    ///
+    /// ```
+    /// use elbowroom_cspace::PlanarArm;
+    /// use std::f64::consts::PI;
+    /// let [_, theta2, theta3] = PlanarArm::from_paper([0.0, 0.0, PI]); // stretched forward
+    /// let wrist = PlanarArm::PAPER.joints_in_base([0.0, theta2, theta3])[2];
+    /// assert!((wrist.x - 0.39).abs() < 1e-12 && wrist.z.abs() < 1e-12);
+    /// ```
+    pub fn from_paper([base, shoulder, between]: [f64; 3]) -> [f64; 3] {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        [base, FRAC_PI_2 - shoulder, PI - between - FRAC_PI_2]
+    }
+
+    /// Shoulder, elbow and wrist in the base frame at joint values in radians.
+    pub fn joints_in_base(&self, q: [f64; 3]) -> [Vec3; 3] {
+        let (sin1, cos1) = q[0].sin_cos();
+        let at = |[r, z]: [f64; 2]| Vec3::new(r * cos1, r * sin1, z);
+        self.joints_in_plane(q[1], q[2]).map(at)
+    }
+
+    /// Shoulder, elbow and wrist in the plane of θ1: `[r, z]`.
+    pub fn joints_in_plane(&self, theta2: f64, theta3: f64) -> [[f64; 2]; 3] {
+        let shoulder = [self.offset_m, self.height_m];
+        let (sin2, cos2) = theta2.sin_cos();
+        let elbow = [shoulder[0] + self.upper_length_m * sin2, shoulder[1] + self.upper_length_m * cos2];
+        let (sin23, cos23) = (theta2 + theta3).sin_cos();
+        let wrist = [elbow[0] + self.fore_length_m * cos23, elbow[1] - self.fore_length_m * sin23];
+        [shoulder, elbow, wrist]
+    }
+
+    /// Checks the dimensions.
+    ///
+    /// # Errors
+    /// A dimension that is not finite, a negative one (the shoulder's place may be negative), or a link without length.
+    pub fn validate(&self) -> Result<(), ArmError> {
+        let check = |what, value: f64, least, good: bool| {
+            if value.is_finite() && good { Ok(()) } else { Err(ArmError { what, value, least }) }
+        };
+        let place = "of either sign";
+        check("shoulder offset", self.offset_m, place, true)?;
+        check("shoulder height", self.height_m, place, true)?;
+        let positive = [("upper arm length", self.upper_length_m), ("forearm length", self.fore_length_m)];
+        for (what, value) in positive {
+            check(what, value, "above 0", value > 0.0)?;
+        }
+        let radii = [
+            ("upper arm radius", self.upper_radius_m),
+            ("forearm radius", self.fore_radius_m),
+            ("wrist radius", self.wrist_radius_m),
+        ];
+        radii.into_iter().try_for_each(|(what, value)| check(what, value, "0 or more", value >= 0.0))
+    }
+
+    /// No point of the arm is ever farther from the base frame's origin than this, metres.
+    pub fn reach_m(&self) -> f64 {
+        let radius = self.upper_radius_m.max(self.fore_radius_m).max(self.wrist_radius_m);
+        self.offset_m.hypot(self.height_m) + self.upper_length_m + self.fore_length_m + radius
+    }
+}

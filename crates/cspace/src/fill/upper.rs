@@ -1,0 +1,41 @@
+//! Rows that the upper arm blocks.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use crate::Axis;
+
+/// Marks the rows (cells of θ2) in which the upper arm's direction lies within `lo..=hi` for some θ2; angles of
+/// directions in the shoulder's frame (x outward, y down), radians.
+pub(super) fn mark(shoulder: &Axis, lo: f64, hi: f64, full: &mut [u16]) {
+    if hi - lo >= TAU {
+        return mark_cells(0, shoulder.count() - 1, full);
+    }
+    // θ2 = 0 is upward, the direction −π/2.
+    let (lo, hi) = (lo + FRAC_PI_2, hi + FRAC_PI_2);
+    let turn = TAU * (lo / TAU).round();
+    let (lo, hi) = (lo - turn, hi - turn);
+    for turns in shoulder.turns() {
+        let shift = TAU * f64::from(turns);
+        if let Some((first, last)) = shoulder.touched(lo + shift, hi + shift) {
+            mark_cells(first, last, full);
+        }
+    }
+}
+
+fn mark_cells(first: usize, last: usize, full: &mut [u16]) {
+    for row in first..=last {
+        full[row / 16] |= 1 << (row % 16);
+    }
+}
+
+/// Directions from the shoulder in which a link of length `reach` meets a disk: middle and half width, radians.
+pub(super) fn of_disk([x, y]: [f64; 2], radius: f64, reach: f64) -> Option<(f64, f64)> {
+    let square = x * x + y * y - radius * radius;
+    if !(square > 0.0) {
+        return Some((0.0, PI));
+    }
+    let distance = x.hypot(y);
+    let tangent = square.sqrt().min(reach);
+    let cosine = (square + tangent * tangent) / (2.0 * distance * tangent);
+    (cosine <= 1.0).then(|| (y.atan2(x), cosine.acos()))
+}

@@ -1,0 +1,31 @@
+//! Obstacles as blocked cells of joint space: which joint values would touch something.
+//!
+//! Three joints (base, shoulder, elbow) are cut into cells ([`Axis`], [`Grid`]); a [`Table`] has one bit per cell. A cell is
+//! blocked if *any* configuration in its box touches, never by its middle alone (S2, "Real-time joint-space models").
+
+mod arm;
+mod axis;
+mod changes;
+mod fill;
+mod grid;
+mod layer;
+mod map;
+mod model;
+mod npy;
+mod obstacle;
+mod reader;
+mod seed;
+mod table;
+
+pub use arm::{ArmError, PlanarArm};
+pub use axis::{Axis, AxisError, MOST_CELLS};
+pub use changes::Changes;
+pub use fill::{FillError, Filler};
+pub use grid::{Cell, Grid, TooManyCells};
+pub use layer::{Layer, Span};
+pub use map::JointMap;
+pub use model::{Model, UnknownModel, spheres_until};
+pub use obstacle::{Obstacle, ObstacleError};
+pub use reader::{Reader, Snapshot};
+pub use seed::{Expansion, expand};
+pub use table::Table;

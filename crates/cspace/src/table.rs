@@ -1,0 +1,209 @@
+//! The dense table: one bit per cell, shared plane by plane.
+
+use std::sync::Arc;
+
+use crate::{Cell, Layer, Span};
+
+/// One bit per cell, 1 is blocked. A row is a whole number of 64-bit words, cell `k` is bit `k % 64` of word `k / 64`.
+///
+/// Planes (all rows of one θ1) are shared until written: a copy of a table costs one counter per plane, a plane without a
+/// blocked cell costs nothing.
+///
+/// ```
+/// use elbowroom_cspace::{Span, Table};
+/// let mut table = Table::new([2, 3, 100]);
+/// table.block(Span { row: 4, first: 60, last: 70 }); // θ1 cell 1, θ2 cell 1
+/// assert!(table.is_blocked([1, 1, 64]) && !table.is_blocked([1, 1, 71]));
+/// assert_eq!(table.blocked(), 11);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Table {
+    shape: [usize; 3],
+    words_per_row: usize,
+    planes: Vec<Arc<[u64]>>,
+    free: Arc<[u64]>,
+}
+
+impl Table {
+    /// A table of free cells; numbers of cells along θ1, θ2, θ3.
+    pub fn new(shape: [usize; 3]) -> Self {
+        let words_per_row = shape[2].div_ceil(64);
+        let free: Arc<[u64]> = vec![0; words_per_row * shape[1]].into();
+        Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free }
+    }
+
+    /// Numbers of cells along the axes.
+    pub fn shape(&self) -> [usize; 3] {
+        self.shape
+    }
+
+    /// 64-bit words of one row.
+    pub fn words_per_row(&self) -> usize {
+        self.words_per_row
+    }
+
+    /// All words of one θ1, row after row; empty beyond the axis.
+    pub fn plane(&self, plane: usize) -> &[u64] {
+        self.planes.get(plane).map_or(&[], |words| words)
+    }
+
+    /// The words of one row; empty beyond the table.
+    pub fn row(&self, row: usize) -> &[u64] {
+        let start = row % self.shape[1] * self.words_per_row;
+        self.plane(row / self.shape[1]).get(start..start + self.words_per_row).unwrap_or(&[])
+    }
+
+    /// True where the cell is blocked, and for a cell outside the table: unknown is not free.
+    pub fn is_blocked(&self, cell: Cell) -> bool {
+        let [i, j, k] = cell.map(usize::from);
+        if i >= self.shape[0] || j >= self.shape[1] || k >= self.shape[2] {
+            return true;
+        }
+        self.planes[i][j * self.words_per_row + k / 64] >> (k % 64) & 1 == 1
+    }
+
+    /// Number of blocked cells.
+    pub fn blocked(&self) -> usize {
+        let ones = |plane: &Arc<[u64]>| plane.iter().map(|w| w.count_ones() as usize).sum::<usize>();
+        self.planes.iter().filter(|plane| !Arc::ptr_eq(plane, &self.free)).map(ones).sum()
+    }
+
+    /// Frees every cell.
+    pub fn clear(&mut self) {
+        for plane in &mut self.planes {
+            if Arc::ptr_eq(plane, &self.free) {
+                continue;
+            }
+            match Arc::get_mut(plane) {
+                Some(words) => words.fill(0),
+                None => *plane = Arc::clone(&self.free),
+            }
+        }
+    }
+
+    /// Blocks one span; what lies outside the table is left out.
+    pub fn block(&mut self, span: Span) {
+        self.mark(std::slice::from_ref(&span));
+    }
+
+    /// Blocks all that a layer blocks.
+    pub fn add(&mut self, layer: &Layer) {
+        self.mark(layer.spans());
+    }
+
+    fn mark(&mut self, spans: &[Span]) {
+        let (rows, width) = (self.shape[1], self.words_per_row);
+        let mut rest = spans;
+        while let Some(first) = rest.first() {
+            let plane = first.row as usize / rows;
+            let end = ((plane + 1) * rows) as u32;
+            let count = rest.iter().take_while(|span| span.row < end).count();
+            let (here, later) = rest.split_at(count.max(1));
+            rest = later;
+            let Some(words) = self.planes.get_mut(plane).map(Arc::make_mut) else { continue };
+            for span in here {
+                let row = span.row as usize - plane * rows;
+                mark_row(&mut words[row * width..][..width], span.first, span.last.min(self.shape[2] as u16 - 1));
+            }
+        }
+    }
+
+    /// True where both tables have one and the same plane in memory.
+    pub(crate) fn shares(&self, other: &Self, plane: usize) -> bool {
+        match (self.planes.get(plane), other.planes.get(plane)) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+
+    pub(crate) fn replace_row(&mut self, row: usize, words: &[u64]) {
+        if self.row(row) == words {
+            return;
+        }
+        let start = row % self.shape[1] * self.words_per_row;
+        let plane = Arc::make_mut(&mut self.planes[row / self.shape[1]]);
+        plane[start..start + self.words_per_row].copy_from_slice(words);
+    }
+
+    /// Blocked cells in order.
+    pub fn iter(&self) -> impl Iterator<Item = Cell> + '_ {
+        (0..self.shape[0] * self.shape[1]).flat_map(move |row| {
+            let (i, j) = ((row / self.shape[1]) as u16, (row % self.shape[1]) as u16);
+            let words = self.row(row).iter().enumerate();
+            words.flat_map(|(w, &word)| ones(word).map(move |bit| (w * 64 + bit) as u16)).map(move |k| [i, j, k])
+        })
+    }
+}
+
+impl PartialEq for Table {
+    fn eq(&self, other: &Self) -> bool {
+        self.shape == other.shape && self.planes == other.planes
+    }
+}
+
+/// Sets bits `first..=last` of a row.
+#[inline]
+pub(crate) fn mark_row(words: &mut [u64], first: u16, last: u16) {
+    if first > last {
+        return;
+    }
+    let (from, to) = (usize::from(first / 64), usize::from(last / 64));
+    let (head, tail) = (!0 << (first % 64), !0 >> (63 - last % 64));
+    if from == to {
+        words[from] |= head & tail;
+        return;
+    }
+    words[from] |= head;
+    words[from + 1..to].fill(!0);
+    words[to] |= tail;
+}
+
+/// Positions of the bits that are set.
+pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
+        word &= word - 1;
+        Some(bit)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_span_of_a_row_is_marked_as_bit_by_bit() {
+        for first in 0..150u16 {
+            for last in 0..150u16 {
+                let mut words = [0u64; 3];
+                mark_row(&mut words, first, last);
+                for k in 0..192 {
+                    assert_eq!(
+                        words[k / 64] >> (k % 64) & 1 == 1,
+                        (usize::from(first)..=usize::from(last)).contains(&k)
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_copy_does_not_see_what_is_written_later() {
+        let mut table = Table::new([4, 4, 70]);
+        table.block(Span { row: 5, first: 0, last: 69 });
+        let before = table.clone();
+        table.block(Span { row: 6, first: 3, last: 3 });
+        assert_eq!((before.blocked(), table.blocked()), (70, 71));
+        table.clear();
+        assert_eq!((before.blocked(), table.blocked()), (70, 0));
+    }
+
+    #[test]
+    fn spans_outside_the_table_are_left_out() {
+        let mut table = Table::new([2, 2, 10]);
+        table.block(Span { row: 4, first: 0, last: 3 });
+        table.block(Span { row: 3, first: 8, last: 200 });
+        assert_eq!(table.iter().collect::<Vec<_>>(), [[1, 1, 8], [1, 1, 9]]);
+        assert!(table.is_blocked([2, 0, 0]) && table.is_blocked([0, 0, 10]));
+    }
+}

@@ -1,0 +1,213 @@
+//! The naive oracle: the arm's three solids at one configuration against the obstacle, by the exact distances of
+//! `elbowroom-proximity`, and boxes of joint space by subdivision.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use elbowroom_cspace::{Axis, Cell, Filler, Grid, Layer, Obstacle, PlanarArm, Table};
+use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+/// Random numbers that are the same everywhere (xorshift).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn within(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        ((self.unit() * n as f64) as usize).min(n - 1)
+    }
+
+    pub fn vector(&mut self, half: f64) -> Vec3 {
+        Vec3::new(self.within(-half, half), self.within(-half, half), self.within(-half, half))
+    }
+
+    pub fn configuration(&mut self, grid: &Grid) -> [f64; 3] {
+        let [a, b, c] = grid.axes();
+        [self.within(a.min(), a.max()), self.within(b.min(), b.max()), self.within(c.min(), c.max())]
+    }
+
+    /// Anywhere in a cell's box; often on its border.
+    pub fn inside(&mut self, grid: &Grid, cell: Cell) -> [f64; 3] {
+        let (q, half) = (grid.center(cell), grid.half_widths());
+        let mut offset = || match self.below(4) {
+            0 => -1.0,
+            1 => 1.0,
+            _ => self.within(-1.0, 1.0),
+        };
+        let o = [offset(), offset(), offset()];
+        [q[0] + half[0] * o[0], q[1] + half[1] * o[1], q[2] + half[2] * o[2]]
+    }
+}
+
+/// The baseline's grid: θ1 −170..170°, θ2 −90..90°, θ3 −120..150°.
+pub fn grid(step_deg: f64) -> Grid {
+    grid_of(step_deg, [[-170.0, 170.0], [-90.0, 90.0], [-120.0, 150.0]])
+}
+
+pub fn grid_of(step_deg: f64, ranges: [[f64; 2]; 3]) -> Grid {
+    let axis = |name, [lo, hi]: [f64; 2]| Axis::from_degrees(name, lo, hi, step_deg).unwrap();
+    let [a, b, c] = ranges;
+    Grid::new([axis("base", a), axis("shoulder", b), axis("elbow", c)]).unwrap()
+}
+
+pub fn fill(arm: &PlanarArm, grid: &Grid, obstacle: &Obstacle) -> Table {
+    let mut filler = Filler::new(*arm, grid).unwrap();
+    let mut layer = Layer::new();
+    filler.fill(obstacle, &mut layer);
+    assert!(layer.spans().windows(2).all(|w| w[0].row <= w[1].row), "rows ascend");
+    let mut table = Table::new(grid.shape());
+    table.add(&layer);
+    table
+}
+
+fn capsule(a: Vec3, b: Vec3, radius: f64) -> (Shape, Pose) {
+    let half_length = a.distance(b) * 0.5;
+    (
+        Shape::Capsule(Capsule { half_length, radius }),
+        Pose::new(Rotation::from_z((b - a) / (2.0 * half_length)), (a + b) * 0.5),
+    )
+}
+
+/// Distance between arm and obstacle, metres.
+pub fn clearance(arm: &PlanarArm, q: [f64; 3], (shape, in_base): &(Shape, Pose)) -> f64 {
+    let [shoulder, elbow, wrist] = arm.joints_in_base(q);
+    let parts = [
+        capsule(shoulder, elbow, arm.upper_radius_m),
+        capsule(elbow, wrist, arm.fore_radius_m),
+        (Shape::Sphere(Sphere { radius: arm.wrist_radius_m }), Pose::from_translation(wrist)),
+    ];
+    parts.iter().map(|(part, pose)| separation(part, pose, shape, in_base).lower_bound).fold(f64::INFINITY, f64::min)
+}
+
+pub fn touches(arm: &PlanarArm, q: [f64; 3], obstacle: &(Shape, Pose)) -> bool {
+    clearance(arm, q, obstacle) <= 0.0
+}
+
+/// What is certain about a box of joint space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Truth {
+    Free,
+    Touching,
+    Unknown,
+}
+
+/// The whole box by subdivision: free where the distance at the middle is more than any point of the arm can move.
+pub fn truth(arm: &PlanarArm, q: [f64; 3], half: [f64; 3], obstacle: &(Shape, Pose), depth: u32) -> Truth {
+    let gap = clearance(arm, q, obstacle);
+    if gap <= 0.0 {
+        return Truth::Touching;
+    }
+    let radius = arm.offset_m.abs() + arm.upper_length_m + arm.fore_length_m;
+    let moves = [radius, arm.upper_length_m + arm.fore_length_m, arm.fore_length_m];
+    let each = [half[0] * moves[0], half[1] * moves[1], half[2] * moves[2]];
+    if gap > each[0] + each[1] + each[2] {
+        return Truth::Free;
+    }
+    if depth == 0 {
+        return Truth::Unknown;
+    }
+    let widest = (0..3).max_by(|&i, &j| each[i].total_cmp(&each[j])).unwrap();
+    let mut smaller = half;
+    smaller[widest] *= 0.5;
+    let mut result = Truth::Free;
+    for side in [-1.0, 1.0] {
+        let mut middle = q;
+        middle[widest] += side * smaller[widest];
+        match truth(arm, middle, smaller, obstacle, depth - 1) {
+            Truth::Touching => return Truth::Touching,
+            Truth::Unknown => result = Truth::Unknown,
+            Truth::Free => {}
+        }
+    }
+    result
+}
+
+/// Free cells beside blocked ones along any axis.
+pub fn border(table: &Table) -> Vec<Cell> {
+    let shape = table.shape();
+    let mut found = Vec::new();
+    for cell in table.iter() {
+        for axis in 0..3 {
+            let here = cell[axis];
+            for moved in [here.checked_sub(1), here.checked_add(1)].into_iter().flatten() {
+                if usize::from(moved) >= shape[axis] {
+                    continue;
+                }
+                let mut beside = cell;
+                beside[axis] = moved;
+                if !table.is_blocked(beside) {
+                    found.push(beside);
+                }
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// How many samples contradict the table: an arm that touches in a free cell. `uniform` samples anywhere, `beside` samples
+/// in free cells beside blocked ones; a third as many as `uniform` again turn their back on the obstacle.
+pub fn misses(
+    arm: &PlanarArm,
+    grid: &Grid,
+    table: &Table,
+    obstacle: &Obstacle,
+    (uniform, beside): (usize, usize),
+    random: &mut Random,
+) -> usize {
+    let shape = obstacle.shape();
+    let mut missed = 0;
+    for _ in 0..uniform {
+        let q = random.configuration(grid);
+        let cell = grid.cell(q).unwrap();
+        missed += usize::from(!table.is_blocked(cell) && touches(arm, q, &shape));
+    }
+    // An arm bent backwards reaches what is behind its base.
+    let center = obstacle.enclosing_sphere().0;
+    let behind = center.y.atan2(center.x) + std::f64::consts::PI;
+    for _ in 0..uniform / 3 {
+        let mut q = random.configuration(grid);
+        q[0] = (behind + random.within(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
+        missed += usize::from(grid.cell(q).is_some_and(|cell| !table.is_blocked(cell)) && touches(arm, q, &shape));
+    }
+    let cells = border(table);
+    for _ in 0..beside {
+        if cells.is_empty() {
+            break;
+        }
+        let cell = cells[random.below(cells.len())];
+        let q = random.inside(grid, cell);
+        missed += usize::from(touches(arm, q, &shape));
+    }
+    missed
+}
+
+/// Share of blocked cells that are certainly free in their whole box, out of `samples` blocked cells.
+pub fn needless(
+    arm: &PlanarArm,
+    grid: &Grid,
+    table: &Table,
+    obstacle: &Obstacle,
+    samples: usize,
+    random: &mut Random,
+) -> f64 {
+    let cells: Vec<Cell> = table.iter().collect();
+    let shape = obstacle.shape();
+    let mut free = 0;
+    for _ in 0..samples {
+        let cell = cells[random.below(cells.len())];
+        let answer = truth(arm, grid.center(cell), grid.half_widths(), &shape, 24);
+        free += usize::from(answer == Truth::Free);
+    }
+    free as f64 / samples as f64
+}
