@@ -65,11 +65,11 @@
 struct Readme;
 
 pub use elbowroom_cell as cell;
+pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
 pub use elbowroom_kinematics as kinematics;
 pub use elbowroom_monitor as monitor;
 pub use elbowroom_proximity as proximity;
 pub use elbowroom_scene as scene;
 pub use elbowroom_spatial as spatial;
-pub use elbowroom_cspace as cspace;
 pub use elbowroom_vision as vision;
