@@ -57,7 +57,7 @@ fn certify(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, tolerance: f64) -> bool {
     let what = || format!("{a:?} at {pa:?}\n{b:?} at {pb:?}\n{s:?}");
     assert!(s.distance >= 0.0 && s.lower_bound >= 0.0 && s.lower_bound <= s.distance, "{}", what());
     assert!(s.on_a.is_finite() && s.on_b.is_finite(), "{}", what());
-    assert_eq!(collides(a, pa, b, pb), s.lower_bound <= 0.0, "{}", what());
+    assert_eq!(collides(a, pa, b, pb), s.distance <= 0.0, "{}", what());
     if s.distance < 1e-9 {
         return false;
     }

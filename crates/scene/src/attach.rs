@@ -143,7 +143,7 @@ impl SceneState {
         }
     }
 
-    fn held(&self, member: Member) -> Option<&Attachment> {
+    pub(crate) fn held(&self, member: Member) -> Option<&Attachment> {
         match member {
             Member::Object(o) => self.attachment(o),
             Member::Link { .. } => None,

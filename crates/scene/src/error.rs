@@ -120,6 +120,9 @@ pub enum SceneError {
         /// `robot/link` that holds it.
         link: String,
     },
+    /// A motion names it more than once.
+    #[error("`{0}` moves twice in one motion; name it once, and sweep a path for one motion after another")]
+    MovesTwice(String),
     /// Something about the pair matrix.
     #[error(transparent)]
     Matrix(#[from] MatrixError),

@@ -37,6 +37,7 @@ mod scale;
 mod scene;
 mod selection;
 mod state;
+mod sweep;
 mod weight;
 mod world_box;
 
@@ -54,3 +55,4 @@ pub use robot::{Body, Robot};
 pub use scene::{Scene, SceneRobot};
 pub use selection::Selection;
 pub use state::SceneState;
+pub use sweep::{Impact, Move, SweepOptions};

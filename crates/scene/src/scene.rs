@@ -140,6 +140,16 @@ impl Scene {
         }
     }
 
+    /// True where all joint values are. Only what holds for sure may be taken for within the limits.
+    pub(crate) fn within_limits(&self, robot: usize, q: &[f64]) -> bool {
+        let chain = &self.robots[robot].robot.chain;
+        let within = |(i, q): (usize, &f64)| {
+            let l = chain.joints()[chain.active_joints()[i].0].limits;
+            *q >= l.lower && *q <= l.upper
+        };
+        q.iter().enumerate().all(within)
+    }
+
     pub(crate) fn link_name(&self, robot: usize, link: LinkId) -> String {
         self.name(Member::Link { robot, link })
     }

@@ -63,6 +63,16 @@ impl SceneState {
     /// # Errors
     /// No such robot, a wrong number of values, or one that is NaN or infinite, by its joint's name. Nothing has moved then.
     pub fn set_q(&mut self, scene: &Scene, robot: usize, q: &[f64]) -> Result<(), SceneError> {
+        self.check_q(scene, robot, q)?;
+        self.chains[robot].q.copy_from_slice(q);
+        scene.robots[robot].robot.chain.forward(&mut self.chains[robot]);
+        self.moved(scene, robot);
+        Ok(())
+    }
+
+    /// What [`SceneState::set_q`] refuses.
+    #[allow(clippy::unused_self)]
+    pub(crate) fn check_q(&self, scene: &Scene, robot: usize, q: &[f64]) -> Result<(), SceneError> {
         let count = scene.robots.len();
         let r = scene.robots.get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?;
         let chain = &r.robot.chain;
@@ -75,9 +85,6 @@ impl SceneState {
         if let Some(i) = q.iter().position(|v| !v.is_finite()) {
             return Err(SceneError::JointNotFinite { robot: r.name.clone(), joint: joint_name(i), value: q[i] });
         }
-        self.chains[robot].q.copy_from_slice(q);
-        chain.forward(&mut self.chains[robot]);
-        self.moved(scene, robot);
         Ok(())
     }
 
@@ -91,19 +98,44 @@ impl SceneState {
     /// # Errors
     /// No such object, a pose that is not finite, or the object is attached.
     pub fn place(&mut self, scene: &Scene, object: usize, in_world: Pose) -> Result<(), SceneError> {
-        let o =
-            scene.objects.get(object).ok_or(SceneError::NoSuchObject { index: object, count: scene.objects.len() })?;
+        let name = self.check_place(scene, object)?;
         if !in_world.is_finite() {
-            return Err(SceneError::PoseNotFinite(format!("`{}`", o.name)));
+            return Err(SceneError::PoseNotFinite(format!("`{name}`")));
         }
-        if let Some(a) = &self.attached[object] {
-            let link = scene.link_name(a.robot, a.link);
-            return Err(SceneError::PlacedWhileAttached { object: o.name.clone(), link });
-        }
-        self.displaced[object] = in_world != o.in_world;
+        self.displaced[object] = in_world != scene.objects[object].in_world;
         self.count_proofs();
         self.put(scene, scene.first_object + object, in_world);
         Ok(())
+    }
+
+    /// The name of an object that can be placed.
+    pub(crate) fn check_place<'s>(&self, scene: &'s Scene, object: usize) -> Result<&'s str, SceneError> {
+        let count = scene.objects.len();
+        let o = scene.objects.get(object).ok_or(SceneError::NoSuchObject { index: object, count })?;
+        match &self.attached[object] {
+            Some(a) => {
+                let link = scene.link_name(a.robot, a.link);
+                Err(SceneError::PlacedWhileAttached { object: o.name.clone(), link })
+            }
+            None => Ok(&o.name),
+        }
+    }
+
+    /// Becomes equal to a state of the same scene; allocates only where attachments differ.
+    pub(crate) fn copy_from(&mut self, scene: &Scene, other: &Self) {
+        for (robot, (own, chain)) in self.chains.iter_mut().zip(&other.chains).enumerate() {
+            own.q.copy_from_slice(&chain.q);
+            scene.robots[robot].robot.chain.forward(own);
+        }
+        self.in_world.clone_from(&other.in_world);
+        self.boxes.clone_from(&other.boxes);
+        if self.arrangement != other.arrangement {
+            self.attached.clone_from(&other.attached);
+        }
+        self.displaced.clone_from(&other.displaced);
+        self.beyond_limits.clone_from(&other.beyond_limits);
+        self.all_proofs_hold = other.all_proofs_hold;
+        self.arrangement = other.arrangement;
     }
 
     /// Where a member's frame is, in the world; `None` where the scene has no such member.
@@ -143,12 +175,7 @@ impl SceneState {
                 self.put(scene, model, in_world);
             }
         }
-        // Only what holds for sure may be taken for within the limits.
-        let within = |(i, q): (usize, &f64)| {
-            let l = chain.joints()[chain.active_joints()[i].0].limits;
-            *q >= l.lower && *q <= l.upper
-        };
-        let beyond = !self.chains[robot].q.iter().enumerate().all(within);
+        let beyond = !scene.within_limits(robot, &self.chains[robot].q);
         if std::mem::replace(&mut self.beyond_limits[robot], beyond) != beyond {
             self.count_proofs();
         }

@@ -6,7 +6,9 @@ use std::alloc::System;
 
 use common::{Random, scene_of};
 use elbowroom_kinematics::LinkId;
-use elbowroom_scene::{Checker, Level, Options, SceneState, Selection};
+use elbowroom_proximity::impact::Steady;
+use elbowroom_scene::{Checker, Level, Move, Options, SceneState, Selection, SweepOptions};
+use elbowroom_spatial::Vec3;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
@@ -40,5 +42,32 @@ fn questions_take_no_memory() {
             assert_eq!((used.allocations, used.reallocations), (0, 0), "{level}");
             assert!(found > 400);
         }
+    }
+
+    // Sweeps take memory until none is longer than one before: the same ones again take none.
+    let path = Steady::linear(scene.objects()[2].in_world, Vec3::X);
+    for state in &mut states {
+        let mut checker = Checker::new(&scene, Options::default());
+        let mut sweep_all = || {
+            let mut r = Random(52);
+            let mut hits = 0;
+            for _ in 0..30 {
+                state.set_q(&scene, 0, &r.q()).unwrap();
+                let (p, q) = (r.q(), r.q());
+                let moves = [Move::Robot { robot: 0, to: &p }, Move::Robot { robot: 1, to: &q }];
+                let mixed = [moves[0], Move::Object { object: 2, path: &path }];
+                let options = SweepOptions::default();
+                hits += usize::from(checker.sweep(state, &moves, &options).unwrap().is_some());
+                hits += usize::from(checker.sweep(state, &mixed, &options).unwrap().is_some());
+                hits += usize::from(checker.sweep_path(state, 1, &[p, q], &options).unwrap().is_some());
+            }
+            hits
+        };
+        let first = sweep_all();
+        let region = Region::new(ALLOCATOR);
+        let second = sweep_all();
+        let used = region.change();
+        assert!(first == second && first > 10);
+        assert_eq!((used.allocations, used.reallocations), (0, 0));
     }
 }

@@ -88,16 +88,20 @@ fn judge_all(root: &Path, python: &Path, folder: &Path, robots: &[Files], option
         let states = world::states(&robot, options.states);
         let alone = world::scene(&files.name, robot.clone(), Vec::new())?;
         let around = world::scene(&files.name, robot, world::objects(root, &alone)?)?;
+        let mut before: Option<Answers> = None;
         for (kind, scene) in [("self", &alone), ("objects", &around)] {
             let pairs = world::by_rule(scene);
             if pairs.is_empty() {
                 continue;
             }
-            let theirs = reference::ask(python, folder, &files.urdf, scene, &states, &pairs)
+            let known = before.as_ref().map(|alone| &alone.least[..]);
+            let mut theirs = reference::ask(python, folder, &files.urdf, scene, &states, &pairs, known)
                 .map_err(|e| format!("{}: {e}", files.name))?;
+            theirs.bounded_us += before.map_or(0.0, |alone| alone.bounded_us);
             let verdict = compare::judge(scene, &states, &theirs)?;
             wrong += verdict.disagreements;
             print_row(&files.name, kind, &verdict, &theirs, options.json);
+            before = Some(theirs);
         }
     }
     if !options.json {
@@ -107,12 +111,14 @@ fn judge_all(root: &Path, python: &Path, folder: &Path, robots: &[Files], option
 }
 
 fn print_head(states: usize) {
+    let whole = states.min(reference::WHOLE);
     println!(
-        "{states} random states each; µs per state with the robot's move, Pinocchio + Coal without their Python; \
-         self: links among each other (a cell's own included), objects: with a box and a mesh beside it\n"
+        "{states} random states each; µs per state with the robot's move; theirs: Pinocchio + Coal over the first {whole}, \
+         without their Python; bounded: the same distance, each pair within the least so far, over all, with their \
+         Python; self: links among each other (a cell's own included), objects: with a box and a mesh beside it\n"
     );
     println!(
-        "{:<36} {:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8} | distance: {:>7} {:>9} {:>6} | collision: {:>6} {:>8} {:>6}",
+        "{:<36} {:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8} | distance: {:>7} {:>9} {:>6} {:>9} | collision: {:>6} {:>8} {:>6}",
         "robot",
         "",
         "pairs",
@@ -124,6 +130,7 @@ fn print_head(states: usize) {
         "ours",
         "theirs",
         "ratio",
+        "bounded",
         "ours",
         "theirs",
         "ratio"
@@ -133,7 +140,7 @@ fn print_head(states: usize) {
 fn print_row(name: &str, kind: &str, v: &Verdict, theirs: &Answers, json: bool) {
     if json {
         println!(
-            r#"{{"robot":"{name}","with":"{kind}","states":{},"pairs":{},"contacts":{},"swallowed":{},"iterated":{},"disagreements":{},"worst_relative":{:e},"distance_us":{:.3},"their_distance_us":{:.3},"collide_us":{:.3},"their_collide_us":{:.3}}}"#,
+            r#"{{"robot":"{name}","with":"{kind}","states":{},"pairs":{},"contacts":{},"swallowed":{},"iterated":{},"disagreements":{},"worst_relative":{:e},"distance_us":{:.3},"their_distance_us":{:.3},"their_bounded_us":{:.3},"collide_us":{:.3},"their_collide_us":{:.3}}}"#,
             v.states,
             v.pairs,
             v.contacts,
@@ -143,13 +150,14 @@ fn print_row(name: &str, kind: &str, v: &Verdict, theirs: &Answers, json: bool) 
             v.worst,
             v.distance_us,
             theirs.distance_us,
+            theirs.bounded_us,
             v.collide_us,
             theirs.collide_us
         );
         return;
     }
     println!(
-        "{name:<36} {kind:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8.1e} | {:>17.1} {:>9.1} {:>6.1} | {:>17.2} {:>8.1} {:>6.1}",
+        "{name:<36} {kind:<8} {:>5} {:>8} {:>9} {:>8} {:>6} {:>8.1e} | {:>17.1} {:>9.1} {:>6.1} {:>9.1} | {:>17.2} {:>8.1} {:>6.1}",
         v.pairs,
         v.contacts,
         v.swallowed,
@@ -159,6 +167,7 @@ fn print_row(name: &str, kind: &str, v: &Verdict, theirs: &Answers, json: bool) 
         v.distance_us,
         theirs.distance_us,
         theirs.distance_us / v.distance_us,
+        theirs.bounded_us,
         v.collide_us,
         theirs.collide_us,
         theirs.collide_us / v.collide_us,
@@ -210,7 +219,7 @@ mod tests {
         let scene = world::scene("rx60b", robot, world::objects(&root, &alone).unwrap()).unwrap();
         let folder = std::env::temp_dir().join(format!("elbowroom-judge-test-{}", std::process::id()));
         let pairs = world::by_rule(&scene);
-        let theirs = reference::ask(&python, &folder, &files.urdf, &scene, &states, &pairs);
+        let theirs = reference::ask(&python, &folder, &files.urdf, &scene, &states, &pairs, None);
         let _ = std::fs::remove_dir_all(&folder);
         let mut theirs = theirs.unwrap();
         let verdict = compare::judge(&scene, &states, &theirs).unwrap();
@@ -218,8 +227,7 @@ mod tests {
         assert!(verdict.contacts > 0 && verdict.contacts < 20, "{verdict:?}");
         // A hair off, and it is found: a nanometre per metre is what is allowed, a contact denied is not.
         let free = theirs.collides.iter().position(|hit| !hit).unwrap();
-        let of_state = free * theirs.pairs.len()..(free + 1) * theirs.pairs.len();
-        theirs.distances[of_state].iter_mut().for_each(|d| *d *= 1.0 + 1e-5);
+        theirs.least[free] *= 1.0 + 1e-5;
         let hit = theirs.collides.iter().position(|hit| *hit).unwrap();
         theirs.collides[hit] = false;
         let verdict = compare::judge(&scene, &states, &theirs).unwrap();

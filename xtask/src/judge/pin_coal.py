@@ -3,12 +3,16 @@
 usage: pin_coal.py FOLDER
 
 FOLDER/job.txt says what there is, a line each, words apart by tabs:
-  urdf PATH | joints NAME… | states COUNT | pair I J
+  urdf PATH | joints NAME… | states COUNT | whole COUNT | pair I J ASKED
   geometry LINK KIND NUMBERS… POSE (12 numbers, rows of 3x4): box x y z | sphere r | cylinder r height | mesh NV NT
-  LINK is empty for what stands in the world.
+  LINK is empty for what stands in the world. ASKED is 0 for a pair whose distance FOLDER/known.bin covers.
 FOLDER/job.bin holds the states (f64), then of each mesh its corners (f64) and triangles (u32).
-Written: FOLDER/distances.bin (f64, states x pairs) and FOLDER/collides.bin (u8 per state). Printed: microseconds per
-state of computeDistances and of computeCollisions, which stops at the first contact; both move the robot first.
+FOLDER/known.bin, where there is one, holds the least distance over the pairs not asked for (f64 per state).
+Written: FOLDER/least.bin (f64 per state: least distance over all pairs, each pair within the least so far),
+FOLDER/whole.bin (f64, for the first `whole` states: least of computeDistances, every pair to the end) and
+FOLDER/collides.bin (u8 per state). Printed: microseconds per state of computeDistances and of computeCollisions, which
+stops at the first contact (with the requests as Pinocchio makes them), over the first `whole` states; then of least.bin
+over all. Each moves the robot first.
 """
 
 import os
@@ -58,8 +62,10 @@ class Job:
                 self.joints = [name for name in rest if name]
             elif word == "states":
                 self.count = int(rest[0])
+            elif word == "whole":
+                self.whole = int(rest[0])
             elif word == "pair":
-                self.pairs.append((int(rest[0]), int(rest[1])))
+                self.pairs.append(tuple(int(n) for n in rest))
             elif word == "geometry":
                 self.geometries.append((rest[0], rest[1], [float(x) for x in rest[2:]]))
         self.binary = open(os.path.join(folder, "job.bin"), "rb").read()
@@ -71,24 +77,28 @@ class Job:
         return values
 
     def shape(self, kind, numbers):
+        """The shape, and half the size of a box around it with its middle."""
         if kind == "box":
-            return coal.Box(*numbers)
+            return coal.Box(*numbers), np.array(numbers) / 2, np.zeros(3)
         if kind == "sphere":
-            return coal.Sphere(*numbers)
+            return coal.Sphere(*numbers), np.full(3, numbers[0]), np.zeros(3)
         if kind == "cylinder":
-            return coal.Cylinder(*numbers)
+            r, height = numbers
+            return coal.Cylinder(r, height), np.array([r, r, height / 2]), np.zeros(3)
         corners, triangles = (int(n) for n in numbers)
         vertices = self.take(3 * corners, "<f8").reshape(-1, 3).copy()
-        return mesh(vertices, self.take(3 * triangles, "<u4").reshape(-1, 3))
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        return mesh(vertices, self.take(3 * triangles, "<u4").reshape(-1, 3)), (high - low) / 2, (high + low) / 2
 
 
 def build(job):
     model = pin.buildModelFromUrdf(job.urdf)
-    solids = pin.GeometryModel()
+    solids, boxes = pin.GeometryModel(), []
     for i, (link, kind, numbers) in enumerate(job.geometries):
         rows = np.eye(4)
         rows[:3] = np.array(numbers[-12:]).reshape(3, 4)
-        shape = job.shape(kind, numbers[:-12])
+        shape, half, middle = job.shape(kind, numbers[:-12])
+        boxes.append((half, middle))
         joint, frame, placement = 0, 0, pin.SE3(rows)
         if link:
             frame = model.getFrameId(link, pin.FrameType.BODY)
@@ -96,9 +106,49 @@ def build(job):
             joint = model.frames[frame].parentJoint
             placement = model.frames[frame].placement * placement
         solids.addGeometryObject(pin.GeometryObject(str(i), joint, frame, placement, shape))
-    for a, b in job.pairs:
+    for a, b, _ in job.pairs:
         solids.addCollisionPair(pin.CollisionPair(a, b))
-    return model, solids
+    return model, solids, boxes
+
+
+class Bounded:
+    """The least distance over the asked pairs: Coal measures each pair within the least so far.
+
+    A DistanceResult whose min_distance is set is a limit to Coal's search: what is farther is left out. Pairs are asked
+    in the order of the gaps of the boxes around them, until a gap exceeds the least; a gap is never above the distance.
+    """
+
+    def __init__(self, job, solids, boxes, request):
+        asked = [(a, b) for a, b, ask in job.pairs if ask]
+        self.a, self.b = (np.array([pair[i] for pair in asked], dtype=int) for i in (0, 1))
+        shapes = [solid.geometry for solid in solids.geometryObjects]
+        self.measure = [coal.ComputeDistance(shapes[a], shapes[b]) for a, b in asked]
+        self.half, self.middle = (np.array([box[i] for box in boxes]) for i in (0, 1))
+        self.request, self.result = request, coal.DistanceResult()
+
+    def least(self, placements, known):
+        if known <= 0.0 or not self.measure:
+            return known
+        rotations = np.array([p.rotation for p in placements])
+        shifts = np.array([p.translation for p in placements])
+        middle = np.einsum("nij,nj->ni", rotations, self.middle) + shifts
+        half = np.einsum("nij,nj->ni", np.abs(rotations), self.half)
+        apart = np.abs(middle[self.a] - middle[self.b]) - half[self.a] - half[self.b]
+        # The last term is far above what rounding adds.
+        gaps = np.linalg.norm(np.maximum(apart, 0.0), axis=1) - 1e-9 * (1.0 + np.abs(middle).max() + half.max())
+        poses = [None] * len(placements)
+        least = known
+        for k in np.argsort(gaps):
+            if gaps[k] > least or least <= 0.0:
+                break
+            a, b = self.a[k], self.b[k]
+            for i in (a, b):
+                poses[i] = poses[i] or coal.Transform3s(rotations[i], shifts[i])
+            self.result.clear()
+            self.result.min_distance = least
+            self.measure[k](poses[a], poses[b], self.request, self.result)
+            least = min(least, self.result.min_distance)
+        return least
 
 
 def configurations(job, model, states):
@@ -118,28 +168,42 @@ def main():
     folder = sys.argv[1]
     job = Job(folder)
     states = job.take(job.count * len(job.joints), "<f8").reshape(job.count, -1)
-    model, solids = build(job)
-    data, solid_data = model.createData(), solids.createData()
-    for request in solid_data.distanceRequests:
-        # No depth of penetration: contact is 0. Tighter than its default, for pairs with a primitive.
-        request.enable_signed_distance = False
+    model, solids, boxes = build(job)
+    data, solid_data, as_it_comes = model.createData(), solids.createData(), solids.createData()
+    # Tighter than its default, which is good to a micrometre: for pairs with a primitive, and for contacts of meshes,
+    # whose triangles Coal measures by GJK as well when it asks whether they touch.
+    for request in [*solid_data.distanceRequests, *solid_data.collisionRequests]:
         request.gjk_tolerance = 1e-10
         request.gjk_max_iterations = 1000
-    distances = np.zeros((job.count, len(job.pairs)))
+    for request in solid_data.distanceRequests:
+        # No depth of penetration: contact is 0.
+        request.enable_signed_distance = False
+    bounded = Bounded(job, solids, boxes, solid_data.distanceRequests[0])
+    known = os.path.join(folder, "known.bin")
+    known = np.fromfile(known, dtype="<f8") if os.path.exists(known) else np.full(job.count, np.inf)
+    whole = min(job.whole, job.count)
+    least, of_all = np.zeros(job.count), np.zeros(whole)
     collides = np.zeros(job.count, dtype=np.uint8)
-    spent = [0.0, 0.0]
+    spent = [0.0, 0.0, 0.0]
     clock = time.perf_counter
     for i, q in enumerate(configurations(job, model, states)):
-        begin = clock()
-        pin.computeDistances(model, data, solids, solid_data, q)
-        middle = clock()
+        if i < whole:
+            begin = clock()
+            pin.computeDistances(model, data, solids, solid_data, q)
+            spent[0] += clock() - begin
+            of_all[i] = min(result.min_distance for result in solid_data.distanceResults)
+            begin = clock()
+            pin.computeCollisions(model, data, solids, as_it_comes, q, True)
+            spent[1] += clock() - begin
         collides[i] = pin.computeCollisions(model, data, solids, solid_data, q, True)
-        spent[0] += middle - begin
-        spent[1] += clock() - middle
-        distances[i] = [result.min_distance for result in solid_data.distanceResults]
-    distances.tofile(os.path.join(folder, "distances.bin"))
+        begin = clock()
+        pin.updateGeometryPlacements(model, data, solids, solid_data, q)
+        least[i] = bounded.least(solid_data.oMg, known[i])
+        spent[2] += clock() - begin
+    least.tofile(os.path.join(folder, "least.bin"))
+    of_all.tofile(os.path.join(folder, "whole.bin"))
     collides.tofile(os.path.join(folder, "collides.bin"))
-    print(*(1e6 * s / max(job.count, 1) for s in spent))
+    print(*(1e6 * s / max(n, 1) for s, n in zip(spent, (whole, whole, job.count))))
 
 
 main()

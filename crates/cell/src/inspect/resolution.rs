@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_formats::MeshData;
-use elbowroom_proximity::{ConvexHull, Shape, TriMesh, fit, tessellate::tessellate};
+use elbowroom_proximity::{Shape, TriMesh, fit, tessellate::tessellate};
 use elbowroom_scene::Body;
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 use serde::Serialize;
@@ -126,7 +126,8 @@ fn of_link(link: &str, bodies: &[Body]) -> Option<LinkLevels> {
     let points: Vec<Vec3> = bodies.iter().filter(solid).flat_map(points).collect();
     let rounded = bodies.iter().any(|b| matches!(b.shape, Shape::Sphere(_) | Shape::Capsule(_) | Shape::Cylinder(_)));
     let slack = if rounded { CHORD_M } else { 0.0 };
-    let hull = ConvexHull::from_points(&points).ok();
+    let outermost = fit::Outermost::of(&points);
+    let hull = outermost.as_ref().and_then(fit::Outermost::hull);
     let mut meshes: Vec<MeshData> = hull
         .iter()
         .map(|h| MeshData { name: "hull".into(), vertices: h.vertices().to_vec(), triangles: h.triangles().to_vec() })
@@ -135,8 +136,8 @@ fn of_link(link: &str, bodies: &[Body]) -> Option<LinkLevels> {
     Some(LinkLevels {
         link: link.to_owned(),
         aabb: BoxRow { min_m: aabb.min.to_array(), max_m: aabb.max.to_array() },
-        obb: fit::cuboid(&points).and_then(|f| obb(&f, slack)),
-        capsule: fit::capsule(&points).and_then(|f| capsule(&f, slack)),
+        obb: outermost.as_ref().and_then(fit::Outermost::cuboid).and_then(|f| obb(&f, slack)),
+        capsule: outermost.as_ref().and_then(fit::Outermost::capsule).and_then(|f| capsule(&f, slack)),
         hull: hull.map(|h| HullRow {
             vertices: h.vertices().len(),
             triangles: h.triangles().len(),

@@ -5,7 +5,7 @@ use elbowroom_proximity::mesh::{Hint, Landmarks, PlacedLandmarks, Scratch, colli
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// Pairs of links that are guessed at.
-const GUESSES: usize = 3;
+const GUESSES: usize = 2;
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {
@@ -132,7 +132,7 @@ impl Arms {
         for (square, (a, b)) in nearest {
             if square < f32::INFINITY {
                 let (of_a, of_b) = (&poses[a], &poses[links + b]);
-                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, &mut self.scratch);
+                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, None, &mut self.scratch);
                 if metres < best.0 {
                     best = (metres, hint, (a, b));
                 }

@@ -21,8 +21,10 @@ pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid,
     };
     let mut starts = vec![Rotation::IDENTITY, frame::principal(points)];
     starts.extend(hull.map(flush).unwrap_or_default());
-    starts.sort_by(|x, y| cost(*x).total_cmp(&cost(*y)));
-    let tried = starts.into_iter().take(3).map(|s| frame::descend(s, &[Vec3::X, Vec3::Y, Vec3::Z], cost));
+    // Each cost is a pass over all points: once per start, not once per comparison.
+    let mut starts: Vec<(f64, Rotation)> = starts.into_iter().map(|s| (cost(s), s)).collect();
+    starts.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let tried = starts.into_iter().take(3).map(|(_, s)| frame::descend(s, &[Vec3::X, Vec3::Y, Vec3::Z], cost));
     let (_, rotation) = tried.min_by(|x, y| x.0.total_cmp(&y.0))?;
     Some(verified(points, rotation))
 }

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::Pose;
 
-use super::nearest::{Hint, distance_at, farther};
+use super::nearest::{Hint, distance_at, farther, guess};
 use super::scratch::Scratch;
 use super::touch::collide;
 use crate::{Separation, Shape, separation_within};
@@ -44,5 +44,24 @@ impl Scratch {
             }
             _ => separation_within(a, a_in_world, b, b_in_world, limit),
         }
+    }
+
+    /// An upper bound of the distance of two meshes, metres, for little ([`guess`]); `None` where one is no mesh or a
+    /// pose is not finite. `hint` as in [`separation`](Self::separation).
+    pub fn guess(
+        &mut self,
+        a: &Shape,
+        a_in_world: &Pose,
+        b: &Shape,
+        b_in_world: &Pose,
+        hint: &mut Hint,
+    ) -> Option<f64> {
+        let (Shape::Mesh(a), Shape::Mesh(b)) = (a, b) else { return None };
+        let (metres, found) = guess(a, a_in_world, b, b_in_world, Some(*hint), self);
+        if metres < f64::INFINITY {
+            *hint = found;
+            return Some(metres);
+        }
+        None
     }
 }

@@ -1,9 +1,9 @@
 //! A few points of a surface, to guess at once which of many meshes is nearest.
 
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::Pose;
 use fearless_simd::{Simd, dispatch, prelude::*};
 
-use super::lanes::{V3, W16, load16, splat16};
+use super::lanes::{V3, W16, load16, rows16, splat16, store16};
 use super::scratch::detected_level;
 use super::tree::{FAN, Leaf, Tree, box_of, most_central};
 use crate::TriMesh;
@@ -26,11 +26,11 @@ use crate::TriMesh;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Landmarks {
-    points: [Vec3; FAN],
+    points: [[f32; FAN]; 3],
 }
 
 /// [`Landmarks`] in a common frame, in single precision.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct PlacedLandmarks {
     points: [[f32; FAN]; 3],
 }
@@ -39,24 +39,26 @@ impl Landmarks {
     /// Of a mesh, in its own frame, metres.
     pub fn of(mesh: &TriMesh) -> Self {
         let Tree { leaves, frame, .. } = &mesh.tree;
-        let points = std::array::from_fn(|k| {
+        let mut points = [[0.0; FAN]; 3];
+        for k in 0..FAN {
             let first = (k * leaves.len() / FAN).min(leaves.len() - 1);
             let end = ((k + 1) * leaves.len() / FAN).max(first + 1);
-            frame.in_metres(middle_of(&leaves[first..end]))
-        });
+            let p = frame.in_metres(middle_of(&leaves[first..end]));
+            for axis in 0..3 {
+                points[axis][k] = p[axis] as f32;
+            }
+        }
         Self { points }
     }
 
     /// In the frame in which the mesh has this pose.
     pub fn placed(&self, pose: &Pose) -> PlacedLandmarks {
-        let mut placed = PlacedLandmarks::default();
-        for (k, p) in self.points.iter().enumerate() {
-            let p = pose.transform_point(*p);
-            for axis in 0..3 {
-                placed.points[axis][k] = p[axis] as f32;
-            }
-        }
-        placed
+        let rows = pose.rotation.rows().map(|row| row.map(|x| x as f32));
+        let shift = pose.translation.to_array().map(|x| x as f32);
+        let points = dispatch!(detected_level(), simd => {
+            store16(load16(simd, &self.points).placed(&rows16(simd, &rows), splat16(simd, shift)))
+        });
+        PlacedLandmarks { points }
     }
 }
 

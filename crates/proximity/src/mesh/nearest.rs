@@ -106,7 +106,8 @@ pub fn distance_at(
 }
 
 /// The distance, metres, of a pair of triangles that looks nearest, and where it is: an upper bound of the distance, and
-/// often the distance itself, for a small part of its price. Infinite where a pose is not finite.
+/// often the distance itself, for a small part of its price. Infinite where a pose is not finite. With the `hint` of an
+/// answer of a moment ago it costs a single pair of triangles.
 ///
 /// Of several pairs of meshes, the least of these is a limit for all of them.
 ///
@@ -117,25 +118,33 @@ pub fn distance_at(
 /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
 /// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 1.5));
 /// let mut scratch = Scratch::new();
-/// let (metres, hint) = guess(&mesh, &here, &mesh, &there, &mut scratch);
+/// let (metres, hint) = guess(&mesh, &here, &mesh, &there, None, &mut scratch);
 /// let near = distance_at(&mesh, &here, &mesh, &there, metres, Some(hint), &mut scratch).expect("it is no farther");
 /// assert!(near.distance <= metres);
 /// # Ok::<(), elbowroom_proximity::MeshError>(())
 /// ```
-pub fn guess(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose, scratch: &mut Scratch) -> (f64, Hint) {
+pub fn guess(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    hint: Option<Hint>,
+    scratch: &mut Scratch,
+) -> (f64, Hint) {
     scratch.visits = Visits::default();
     let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
     let unknown = (f64::INFINITY, Hint::default());
     if !pairing.is_usable() {
         return unknown;
     }
-    let found = promising_pair(scratch.level(), a, b, &pairing, DISTANCE_WIDTH, scratch);
+    let found = promising_pair(scratch.level(), a, b, &pairing, (hint, Start::Landmarks(GUESS_WIDTH)), scratch);
     found.map_or(unknown, |best| ((best.distance + pairing.slack) * a.tree.frame.unit, best.hint))
 }
 
 /// Pairs of nodes that landmarks follow in search of the nearest pair, and of one that is near enough.
 const DISTANCE_WIDTH: usize = 4;
 const WITHIN_WIDTH: usize = 2;
+const GUESS_WIDTH: usize = 2;
 
 /// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
 ///

@@ -91,9 +91,6 @@ fn step<S: Simd, const MODE: u8>(
     if MODE == TOUCH && columns == 0 {
         return 2;
     }
-    // Squares reject less: there everything is begun before anything is asked, as what is waited for is latency.
-    let slab_a = SlabsOfA::new(simd, a.node, ab);
-    let slabs_b = SlabsOfB::new(simd, b.node, ab);
     if rows == 0 || columns == 0 {
         return 2;
     }
@@ -109,6 +106,8 @@ fn step<S: Simd, const MODE: u8>(
         }
         _ => None,
     };
+    let slab_a = SlabsOfA::new(simd, a.node, ab);
+    let slabs_b = SlabsOfB::new(simd, b.node, ab);
     let lanes_a = LanesOfA { ca, ha, ca_in_b, ha_in_b, slab: slab_a };
     let (cb_in_a, hb_in_a) = (store16(cb_in_a), store16(hb_in_a));
     let mut keys = [0.0f32; 16];

@@ -73,17 +73,17 @@ pub(super) fn search(
     s.best
 }
 
-/// The nearest of the pairs that landmarks find.
+/// The nearest of the pairs that a search begins with.
 pub(super) fn promising_pair(
     level: Level,
     a: &TriMesh,
     b: &TriMesh,
     pairing: &Pairing,
-    width: usize,
+    (hint, start): (Option<Hint>, Start),
     scratch: &mut Scratch,
 ) -> Option<Best> {
     let (mut s, stack) = Search::new(level, a, b, pairing, (f64::INFINITY, pairing.slack), scratch);
-    s.begin(None, Start::Landmarks(width), stack);
+    s.begin(hint, start, stack);
     s.best
 }
 

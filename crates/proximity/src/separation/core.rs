@@ -100,6 +100,14 @@ impl Gap {
     pub fn touching(on_a: Vec3, on_b: Vec3) -> Self {
         Self { distance: 0.0, lower: 0.0, on_a, on_b }
     }
+
+    /// With a proof of another kind: what is proven apart does not touch, whatever rounding makes of the points.
+    #[inline]
+    pub fn at_least(self, proven: f64) -> Self {
+        let lower = self.lower.max(proven);
+        let raised = || (self.on_a - self.on_b).length().max(lower);
+        Self { lower, distance: if self.distance < lower { raised() } else { self.distance }, ..self }
+    }
 }
 
 /// What the last places of a short computation on numbers up to `scale` may be worth.

@@ -31,5 +31,9 @@ pub(super) fn both(a_in_b: &Pose) -> Gap {
     if normal.z < 0.0 && normal.x.abs().max(normal.y.abs()) < PARALLEL {
         return above(p, p.x.abs() + p.y.abs() + p.z.abs());
     }
-    Gap::touching(p, p)
+    // Down both normals at once until below the second plane as well.
+    let down = -(normal + Vec3::Z);
+    let shared = if p.z > 0.0 { p + down * (p.z / (1.0 + normal.z)) } else { p };
+    let shared = if shared.is_finite() { shared } else { p };
+    Gap::touching(shared, shared)
 }

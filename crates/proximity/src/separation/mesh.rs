@@ -56,8 +56,11 @@ impl Best {
     }
 }
 
-/// Distance of a mesh and a convex core in the mesh's frame. Not below `enough` (the core's radius) is looked closely.
-pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit: f64, enough: f64) -> Option<Gap> {
+/// Distance of a mesh and a convex core in the mesh's frame, where that less the core's radius is not above the limit.
+/// Not below the radius is looked closely.
+pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit: f64, radius: f64) -> Option<Gap> {
+    // The bound in `world` decides; this one must not pass the limit before it.
+    let (limit, enough) = (limit + radius + 2.0 * rounding(radius), radius);
     let t = core_in_mesh.translation;
     let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
     let scale = 3.0 * extent + t.abs().max_element() + core.size();
@@ -79,6 +82,8 @@ pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit:
             let mesh_in_core = core_in_mesh.inverse();
             best.search(mesh, &probe, &|i, limit| {
                 let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
+                // A bound that passes the limit only before the way back is taken off does not count.
+                let limit = limit + 2.0 * rounding(scale);
                 let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
                 let back = |p| core_in_mesh.transform_point(p);
                 let lower = (gap.lower - rounding(scale)).max(0.0);
@@ -86,7 +91,9 @@ pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit:
             });
         }
     }
-    let inside = core_in_mesh.transform_point(core.middle());
+    // The middle of a hull's bounds may be outside of it.
+    let own = if let Core::Hull(hull) = core { hull.vertices()[0] } else { core.middle() };
+    let inside = core_in_mesh.transform_point(own);
     if !best.done() && mesh.contains(inside) {
         return Some(Gap::touching(inside, inside));
     }

@@ -8,6 +8,8 @@ mod mesh;
 mod projections;
 mod segment;
 
+use std::cmp::Ordering;
+
 use elbowroom_spatial::{Pose, Vec3};
 
 use self::core::{Core, Gap, rounded, rounding};
@@ -20,14 +22,16 @@ pub(crate) use mesh::nearest_on_mesh;
 /// How far apart two shapes are, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
-    /// Distance in metres, 0 on contact or overlap.
+    /// Distance in metres. 0 on contact or overlap, and where f64 cannot tell them from a gap: where `lower_bound` is 0,
+    /// and nowhere else. Exactly then [`collides`] says yes.
     pub distance: f64,
     /// Proven: the exact distance is not below this, metres. For closed forms it is `distance` less a few units in
     /// the last place of the largest coordinate involved.
     pub lower_bound: f64,
-    /// Nearest point of the first shape, in the world. On overlap: a point in or near both.
+    /// Nearest point of the first shape, in the world. On contact: a point in both, or within rounding of both.
     pub on_a: Vec3,
-    /// Nearest point of the second shape, in the world.
+    /// Nearest point of the second shape, in the world, `distance` from `on_a` to within 1e-15 of the largest coordinate
+    /// involved. On contact: `on_a`.
     pub on_b: Vec3,
 }
 
@@ -74,19 +78,21 @@ pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &P
     if !(usable(a, a_in_world) && usable(b, b_in_world)) {
         return Some(Separation::unknown(a_in_world, b_in_world));
     }
-    let found = if rank(a) <= rank(b) {
+    let found = if comes_first(a, a_in_world, b, b_in_world) {
         ordered(a, a_in_world, b, b_in_world, limit)?
     } else {
         ordered(b, b_in_world, a, a_in_world, limit)?.swapped()
     };
     // Numbers so large that their products overflow end here.
-    if !found.distance.is_finite() {
+    let (p, q) = (found.on_a, found.on_b);
+    if !(found.distance + (p.x + p.y + p.z) + (q.x + q.y + q.z)).is_finite() {
         return Some(Separation::unknown(a_in_world, b_in_world));
     }
     (!(found.lower_bound > limit)).then_some(found)
 }
 
-/// True where the shapes touch or overlap, or are too close for f64 to tell.
+/// True where the shapes touch or overlap, or are too close for f64 to tell: exactly where [`separation`] says 0, in
+/// either order of the shapes.
 ///
 /// ```
 /// use elbowroom_proximity::{Cuboid, HalfSpace, Shape, collides};
@@ -137,6 +143,29 @@ fn rank(s: &Shape) -> u8 {
     }
 }
 
+/// The order in which a pair is computed, whichever way round it was asked for: so both ways get the same answer.
+#[inline]
+fn comes_first(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
+    let (of_a, of_b) = (rank(a), rank(b));
+    // The pair of meshes has an order of its own.
+    if of_a != of_b || matches!(a, Shape::Mesh(_)) {
+        return of_a <= of_b;
+    }
+    let (p, q) = (a_in_world.translation, b_in_world.translation);
+    if p.x == q.x { comes_first_by_rest(a, a_in_world, b, b_in_world) } else { p.x < q.x }
+}
+
+#[cold]
+fn comes_first_by_rest(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
+    let size = |s: &Shape| {
+        let reach = |d| s.support(d).dot(d);
+        [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z].map(reach)
+    };
+    let by_pose = a_in_world.to_rows().partial_cmp(&b_in_world.to_rows());
+    let order = by_pose.filter(|o| o.is_ne()).or_else(|| size(a).partial_cmp(&size(b)));
+    !order.is_some_and(Ordering::is_gt)
+}
+
 /// Lengths from here on are as good as infinite: their squares would overflow.
 const TOO_LARGE: f64 = 1e150;
 
@@ -161,13 +190,25 @@ pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
 
 #[inline]
 fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    match a {
+        Shape::Sphere(s) => point(*s, a_in_world, b, b_in_world, limit),
+        _ => extended(a, a_in_world, b, b_in_world, limit),
+    }
+}
+
+/// All but spheres, whose few steps would be slowed down by what these need of registers.
+#[inline(never)]
+fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
     match (a, b) {
-        (Shape::Sphere(s), _) => point(*s, a_in_world, b, b_in_world, limit),
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
             capsule(c, a_in_world, b, b_in_world, limit)
         }
         (Shape::HalfSpace(_), _) => {
             Some(world(half_space::both(&b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
+        }
+        (Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_) | Shape::Hull(_), Shape::HalfSpace(_)) => {
+            let (core, radius) = rounded(a)?;
+            Some(world(half_space::distance(&core, &b_in_world.inverse_mul(a_in_world)), [radius, 0.0], b_in_world))
         }
         (Shape::Mesh(m), Shape::HalfSpace(_)) => {
             Some(world(mesh::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
@@ -179,7 +220,7 @@ fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f6
         }
         (_, Shape::Mesh(m)) => {
             let (core, radius) = rounded(a)?;
-            let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit + radius, radius)?;
+            let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius)?;
             Some(world(gap, [0.0, radius], b_in_world).swapped())
         }
         _ => convex(a, b, &b_in_world.inverse_mul(a_in_world), limit).map(|(gap, radii)| world(gap, radii, b_in_world)),
@@ -199,7 +240,7 @@ fn point(s: Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64)
         Shape::HalfSpace(_) => (Vec3::new(p.x, p.y, p.z.min(0.0)), 0.0),
         Shape::Hull(h) => (h.nearest(p), 0.0),
         Shape::Mesh(m) => {
-            let gap = mesh::mesh_core(m, &Core::Point, &Pose::from_translation(p), limit + s.radius, s.radius)?;
+            let gap = mesh::mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius)?;
             return Some(world(gap, [0.0, s.radius], b_in_world).swapped());
         }
     };
@@ -214,11 +255,12 @@ fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: 
     };
     let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element() + c.half_length;
     // What a bounding box misses by must not be worth rounding.
-    let reach = limit + c.radius + rounding(2.0 * size);
+    let outer = if let Shape::Capsule(o) = b { o.radius } else { 0.0 };
+    let reach = limit + c.radius + 2.0 * rounding(2.0 * size + c.radius + outer);
     let (p, q, radius) = match b {
         Shape::Capsule(o) => {
             let solid = Cuboid { half_extents: Vec3::Z * o.half_length };
-            if axis.misses(solid.half_extents, reach + o.radius) {
+            if axis.misses(solid.half_extents, reach + outer) {
                 return None;
             }
             let p = segment::nearest_to_box(&axis, &solid);
@@ -240,7 +282,43 @@ fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: 
         }
         _ => (axis.middle, axis.middle, 0.0),
     };
-    closed(p, q, size + q.abs().max_element(), [c.radius, radius], limit, b_in_world)
+    let scale = size + q.abs().max_element();
+    if c.radius + radius <= projections::CLOSE * scale
+        && (p - q).length_squared() <= (projections::CLOSE * scale).powi(2)
+    {
+        let points = Gap { lower: 0.0, ..Gap::closed(p, q, scale) };
+        let proven = axis.box_gap(core_box(b)) - rounding(2.0 * size);
+        return needle(c, b, a_in_world, b_in_world, points, proven);
+    }
+    closed(p, q, scale, [c.radius, radius], limit, b_in_world)
+}
+
+/// Half the box around what is left of a shape without its rounding.
+#[cold]
+fn core_box(shape: &Shape) -> Vec3 {
+    match shape {
+        Shape::Capsule(c) => Vec3::Z * c.half_length,
+        Shape::Cylinder(c) => Vec3::new(c.radius, c.radius, c.half_length),
+        Shape::Cuboid(c) => c.half_extents,
+        _ => Vec3::splat(f64::INFINITY),
+    }
+}
+
+/// A capsule with hardly any radius, closer than the closed form tells: its root is lost in the rounding of the excess.
+#[cold]
+fn needle(
+    c: &Capsule,
+    b: &Shape,
+    a_in_world: &Pose,
+    b_in_world: &Pose,
+    points: Gap,
+    proven: f64,
+) -> Option<Separation> {
+    // Whatever the limit, so that it changes nothing; the points of the closed form are as good as any others.
+    let (gap, radii) = convex(&Shape::Capsule(*c), b, &b_in_world.inverse_mul(a_in_world), f64::INFINITY)?;
+    let better = gap.lower > 0.0 && points.distance < gap.distance;
+    let gap = if better { points.at_least(gap.lower) } else { gap };
+    Some(world(gap.at_least(proven), radii, b_in_world))
 }
 
 /// From exact witness points of the cores; `None`, without a root, where they are farther apart than the limit.
@@ -254,37 +332,49 @@ fn closed(p: Vec3, q: Vec3, scale: f64, radii: [f64; 2], limit: f64, b_in_world:
 }
 
 /// Two convex shapes of which the second may be a half-space: gap of the cores in the frame of the second, and radii.
+#[inline]
 pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<(Gap, [f64; 2])> {
     let (core_a, ra) = rounded(a)?;
     if matches!(b, Shape::HalfSpace(_)) {
         return Some((half_space::distance(&core_a, a_in_b), [ra, 0.0]));
     }
     let (core_b, rb) = rounded(b)?;
-    let limit = limit + ra + rb;
-    if bounds_miss(&core_a, &core_b, a_in_b, limit) {
+    // Later than where the bound in `world` passes the limit, so that it alone decides.
+    let limit = limit + ra + rb + 2.0 * rounding(ra + rb);
+    let proven = bounds_gap(&core_a, &core_b, a_in_b);
+    if proven > limit {
         return None;
     }
-    let gap = projections::distance(&core_a, &core_b, a_in_b, limit)?;
+    let gap = projections::distance(&core_a, &core_b, a_in_b, limit)?.at_least(proven);
     Some((gap, [ra, rb]))
 }
 
-/// True where the second's bounding box, in its frame, proves the distance above the limit.
-#[inline]
-fn bounds_miss(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> bool {
+/// Along the axes of the second's frame: never above the exact distance. 0 where nothing is known.
+#[allow(clippy::inline_always, reason = "of two boxes it is most of the time")]
+#[inline(always)]
+fn bounds_gap(a: &Core, b: &Core, a_in_b: &Pose) -> f64 {
     let half_b = match b {
         Core::Cuboid(c) => c.half_extents,
         Core::Cylinder(c) => Vec3::new(c.radius, c.radius, c.half_length),
-        _ => return false,
+        _ => return 0.0,
     };
     let z = a_in_b.rotation.z_axis().abs();
     let half_a = match a {
         Core::Cuboid(c) => a_in_b.rotation.abs_mul(c.half_extents),
         Core::Cylinder(c) => z * c.half_length + Vec3::splat(c.radius),
-        _ => return false,
+        _ => return 0.0,
     };
     let t = a_in_b.translation.abs();
     let excess = (t - half_a - half_b).max_element();
-    excess - rounding(t.x + t.y + t.z + half_a.max_element() + half_b.max_element()) > limit
+    excess - rounding(t.x + t.y + t.z + half_a.max_element() + half_b.max_element())
+}
+
+/// One point for both: the middle of what both radii cover of the way from core to core.
+fn contact(gap: &Gap, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
+    let along = (0.5 * (gap.distance + radii[0] - radii[1])).max(0.0).min(gap.distance);
+    let share = if gap.distance > 0.0 { along / gap.distance } else { 0.0 };
+    let shared = frame_in_world.transform_point(gap.on_a + (gap.on_b - gap.on_a) * share);
+    Separation { distance: 0.0, lower_bound: 0.0, on_a: shared, on_b: shared }
 }
 
 /// From the cores' gap in some frame to the shapes' separation in the world.
@@ -292,16 +382,19 @@ fn bounds_miss(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> bool {
 fn world(gap: Gap, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
     let radius = radii[0] + radii[1];
     let distance = (gap.distance - radius).max(0.0);
-    let lower_bound = (gap.lower - radius - rounding(radius)).max(0.0);
+    let lower_bound = (gap.lower - radius - rounding(radius)).max(0.0).min(distance);
     let (mut p, mut q) = (gap.on_a, gap.on_b);
-    if radius > 0.0 && gap.distance > 0.0 {
+    if !(lower_bound > 0.0) {
+        return contact(&gap, radii, frame_in_world);
+    }
+    if radius > 0.0 {
         let toward_b = (q - p) / gap.distance;
         p += toward_b * radii[0].min(gap.distance);
         q -= toward_b * radii[1].min(gap.distance);
     }
     Separation {
         distance,
-        lower_bound: lower_bound.min(distance),
+        lower_bound,
         on_a: frame_in_world.transform_point(p),
         on_b: frame_in_world.transform_point(q),
     }

@@ -25,7 +25,13 @@ impl Segment {
     /// True where a box around the frame's origin is farther than `reach` along one of its axes.
     #[inline]
     pub fn misses(&self, half_extents: Vec3, reach: f64) -> bool {
-        (self.middle.abs() - self.direction.abs() * self.half - half_extents).max_element() > reach
+        self.box_gap(half_extents) > reach
+    }
+
+    /// Largest gap along an axis to a box around the frame's origin.
+    #[inline]
+    pub fn box_gap(&self, half_extents: Vec3) -> f64 {
+        (self.middle.abs() - self.direction.abs() * self.half - half_extents).max_element()
     }
 }
 

@@ -61,7 +61,7 @@ impl<'s> Core<'s> {
     }
 
     /// The level at which pairs are looked at one by one.
-    pub(super) fn fine(&self) -> Level {
+    pub(crate) fn fine(&self) -> Level {
         match self.options.level {
             Level::Auto => Level::L3,
             Level::L1 => Level::L2,
@@ -69,12 +69,12 @@ impl<'s> Core<'s> {
         }
     }
 
-    pub(super) fn deepen(&mut self, level: Level) {
+    pub(crate) fn deepen(&mut self, level: Level) {
         self.deepest = self.deepest.max(level);
     }
 
     /// True where pairs may be dismissed by boxes: their answer would be the same.
-    pub(super) fn boxes_decide(&self) -> bool {
+    pub(crate) fn boxes_decide(&self) -> bool {
         match self.options.level {
             Level::Auto => self.options.start <= Level::L2,
             Level::L1 | Level::L2 | Level::Hull => true,

@@ -9,7 +9,7 @@ use crate::{Member, PairState, Reason, Scene, SceneState, Selection, weight};
 
 /// A pair, and what was learned of it.
 #[derive(Debug, Clone)]
-pub(super) struct Pair {
+pub(crate) struct Pair {
     /// Indices of models.
     pub a: u32,
     pub b: u32,
@@ -24,9 +24,17 @@ pub(super) struct Pair {
     pub hint: (u32, u32, Hint),
 }
 
+impl Pair {
+    /// Two members of which nothing is known; `None` where one has no solid.
+    pub fn of(scene: &Scene, (a, b): (Member, Member), margin: f64) -> Option<Self> {
+        let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
+        Some(Self { a, b, margin, least: 0.0, rank: 0, weight: 1.0, hint: (0, 0, Hint::default()) })
+    }
+}
+
 /// What a test of boxes takes of a pair, packed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sides {
+pub(crate) struct Sides {
     pub a: u32,
     pub b: u32,
     /// Metres, rounded up.
@@ -37,7 +45,7 @@ pub(super) struct Sides {
 
 /// Pairs between the same two carriers.
 #[derive(Debug, Clone)]
-pub(super) struct Block {
+pub(crate) struct Block {
     /// Indices of boxes of a state: of a robot, or of an object by itself.
     pub a: usize,
     pub b: usize,
@@ -48,7 +56,7 @@ pub(super) struct Block {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct PairList {
+pub(crate) struct PairList {
     pub key: (Selection, Selection),
     /// For which arrangement of attached objects it was made.
     pub arrangement: Option<u64>,
@@ -81,7 +89,7 @@ impl PairList {
         self.block(scene, state);
     }
 
-    fn selects(&self, state: &SceneState, a: Member, b: Member) -> bool {
+    pub fn selects(&self, state: &SceneState, a: Member, b: Member) -> bool {
         let (one, other) = self.key;
         let holds = |s: Selection, m: Member| {
             let carrier = if let Member::Object(_) = m { state.carrier(m).map(|c| c.0) } else { None };
@@ -127,16 +135,7 @@ impl PairList {
     }
 
     fn push(&mut self, scene: &Scene, (a, b): (Member, Member), margin: f64, least: f64, weight: f64) {
-        let (Some(a), Some(b)) = (scene.model_of(a), scene.model_of(b)) else { return };
-        self.pairs.push(Pair {
-            a: a as u32,
-            b: b as u32,
-            margin,
-            least,
-            rank: 0,
-            weight,
-            hint: (0, 0, Hint::default()),
-        });
+        self.pairs.extend(Pair::of(scene, (a, b), margin).map(|p| Pair { least, weight, ..p }));
     }
 
     /// Root-most pairs first; the matrix' order among equals.

@@ -8,8 +8,9 @@ mod nearest;
 
 pub use answer::{Contact, Distance};
 
-use crate::{Counts, Level, Member, Scene, SceneState, Selection};
-use list::PairList;
+use crate::sweep::Sweeper;
+use crate::{Counts, Impact, Level, Member, Move, Scene, SceneError, SceneState, Selection, SweepOptions};
+pub(crate) use list::{Pair, PairList};
 use narrow::Narrow;
 
 /// How questions are answered. None of these but [`Options::level`] changes an answer; at levels of enclosing volumes the
@@ -59,17 +60,21 @@ impl Default for Options {
 pub struct Checker<'s> {
     core: Core<'s>,
     lists: Vec<PairList>,
+    /// Made when first asked.
+    sweeper: Option<Box<Sweeper>>,
 }
 
 /// All but the pair lists.
 #[derive(Debug)]
-struct Core<'s> {
-    scene: &'s Scene,
-    options: Options,
-    narrow: Narrow,
+pub(crate) struct Core<'s> {
+    pub scene: &'s Scene,
+    pub options: Options,
+    pub narrow: Narrow,
     candidates: Vec<Candidate>,
+    /// The nearest pair is no farther, metres.
+    guessed: f64,
     /// The finest level that the present answer has needed.
-    deepest: Level,
+    pub deepest: Level,
 }
 
 /// A pair that is still in question.
@@ -87,8 +92,8 @@ impl<'s> Checker<'s> {
         let narrow = Narrow::new(scene);
         // Models that are made when first asked for are asked for now.
         scene.models.iter().for_each(|m| _ = m.at(options.level));
-        let core = Core { scene, options, narrow, candidates: Vec::new(), deepest: Level::L1 };
-        let mut checker = Self { core, lists: Vec::new() };
+        let core = Core { scene, options, narrow, candidates: Vec::new(), guessed: f64::INFINITY, deepest: Level::L1 };
+        let mut checker = Self { core, lists: Vec::new(), sweeper: None };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
         checker
     }
@@ -163,6 +168,74 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All).distance(state)
     }
 
+    /// The first time that a pair is nearer than its margin while things move, or `None` where nothing is during all of
+    /// the motion: proven, not sampled, so that no thin plate is jumped over. What is not in `moves` stands where `start`
+    /// has it. Pairs that are none by rule (neighbours, SRDF, by hand) never count; a link that no joint moves counts
+    /// against an object that moves by itself, objects among themselves only where nothing but objects is
+    /// [named](Checker::between).
+    ///
+    /// The first sweep takes memory, and later ones where they are longer than any before. [`Level::L1`] is answered at
+    /// [`Level::L2`].
+    ///
+    /// ```
+    /// use elbowroom_proximity::impact::Steady;
+    /// use elbowroom_scene::{Checker, Move, Options, SceneState, SweepOptions, example};
+    /// use elbowroom_spatial::Vec3;
+    /// let scene = example::two_arms();
+    /// let mut start = SceneState::new(&scene);
+    /// start.set_q(&scene, 0, &[-0.9, 1.3, 0.6])?;
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// // Across the part on the table: both ends are free, the way is not.
+    /// let across = [Move::Robot { robot: 0, to: &[0.9, 1.3, 0.6] }];
+    /// let hit = checker.sweep(&start, &across, &SweepOptions::default())?.expect("in the way");
+    /// assert_eq!((scene.name(hit.a), scene.name(hit.b)), ("left/forearm".into(), "part".into()));
+    /// assert!(hit.certain && hit.metres <= 1e-4);
+    /// // The part comes along by itself.
+    /// let part = scene.objects()[0].in_world;
+    /// let path = Steady::linear(part, Vec3::X * -0.6);
+    /// let hit = checker.sweep(&start, &[Move::Object { object: 0, path: &path }], &SweepOptions::default())?;
+    /// assert!(hit.is_some_and(|h| h.time > 0.3));
+    /// # Ok::<(), elbowroom_scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`SceneState::set_q`] and [`SceneState::place`], for the end of the motion; something that moves twice.
+    pub fn sweep(
+        &mut self,
+        start: &SceneState,
+        moves: &[Move],
+        options: &SweepOptions,
+    ) -> Result<Option<Impact>, SceneError> {
+        self.between(Selection::All, Selection::All).sweep(start, moves, options)
+    }
+
+    /// [`Checker::sweep`] of one robot through waypoints (joint values, rad or m), straight in joint space from each to
+    /// the next; the first is where `start` has the robot already or the end of the first segment. With the impact
+    /// comes the index of the waypoint that was being gone to; its time is that of the segment.
+    ///
+    /// ```
+    /// use elbowroom_scene::{Checker, Options, SceneState, SweepOptions, example};
+    /// let scene = example::two_arms();
+    /// let mut start = SceneState::new(&scene);
+    /// start.set_q(&scene, 0, &[-0.9, 1.3, 0.6])?;
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// let over = [[-0.9, 0.2, 0.6], [0.9, 0.2, 0.6], [0.9, 1.3, 0.6]];
+    /// assert_eq!(checker.sweep_path(&start, 0, &over, &SweepOptions::default())?, None);
+    /// # Ok::<(), elbowroom_scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Checker::sweep`], for any of the waypoints, before anything is looked at.
+    pub fn sweep_path<Q: AsRef<[f64]>>(
+        &mut self,
+        start: &SceneState,
+        robot: usize,
+        waypoints: &[Q],
+        options: &SweepOptions,
+    ) -> Result<Option<(usize, Impact)>, SceneError> {
+        self.between(Selection::All, Selection::All).sweep_path(start, robot, waypoints, options)
+    }
+
     /// The weights as they are now, of the pairs of everything: (a, b, weight), in the order of the hierarchy.
     pub fn weights(&self) -> impl Iterator<Item = (Member, Member, f64)> + '_ {
         let models = &self.core.scene.models;
@@ -181,7 +254,7 @@ pub struct Between<'c, 's> {
 impl<'s> Between<'_, 's> {
     /// Core and an up-to-date list.
     fn fresh(&mut self, state: &SceneState) -> (&mut Core<'s>, &mut PairList) {
-        let Checker { core, lists } = &mut *self.checker;
+        let Checker { core, lists, .. } = &mut *self.checker;
         let list = &mut lists[self.list];
         if list.arrangement != Some(state.arrangement) {
             list.arrange(core.scene, state);
@@ -217,6 +290,42 @@ impl<'s> Between<'_, 's> {
         let tolerance = if tolerance_m.is_nan() { f64::INFINITY } else { tolerance_m.max(0.0) };
         let (core, list) = self.fresh(state);
         core.first(list, state, tolerance)
+    }
+
+    /// As [`Checker::sweep`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sweep(
+        &mut self,
+        start: &SceneState,
+        moves: &[Move],
+        options: &SweepOptions,
+    ) -> Result<Option<Impact>, SceneError> {
+        let (core, list, sweeper) = self.sweeping(start);
+        sweeper.sweep(core, list, start, moves, options)
+    }
+
+    /// As [`Checker::sweep_path`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sweep_path<Q: AsRef<[f64]>>(
+        &mut self,
+        start: &SceneState,
+        robot: usize,
+        waypoints: &[Q],
+        options: &SweepOptions,
+    ) -> Result<Option<(usize, Impact)>, SceneError> {
+        let (core, list, sweeper) = self.sweeping(start);
+        sweeper.sweep_path(core, list, start, robot, waypoints, options)
+    }
+
+    fn sweeping(&mut self, start: &SceneState) -> (&mut Core<'s>, &mut PairList, &mut Sweeper) {
+        self.fresh(start);
+        let Checker { core, lists, sweeper } = &mut *self.checker;
+        let sweeper = sweeper.get_or_insert_with(|| Box::new(Sweeper::new(core.scene, core.fine())));
+        (core, &mut lists[self.list], sweeper)
     }
 
     /// As [`Checker::distance`].

@@ -62,6 +62,17 @@ impl Narrow {
         None
     }
 
+    /// Metres that the boxes around two members certainly have between them; -∞ where boxes are no cheaper than solids.
+    pub fn gap(&mut self, a: &Placed, b: &Placed) -> f64 {
+        match (a.obb(), b.obb()) {
+            (Some(x), Some(y)) if a.model.complex || b.model.complex => {
+                self.counts.pairs_tested.l2 += 1;
+                obb::gap(&x, &y)
+            }
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
     /// True where the models of a level are not certainly farther apart than `limit` metres.
     pub fn touch(&mut self, a: &Placed, b: &Placed, level: Level, limit: f64) -> bool {
         self.counts.pairs_tested.add(level, 1);
@@ -133,6 +144,13 @@ impl Narrow {
             }
         }
         best
+    }
+
+    /// An upper bound of the distance of the exact models, metres; `None` where it would not come cheap.
+    pub fn guess(&mut self, a: &Placed, b: &Placed, hint: &mut (u32, u32, Hint)) -> Option<f64> {
+        let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
+        let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+        self.scratch.guess(&x.shape, &in_a, &y.shape, &in_b, &mut hint.2)
     }
 
     fn fill_bounds(&mut self, solids: &[Solid], in_world: &Pose) {

@@ -7,21 +7,32 @@ use super::list::PairList;
 use super::{Candidate, Core};
 use crate::{Level, SceneState};
 
+/// So many of the likeliest pairs are guessed at before any is measured.
+const GUESSES: usize = 2;
+
 impl Core<'_> {
     /// The nearest pair; `None` where there is none.
     pub(super) fn nearest(&mut self, list: &mut PairList, state: &SceneState) -> Option<Distance> {
         self.deepest = Level::L1;
+        self.guessed = f64::INFINITY;
         let mut best: Option<Distance> = None;
         // What was nearest is likely to be nearest again, and gives the others a limit.
-        let last = list.nearest.filter(|_| self.options.level != Level::L1);
+        let mut last = list.nearest.filter(|_| self.options.level != Level::L1);
         if let Some(index) = last {
-            self.look(list, index, state, &mut best);
+            if self.guess(list, index, state) {
+                last = None;
+            } else {
+                self.look(list, index, state, &mut best);
+            }
         }
         self.bound(list, state, &mut best, last);
         self.sort();
+        for i in 0..self.candidates.len().min(GUESSES) {
+            self.guess(list, self.candidates[i].index as usize, state);
+        }
         for i in 0..self.candidates.len() {
             let Candidate { key, index, .. } = self.candidates[i];
-            if best.is_some_and(|b| key >= b.metres) {
+            if self.beyond(key, best.as_ref()) {
                 self.narrow.counts.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
                 break;
             }
@@ -31,20 +42,36 @@ impl Core<'_> {
         best
     }
 
+    /// True where a pair at least so far apart cannot be the nearest.
+    fn beyond(&self, metres: f64, best: Option<&Distance>) -> bool {
+        metres > self.guessed || best.is_some_and(|b| metres >= b.metres)
+    }
+
+    /// Looks for an upper bound of the distance at one pair; false where there is none to be had.
+    fn guess(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
+        if !matches!(self.options.level, Level::Auto | Level::L3) {
+            return false;
+        }
+        let pair = &mut list.pairs[index];
+        let [a, b] = self.sides(pair, state);
+        let Some(metres) = self.narrow.guess(&a, &b, &mut pair.hint) else { return false };
+        self.guessed = self.guessed.min((metres - pair.margin).max(0.0));
+        true
+    }
+
     /// Collects the pairs that boxes leave in question, with the bounds that they give.
     fn bound(&mut self, list: &PairList, state: &SceneState, best: &mut Option<Distance>, last: Option<usize>) {
         self.candidates.clear();
         let (boxes, wholes) = (self.boxes_decide(), self.wholes_decide());
         for block in &list.blocks {
             let same = block.a == block.b;
-            let limit = best.map_or(f64::INFINITY, |b| b.metres);
             if wholes && !same {
                 let gap = f64::from(state.boxes[block.a].gap(&state.boxes[block.b])) - block.margin;
                 if self.options.level == Level::L1 {
                     self.whole(list, block, state, best);
                     continue;
                 }
-                if gap >= limit && best.is_some() {
+                if self.beyond(gap, best.as_ref()) {
                     self.narrow.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
                     continue;
                 }
@@ -62,7 +89,7 @@ impl Core<'_> {
                     0.0
                 };
                 let key = (gap.max(known) - f64::from(sides.margin)).max(0.0);
-                if best.is_some() && key >= limit {
+                if self.beyond(key, best.as_ref()) {
                     self.narrow.counts.pairs_cleared.l2 += 1;
                     self.deepen(Level::L2);
                     continue;
@@ -99,7 +126,7 @@ impl Core<'_> {
         let proven = (self.known(pair, state) - pair.margin).max(0.0);
         let slack = a.model.slack(self.options.level) + b.model.slack(self.options.level);
         let margin = pair.margin + slack;
-        let limit = best.map_or(f64::INFINITY, |b| b.metres + margin);
+        let limit = best.map_or(self.guessed, |b| b.metres.min(self.guessed)) + margin;
         if self.options.level == Level::Auto
             && self.boxes_decide()
             && limit < f64::INFINITY

@@ -32,6 +32,9 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
     let mut upper = v.length();
     for _ in 0..MAX_ITERATIONS {
         if upper <= slack {
+            if lower > 0.0 {
+                break;
+            }
             return Some(overlap(&simplex));
         }
         let direction = v / upper;
@@ -43,7 +46,7 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
         if upper - lower <= WANTED * scale || simplex.holds(next.w) {
             break;
         }
-        let Some((grown, nearer, length)) = grow(&simplex, next, upper, lower > 0.0) else {
+        let Some((grown, nearer, length)) = grow(&simplex, next, upper, lower > 0.0, WANTED * scale) else {
             break;
         };
         if grown.len == 4 {
@@ -51,21 +54,18 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
         }
         (simplex, v, upper) = (grown, nearer, length);
     }
-    if !(lower > 0.0) {
-        return Some(overlap(&simplex)); // not proven apart
-    }
     let (on_a, on_b) = (simplex.blend(|x| x.on_a), simplex.blend(|x| x.on_b));
-    Some(Gap { distance: upper, lower: lower.min(upper), on_a, on_b })
+    Some(Gap { distance: upper, lower: 0.0, on_a, on_b }.at_least(lower))
 }
 
 /// The simplex with one vertex more, reduced to what holds its nearest point; `None` where that brings nothing nearer.
 ///
 /// Where the vertices have come so close together that rounding decides, the simplex is folded into its nearest point,
 /// which is a point of `A - B` like any other, and the search goes on from there.
-fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool) -> Option<(Simplex, Vec3, f64)> {
+fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool, wanted: f64) -> Option<(Simplex, Vec3, f64)> {
     let mut grown = *simplex;
     grown.push(next);
-    if !grown.reduce(apart) {
+    if !grown.reduce(apart) && shares_a_point(&mut grown, wanted) {
         return Some((grown, Vec3::ZERO, 0.0));
     }
     let folded = Vertex { w: simplex.blend(|x| x.w), on_a: simplex.blend(|x| x.on_a), on_b: simplex.blend(|x| x.on_b) };
@@ -78,6 +78,18 @@ fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool) -> Option<(Sim
         // Equal to the last place is progress too: a gap of g over an edge of length 1 shortens by g² only.
         (length <= upper * (1.0 + 2.0 * f64::EPSILON)).then_some((s, nearer, length))
     })
+}
+
+/// Whether the tetrahedron really holds the origin: signs alone may be wrong where it is flat, a point in common is proof.
+/// Otherwise it is reduced to its nearest face.
+#[cold]
+#[inline(never)]
+fn shares_a_point(tetrahedron: &mut Simplex, wanted: f64) -> bool {
+    let shared = tetrahedron.enclose() && tetrahedron.blend(|x| x.w).length() <= wanted;
+    if !shared {
+        tetrahedron.reduce(true);
+    }
+    shared
 }
 
 fn overlap(simplex: &Simplex) -> Gap {

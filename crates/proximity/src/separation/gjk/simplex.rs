@@ -67,6 +67,17 @@ impl Simplex {
         true
     }
 
+    /// Weighs the corners of a tetrahedron so that they make the origin; false where it is flat.
+    pub fn enclose(&mut self) -> bool {
+        let [a, b, c, d] = self.vertices.map(|v| v.w);
+        let part = |p: Vec3, q: Vec3, r: Vec3| p.dot(q.cross(r));
+        let volume = part(b - a, c - a, d - a);
+        let weights = [part(b, c, d), -part(a, c, d), part(a, b, d), -part(a, b, c)].map(|v| (v / volume).max(0.0));
+        let sum: f64 = weights.iter().sum();
+        self.weights = weights.map(|w| w / sum);
+        sum.is_finite() && sum > 0.0
+    }
+
     fn w(&self, i: usize) -> Vec3 {
         self.vertices[i].w
     }

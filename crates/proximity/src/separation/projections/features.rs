@@ -3,35 +3,36 @@
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::Cores;
+use super::around::{Around, visit_edges};
 use crate::Cuboid;
 use crate::separation::core::{Core, Gap};
 use crate::separation::segment::{Segment, nearest_to_box, nearest_to_cylinder};
 
-/// The best support planes among the faces' normals, the directions across axes and the products of axes near `v`.
-pub(super) fn lower_bound(cores: &Cores, v: Vec3) -> f64 {
-    let Some(v) = v.try_normalize() else { return 0.0 };
+/// The best support planes among the normals of faces, the directions across edges and the products of edges near the
+/// witness points.
+pub(super) fn lower_bound(cores: &Cores, gap: &Gap) -> f64 {
+    let difference = gap.on_a - gap.on_b;
+    let Some(v) = difference.try_normalize() else { return 0.0 };
+    // Anything farther off is no neighbour of the wanted direction; of witnesses close together only a rough one is known.
+    let neighbour = if gap.distance > cores.close { 0.99 } else { 0.5 };
     let mut best = cores.plane_gap(v);
-    let r = cores.a_in_b.rotation;
-    let (of_a, of_b) = ([r.x_axis(), r.y_axis(), r.z_axis()], [Vec3::X, Vec3::Y, Vec3::Z]);
     let mut ask = |d: Vec3| {
-        // Anything farther off is no neighbour of the wanted direction.
-        if d.dot(v).abs() > 0.99
-            && let Some(d) = d.try_normalize()
+        if let Some(d) = d.try_normalize()
+            && d.dot(v).abs() > neighbour
         {
             best = best.max(cores.plane_gap(if d.dot(v) < 0.0 { -d } else { d }));
         }
     };
-    for e in of_a.into_iter().chain(of_b) {
-        ask(e);
-        ask(v - e * v.dot(e));
+    let of_a = Around::of(cores.a, cores.a_in_b.inverse_transform_point(gap.on_a), cores.close);
+    let of_b = Around::of(cores.b, gap.on_b, cores.close);
+    let in_b = |d: &Vec3| cores.a_in_b.transform_vector(*d);
+    of_a.normals.iter().map(in_b).for_each(&mut ask);
+    of_b.normals.iter().copied().for_each(&mut ask);
+    for x in of_a.edges.iter().map(in_b) {
+        ask(v - x * v.dot(x));
+        of_b.edges.iter().for_each(|y| ask(x.cross(*y)));
     }
-    for x in of_a {
-        for y in of_b {
-            if let Some(d) = x.cross(y).try_normalize() {
-                ask(d);
-            }
-        }
-    }
+    of_b.edges.iter().for_each(|y| ask(v - *y * v.dot(*y)));
     best
 }
 
@@ -39,12 +40,7 @@ pub(super) fn lower_bound(cores: &Cores, v: Vec3) -> f64 {
 /// normals.
 pub(super) fn improve(cores: &Cores, mut gap: Gap) -> Gap {
     let a_in_b = cores.a_in_b;
-    let mut offer = |on_a: Vec3, on_b: Vec3| {
-        let distance = (on_a - on_b).length();
-        if distance < gap.distance {
-            gap = Gap { distance, on_a, on_b, ..gap };
-        }
-    };
+    let mut offer = |on_a: Vec3, on_b: Vec3| gap = nearer_of(gap, on_a, on_b);
     let r = a_in_b.rotation;
     for axis in [Vec3::X, Vec3::Y, Vec3::Z, r.x_axis(), r.y_axis(), r.z_axis()] {
         for d in [axis, -axis] {
@@ -68,8 +64,37 @@ pub(super) fn improve(cores: &Cores, mut gap: Gap) -> Gap {
             }
         }
     }
-    let lower = gap.lower.max(lower_bound(cores, gap.on_a - gap.on_b)).min(gap.distance);
-    Gap { lower, ..gap }
+    let gap = along_edges(cores, gap);
+    gap.at_least(lower_bound(cores, &gap))
+}
+
+/// Witness points on the edges of a hull or a triangle near the present ones.
+fn along_edges(cores: &Cores, gap: Gap) -> Gap {
+    let (a_in_b, reach, mut best) = (cores.a_in_b, 1e3 * cores.close, gap);
+    let segment = |from: Vec3, to: Vec3| {
+        let half = 0.5 * (to - from);
+        let direction = half.try_normalize()?;
+        Some(Segment { middle: from + half, direction, half: half.length() })
+    };
+    visit_edges(cores.a, a_in_b.inverse_transform_point(gap.on_a), reach, &mut |p, q| {
+        let edge = segment(a_in_b.transform_point(p), a_in_b.transform_point(q));
+        if let Some((on_edge, on_b)) = edge.and_then(|e| nearest_to_edge(&e, cores.b)) {
+            best = nearer_of(best, on_edge, on_b);
+        }
+    });
+    let b_in_a = a_in_b.inverse();
+    visit_edges(cores.b, gap.on_b, reach, &mut |p, q| {
+        let edge = segment(b_in_a.transform_point(p), b_in_a.transform_point(q));
+        if let Some((on_edge, on_a)) = edge.and_then(|e| nearest_to_edge(&e, cores.a)) {
+            best = nearer_of(best, a_in_b.transform_point(on_a), a_in_b.transform_point(on_edge));
+        }
+    });
+    best
+}
+
+fn nearer_of(gap: Gap, on_a: Vec3, on_b: Vec3) -> Gap {
+    let distance = (on_a - on_b).length();
+    if distance < gap.distance { Gap { distance, on_a, on_b, ..gap } } else { gap }
 }
 
 fn nearest_to_edge(edge: &Segment, solid: &Core) -> Option<(Vec3, Vec3)> {

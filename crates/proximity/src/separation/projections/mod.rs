@@ -1,6 +1,7 @@
 //! Distance of two convex cores by Newton's method on alternating projections. Why it works: `README.md` beside this
 //! file.
 
+mod around;
 pub(crate) mod derivative;
 mod features;
 
@@ -18,6 +19,9 @@ const ROUNDS: usize = 12;
 
 /// Bounds closer than this fraction of the distance are likely apart for a wrong direction only.
 const NEARLY: f64 = 1e-6;
+
+/// Witnesses closer than this fraction of the coordinates give a direction with too few digits for a proof.
+pub(super) const CLOSE: f64 = 1e-6;
 
 /// Rounds after it.
 const ROUNDS_AFTER: usize = 40;
@@ -44,6 +48,8 @@ pub(super) struct Cores<'a> {
     pub slack: f64,
     /// Bounds this close have met, metres.
     pub wanted: f64,
+    /// Witnesses this close give a rough direction, metres.
+    pub close: f64,
 }
 
 impl<'a> Cores<'a> {
@@ -51,7 +57,7 @@ impl<'a> Cores<'a> {
     pub fn new(a: &'a Core<'a>, b: &'a Core<'a>, a_in_b: &'a Pose) -> Self {
         let t = a_in_b.translation.abs();
         let scale = t.x + t.y + t.z + a.size() + b.size();
-        Self { a, b, a_in_b, slack: rounding(scale), wanted: WANTED * scale }
+        Self { a, b, a_in_b, slack: rounding(scale), wanted: WANTED * scale, close: CLOSE * scale }
     }
 
     /// The point of `a` farthest along `-direction`, in the frame of `b`.
@@ -90,45 +96,43 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<
 }
 
 /// GJK from where the projections have stopped, then projections from where GJK has stopped.
+///
+/// What is proven apart stays so: a limit ends the search earlier, and changes nothing else.
 #[cold]
 fn finish(cores: &Cores, before: Option<Gap>, start: Vec3, limit: f64) -> Option<Gap> {
-    if let Some(mut gap) = before
-        && gap.distance - gap.lower <= NEARLY * gap.distance
+    let mut best = before;
+    if let Some(gap) = &mut best
+        && (gap.distance - gap.lower <= NEARLY * gap.distance || gap.distance <= cores.close)
     {
-        gap.lower = gap.lower.max(features::lower_bound(cores, gap.on_a - gap.on_b)).min(gap.distance);
+        *gap = gap.at_least(features::lower_bound(cores, gap));
         if gap.distance - gap.lower <= cores.wanted {
-            return (!(gap.lower > limit)).then_some(gap);
+            return (!(gap.lower > limit)).then_some(*gap);
         }
     }
-    let direction = before.map_or(start - cores.b.middle(), |g| g.on_a - g.on_b);
-    let mut gap = gjk::distance(cores.a, cores.b, cores.a_in_b, direction, limit)?;
-    if gap.distance - gap.lower <= cores.wanted && gap.lower > 0.0 {
-        return Some(gap);
-    }
-    if let Some(before) = before {
-        let lower = gap.lower.max(before.lower);
-        // GJK calls contact what it cannot prove apart.
-        if !(gap.lower > 0.0) || before.distance < gap.distance {
-            let proven = features::lower_bound(cores, before.on_a - before.on_b).max(lower);
-            gap = if proven > 0.0 { before } else { gap };
-        }
-        gap.lower = lower;
-    }
-    if !(gap.distance > 0.0) {
-        return Some(gap);
+    let direction = best.map_or(start - cores.b.middle(), |g| g.on_a - g.on_b);
+    let found = gjk::distance(cores.a, cores.b, cores.a_in_b, direction, limit)?;
+    let mut gap = best.map_or(found, |best| nearer(best, found));
+    if decided(cores, &gap) {
+        return (!(gap.lower > limit)).then_some(gap);
     }
     match search(cores, gap.on_a, limit, ROUNDS_AFTER) {
         Outcome::Farther => return None,
-        Outcome::Closed(closed) | Outcome::Open(closed) => {
-            let lower = gap.lower.max(closed.lower);
-            gap = if closed.distance < gap.distance { closed } else { gap };
-            gap.lower = lower.min(gap.distance);
-        }
+        Outcome::Closed(closed) | Outcome::Open(closed) => gap = nearer(gap, closed),
     }
-    if gap.distance - gap.lower > cores.wanted {
+    if !decided(cores, &gap) {
         gap = features::improve(cores, gap);
     }
     (!(gap.lower > limit)).then_some(gap)
+}
+
+/// In contact, or apart with bounds that have met.
+fn decided(cores: &Cores, gap: &Gap) -> bool {
+    !(gap.distance > 0.0) || (gap.lower > 0.0 && gap.distance - gap.lower <= cores.wanted)
+}
+
+/// The nearer witness points and the higher bound.
+fn nearer(a: Gap, b: Gap) -> Gap {
+    if b.distance < a.distance { b.at_least(a.lower) } else { a.at_least(b.lower) }
 }
 
 /// Projects to and fro, with Newton steps in between.
@@ -144,7 +148,8 @@ fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
         let v = onto_a.point - q;
         let length = v.length();
         if !(length > cores.slack) {
-            return Outcome::Closed(Gap::touching(onto_a.point, q));
+            let touching = Gap::touching(onto_a.point, q);
+            return Outcome::Closed(touching.at_least(best.lower));
         }
         let lower = cores.plane_gap(v / length);
         best.lower = best.lower.max(lower);
