@@ -1,0 +1,21 @@
+//! Ways around: paths through the free cells of a joint map, replanned when cells change.
+//!
+//! Two cells are joined where they share a *face*; a straight stretch is allowed where every cell that it so much as
+//! touches is free. So a path exists exactly if start and goal are joined, and it never slips between blocked cells that
+//! meet at an edge.
+#![deny(missing_docs)]
+
+mod blocks;
+mod graph;
+mod labels;
+mod local;
+mod nearest;
+mod path;
+mod planner;
+mod polish;
+mod search;
+mod sight;
+mod space;
+
+pub use path::{End, Path, PlanError};
+pub use planner::{PlanOptions, Planner};
