@@ -13,9 +13,13 @@ mod nearest;
 mod path;
 mod planner;
 mod polish;
+mod replan;
 mod search;
 mod sight;
 mod space;
+mod timing;
 
 pub use path::{End, Path, PlanError};
 pub use planner::{PlanOptions, Planner};
+pub use replan::{How, Progress, Standing};
+pub use timing::{MotionError, MotionLimits, State, Trajectory};

@@ -46,7 +46,6 @@ fn walk(table: &Table, a: Point, b: Point, mut blocked: impl FnMut(f64) -> bool)
 }
 
 /// True where all cells that the box between two corners touches are free.
-#[allow(dead_code)]
 pub(crate) fn box_is_free(table: &Table, low: Point, high: Point) -> bool {
     let range = |axis: usize| floor(low[axis] - WIDER)..=floor(high[axis] + WIDER);
     let (first, last) = (*range(2).start(), *range(2).end());
