@@ -6,6 +6,7 @@
 #![deny(missing_docs)]
 
 mod blocks;
+mod check;
 mod graph;
 mod labels;
 mod local;
@@ -19,6 +20,7 @@ mod sight;
 mod space;
 mod timing;
 
+pub use check::{CheckError, MappedJoints};
 pub use path::{End, Path, PlanError};
 pub use planner::{PlanOptions, Planner};
 pub use replan::{How, Progress, Standing};
