@@ -66,7 +66,7 @@ impl Graph {
             self.refill(table, block as usize);
         }
         self.touched = touched;
-        if self.lost > self.slots.len() {
+        if self.lost > 2 * self.slots.len() {
             self.rebuild(table);
         }
     }
@@ -77,8 +77,10 @@ impl Graph {
         let slot = &mut self.slots[block];
         if count > usize::from(slot.room) {
             self.lost += usize::from(slot.room);
-            *slot = Slot { first: self.cells.len() as Node, count: 0, room: count as u8 };
-            self.cells.resize(self.cells.len() + count, 0);
+            // Blocks at the border of an obstacle come apart again and again: some room beyond need.
+            let room = if slot.room == 0 { count } else { count.next_power_of_two() };
+            *slot = Slot { first: self.cells.len() as Node, count: 0, room: room as u8 };
+            self.cells.resize(self.cells.len() + room, 0);
             self.at.resize(self.cells.len(), [0; 3]);
         }
         slot.count = count as u8;

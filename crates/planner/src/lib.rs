@@ -16,6 +16,7 @@ mod planner;
 mod polish;
 mod replan;
 mod search;
+mod sidestep;
 mod sight;
 mod space;
 mod timing;

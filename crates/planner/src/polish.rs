@@ -100,7 +100,7 @@ impl Polish {
 }
 
 /// Moves a corner to where the way over it is shorter.
-fn pull(ground: Ground, points: &mut [Point], i: usize) {
+pub(crate) fn pull(ground: Ground, points: &mut [Point], i: usize) {
     let (before, after) = (points[i - 1], points[i + 1]);
     let over = |p: Point| ground.scale.distance(before, p) + ground.scale.distance(p, after);
     for step in STEPS {
@@ -137,7 +137,8 @@ fn best_move(
     best
 }
 
-fn shifted(ground: Ground, from: Point, shift: [i32; 3]) -> Option<Cell> {
+/// The cell so many further from a point; `None` outside the table.
+pub(crate) fn shifted(ground: Ground, from: Point, shift: [i32; 3]) -> Option<Cell> {
     let shape = ground.table.shape();
     let along = |i: usize| {
         let k = from[i].floor() as i64 + i64::from(shift[i]);

@@ -3,6 +3,7 @@
 use crate::path::{End, Path, PlanError};
 use crate::planner::{Place, PlanOptions, Planner};
 use crate::polish::Ground;
+use crate::sidestep::sidestep;
 use crate::sight::first_blocked;
 use crate::space::{Point, Scale};
 
@@ -144,6 +145,12 @@ impl Planner {
         let away = AWAY * scale.0.iter().sum::<f64>() / 3.0;
         if points.len() < 2 {
             return false;
+        }
+        let ground = Ground { table: &self.table, space: &self.space, scale };
+        let about = on(&[on(&points[from.0..], from.1), on(&points[to.0..], to.1)], 0.5);
+        if let Some(corner) = sidestep(ground, [points[from.0], points[to.0 + 1]], about) {
+            points.splice(from.0 + 1..=to.0, [corner]);
+            return true;
         }
         let (first, a) = back(points, from, away, scale);
         let (last, b) = ahead(points, to, away, scale);

@@ -31,7 +31,7 @@ pub(crate) fn first_blocked(table: &Table, a: Point, b: Point) -> Option<f64> {
 
 /// Tells, row by row, where the stretch first touches something blocked, until told to stop.
 fn walk(table: &Table, a: Point, b: Point, mut blocked: impl FnMut(f64) -> bool) {
-    let line = Line { a, d: [b[0] - a[0], b[1] - a[1], b[2] - a[2]] };
+    let line = Line::new(a, b);
     for i in line.cells(0, (0.0, 1.0)) {
         let along_i = line.part(0, i, (0.0, 1.0));
         let plane = usize::try_from(i).map_or(&[][..], |i| table.plane(i));
@@ -61,16 +61,26 @@ fn row_of<'t>(table: &Table, plane: &'t [u64], row: i64) -> &'t [u64] {
     usize::try_from(row).ok().and_then(|j| plane.get(j * width..(j + 1) * width)).unwrap_or(&[])
 }
 
+/// Without a call into a library, which `f64::floor` is on many processors.
+#[inline]
 fn floor(value: f64) -> i64 {
-    value.floor() as i64
+    let whole = value as i64;
+    whole - i64::from(value < whole as f64)
 }
 
 struct Line {
     a: Point,
     d: Point,
+    /// 1 / d; 0 along an axis on which nothing moves.
+    inverse: Point,
 }
 
 impl Line {
+    fn new(a: Point, b: Point) -> Self {
+        let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]].map(|d: f64| if d.abs() < 1e-300 { 0.0 } else { d });
+        Self { a, d, inverse: d.map(|d| if d == 0.0 { 0.0 } else { 1.0 / d }) }
+    }
+
     fn at(&self, axis: usize, t: f64) -> f64 {
         self.a[axis] + self.d[axis] * t
     }
@@ -85,12 +95,11 @@ impl Line {
 
     /// The part of a part that lies in a cell's slab.
     fn part(&self, axis: usize, cell: i64, (from, to): (f64, f64)) -> (f64, f64) {
-        let d = self.d[axis];
-        if d == 0.0 {
+        if self.d[axis] == 0.0 {
             return (from, to);
         }
-        let low = (cell as f64 - WIDER - self.a[axis]) / d;
-        let high = ((cell + 1) as f64 + WIDER - self.a[axis]) / d;
+        let low = (cell as f64 - WIDER - self.a[axis]) * self.inverse[axis];
+        let high = ((cell + 1) as f64 + WIDER - self.a[axis]) * self.inverse[axis];
         (low.min(high).clamp(from, to), low.max(high).clamp(from, to))
     }
 
