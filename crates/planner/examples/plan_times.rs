@@ -155,13 +155,9 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
             let clock = Instant::now();
             let mended = planner.replan(path, here, &options);
             let mend = clock.elapsed();
-            // Anew in a planner that has just taken over the same change.
-            let mut other = Planner::new(grid, planner.table())?;
             let goal = path.waypoints[path.waypoints.len() - 1];
-            // The first question fills the memory, as in a planner that runs.
-            let _ = other.plan(goal, here.q, &options);
             let clock = Instant::now();
-            let anew = other.plan(here.q, goal, &options);
+            let anew = planner.plan(here.q, goal, &options);
             let fresh = clock.elapsed();
             unequal += usize::from(mended.is_ok() != anew.is_ok());
             if let (Ok((mended, how)), Ok(anew)) = (mended, anew) {

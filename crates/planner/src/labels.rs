@@ -15,6 +15,11 @@ impl Labels {
         self.fresh = false;
     }
 
+    /// True where no cell has changed since they were made.
+    pub fn are_fresh(&self) -> bool {
+        self.fresh
+    }
+
     /// The number of a node's connected whole.
     pub fn of(&mut self, graph: &Graph, node: Node) -> Node {
         if !self.fresh {

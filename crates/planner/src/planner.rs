@@ -8,9 +8,12 @@ use crate::local::Local;
 use crate::nearest::nearest;
 use crate::path::{End, Path, PlanError};
 use crate::polish::{Ground, Polish};
-use crate::search::{Search, Task};
+use crate::search::{Outcome, Search, Task};
 use crate::sight::is_clear;
 use crate::space::{Point, Scale, Space};
+
+/// After cells changed, so many nodes are searched before it is found out which are joined at all.
+const BEFORE_LABELS: usize = 1500;
 
 /// What a path shall be like.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -214,23 +217,33 @@ impl Planner {
             return true;
         }
         let (Some(start), Some(goal)) = (self.graph.node(from_cell), self.graph.node(to_cell)) else { return false };
-        // A search that may give up is over before the labels are made.
-        if most == usize::MAX && self.labels.of(&self.graph, start) != self.labels.of(&self.graph, goal) {
-            return false;
-        }
         if start == goal {
             self.wind([start, goal], (from_cell, to_cell), points);
             points.push(to);
             return true;
         }
-        let Self { table, graph, space, search, chain, .. } = self;
-        let task = Task { table, graph, space, scale, start: (start, from), goal: (goal, to), most };
-        if !search.run(&task, chain) {
+        if !self.find(scale, (start, from), (goal, to), most) {
             return false;
         }
         self.unroll((start, from_cell), (goal, to_cell), points);
         points.push(to);
         true
+    }
+
+    /// The chain from one node to another; false where they are not joined or the search gave up.
+    fn find(&mut self, scale: Scale, start: (Node, Point), goal: (Node, Point), most: usize) -> bool {
+        let Self { table, graph, space, search, chain, labels, .. } = self;
+        let mut run = |most| search.run(&Task { table, graph, space, scale, start, goal, most }, chain);
+        let whole = most == usize::MAX;
+        if !whole || !labels.are_fresh() {
+            // Most searches are over before it would be known what is joined.
+            match run(if whole { BEFORE_LABELS } else { most }) {
+                Outcome::Found => return true,
+                Outcome::GaveUp if whole => {}
+                Outcome::GaveUp | Outcome::NotJoined => return false,
+            }
+        }
+        labels.of(graph, start.0) == labels.of(graph, goal.0) && run(most) == Outcome::Found
     }
 
     /// The points of the chain between start and goal, winding links cell by cell.

@@ -33,7 +33,7 @@ impl Polish {
         self.choose(ground, points);
         for _ in 0..ROUNDS {
             let before = ground.scale.length(points);
-            (1..points.len().saturating_sub(1)).for_each(|i| pull(ground, points, i));
+            (1..points.len().saturating_sub(1)).for_each(|i| pull(ground, points, i, &STEPS));
             self.choose(ground, points);
             if ground.scale.length(points) > before * 0.999 {
                 break;
@@ -100,10 +100,10 @@ impl Polish {
 }
 
 /// Moves a corner to where the way over it is shorter.
-pub(crate) fn pull(ground: Ground, points: &mut [Point], i: usize) {
+pub(crate) fn pull(ground: Ground, points: &mut [Point], i: usize, steps: &[i32]) {
     let (before, after) = (points[i - 1], points[i + 1]);
     let over = |p: Point| ground.scale.distance(before, p) + ground.scale.distance(p, after);
-    for step in STEPS {
+    for &step in steps {
         let mut moves = 0;
         while let Some(better) = best_move(ground, points[i], step, over, |p| {
             is_clear(ground.table, before, p) && is_clear(ground.table, p, after)

@@ -147,8 +147,8 @@ impl Planner {
             return false;
         }
         let ground = Ground { table: &self.table, space: &self.space, scale };
-        let about = on(&[on(&points[from.0..], from.1), on(&points[to.0..], to.1)], 0.5);
-        if let Some(corner) = sidestep(ground, [points[from.0], points[to.0 + 1]], about) {
+        let part = [on(&points[from.0..], from.1), on(&points[to.0..], to.1)];
+        if let Some(corner) = sidestep(ground, [points[from.0], points[to.0 + 1]], part) {
             points.splice(from.0 + 1..=to.0, [corner]);
             return true;
         }

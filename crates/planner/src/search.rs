@@ -58,6 +58,15 @@ impl Task<'_> {
     }
 }
 
+/// How a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    Found,
+    /// Everything that the start is joined to was seen.
+    NotJoined,
+    GaveUp,
+}
+
 /// Memory of the search, used again.
 #[derive(Debug, Default)]
 pub(crate) struct Search {
@@ -71,7 +80,7 @@ pub(crate) struct Search {
 
 impl Search {
     /// Nodes from the goal back to the start, each with how it is joined to the next (true: winding).
-    pub fn run(&mut self, task: &Task, chain: &mut Vec<(Node, bool)>) -> bool {
+    pub fn run(&mut self, task: &Task, chain: &mut Vec<(Node, bool)>) -> Outcome {
         chain.clear();
         self.begin(task);
         while let Some(Reverse(top)) = self.open.pop() {
@@ -82,14 +91,14 @@ impl Search {
             self.settle(task, node);
             if node == task.goal.0 {
                 self.trace(task, chain);
-                return true;
+                return Outcome::Found;
             }
             if self.taken >= task.most {
-                return false;
+                return Outcome::GaveUp;
             }
             self.expand(task, node);
         }
-        false
+        Outcome::NotJoined
     }
 
     fn begin(&mut self, task: &Task) {
