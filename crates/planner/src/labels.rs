@@ -28,6 +28,11 @@ impl Labels {
         self.root(node)
     }
 
+    /// True where a way leads from one node to the other.
+    pub fn joined(&mut self, graph: &Graph, a: Node, b: Node) -> bool {
+        self.of(graph, a) == self.of(graph, b)
+    }
+
     fn rebuild(&mut self, graph: &Graph) {
         self.above.clear();
         self.above.extend(0..graph.bound() as Node);

@@ -233,17 +233,23 @@ impl Planner {
     /// The chain from one node to another; false where they are not joined or the search gave up.
     fn find(&mut self, scale: Scale, start: (Node, Point), goal: (Node, Point), most: usize) -> bool {
         let Self { table, graph, space, search, chain, labels, .. } = self;
-        let mut run = |most| search.run(&Task { table, graph, space, scale, start, goal, most }, chain);
-        let whole = most == usize::MAX;
-        if !whole || !labels.are_fresh() {
-            // Most searches are over before it would be known what is joined.
-            match run(if whole { BEFORE_LABELS } else { most }) {
-                Outcome::Found => return true,
-                Outcome::GaveUp if whole => {}
-                Outcome::GaveUp | Outcome::NotJoined => return false,
+        let mut task = Task { table, graph, space, scale, start, goal, most };
+        if most != usize::MAX {
+            return search.run(&task, chain) == Outcome::Found;
+        }
+        if labels.are_fresh() {
+            return labels.joined(graph, start.0, goal.0) && search.run(&task, chain) == Outcome::Found;
+        }
+        // Most searches are over before it would be known what is joined.
+        task.most = BEFORE_LABELS;
+        match search.run(&task, chain) {
+            Outcome::Found => true,
+            Outcome::NotJoined => false,
+            Outcome::GaveUp => {
+                task.most = most;
+                labels.joined(graph, start.0, goal.0) && search.go_on(&task, chain) == Outcome::Found
             }
         }
-        labels.of(graph, start.0) == labels.of(graph, goal.0) && run(most) == Outcome::Found
     }
 
     /// The points of the chain between start and goal, winding links cell by cell.

@@ -81,9 +81,15 @@ pub(crate) struct Search {
 impl Search {
     /// Nodes from the goal back to the start, each with how it is joined to the next (true: winding).
     pub fn run(&mut self, task: &Task, chain: &mut Vec<(Node, bool)>) -> Outcome {
-        chain.clear();
         self.begin(task);
-        while let Some(Reverse(top)) = self.open.pop() {
+        self.go_on(task, chain)
+    }
+
+    /// The same after it gave up, with more nodes.
+    pub fn go_on(&mut self, task: &Task, chain: &mut Vec<(Node, bool)>) -> Outcome {
+        chain.clear();
+        while self.taken < task.most {
+            let Some(Reverse(top)) = self.open.pop() else { return Outcome::NotJoined };
             let node = top as Node;
             if self.visits[node as usize].closed {
                 continue;
@@ -93,12 +99,9 @@ impl Search {
                 self.trace(task, chain);
                 return Outcome::Found;
             }
-            if self.taken >= task.most {
-                return Outcome::GaveUp;
-            }
             self.expand(task, node);
         }
-        Outcome::NotJoined
+        Outcome::GaveUp
     }
 
     fn begin(&mut self, task: &Task) {

@@ -7,7 +7,9 @@ use crate::space::Point;
 /// How far aside the corner is tried, cells.
 const ASIDE: [i32; 6] = [2, 4, 7, 11, 16, 24];
 /// How far the corner is moved at once to pull it taut, cells.
-const STEPS: [i32; 2] = [4, 1];
+const STEPS: [i32; 2] = [3, 1];
+/// So often the way from what is blocked to the corner is halved.
+const HALVINGS: usize = 4;
 
 /// A corner that sees both ends, pulled taut, beside the middle of a blocked part; from the smallest step aside that has
 /// one. What is blocked is hardly slimmer than a quarter of the part: no smaller step is tried.
@@ -28,10 +30,29 @@ pub(crate) fn sidestep(ground: Ground, [from, to]: [Point; 2], blocked: [Point; 
             }
         }
         if let Some(corner) = best {
-            let mut points = [from, corner, to];
+            let mut points = [from, drawn_in(ground, [from, to], about, corner), to];
             pull(ground, &mut points, 1, &STEPS);
             return Some(points[1]);
         }
     }
     None
+}
+
+/// The corner, as near to `about` as both ends are still seen from.
+fn drawn_in(ground: Ground, [from, to]: [Point; 2], about: Point, corner: Point) -> Point {
+    let (mut blocked, mut best) = (about, corner);
+    for _ in 0..HALVINGS {
+        let middle = [0, 1, 2].map(|i| 0.5 * (blocked[i] + best[i]));
+        let Some(cell) = shifted(ground, middle, [0; 3]) else { break };
+        let middle = ground.space.middle(cell);
+        if middle == best {
+            break;
+        }
+        if is_clear(ground.table, middle, from) && is_clear(ground.table, middle, to) {
+            best = middle;
+        } else {
+            blocked = middle;
+        }
+    }
+    best
 }
