@@ -90,7 +90,7 @@ pub(crate) fn middle_bit(part: u64) -> u32 {
     }
     let mut sum = [0_i32; 3];
     let mut rest = part;
-    let count = part.count_ones().max(1) as i32;
+    let count = part.count_ones().max(1).cast_signed();
     while rest != 0 {
         let at = coordinates(rest.trailing_zeros());
         (0..3).for_each(|i| sum[i] += at[i]);
@@ -110,7 +110,7 @@ pub(crate) fn middle_bit(part: u64) -> u32 {
 }
 
 fn coordinates(bit: u32) -> [i32; 3] {
-    [(bit >> 4) as i32, (bit >> 2 & 3) as i32, (bit & 3) as i32]
+    [bit >> 4, bit >> 2 & 3, bit & 3].map(u32::cast_signed)
 }
 
 /// The cell of a bit of a block.

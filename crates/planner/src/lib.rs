@@ -4,6 +4,7 @@
 //! touches is free. So a path exists exactly if start and goal are joined, and it never slips between blocked cells that
 //! meet at an edge.
 #![deny(missing_docs)]
+#![forbid(unsafe_code)]
 
 mod blocks;
 mod check;

@@ -73,7 +73,7 @@ pub(crate) struct Search {
     visits: Vec<Visit>,
     /// Least length over the node first: lengths are not negative, so their bits are in their order.
     open: BinaryHeap<Reverse<u64>>,
-    search: u32,
+    number: u32,
     /// Nodes taken up by the last search.
     pub taken: usize,
 }
@@ -108,14 +108,14 @@ impl Search {
         self.visits.resize(task.graph.bound(), Visit::default());
         self.open.clear();
         self.taken = 0;
-        if self.search == u32::MAX {
+        if self.number == u32::MAX {
             self.visits.fill(Visit::default());
-            self.search = 0;
+            self.number = 0;
         }
-        self.search += 1;
+        self.number += 1;
         let start = task.start.0;
         self.visits[start as usize] =
-            Visit { length: 0.0, parent: start, search: self.search, closed: false, winding: false };
+            Visit { length: 0.0, parent: start, search: self.number, closed: false, winding: false };
         self.push(task, start, 0.0);
     }
 
@@ -135,7 +135,7 @@ impl Search {
         let mut best = (f32::INFINITY, node);
         task.graph.all_neighbours(node, |other| {
             let seen = self.visits[other as usize];
-            if seen.search != self.search || !seen.closed || other == node {
+            if seen.search != self.number || !seen.closed || other == node {
                 return;
             }
             let straight = task.graph.is_full(node) && task.graph.is_full(other);
@@ -154,13 +154,13 @@ impl Search {
         let (from, so_far) = (task.point(parent), self.visits[parent as usize].length);
         task.graph.all_neighbours(node, |other| {
             let seen = self.visits[other as usize];
-            let known = seen.search == self.search;
+            let known = seen.search == self.number;
             if known && seen.closed {
                 return;
             }
             let length = so_far + task.scale.distance(from, task.point(other)) as f32;
             if !known || length < seen.length {
-                let (search, closed, winding) = (self.search, false, false);
+                let (search, closed, winding) = (self.number, false, false);
                 self.visits[other as usize] = Visit { length, parent, search, closed, winding };
                 self.push(task, other, length);
             }

@@ -17,10 +17,14 @@ pub(crate) fn sidestep(ground: Ground, [from, to]: [Point; 2], blocked: [Point; 
     let about = [0, 1, 2].map(|i| 0.5 * (blocked[0][i] + blocked[1][i]));
     let across = (0..3).map(|i| (blocked[0][i] - blocked[1][i]).abs()).fold(0.0, f64::max);
     let over = |p: Point| ground.scale.distance(from, p) + ground.scale.distance(p, to);
+    let leg = [0, 1, 2].map(|i| to[i] - from[i]);
     for aside in ASIDE.into_iter().filter(|&aside| f64::from(aside) * 4.0 >= across || aside == 24) {
         let (mut best, mut least) = (None, f64::INFINITY);
         for n in (0..27).filter(|&n| n != 13) {
             let shift = [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1];
+            if runs_along(leg, shift.map(f64::from)) {
+                continue;
+            }
             let Some(cell) = shifted(ground, about, shift.map(|s: i32| s * aside)) else { continue };
             let corner = ground.space.middle(cell);
             let length = over(corner);
@@ -36,6 +40,12 @@ pub(crate) fn sidestep(ground: Ground, [from, to]: [Point; 2], blocked: [Point; 
         }
     }
     None
+}
+
+/// True for a direction less than 45° from that of the leg, either way: it does not lead aside.
+fn runs_along(leg: Point, direction: Point) -> bool {
+    let dot = |a: Point, b: Point| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    2.0 * dot(leg, direction).powi(2) > dot(leg, leg) * dot(direction, direction)
 }
 
 /// The corner, as near to `about` as both ends are still seen from.

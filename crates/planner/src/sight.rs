@@ -115,7 +115,7 @@ impl Line {
 
 /// The first blocked cell of `low..=high`, from the high end where asked. What is outside the row is blocked.
 fn first_in_row(row: &[u64], count: usize, low: i64, high: i64, backward: bool) -> Option<i64> {
-    let last = count as i64 - 1;
+    let last = count.cast_signed() as i64 - 1;
     if row.is_empty() || high < 0 || low > last {
         return Some(if backward { high } else { low });
     }
@@ -127,7 +127,7 @@ fn first_in_row(row: &[u64], count: usize, low: i64, high: i64, backward: bool) 
     }
     let inside = first_one(row, low.max(0) as usize, high.min(last) as usize, backward);
     let outside = if backward { (low < 0).then_some(-1) } else { (high > last).then_some(last + 1) };
-    inside.map(|k| k as i64).or(outside)
+    inside.map(|k| k.cast_signed() as i64).or(outside)
 }
 
 fn first_one(row: &[u64], low: usize, high: usize, backward: bool) -> Option<usize> {
@@ -170,7 +170,9 @@ mod tests {
 
     fn table(cells: &[(u32, u16)]) -> Table {
         let mut table = Table::new(SHAPE);
-        cells.iter().for_each(|&(row, k)| table.block(Span { row, first: k, last: k }));
+        for &(row, k) in cells {
+            table.block(Span { row, first: k, last: k });
+        }
         table
     }
 
