@@ -7,18 +7,18 @@ use crate::space::Point;
 /// How far aside the corner is tried, cells.
 const ASIDE: [i32; 6] = [2, 4, 7, 11, 16, 24];
 /// How far the corner is moved at once to pull it taut, cells.
-const STEPS: [i32; 2] = [3, 1];
+const STEPS: [i32; 1] = [2];
 /// So often the way from what is blocked to the corner is halved.
 const HALVINGS: usize = 4;
 
 /// A corner that sees both ends, pulled taut, beside the middle of a blocked part; from the smallest step aside that has
-/// one. What is blocked is hardly slimmer than a quarter of the part: no smaller step is tried.
+/// one. What is blocked is hardly slimmer than a third of the part: no smaller step is tried.
 pub(crate) fn sidestep(ground: Ground, [from, to]: [Point; 2], blocked: [Point; 2]) -> Option<Point> {
     let about = [0, 1, 2].map(|i| 0.5 * (blocked[0][i] + blocked[1][i]));
     let across = (0..3).map(|i| (blocked[0][i] - blocked[1][i]).abs()).fold(0.0, f64::max);
     let over = |p: Point| ground.scale.distance(from, p) + ground.scale.distance(p, to);
     let leg = [0, 1, 2].map(|i| to[i] - from[i]);
-    for aside in ASIDE.into_iter().filter(|&aside| f64::from(aside) * 4.0 >= across || aside == 24) {
+    for aside in ASIDE.into_iter().filter(|&aside| f64::from(aside) * 3.0 >= across || aside == 24) {
         let (mut best, mut least) = (None, f64::INFINITY);
         for n in (0..27).filter(|&n| n != 13) {
             let shift = [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1];
