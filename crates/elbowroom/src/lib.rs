@@ -9,6 +9,7 @@
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
 //! | [`monitor`] | interference regions, checked every control tick |
 //! | [`cspace`] | obstacles as blocked cells of joint space |
+//! | [`planner`] | ways around, on the joint-space map |
 //! | [`vision`] | camera frames and point clouds to obstacles with an identity |
 //! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
 //!
@@ -69,6 +70,7 @@ pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
 pub use elbowroom_kinematics as kinematics;
 pub use elbowroom_monitor as monitor;
+pub use elbowroom_planner as planner;
 pub use elbowroom_proximity as proximity;
 pub use elbowroom_scene as scene;
 pub use elbowroom_spatial as spatial;

@@ -1,0 +1,29 @@
+//! Ways around: paths through the free cells of a joint map, replanned when cells change.
+//!
+//! Two cells are joined where they share a *face*; a straight stretch is allowed where every cell that it so much as
+//! touches is free. So a path exists exactly if start and goal are joined, and it never slips between blocked cells that
+//! meet at an edge.
+#![deny(missing_docs)]
+#![forbid(unsafe_code)]
+
+mod blocks;
+mod check;
+mod graph;
+mod labels;
+mod local;
+mod nearest;
+mod path;
+mod planner;
+mod polish;
+mod replan;
+mod search;
+mod sidestep;
+mod sight;
+mod space;
+mod timing;
+
+pub use check::{CheckError, MappedJoints};
+pub use path::{End, Path, PlanError};
+pub use planner::{PlanOptions, Planner};
+pub use replan::{How, Progress, Standing};
+pub use timing::{MotionError, MotionLimits, State, Trajectory};

@@ -1,0 +1,142 @@
+//! Random maps, and the plain way to find paths on them.
+#![allow(dead_code)]
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+
+use elbowroom_cspace::{Axis, Cell, Grid, Span, Table};
+
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        ((self.unit() * n as f64) as usize).min(n - 1)
+    }
+}
+
+/// Cells 0.1 rad wide, from −1 rad up.
+pub fn grid(shape: [usize; 3]) -> Grid {
+    let axis = |i: usize| Axis::new(format!("j{i}"), -1.0, -1.0 + 0.1 * shape[i] as f64, 0.1).unwrap();
+    Grid::new([axis(0), axis(1), axis(2)]).unwrap()
+}
+
+pub fn block(table: &mut Table, [i, j, k]: Cell) {
+    let row = u32::from(i) * table.shape()[1] as u32 + u32::from(j);
+    table.block(Span { row, first: k, last: k });
+}
+
+/// Single cells and boxes of cells.
+pub fn random_table(shape: [usize; 3], random: &mut Random) -> Table {
+    let mut table = Table::new(shape);
+    let cells = shape.iter().product::<usize>() as f64;
+    let single = (cells * [0.0, 0.1, 0.3, 0.5][random.below(4)]) as usize;
+    for _ in 0..single {
+        block(&mut table, shape.map(|n| random.below(n) as u16));
+    }
+    for _ in 0..random.below(12) {
+        let low = shape.map(|n| random.below(n));
+        let high = [0, 1, 2].map(|i| (low[i] + random.below(shape[i].max(2) - 1)).min(shape[i] - 1));
+        for i in low[0]..=high[0] {
+            for j in low[1]..=high[1] {
+                let row = (i * shape[1] + j) as u32;
+                table.block(Span { row, first: low[2] as u16, last: high[2].min(low[2] + 3) as u16 });
+            }
+        }
+    }
+    table
+}
+
+pub fn free_cell(table: &Table, random: &mut Random) -> Option<Cell> {
+    (0..200).map(|_| table.shape().map(|n| random.below(n) as u16)).find(|&c| !table.is_blocked(c))
+}
+
+/// Somewhere in a cell; in its middle or on its border at times.
+pub fn somewhere(grid: &Grid, cell: Cell, random: &mut Random) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let axis = &grid.axes()[i];
+        let at = match random.below(4) {
+            0 => 0.5,
+            1 => 1e-12,
+            _ => random.unit(),
+        };
+        axis.min() + (f64::from(cell[i]) + at) * axis.step()
+    })
+}
+
+/// Joined through free cells that share faces.
+pub fn joined(table: &Table, from: Cell, to: Cell) -> bool {
+    let shape = table.shape();
+    let index = |c: Cell| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);
+    let mut seen = vec![false; shape.iter().product()];
+    let mut queue = VecDeque::from([from]);
+    seen[index(from)] = true;
+    while let Some(cell) = queue.pop_front() {
+        if cell == to {
+            return true;
+        }
+        for (axis, up) in [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)] {
+            let mut next = cell;
+            next[axis] = if up == 1 { cell[axis] + 1 } else { cell[axis].wrapping_sub(1) };
+            if !table.is_blocked(next) && !seen[index(next)] {
+                seen[index(next)] = true;
+                queue.push_back(next);
+            }
+        }
+    }
+    false
+}
+
+/// Length (widths of cells) of the shortest way over middles of cells, 26 neighbours, no corner cut; `None`: no way.
+pub fn grid_optimum(table: &Table, scale: [f64; 3], from: Cell, to: Cell) -> Option<f64> {
+    let shape = table.shape();
+    let index = |c: Cell| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);
+    let mut best = vec![f64::INFINITY; shape.iter().product()];
+    let mut open = BinaryHeap::from([Reverse((0_u64, from))]);
+    best[index(from)] = 0.0;
+    while let Some(Reverse((bits, cell))) = open.pop() {
+        let length = f64::from_bits(bits);
+        if cell == to {
+            return Some(length);
+        }
+        if length > best[index(cell)] {
+            continue;
+        }
+        for n in (0..27).filter(|&n| n != 13) {
+            let shift = [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1];
+            let Some(next) = step(table, cell, shift) else { continue };
+            let far: f64 = (0..3).map(|i| (f64::from(shift[i]) * scale[i]).powi(2)).sum();
+            let over = length + far.sqrt();
+            if over < best[index(next)] {
+                best[index(next)] = over;
+                open.push(Reverse((over.to_bits(), next)));
+            }
+        }
+    }
+    None
+}
+
+/// The neighbour, if all cells that meet on the way there are free.
+fn step(table: &Table, cell: Cell, shift: [i32; 3]) -> Option<Cell> {
+    let at =
+        |part: usize| [0, 1, 2].map(|i| (i32::from(cell[i]) + if part >> i & 1 == 1 { shift[i] } else { 0 }) as u16);
+    (0..8).all(|part| !table.is_blocked(at(part))).then(|| at(7))
+}
+
+/// The first of many points along the waypoints that lies in a blocked cell.
+pub fn blocked_point(grid: &Grid, table: &Table, waypoints: &[[f64; 3]], per_leg: usize) -> Option<[f64; 3]> {
+    let blocked = |q: &[f64; 3]| grid.cell(*q).is_none_or(|cell| table.is_blocked(cell));
+    let legs = waypoints.windows(2).flat_map(|w| {
+        (0..=per_leg).map(move |n| {
+            let t = n as f64 / per_leg as f64;
+            [0, 1, 2].map(|i| w[0][i] + (w[1][i] - w[0][i]) * t)
+        })
+    });
+    let ends = [waypoints.first(), waypoints.last()];
+    let is_end = |q: &[f64; 3]| ends.contains(&Some(q));
+    legs.filter(|q| !is_end(q)).find(blocked)
+}
