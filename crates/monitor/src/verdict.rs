@@ -120,17 +120,29 @@ impl Judge<'_> {
         let least = LEAVING_SPEED * LOOKAHEAD_S;
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
-            let depth = escape(volume, &self.now.volume_in_world[v], region, &self.now.region_in_world[r]);
-            let depth_soon = escape(volume, volume_soon, region, region_soon);
-            return depth_soon.map_or(0.0, |e| e.depth) + least < depth.map_or(0.0, |e| e.depth);
+            let Some(out) = escape(volume, &self.now.volume_in_world[v], region, &self.now.region_in_world[r]) else {
+                return false;
+            };
+            if let Some(out_soon) = escape(volume, volume_soon, region, region_soon) {
+                return out_soon.depth + least < out.depth;
+            }
+            // At the border there is no depth left to shrink; and whoever is out soon may be so behind a thin plate.
+            let gap = (least - out.depth).max(0.0);
+            return self.moves_along(pair, intent, out.direction)
+                && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, gap);
         };
+        self.moves_along(pair, intent, away)
+            && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, pair.separation.distance + least)
+    }
+
+    /// True where the program wants to leave the region in this direction, and the robot does not really move against it.
+    fn moves_along(&self, pair: &Pair, intent: &ChainState, away: Vec3) -> bool {
+        let (v, r) = (pair.volume, pair.region);
         let region_velocity =
             region_point_motion(&self.config.regions[r], self.snapshot.sources, pair.separation.on_b).0;
         let intended = self.velocity_of(intent, v, pair.separation.on_a) - region_velocity;
         let real = self.now.point_motion(self.config, v, pair.separation.on_a).0 - region_velocity;
-        intended.dot(away) > LEAVING_SPEED
-            && real.dot(away) >= 0.0
-            && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, pair.separation.distance + least)
+        intended.dot(away) > LEAVING_SPEED && real.dot(away) >= 0.0
     }
 
     fn velocity_of(&self, state: &ChainState, volume: usize, point: Vec3) -> Vec3 {

@@ -47,6 +47,23 @@ fn a_robot_inside_may_leave_slowly() {
     assert!((ask(&mut m, 1.0, 0.4, 0.3) - 0.1).abs() < 1e-12, "out");
 }
 
+/// Within rounding of the border, and within the depth that counts as shrinking, a robot must not be held for good.
+#[test]
+fn a_robot_at_the_very_border_is_free_to_leave() {
+    // A thin plate as well: what lies behind it is no way out.
+    let plate = Region::cuboid("plate", Vec3::new(0.5, 0.0, -0.5), Vec3::new(1e-3, 1.0, 1.0), Rotation::IDENTITY);
+    let regions = [(ball(), 0.5), (plate.warning(0.2).guards(Guards::TCP), 0.5005)];
+    for (region, border) in regions {
+        for depth in [0.0, 1e-17, 1e-16, 1e-15, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6, 4.9e-6, 5.1e-6, -1e-16, -1e-13, -1e-9]
+        {
+            let mut m = point_monitor(vec![region.clone()], aware());
+            let x = border - depth;
+            assert!(ask(&mut m, 0.0, x, 0.3) >= 0.1 - 1e-12, "{} at depth {depth}: held", region.name);
+            assert!(ask(&mut m, 1.0, x, -0.3) < 1e-6, "{} at depth {depth}: let in", region.name);
+        }
+    }
+}
+
 #[test]
 fn what_really_moves_towards_a_region_is_held_whatever_the_program_says() {
     let mut m = point_monitor(vec![ball()], aware());
