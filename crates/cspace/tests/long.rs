@@ -15,7 +15,7 @@ fn count(arm: &PlanarArm, grid: &Grid, obstacle: &Obstacle, model: Model) -> usi
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test long -- --ignored"]
 fn a_million_configurations_of_the_large_arm() {
     let cuboid = |at, rpy| Obstacle::cuboid(Pose::from_xyz_rpy(at, rpy), Vec3::new(0.25, 0.2, 0.3)).unwrap();
     let obstacles = [
@@ -36,7 +36,7 @@ fn a_million_configurations_of_the_large_arm() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test long -- --ignored"]
 fn a_million_configurations_of_the_papers_arm() {
     let at = Pose::from_xyz_rpy([0.22, 0.08, 0.05], [0.0, 0.0, 0.3]);
     let cube = Obstacle::cuboid(at, Vec3::splat(0.04)).unwrap();
