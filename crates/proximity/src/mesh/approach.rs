@@ -3,7 +3,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
-use super::lanes::{V3, W16, load_corners, load16, rows8, rows16, splat8, splat16, store16};
+use super::lanes::{V3, W8, W16, load_corners, load16, rows8, rows16, splat8, splat16, store16};
 use super::placement::Pairing;
 use super::scratch::{Entry, filling};
 use super::tree::{FAN, LEAF, Leaf, Node, Tree};
@@ -124,14 +124,14 @@ fn triangles(
     }
 }
 
-/// Three times the middles of eight triangles, divided by three.
+/// Middles of eight triangles.
 #[inline(always)]
-fn middles<S: Simd>(simd: S, leaf: &Leaf) -> V3<super::lanes::W8<S>> {
+fn middles<S: Simd>(simd: S, leaf: &Leaf) -> V3<W8<S>> {
     let [p, q, r] = load_corners(simd, &leaf.corner);
-    p.plus(q).plus(r).times(super::lanes::W8::splat(simd, 1.0 / 3.0))
+    p.plus(q).plus(r).times(W8::splat(simd, 1.0 / 3.0))
 }
 
-/// For each of sixteen points the nearest of others.
+/// For each of sixteen points the nearest of others: its squared distance and its number.
 struct Closest {
     squares: [f32; FAN],
     partners: [f32; FAN],
