@@ -15,6 +15,7 @@ mod npy;
 mod obstacle;
 mod reader;
 mod seed;
+mod signs;
 mod table;
 
 pub use arm::{ArmError, PlanarArm};
@@ -28,4 +29,5 @@ pub use model::{Model, UnknownModel, spheres_until};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use reader::{Reader, Snapshot};
 pub use seed::{Expansion, expand};
+pub use signs::JointSigns;
 pub use table::Table;

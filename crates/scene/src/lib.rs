@@ -23,6 +23,7 @@ mod checker;
 mod counts;
 mod enclose;
 mod error;
+mod exchange;
 pub mod example;
 mod first_contacts;
 mod level;
