@@ -15,8 +15,8 @@ use super::{Exact, LookTimes, Prism, Sighting, WatchedArm};
 const STANDS: f64 = 1e-3;
 /// The exact check may leave the curve by so much, radians …
 const CHORD_RAD: f64 = 1e-3;
-/// … and keeps so far away in return, metres: enough for arms that reach 4 m (√3 joints · 1 mrad · 4 m, less what is
-/// nearer than the tip).
+/// … and keeps so far away in return, metres: three joints that are 1 mrad off together move no point of an arm that
+/// reaches 2.8 m by more than √3 · 1 mrad · 2.8 m.
 const CLEARANCE_M: f64 = 5e-3;
 
 /// What a [`Guide`] goes by. Joints are those of the map, planar values.

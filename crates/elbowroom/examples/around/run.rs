@@ -1,44 +1,28 @@
 //! The clock: frames are rendered and sent, ticks move the arm, the judge looks on.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use elbowroom::cell::watch::{Doing, Outlook, Sighting, Step};
+use elbowroom::cell::watch::{Doing, FrameEntry, Sighting, Step, TickEntry, Truth, WatchLog};
 use elbowroom::kinematics::ChainState;
 use elbowroom::scene::Scene;
 use elbowroom::spatial::Pose;
 use elbowroom::vision::render::{Conditions, Renderer};
-use elbowroom::vision::{ArmPart, Channels, Frame, encode_png};
+use elbowroom::vision::{ArmPart, Channels, Frame, Point2, encode_png};
 
+use crate::album::Album;
 use crate::judge::Judge;
 use crate::station::{Failure, LATENCY_S, PERIOD_S, STATIONS, Station, TICK_S, radians};
 use crate::things::Thing;
 
-/// What happened at a frame.
-pub struct FrameRow {
-    pub t_s: f64,
-    pub q: Vec<f64>,
-    pub sighting: Option<Sighting>,
-    pub outlook: Option<Outlook>,
-    pub error: Option<String>,
-    /// From bytes to a motion, measured.
-    pub took: Duration,
-}
-
-/// What happened at a tick.
-pub struct TickRow {
-    pub t_s: f64,
-    pub step: Step,
-    /// From the arm to the nearest thing, really, metres.
-    pub distance_m: f64,
-}
-
+/// What is kept of a run.
 pub struct Record {
-    pub frames: Vec<FrameRow>,
-    pub ticks: Vec<TickRow>,
+    pub log: WatchLog,
+    /// What was really hit, and when.
     pub hits: Vec<(f64, String)>,
-    pub least: (f64, f64),
     pub arrivals: usize,
+    /// Frames in which a thing was wholly in sight, and in how many of them its prism held it until the next frame's.
+    pub held: (usize, usize),
 }
 
 /// What goes wrong with frames, and when.
@@ -53,37 +37,36 @@ fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
     Ok(Some(bytes))
 }
 
-pub fn run(station: &mut Station, things: &[Thing], end_s: f64) -> Result<Record, Failure> {
+/// Runs the cell; frames and pictures go to `album`.
+pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Album) -> Result<Record, Failure> {
     let mut builder = Scene::builder();
     builder.robot("kr125", station.arm.robot.clone(), Pose::IDENTITY);
     things.iter().for_each(|thing| _ = builder.object(thing.object()));
     let scene = builder.build()?;
     let mut q = radians(STATIONS[0]);
     let mut judge = Judge::new(&scene, &q)?;
-    let mut renderer = Renderer::new(station.camera.clone(), Channels::Grey, 4);
-    let mut chain = ChainState::new(&station.arm.robot.chain);
-    let (mut parts, mut frame): (Vec<ArmPart>, _) = (Vec::new(), Frame::default());
-    let mut record = Record { frames: vec![], ticks: vec![], hits: vec![], least: (0.0, 0.0), arrivals: 0 };
+    let mut stage = Stage::new(station);
+    let mut record = Record { log: log(things), hits: vec![], arrivals: 0, held: (0, 0) };
     let learning_s = f64::from(station.watch.vision().settings().learning_frames) * PERIOD_S;
     let every = (PERIOD_S / TICK_S).round() as usize;
     let late = (LATENCY_S / TICK_S).round() as usize;
-    let mut sent: Option<(f64, Vec<f64>, Vec<u8>)> = None;
+    let mut sent: Option<Sent> = None;
     let mut next = 1;
     for tick in 0..(end_s / TICK_S) as usize {
         let t = tick as f64 * TICK_S;
         if tick % every == 0 {
-            station.arm.parts_in_world(&mut chain, &q, &mut parts);
-            let solids: Vec<_> = things.iter().map(|thing| thing.solid(t)).collect();
-            let painted: Vec<_> = parts.iter().map(|part| (part.clone(), 235)).collect();
-            let conditions = Conditions { seed: tick as u64 + 1, ..Conditions::default() };
-            frame.name = format!("frame {tick}");
-            renderer.render(&solids, &painted, &conditions, &mut frame)?;
-            sent = bytes_at(t, &frame)?.map(|bytes| (t, q.clone(), bytes));
+            sent = stage.shoot(station, things, t, &q)?;
         }
         if tick % every == late
-            && let Some((stamp, then, bytes)) = sent.take()
+            && let Some(sent) = sent.take()
         {
-            record.frames.push(see(station, stamp, then, &bytes));
+            let before = station.guide.path().cloned();
+            let entry = see(station, &sent);
+            if let Ok((sighting, outlook)) = &entry.told {
+                hold(sighting, things, &mut record.held);
+                album.keep(station, sighting, outlook, before.as_ref())?;
+            }
+            record.log.frames.push(entry);
         }
         let step = if t < learning_s {
             wave(t / learning_s)
@@ -93,34 +76,96 @@ pub fn run(station: &mut Station, things: &[Thing], end_s: f64) -> Result<Record
             }
             station.guide.tick(t + TICK_S, TICK_S)
         };
-        if step.doing == Doing::Arrived && t > learning_s + 1.0 {
-            let there = radians(STATIONS[next]);
-            if step.q.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-6) {
-                (next, record.arrivals) = (1 - next, record.arrivals + 1);
-                station.guide.go_to(&radians(STATIONS[next]))?;
-            }
+        if t > learning_s + TICK_S && step.doing == Doing::Arrived && is_at(&step.q, STATIONS[next]) {
+            (next, record.arrivals) = (1 - next, record.arrivals + 1);
+            station.guide.go_to(&radians(STATIONS[next]))?;
         }
         let ways: Vec<[Pose; 2]> = things.iter().map(|x| [x.in_world(t), x.in_world(t + TICK_S)]).collect();
-        let distance_m = judge.go(t + TICK_S, &step.q, &ways)?;
+        let distance_m = Some(judge.go(t + TICK_S, &step.q, &ways)?);
         q.clone_from(&step.q);
-        record.ticks.push(TickRow { t_s: t + TICK_S, step, distance_m });
+        for (truth, way) in record.log.truth.iter_mut().zip(&ways) {
+            truth.poses.push(way[1]);
+        }
+        record.log.ticks.push(TickEntry { t_s: t + TICK_S, step, distance_m });
     }
-    (record.hits, record.least) = (judge.hits, judge.least);
+    record.hits = judge.hits;
     Ok(record)
 }
 
-fn see(station: &mut Station, t_s: f64, q: Vec<f64>, bytes: &[u8]) -> FrameRow {
-    let began = Instant::now();
-    let seen = station.watch.see(bytes, Path::new("camera.png"), t_s, &q);
-    match seen {
-        Ok(sighting) => {
-            let outlook = station.guide.look(&sighting);
-            let took = began.elapsed();
-            FrameRow { t_s, q, sighting: Some(sighting), outlook: Some(outlook), error: None, took }
+fn log(things: &[Thing]) -> WatchLog {
+    let truth = |thing: &Thing| {
+        let object = thing.object();
+        Truth { name: object.name, shape: object.shape, poses: Vec::new() }
+    };
+    WatchLog {
+        title: "A KR125, a camera, and what comes between".into(),
+        tick_s: TICK_S,
+        truth: things.iter().map(truth).collect(),
+        ..WatchLog::default()
+    }
+}
+
+fn is_at(q: &[f64], station: [f64; 6]) -> bool {
+    q.iter().zip(&radians(station)).all(|(a, b)| (a - b).abs() < 1e-6)
+}
+
+/// A frame on its way.
+struct Sent {
+    t_s: f64,
+    q: Vec<f64>,
+    bytes: Vec<u8>,
+}
+
+/// Renders what the camera would send.
+struct Stage {
+    renderer: Renderer,
+    chain: ChainState,
+    parts: Vec<ArmPart>,
+    frame: Frame,
+}
+
+impl Stage {
+    fn new(station: &Station) -> Self {
+        Self {
+            renderer: Renderer::new(station.camera.clone(), Channels::Grey, 4),
+            chain: ChainState::new(&station.arm.robot.chain),
+            parts: Vec::new(),
+            frame: Frame::default(),
         }
-        Err(error) => {
-            let took = began.elapsed();
-            FrameRow { t_s, q, sighting: None, outlook: None, error: Some(error.to_string()), took }
+    }
+
+    fn shoot(&mut self, station: &Station, things: &[Thing], t: f64, q: &[f64]) -> Result<Option<Sent>, Failure> {
+        station.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
+        let solids: Vec<_> = things.iter().map(|thing| thing.solid(t)).collect();
+        let painted: Vec<_> = self.parts.iter().map(|part| (part.clone(), 235)).collect();
+        let conditions = Conditions { seed: (t / TICK_S) as u64 + 1, ..Conditions::default() };
+        self.frame.name = format!("frame at {t:.2} s");
+        self.renderer.render(&solids, &painted, &conditions, &mut self.frame)?;
+        Ok(bytes_at(t, &self.frame)?.map(|bytes| Sent { t_s: t, q: q.to_vec(), bytes }))
+    }
+}
+
+fn see(station: &mut Station, sent: &Sent) -> FrameEntry {
+    let began = Instant::now();
+    let seen = station.watch.see(&sent.bytes, Path::new("camera.png"), sent.t_s, &sent.q);
+    let told = seen.map(|sighting| {
+        let outlook = station.guide.look(&sighting);
+        (sighting, outlook)
+    });
+    let took = began.elapsed();
+    let blocked = station.watch.map().table().blocked();
+    FrameEntry { t_s: sent.t_s, told: told.map_err(|error| error.to_string()), took, blocked }
+}
+
+/// Whether the prisms hold what is really there, from the frame until the next one has been worked up.
+fn hold(sighting: &Sighting, things: &[Thing], held: &mut (usize, usize)) {
+    let t = sighting.stamp_s;
+    let in_sight = |p: &Point2| (-1.3..4.5).contains(&p.x) && (-2.2..2.2).contains(&p.y);
+    for thing in things {
+        let [now, then] = [thing.solid(t).footprint_m, thing.solid(t + PERIOD_S + LATENCY_S).footprint_m];
+        if sighting.is_clear() && now.iter().chain(&then).all(in_sight) {
+            held.0 += 1;
+            held.1 += usize::from(sighting.prisms.iter().any(|p| p.contains(&now) && p.contains(&then)));
         }
     }
 }

@@ -20,7 +20,7 @@ pub const TICK_S: f64 = 0.004;
 /// No thing is faster, metres per second.
 const FASTEST_MPS: f64 = 0.8;
 /// Width of the map's cells, degrees.
-const STEP_DEG: f64 = 2.0;
+pub const STEP_DEG: f64 = 2.0;
 
 /// The two stations, and where to get out of the way: degrees as the KR125 counts them.
 pub const STATIONS: [[f64; 6]; 2] =
