@@ -10,6 +10,8 @@ pub enum Reason {
         /// Its age, seconds.
         age_s: f64,
     },
+    /// It was given a goal; the way is planned at the next picture.
+    Unplanned,
     /// Its way is blocked farther on and there is no other yet.
     Blocked,
     /// The planner found no way: what it said.
@@ -25,6 +27,7 @@ impl fmt::Display for Reason {
                 write!(f, "no picture that can be believed for {:.0} ms", age_s * 1e3)
             }
             Self::NoPicture { .. } => f.write_str("no picture yet that can be believed"),
+            Self::Unplanned => f.write_str("the way is planned at the next picture"),
             Self::Blocked => f.write_str("the way ahead is blocked"),
             Self::NoPath(why) | Self::NotProven(why) => f.write_str(why),
         }

@@ -130,7 +130,8 @@ pub struct Guide {
 
 impl Guide {
     /// For an arm that stands at `q` (all joint values) and the map that a reader shows. With an [`Exact`] scene, each new
-    /// path is checked in it before the arm goes.
+    /// path is checked in it before the arm goes, and an arm whose cell becomes blocked may get out of the way. What stands in
+    /// the cell for good must be known to the map and to the scene.
     ///
     /// # Errors
     /// A grid that is not the map's, joint values outside of it, settings that are no use.
@@ -149,9 +150,7 @@ impl Guide {
         }
         let planner = Planner::new(grid, reader.latest().table())?;
         let planar = arm.to_planar(q);
-        let at_rest = Path { waypoints: vec![planar], length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
-        planner.time(&at_rest, &settings.limits)?;
-        let mut guide = Self {
+        let guide = Self {
             grid: grid.clone(),
             reader,
             planner,
@@ -168,10 +167,11 @@ impl Guide {
             arm,
         };
         guide.inside(planar)?;
+        let at_rest = Path { waypoints: vec![planar], length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
+        guide.planner.time(&at_rest, &settings.limits)?;
         if let Some(retreat) = settings.retreat {
             guide.inside(retreat)?;
         }
-        guide.goal = None;
         Ok(guide)
     }
 
@@ -206,6 +206,7 @@ impl Guide {
         if self.motion.is_some() {
             self.limit_rad = Some(f64::NEG_INFINITY);
         }
+        self.reason = Some(Reason::Unplanned);
         self.goal = Some(goal);
         Ok(())
     }
@@ -259,9 +260,9 @@ impl Guide {
             Ahead::Blocked { far_rad } => Some(far_rad - self.settings.short_rad),
             Ahead::Inside { out_s, then_far_rad } => {
                 // It was not blocked when the arm went there: on, if that leads out and touches nothing.
-                let proof = self.prove(&motion.points(out_s, CHORD_RAD));
+                let is_proven = self.exact.is_some() && self.prove(&motion.points(out_s, CHORD_RAD)).is_ok();
                 outlook.times.exact += clock.lap();
-                if proof.is_ok() { then_far_rad.map(|far| far - self.settings.short_rad) } else { Some(now_rad) }
+                if is_proven { then_far_rad.map(|far| far - self.settings.short_rad) } else { Some(now_rad) }
             }
             Ahead::Lost => Some(now_rad),
         };
@@ -285,8 +286,11 @@ impl Guide {
         };
         (outlook.times.replan, outlook.times.timing) = (replan, timing);
         clock.lap();
-        let proven = found.filter(|(next, _)| self.prove(&next.points(f64::INFINITY, CHORD_RAD)).is_ok());
-        outlook.times.exact += clock.lap();
+        let proven = found.filter(|(next, _)| {
+            let is_free = self.prove(&next.points(f64::INFINITY, CHORD_RAD)).is_ok();
+            outlook.times.exact += clock.lap();
+            is_free
+        });
         match proven {
             Some((next, how)) => {
                 (self.motion, self.limit_rad) = (Some(next), None);
@@ -315,7 +319,8 @@ impl Guide {
 
     fn way_to(&mut self, goal: [f64; 3], is_in_way: bool, outlook: &mut Outlook) -> Result<Motion, Reason> {
         let mut clock = Clock::start();
-        let options = self.options(if is_in_way { self.settings.escape_rad } else { 0.0 });
+        let may_escape = is_in_way && self.exact.is_some();
+        let options = self.options(if may_escape { self.settings.escape_rad } else { 0.0 });
         let path = self.planner.plan(self.q, goal, &options);
         outlook.times.replan += clock.lap();
         let mut path = path.map_err(|e| Reason::NoPath(e.to_string()))?;

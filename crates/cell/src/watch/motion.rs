@@ -126,7 +126,7 @@ impl Motion {
     /// Where the trajectory's time stands after braking from (`tau_s`, `rate`).
     pub fn stops_at(&self, mut tau_s: f64, mut rate: f64, stop: [f64; 3], dt: f64) -> f64 {
         while rate > 0.0 {
-            let next = (rate - change_of_rate(&self.trajectory.at(tau_s), rate, stop) * dt).max(0.0);
+            let next = (rate - change_of_rate(&self.trajectory.at(tau_s), rate, stop, -1.0) * dt).max(0.0);
             tau_s += dt * f64::midpoint(rate, next);
             rate = next;
         }
@@ -136,21 +136,21 @@ impl Motion {
     /// What the state would be after `dt` seconds, towards a rate: time and rate.
     pub fn after(&self, dt: f64, wanted: f64, stop: [f64; 3], accelerate: [f64; 3]) -> (f64, f64) {
         let state = self.state();
-        let fall = change_of_rate(&state, self.rate, stop);
-        let rise = change_of_rate(&state, self.rate, accelerate);
+        let fall = change_of_rate(&state, self.rate, stop, -1.0);
+        let rise = change_of_rate(&state, self.rate, accelerate, 1.0);
         let rate = wanted.clamp((self.rate - fall * dt).max(0.0), self.rate + rise * dt).clamp(0.0, 1.0);
         ((self.tau_s + dt * f64::midpoint(self.rate, rate)).min(self.trajectory.seconds()), rate)
     }
 }
 
-/// How fast the rate σ may change, 1/s: with `q̇ = q′σ` and `q̈ = q″σ² + q′σ̇`, `|q̈| ≤ a` leaves
-/// `|σ̇| ≤ (a − |q″|σ²) / |q′|` per joint.
-fn change_of_rate(state: &State, rate: f64, most: [f64; 3]) -> f64 {
+/// How fast the rate σ may fall (`way` −1) or rise (1), 1/s: with `q̇ = q′σ` and `q̈ = q″σ² + q′σ̇`, `|q̈| ≤ a` leaves
+/// `|σ̇| ≤ (a − way·sign(q′)·q″σ²) / |q′|` per joint: where the curve itself speeds up there is more room to brake.
+fn change_of_rate(state: &State, rate: f64, most: [f64; 3], way: f64) -> f64 {
     let square = rate * rate;
     let of = |i: usize| {
         let speed = state.qd[i].abs();
-        let left = (most[i] - state.qdd[i].abs() * square).max(RESERVE * most[i]);
-        if speed < 1e-12 { f64::INFINITY } else { left / speed }
+        let taken = way * state.qd[i].signum() * state.qdd[i] * square;
+        if speed < 1e-12 { f64::INFINITY } else { (most[i] - taken).max(RESERVE * most[i]) / speed }
     };
     // A finite rate keeps 0 · ∞ out of the products.
     (0..3).map(of).fold(1e6, f64::min)

@@ -67,20 +67,38 @@ pub fn map_along_elbow(
     draw_map(grid, [0, 1], [columns, rows], &share, ways, here)
 }
 
-/// The slice of the map at one value of the base joint: θ2 to the right, θ3 up.
+/// The slice of the map at that value of the base joint at which most cells are blocked: θ2 to the right, θ3 up.
 ///
 /// # Errors
 /// None that a grid can cause.
-pub fn slice_at_base(
+pub fn fullest_slice(
     table: &Table,
     grid: &Grid,
     ways: [Option<&Path>; 2],
     here: [f64; 3],
 ) -> Result<Frame, VisionError> {
-    let [_, columns, rows] = grid.shape();
-    let plane = grid.axes()[0].cell(here[0]).unwrap_or(0) as u16;
+    let [planes, columns, rows] = grid.shape();
+    let blocked = |plane: &usize| table.plane(*plane).iter().map(|word| word.count_ones()).sum::<u32>();
+    let plane = (0..planes).max_by_key(blocked).unwrap_or(0) as u16;
     let share = |i: usize, j: usize| f64::from(u8::from(table.is_blocked([plane, i as u16, j as u16])));
     draw_map(grid, [1, 2], [columns, rows], &share, ways, here)
+}
+
+/// A picture of half the size: each pixel the mean of four.
+///
+/// # Errors
+/// A frame of less than two pixels a side.
+pub fn half(frame: &Frame) -> Result<Frame, VisionError> {
+    let (width, height, n) = (frame.width() / 2, frame.height() / 2, frame.channels().count());
+    let mut pixels = Vec::with_capacity(width * height * n);
+    for y in 0..height {
+        let [upper, lower] = [frame.row(2 * y), frame.row(2 * y + 1)];
+        for i in (0..width).flat_map(|x| (0..n).map(move |c| 2 * n * x + c)) {
+            let sum = [upper[i], upper[i + n], lower[i], lower[i + n]].map(u16::from).iter().sum::<u16>();
+            pixels.push((sum / 4) as u8);
+        }
+    }
+    Frame::new(frame.name.clone(), width, height, frame.channels(), pixels)
 }
 
 fn draw_map(

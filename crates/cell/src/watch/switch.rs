@@ -8,7 +8,7 @@
 use std::time::Duration;
 
 use elbowroom_cspace::Grid;
-use elbowroom_planner::{How, MotionLimits, Path, PlanOptions, Planner, Progress, Standing};
+use elbowroom_planner::{How, MotionLimits, Path, PlanOptions, Planner, Progress, Standing, Trajectory};
 
 use super::motion::{Motion, distance};
 use super::times::Clock;
@@ -49,26 +49,31 @@ fn try_reroute(
     {
         return None;
     }
-    let (mut ahead, branch) = walk(&old.path, here, back_rad)?;
-    let rest = planner.replan(&old.path, branch, bounds.options);
+    let (ahead, branch) = walk(&old.path, here, back_rad)?;
+    let mended = planner.replan(&old.path, branch, bounds.options);
+    let goal = old.path.waypoints.last().copied()?;
+    let anew = planner.plan(branch.q, goal, bounds.options).map(|path| (path, How::Anew));
     times[0] = clock.lap();
-    let (rest, how) = rest.ok()?;
-    if rest.start_moved_rad > 0.0 || rest.goal_moved_rad > 0.0 {
-        return None;
-    }
     let behind = [0, 1, 2].map(|i| state.q[i] - along[i] * back_rad);
-    let mut waypoints = vec![behind];
-    waypoints.append(&mut ahead);
-    waypoints.extend(&rest.waypoints);
-    let path = Path { waypoints, ..rest };
-    let trajectory = planner.time(&path, bounds.limits);
-    let trajectory = trajectory.ok()?;
-    let tau_s = {
+    // Mended again and again a path becomes a bad one, a new one is often slow to leave the old: the faster of the two.
+    let mut best: Option<(f64, f64, Path, Trajectory, How)> = None;
+    for (rest, how) in [mended, anew].into_iter().flatten() {
+        if rest.start_moved_rad > 0.0 || rest.goal_moved_rad > 0.0 {
+            continue;
+        }
+        let waypoints = std::iter::once(behind).chain(ahead.iter().copied()).chain(rest.waypoints).collect();
+        let path = Path { waypoints, ..rest };
+        let Ok(trajectory) = planner.time(&path, bounds.limits) else { continue };
         let reached = |tau: f64| dot(sub(trajectory.at(tau).q, behind), along) - back_rad;
-        first_root(reached, trajectory.seconds())?
-    };
-    let met = trajectory.at(tau_s);
+        let Some(tau_s) = first_root(reached, trajectory.seconds()) else { continue };
+        let left_s = trajectory.seconds() - tau_s;
+        if best.as_ref().is_none_or(|(best_s, ..)| left_s < *best_s) {
+            best = Some((left_s, tau_s, path, trajectory, how));
+        }
+    }
     times[1] = clock.lap();
+    let (_, tau_s, path, trajectory, how) = best?;
+    let met = trajectory.at(tau_s);
     let rate = speed / norm(met.qd);
     let is_smooth = distance(met.q, state.q) < 1e-6 && rate <= 1.0 + 1e-6 && dot(met.qd, along) > 0.0;
     let motion = || Motion::new(path, trajectory, tau_s, rate.min(1.0), bounds.grid, bounds.limits);

@@ -60,11 +60,10 @@ pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Albu
         if tick % every == late
             && let Some(sent) = sent.take()
         {
-            let before = station.guide.path().cloned();
             let entry = see(station, &sent);
             if let Ok((sighting, outlook)) = &entry.told {
                 hold(sighting, things, &mut record.held);
-                album.keep(station, sighting, outlook, before.as_ref())?;
+                album.keep(station, &sent.bytes, sighting, outlook)?;
             }
             record.log.frames.push(entry);
         }
