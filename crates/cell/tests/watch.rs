@@ -5,7 +5,7 @@ mod watched;
 use std::path::Path;
 use std::sync::Arc;
 
-use elbowroom_cell::watch::{Doing, Reason, Step, Watch, WatchError, WatchSettings};
+use elbowroom_cell::watch::{Doing, Reason, Sentry, Shot, Step, Watch, WatchError, WatchSettings};
 use elbowroom_proximity::{Cuboid, Shape, impact::Steady};
 use elbowroom_scene::{Checker, Move, Object, Options, Scene, SceneState, SweepOptions};
 use elbowroom_spatial::{Pose, Vec3};
@@ -180,4 +180,35 @@ fn a_watch_that_cannot_be_is_refused() {
     assert!(matches!(new(camera().into(), bad, step), WatchError::Setting { name: "ahead_s", .. }));
     assert!(matches!(new(camera().into(), settings, 1.0), WatchError::Fill(_)));
     assert!(matches!(new(camera().into(), settings, 0.0), WatchError::Grid(_)));
+}
+
+#[test]
+fn a_watch_on_its_own_thread_tells_the_same_and_ends_cleanly() {
+    let mut stage = Stage::new();
+    let bytes = stage.shoot(&[trolley(Point2::new(1.9, 0.2))]);
+    let mut reader = stage.watch.reader();
+    let (t, q) = (stage.t, stage.q.clone());
+    let Stage { watch, guide: mut moved, .. } = stage;
+    let sentry = Sentry::post(watch).unwrap();
+    let shot = |bytes: &[u8], stamp_s: f64| Shot { bytes: bytes.to_vec(), name: "camera.png".into(), stamp_s, q: q.clone() };
+    assert!(sentry.send(shot(&bytes, t)));
+    let mut told = Vec::new();
+    for _ in 0..2000 {
+        told.extend(sentry.told());
+        if !told.is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let sighting = told.pop().unwrap().unwrap();
+    assert!(sighting.is_clear() && sighting.prisms.len() == 1);
+    assert_eq!(reader.latest().blocked(), sighting.blocked);
+    moved.go_to(&radians(B)).unwrap();
+    assert_eq!(moved.look(&sighting).reason, None);
+    // Many at once: what is not taken is dropped, nothing waits.
+    let taken = (0..20).filter(|n| sentry.send(shot(&bytes[..9], t + 1.0 + f64::from(*n)))).count();
+    assert!((1..20).contains(&taken), "{taken}");
+    let watch = sentry.stop().unwrap();
+    assert_eq!(watch.map().table().blocked(), sighting.blocked);
+    drop(Sentry::post(watch).unwrap());
 }

@@ -3,7 +3,7 @@
 //! [`Watch`] turns each frame into obstacles and these into blocked cells of the joint map; [`Guide`] moves the arm to a goal
 //! on free cells, goes around what has come between while it moves, slows and stops where there is no way. Both may
 //! live in one thread or in two: the guide looks at the map through a reader without locks, and a [`Sighting`] is all that
-//! passes between them.
+//! passes between them ([`Sentry`] is a watch on a thread of its own).
 //!
 //! # What is conservative
 //!
@@ -24,6 +24,7 @@ mod guide;
 mod log;
 mod motion;
 pub mod picture;
+mod sentry;
 mod sighting;
 mod switch;
 mod times;
@@ -35,6 +36,7 @@ pub use exact::Exact;
 pub use guide::{Guide, GuideError, GuideSettings, Outlook, Step};
 pub(crate) use log::share_of;
 pub use log::{FrameEntry, Picture, TickEntry, Truth, WatchLog};
+pub use sentry::{Sentry, Shot};
 pub use sighting::{Prism, Sighting};
 pub use times::{LookTimes, SeeTimes};
 pub use watcher::{Watch, WatchError, WatchSettings};
