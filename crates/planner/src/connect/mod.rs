@@ -24,7 +24,7 @@ use shorten::{Shorten, total};
 use way::Way;
 
 /// More time than anybody has: a year. Instants cannot be as far apart as durations can be long.
-const FOREVER: Duration = Duration::from_secs(365 * 24 * 3600);
+const FOREVER: Duration = Duration::from_hours(365 * 24);
 
 /// What a search may take, and how far it stays away.
 #[derive(Debug, Clone, Copy, PartialEq)]
