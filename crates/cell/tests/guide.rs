@@ -153,15 +153,15 @@ fn what_cannot_be_guided_is_refused() {
         Guide::new(arm(), map.grid(), map.reader(), None, settings, q).map(|_| ()).unwrap_err()
     };
     let q = radians(A);
-    assert_eq!(new(settings, &q[..4]), GuideError::Values { found: 4, dof: 6 });
+    assert_eq!(new(settings.clone(), &q[..4]), GuideError::Values { found: 4, dof: 6 });
     let outside = radians([0.0, 20.0, 0.0, 0.0, 0.0, 0.0]);
-    assert!(matches!(new(settings, &outside), GuideError::Plan(PlanError::Outside { joint: 1, .. })));
-    assert!(matches!(new(settings, &[f64::NAN; 6]), GuideError::Plan(PlanError::Outside { .. })));
-    let bad = GuideSettings { stale_s: f64::NAN, ..settings };
+    assert!(matches!(new(settings.clone(), &outside), GuideError::Plan(PlanError::Outside { joint: 1, .. })));
+    assert!(matches!(new(settings.clone(), &[f64::NAN; 6]), GuideError::Plan(PlanError::Outside { .. })));
+    let bad = GuideSettings { stale_s: f64::NAN, ..settings.clone() };
     assert!(matches!(new(bad, &q), GuideError::Setting { name: "stale_s", .. }));
-    let bad = GuideSettings { stop: [1.0, -1.0, 1.0], ..settings };
+    let bad = GuideSettings { stop: [1.0, -1.0, 1.0], ..settings.clone() };
     assert!(matches!(new(bad, &q), GuideError::Setting { name: "stop", .. }));
-    let mut bad = settings;
+    let mut bad = settings.clone();
     bad.limits.jerk[2] = 0.0;
     assert!(matches!(new(bad, &q), GuideError::Motion(_)));
     let mut guide = Guide::new(arm(), map.grid(), map.reader(), None, settings, &q).unwrap();

@@ -8,6 +8,8 @@
 
 mod blocks;
 mod check;
+mod connect;
+pub mod example;
 mod graph;
 mod labels;
 mod local;
@@ -23,6 +25,7 @@ mod space;
 mod timing;
 
 pub use check::{CheckError, MappedJoints};
+pub use connect::{Connect, Route, RouteError, RouteOptions};
 pub use path::{End, Path, PlanError};
 pub use planner::{PlanOptions, Planner};
 pub use replan::{How, Progress, Standing};

@@ -51,7 +51,9 @@ fn main() {
         for seed in 1..=SEEDS {
             watch(&sequence, seed, &mut count);
         }
-        let worst = count.errors_m.iter().fold(0.0_f64, |a, &b| a.max(b));
+        // No template fits what is told with its shadow.
+        count.errors_m.extend(count.errors_m.is_empty().then_some(f64::NAN));
+        let worst = count.errors_m.iter().copied().fold(f64::NAN, f64::max);
         println!(
             "{:34} {:>6}/{:<6} {:>8} {:9.1} {:9.1} {:6.2} {:6}",
             sequence.name,
@@ -99,6 +101,8 @@ fn watch(sequence: &Sequence, seed: u64, count: &mut Count) {
             let Some(mine) = told.iter().min_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
             if mine.kind.is_some() && !mine.is_remembered {
                 count.errors_m.push(far(&mine));
+            }
+            if !mine.is_remembered {
                 count.areas.push(polygon::area(&mine.footprint_m) / polygon::area(&solid.footprint_m));
             }
             count.swaps += usize::from(known.is_some_and(|id| id != mine.id));

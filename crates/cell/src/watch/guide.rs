@@ -20,9 +20,9 @@ const CHORD_RAD: f64 = 1e-3;
 const CLEARANCE_M: f64 = 5e-3;
 
 /// What a [`Guide`] goes by. Joints are those of the map, planar values.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct GuideSettings {
-    /// Speed, acceleration and jerk of planned motions.
+    /// Speed, acceleration and jerk of planned motions, three joints.
     pub limits: MotionLimits,
     /// Deceleration while slowing for something, rad/s² per joint. Jerk is not limited then.
     pub stop: [f64; 3],
@@ -42,8 +42,8 @@ impl GuideSettings {
     /// Limits of motion; stops as hard as it accelerates, after 150 ms without a picture, 2° before what is blocked.
     pub fn new(limits: MotionLimits) -> Self {
         Self {
+            stop: three(&limits.acceleration),
             limits,
-            stop: limits.acceleration,
             stale_s: 0.15,
             short_rad: 2.0_f64.to_radians(),
             escape_rad: 1.0,
@@ -168,8 +168,8 @@ impl Guide {
         };
         guide.inside(planar)?;
         let at_rest = Path { waypoints: vec![planar], length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
-        guide.planner.time(&at_rest, &settings.limits)?;
-        if let Some(retreat) = settings.retreat {
+        guide.planner.time(&at_rest, &guide.settings.limits)?;
+        if let Some(retreat) = guide.settings.retreat {
             guide.inside(retreat)?;
         }
         Ok(guide)
@@ -359,7 +359,8 @@ impl Guide {
         };
         let before = motion.rate;
         let wanted = if stale.is_some() { 0.0 } else { self.allowed(&motion, dt) };
-        (motion.tau_s, motion.rate) = motion.after(dt, wanted, self.settings.stop, self.settings.limits.acceleration);
+        let accelerate = three(&self.settings.limits.acceleration);
+        (motion.tau_s, motion.rate) = motion.after(dt, wanted, self.settings.stop, accelerate);
         let state = motion.state();
         self.q = state.q;
         let (rate, is_over) = (motion.rate, motion.is_over());
@@ -384,7 +385,7 @@ impl Guide {
     fn allowed(&self, motion: &Motion, dt: f64) -> f64 {
         let Some(limit_rad) = self.limit_rad else { return 1.0 };
         let limit_s = if limit_rad > 0.0 { motion.time_at(limit_rad) } else { 0.0 };
-        let (stop, accelerate) = (self.settings.stop, self.settings.limits.acceleration);
+        let (stop, accelerate) = (self.settings.stop, three(&self.settings.limits.acceleration));
         let fits = |wanted: f64| {
             let (tau_s, rate) = motion.after(dt, wanted, stop, accelerate);
             motion.stops_at(tau_s, rate, stop, dt) <= limit_s
@@ -395,6 +396,11 @@ impl Guide {
     fn step(&self, qd: [f64; 3], rate: f64, doing: Doing) -> Step {
         Step { q: self.arm.to_joints(&self.held, self.q), qd, rate, doing }
     }
+}
+
+/// The first three; what is missing is no number, and refused where limits are checked.
+fn three(values: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|i| values.get(i).copied().unwrap_or(f64::NAN))
 }
 
 fn check(settings: &GuideSettings) -> Result<(), GuideError> {

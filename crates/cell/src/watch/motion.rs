@@ -1,12 +1,27 @@
 //! A path being followed: where on it the arm is, how fast its time runs, and what lies ahead.
 
 use elbowroom_cspace::{Grid, Table};
-use elbowroom_planner::{MotionLimits, Path, State, Trajectory};
+use elbowroom_planner::{MotionLimits, Path, Trajectory};
 
 /// Deceleration left for a stop even where following the curve takes more, as a share of it.
 const RESERVE: f64 = 0.1;
 /// The curve is looked at so often per cell.
 const PER_CELL: f64 = 4.0;
+
+/// Where the map's joints are at an instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    pub q: [f64; 3],
+    pub qd: [f64; 3],
+    pub qdd: [f64; 3],
+}
+
+/// The state of a trajectory of the map's three joints.
+pub(super) fn state_at(trajectory: &Trajectory, tau_s: f64) -> State {
+    let state = trajectory.at(tau_s);
+    let three = |values: &[f64]| [0, 1, 2].map(|i| values.get(i).copied().unwrap_or(f64::NAN));
+    State { q: three(&state.q), qd: three(&state.qd), qdd: three(&state.qdd) }
+}
 
 /// A place on the way.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +67,7 @@ impl Motion {
         let mut samples: Vec<Sample> = Vec::with_capacity(count + 1);
         for n in 0..=count {
             let tau_s = (tau_s + dt * n as f64).min(trajectory.seconds());
-            let q = trajectory.at(tau_s).q;
+            let q = state_at(&trajectory, tau_s).q;
             let far_rad = samples.last().map_or(0.0, |s| s.far_rad + distance(s.q, q));
             samples.push(Sample { tau_s, q, far_rad });
         }
@@ -61,7 +76,7 @@ impl Motion {
 
     /// Where the arm is, with derivatives by the trajectory's time.
     pub fn state(&self) -> State {
-        self.trajectory.at(self.tau_s)
+        state_at(&self.trajectory, self.tau_s)
     }
 
     /// Whether the end is reached.
@@ -126,7 +141,7 @@ impl Motion {
     /// Where the trajectory's time stands after braking from (`tau_s`, `rate`).
     pub fn stops_at(&self, mut tau_s: f64, mut rate: f64, stop: [f64; 3], dt: f64) -> f64 {
         while rate > 0.0 {
-            let next = (rate - change_of_rate(&self.trajectory.at(tau_s), rate, stop, -1.0) * dt).max(0.0);
+            let next = (rate - change_of_rate(&state_at(&self.trajectory, tau_s), rate, stop, -1.0) * dt).max(0.0);
             tau_s += dt * f64::midpoint(rate, next);
             rate = next;
         }

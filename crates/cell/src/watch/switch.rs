@@ -10,7 +10,7 @@ use std::time::Duration;
 use elbowroom_cspace::Grid;
 use elbowroom_planner::{How, MotionLimits, Path, PlanOptions, Planner, Progress, Standing, Trajectory};
 
-use super::motion::{Motion, distance};
+use super::motion::{Motion, distance, state_at};
 use super::times::Clock;
 
 /// What [`reroute`] goes by.
@@ -64,7 +64,7 @@ fn try_reroute(
         let waypoints = std::iter::once(behind).chain(ahead.iter().copied()).chain(rest.waypoints).collect();
         let path = Path { waypoints, ..rest };
         let Ok(trajectory) = planner.time(&path, bounds.limits) else { continue };
-        let reached = |tau: f64| dot(sub(trajectory.at(tau).q, behind), along) - back_rad;
+        let reached = |tau: f64| dot(sub(state_at(&trajectory, tau).q, behind), along) - back_rad;
         let Some(tau_s) = first_root(reached, trajectory.seconds()) else { continue };
         let left_s = trajectory.seconds() - tau_s;
         if best.as_ref().is_none_or(|(best_s, ..)| left_s < *best_s) {
@@ -73,7 +73,7 @@ fn try_reroute(
     }
     times[1] = clock.lap();
     let (_, tau_s, path, trajectory, how) = best?;
-    let met = trajectory.at(tau_s);
+    let met = state_at(&trajectory, tau_s);
     let rate = speed / norm(met.qd);
     let is_smooth = distance(met.q, state.q) < 1e-6 && rate <= 1.0 + 1e-6 && dot(met.qd, along) > 0.0;
     let motion = || Motion::new(path, trajectory, tau_s, rate.min(1.0), bounds.grid, bounds.limits);
@@ -82,8 +82,8 @@ fn try_reroute(
 
 /// The way in which a speed along a direction can be reached from rest, and lost again, with some to spare.
 fn stretch(speed: f64, along: [f64; 3], limits: &MotionLimits) -> f64 {
-    let least = |of: [f64; 3]| (0..3).map(|i| of[i] / along[i].abs().max(1e-12)).fold(f64::INFINITY, f64::min);
-    let (a, j) = (least(limits.acceleration), least(limits.jerk));
+    let least = |of: &[f64]| (0..3).map(|i| of[i] / along[i].abs().max(1e-12)).fold(f64::INFINITY, f64::min);
+    let (a, j) = (least(&limits.acceleration), least(&limits.jerk));
     let seconds = if speed >= a * a / j { speed / a + a / j } else { 2.0 * (speed / j).sqrt() };
     0.5 * speed * seconds * 1.05 + 1e-3
 }

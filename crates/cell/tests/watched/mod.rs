@@ -30,7 +30,7 @@ pub fn arm() -> Arc<WatchedArm> {
 }
 
 pub fn limits() -> MotionLimits {
-    let deg = |value: f64| [value.to_radians(); 3];
+    let deg = |value: f64| vec![value.to_radians(); 3];
     MotionLimits { velocity: deg(100.0), acceleration: deg(200.0), jerk: deg(2000.0) }
 }
 

@@ -65,11 +65,11 @@ pub fn build() -> Result<Station, Failure> {
     let camera = camera()?;
     let settings = WatchSettings { ahead_s: 0.5, ..WatchSettings::default() };
     let watch = Watch::new(Arc::clone(&arm), STEP_DEG.to_radians(), camera.clone().into(), seeing(), settings)?;
-    let deg = |values: [f64; 3]| values.map(f64::to_radians);
+    let deg = |value: f64| vec![value.to_radians(); 3];
     let limits = MotionLimits {
-        velocity: deg([100.0; 3]), // the KR125's
-        acceleration: deg([200.0; 3]),
-        jerk: deg([2000.0; 3]),
+        velocity: deg(100.0), // the KR125's
+        acceleration: deg(200.0),
+        jerk: deg(2000.0),
     };
     let retreat = arm.to_planar(&radians(RETREAT));
     let settings = GuideSettings { retreat: Some(retreat), ..GuideSettings::new(limits) };
