@@ -190,7 +190,8 @@ fn a_watch_on_its_own_thread_tells_the_same_and_ends_cleanly() {
     let (t, q) = (stage.t, stage.q.clone());
     let Stage { watch, guide: mut moved, .. } = stage;
     let sentry = Sentry::post(watch).unwrap();
-    let shot = |bytes: &[u8], stamp_s: f64| Shot { bytes: bytes.to_vec(), name: "camera.png".into(), stamp_s, q: q.clone() };
+    let shot =
+        |bytes: &[u8], stamp_s: f64| Shot { bytes: bytes.to_vec(), name: "camera.png".into(), stamp_s, q: q.clone() };
     assert!(sentry.send(shot(&bytes, t)));
     let mut told = Vec::new();
     for _ in 0..2000 {

@@ -147,8 +147,7 @@ fn sequences() -> Vec<Sequence> {
         slope: 0.15 * t,
         ..Conditions::default()
     };
-    let lit: fn(f64) -> Conditions =
-        |_| Conditions { light: Some(Vec3::new(0.9, 0.3, -1.0)), ..Conditions::default() };
+    let lit: fn(f64) -> Conditions = |_| Conditions { light: Some(Vec3::new(0.9, 0.3, -1.0)), ..Conditions::default() };
     let sweep: fn(f64) -> ArmPart = |t| ArmPart::Capsule {
         from: Vec3::new(0.2, 1.6, 1.2),
         to: Vec3::new(0.2 + 1.5 * (6.0 * t).sin(), -0.6, 0.9),

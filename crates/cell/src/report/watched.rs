@@ -41,8 +41,7 @@ pub fn stage_table(log: &WatchLog) -> String {
     let mut out = format!("{:22} {:>9} {:>9} {:>9} {:>7}\n", "stage (ms)", "median", "p99", "max", "frames");
     for (name, times) in log.stages_ms() {
         let at = |share| share_of(&times, share).unwrap_or(0.0);
-        let _ =
-            writeln!(out, "{name:22} {:9.3} {:9.3} {:9.3} {:7}", at(0.5), at(0.99), at(1.0), times.len());
+        let _ = writeln!(out, "{name:22} {:9.3} {:9.3} {:9.3} {:7}", at(0.5), at(0.99), at(1.0), times.len());
     }
     out
 }
@@ -60,7 +59,8 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
         let speed = before.map_or(0.0, |last| last.distance(tcp) / log.tick_s);
         before = Some(tcp);
         let near = log.truth.iter().enumerate().min_by(|(_, a), (_, b)| {
-            let far = |poses: &[elbowroom_spatial::Pose]| poses.get(n).map_or(f64::INFINITY, |p| p.translation.distance(tcp));
+            let far =
+                |poses: &[elbowroom_spatial::Pose]| poses.get(n).map_or(f64::INFINITY, |p| p.translation.distance(tcp));
             far(&a.poses).total_cmp(&far(&b.poses))
         });
         let held_back = tick.step.doing.reason().is_some();
@@ -142,18 +142,17 @@ fn stages(log: &WatchLog) -> String {
             times.len()
         );
     }
-    let head = "<thead><tr><th>stage</th><th>median (ms)</th><th>p99 (ms)</th><th>max (ms)</th><th>frames</th></tr></thead>";
+    let head =
+        "<thead><tr><th>stage</th><th>median (ms)</th><th>p99 (ms)</th><th>max (ms)</th><th>frames</th></tr></thead>";
     card("Time per stage", &format!("<div class=\"scroll\"><table>{head}<tbody>{rows}</tbody></table></div>"))
 }
 
 /// Frames that could not be used.
 fn troubles(log: &WatchLog) -> String {
-    let rows: String = log
-        .frames
-        .iter()
-        .filter_map(|f| Some((f.t_s, f.told.as_ref().err()?)))
-        .map(|(t, why)| format!("<tr class=\"bad\"><td>{t:.3}</td><td>{}</td></tr>", escape(why)))
-        .collect();
+    let mut rows = String::new();
+    for (t, why) in log.frames.iter().filter_map(|f| Some((f.t_s, f.told.as_ref().err()?))) {
+        let _ = write!(rows, "<tr class=\"bad\"><td>{t:.3}</td><td>{}</td></tr>", escape(why));
+    }
     if rows.is_empty() {
         return String::new();
     }

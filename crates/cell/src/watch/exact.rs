@@ -37,13 +37,7 @@ impl Exact {
     ///
     /// # Errors
     /// Something is nearer than `clearance_m`, or that it is not could not be proven.
-    pub fn check(
-        &self,
-        prisms: &[Prism],
-        held: &[f64],
-        points: &[[f64; 3]],
-        clearance_m: f64,
-    ) -> Result<(), Reason> {
+    pub fn check(&self, prisms: &[Prism], held: &[f64], points: &[[f64; 3]], clearance_m: f64) -> Result<(), Reason> {
         let not = |what: String| Reason::NotProven(what);
         let mut objects = self.fixtures.clone();
         for prism in prisms {

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use elbowroom_cspace::{Grid, Reader};
-use elbowroom_planner::{End, How, MotionError, MotionLimits, Path, PlanError, PlanOptions, Planner};
+use elbowroom_planner::{End, How, Path, PlanError, PlanOptions, Planner};
 
 use super::doing::{Doing, Reason};
 use super::motion::{Ahead, Motion, distance};
+use super::settings::{check, three};
 use super::switch::{Bounds, reroute};
 use super::times::Clock;
-use super::{Exact, LookTimes, Prism, Sighting, WatchedArm};
+use super::{Exact, GuideError, GuideSettings, Outlook, Prism, Sighting, Step, WatchedArm};
 
 /// Below this share of its speed an arm counts as standing.
 const STANDS: f64 = 1e-3;
@@ -18,95 +19,6 @@ const CHORD_RAD: f64 = 1e-3;
 /// … and keeps so far away in return, metres: three joints that are 1 mrad off together move no point of an arm that
 /// reaches 2.8 m by more than √3 · 1 mrad · 2.8 m.
 const CLEARANCE_M: f64 = 5e-3;
-
-/// What a [`Guide`] goes by. Joints are those of the map, planar values.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GuideSettings {
-    /// Speed, acceleration and jerk of planned motions, three joints.
-    pub limits: MotionLimits,
-    /// Deceleration while slowing for something, rad/s² per joint. Jerk is not limited then.
-    pub stop: [f64; 3],
-    /// Without a picture that can be believed for so long, the arm slows to a stop, seconds.
-    pub stale_s: f64,
-    /// The arm stops at least so far before the first blocked cell of its way, radians in joint space.
-    pub short_rad: f64,
-    /// Where the arm stands in a cell that becomes blocked, a free one is looked for within this, radians.
-    pub escape_rad: f64,
-    /// Where the arm goes if it stands in the way and has no way to its goal: planar values, radians.
-    pub retreat: Option<[f64; 3]>,
-    /// Weights of the joints in lengths of paths; finite, above 0.
-    pub weights: [f64; 3],
-}
-
-impl GuideSettings {
-    /// Limits of motion; stops as hard as it accelerates, after 150 ms without a picture, 2° before what is blocked.
-    pub fn new(limits: MotionLimits) -> Self {
-        Self {
-            stop: three(&limits.acceleration),
-            limits,
-            stale_s: 0.15,
-            short_rad: 2.0_f64.to_radians(),
-            escape_rad: 1.0,
-            retreat: None,
-            weights: [1.0; 3],
-        }
-    }
-}
-
-/// Why an arm cannot be guided.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum GuideError {
-    /// A place, a grid or a weight.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// A limit of motion.
-    #[error(transparent)]
-    Motion(#[from] MotionError),
-    /// A setting that is negative or not finite.
-    #[error("the setting `{name}` is {value}: write a finite number above 0")]
-    Setting {
-        /// Its name.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The number of joint values is not the robot's.
-    #[error("{found} joint values were given, the robot has {dof}")]
-    Values {
-        /// How many came.
-        found: usize,
-        /// How many there are.
-        dof: usize,
-    },
-}
-
-/// What a look at a new map told.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outlook {
-    /// How the present path came about; `None` where there is none, or none was needed.
-    pub how: Option<How>,
-    /// The rest of the path was blocked somewhere when it was looked at.
-    pub was_blocked: bool,
-    /// The path went over to another one while the arm moved.
-    pub in_motion: bool,
-    /// Why there is no path, where there is none.
-    pub reason: Option<Reason>,
-    /// Time per stage.
-    pub times: LookTimes,
-}
-
-/// One control tick.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Step {
-    /// All joint values of the robot, radians or metres.
-    pub q: Vec<f64>,
-    /// Speeds of the map's joints, planar, rad/s.
-    pub qd: [f64; 3],
-    /// How fast the planned motion's time runs, 0 to 1.
-    pub rate: f64,
-    /// What the arm is doing.
-    pub doing: Doing,
-}
 
 /// Moves one arm.
 #[derive(Debug)]
@@ -372,10 +284,10 @@ impl Guide {
             () => Doing::Going,
         };
         let is_recalled = self.limit_rad == Some(f64::NEG_INFINITY);
-        if !(is_over || is_recalled && rate <= 0.0) {
-            self.motion = Some(motion);
-        } else {
+        if is_over || is_recalled && rate <= 0.0 {
             self.limit_rad = None;
+        } else {
+            self.motion = Some(motion);
         }
         self.step(state.qd.map(|speed| speed * rate), rate, doing)
     }
@@ -396,18 +308,4 @@ impl Guide {
     fn step(&self, qd: [f64; 3], rate: f64, doing: Doing) -> Step {
         Step { q: self.arm.to_joints(&self.held, self.q), qd, rate, doing }
     }
-}
-
-/// The first three; what is missing is no number, and refused where limits are checked.
-fn three(values: &[f64]) -> [f64; 3] {
-    [0, 1, 2].map(|i| values.get(i).copied().unwrap_or(f64::NAN))
-}
-
-fn check(settings: &GuideSettings) -> Result<(), GuideError> {
-    let joints = settings.stop.map(|value| ("stop", value));
-    let others = [("stale_s", settings.stale_s)];
-    let bad = joints.into_iter().chain(others).find(|(_, value)| !(value.is_finite() && *value > 0.0));
-    let short = [("short_rad", settings.short_rad), ("escape_rad", settings.escape_rad)];
-    let negative = short.into_iter().find(|(_, value)| !(value.is_finite() && *value >= 0.0));
-    bad.or(negative).map_or(Ok(()), |(name, value)| Err(GuideError::Setting { name, value }))
 }

@@ -96,7 +96,9 @@ impl WatchLog {
                 add("… with a new path", if planned { entry.took } else { Duration::ZERO });
             }
         }
-        stages.iter_mut().for_each(|(_, times)| times.sort_by(f64::total_cmp));
+        for (_, times) in &mut stages {
+            times.sort_by(f64::total_cmp);
+        }
         stages
     }
 

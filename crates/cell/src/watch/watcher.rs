@@ -8,8 +8,8 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{ConvexHull, HullError};
 use elbowroom_spatial::Vec3;
 use elbowroom_vision::{
-    self as vision, ArmPart, Calibration, Change, Frame, ObstacleId, PixelMask, Point2, RawLayout, Settings, Sight, Vision,
-    VisionError, polygon,
+    self as vision, ArmPart, Calibration, Change, Frame, ObstacleId, PixelMask, Point2, RawLayout, Settings, Sight,
+    Vision, VisionError, polygon,
 };
 
 use super::times::Clock;
@@ -41,7 +41,9 @@ pub enum WatchError {
         value: f64,
     },
     /// The number of joint values is not the robot's, or one is not finite.
-    #[error("{found} joint values were given, the robot has {dof}: all of them, finite, as they were when the frame was taken")]
+    #[error(
+        "{found} joint values were given, the robot has {dof}: all of them, finite, as they were when the frame was taken"
+    )]
     Values {
         /// How many came.
         found: usize,
@@ -204,7 +206,7 @@ impl Watch {
         let report = self.vision.process(frame, Some(&self.mask))?;
         let t = &report.timings;
         times.tracks = t.label + t.place + t.track + t.tell;
-        times.background = t.total() - times.tracks;
+        times.background = t.total().saturating_sub(times.tracks);
         clock.lap();
         let mut sighting = Sighting {
             stamp_s: report.stamp_s,

@@ -43,7 +43,7 @@ impl Album {
         if outlook.how == Some(How::Anew) && !outlook.in_motion {
             self.set_out = station.guide.path().cloned();
         }
-        if self.count % 25 == 0 {
+        if self.count.is_multiple_of(25) {
             std::fs::write(self.folder.join(format!("sent_{:06.2}.png", sighting.stamp_s)), sent)?;
         }
         let t = sighting.stamp_s;
@@ -74,8 +74,7 @@ impl Album {
 
     /// The map and the path before and after.
     fn map(&mut self, station: &Station, outlook: &Outlook, t: f64) -> Result<(), Failure> {
-        let (table, grid, here) =
-            (station.guide.planner().table(), station.watch.map().grid(), station.guide.planar());
+        let (table, grid, here) = (station.guide.planner().table(), station.watch.map().grid(), station.guide.planar());
         let ways = [self.set_out.as_ref(), station.guide.path()];
         let how = if outlook.how == Some(How::Mended) { "mended" } else { "planned anew" };
         let whole = encode_png(&map_along_elbow(table, grid, ways, here)?)?;
@@ -86,7 +85,8 @@ impl Album {
         ] {
             std::fs::write(self.folder.join(format!("{name}_{t:06.2}.png")), &png)?;
             let title = format!("Joint map at {t:.2} s ({name}), path {how} while moving");
-            let note = format!("{what}. Grey: the path with which the arm set out. Green: the path now. Blue: the arm.");
+            let note =
+                format!("{what}. Grey: the path with which the arm set out. Green: the path now. Blue: the arm.");
             self.pictures.push(Picture { title, note, png });
         }
         Ok(())

@@ -44,9 +44,8 @@ fn facts(record: &run::Record, station: &station::Station) -> Vec<String> {
     let told = || log.frames.iter().filter_map(|f| f.told.as_ref().ok());
     let over = told().filter(|(_, o)| o.in_motion).count();
     let set_out = told().filter(|(_, o)| !o.in_motion && o.how == Some(elbowroom::planner::How::Anew)).count();
-    let seconds = |is: &dyn Fn(&Doing) -> bool| {
-        log.ticks.iter().filter(|tick| is(&tick.step.doing)).count() as f64 * log.tick_s
-    };
+    let seconds =
+        |is: &dyn Fn(&Doing) -> bool| log.ticks.iter().filter(|tick| is(&tick.step.doing)).count() as f64 * log.tick_s;
     let no_picture = |d: &Doing| matches!(d.reason(), Some(Reason::NoPicture { .. }));
     let (least, when) = log.least_distance().unwrap_or((f64::NAN, f64::NAN));
     let cells = station.watch.map().grid().cells();

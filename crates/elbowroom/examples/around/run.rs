@@ -41,7 +41,9 @@ fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
 pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Album) -> Result<Record, Failure> {
     let mut builder = Scene::builder();
     builder.robot("kr125", station.arm.robot.clone(), Pose::IDENTITY);
-    things.iter().for_each(|thing| _ = builder.object(thing.object()));
+    for thing in things {
+        builder.object(thing.object());
+    }
     let scene = builder.build()?;
     let mut q = radians(STATIONS[0]);
     let mut judge = Judge::new(&scene, &q)?;
@@ -54,7 +56,7 @@ pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Albu
     let mut next = 1;
     for tick in 0..(end_s / TICK_S) as usize {
         let t = tick as f64 * TICK_S;
-        if tick % every == 0 {
+        if tick.is_multiple_of(every) {
             sent = stage.shoot(station, things, t, &q)?;
         }
         if tick % every == late

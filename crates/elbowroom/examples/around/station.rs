@@ -23,8 +23,7 @@ const FASTEST_MPS: f64 = 0.8;
 pub const STEP_DEG: f64 = 2.0;
 
 /// The two stations, and where to get out of the way: degrees as the KR125 counts them.
-pub const STATIONS: [[f64; 6]; 2] =
-    [[60.0, -31.1, 76.6, 0.0, 44.5, 0.0], [-60.0, -31.1, 76.6, 0.0, 44.5, 0.0]];
+pub const STATIONS: [[f64; 6]; 2] = [[60.0, -31.1, 76.6, 0.0, 44.5, 0.0], [-60.0, -31.1, 76.6, 0.0, 44.5, 0.0]];
 const RETREAT: [f64; 6] = [0.0, -120.0, 130.0, 0.0, 44.5, 0.0];
 
 pub struct Station {

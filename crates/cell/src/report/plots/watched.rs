@@ -68,14 +68,15 @@ fn distance(log: &WatchLog) -> Figure {
     if let Some((least, t)) = log.least_distance() {
         let marker = Marker::new().color(palette::of_kind("forbidden")).size(9);
         let name = format!("least: {:.0} mm", least * 1e3);
-        plot.add_trace(
-            line(vec![round(t)], vec![round(least)], &name, Line::new()).mode(Mode::Markers).marker(marker),
-        );
+        plot.add_trace(line(vec![round(t)], vec![round(least)], &name, Line::new()).mode(Mode::Markers).marker(marker));
     }
     plot.set_layout(layout().x_axis(axis("time (s)")).y_axis(axis("distance (m)")));
     let note = "Between the solids of the arm and of the nearest thing where it really was, at every control tick.";
     figure("True distance", note, true, false, 520, plot)
 }
+
+/// Whether a row of the chart is on.
+type Is = fn(&Doing) -> bool;
 
 fn doing(log: &WatchLog) -> Figure {
     let mut plot = Plot::new();
@@ -86,7 +87,6 @@ fn doing(log: &WatchLog) -> Figure {
     let ys = kept.iter().map(|&i| round(at(i))).collect();
     let style = Line::new().color(palette::of_index(0)).width(1.6);
     plot.add_trace(line(xs, ys, "share of the planned speed", style));
-    type Is = fn(&Doing) -> bool;
     let rows: [(&str, &str, &'static str, Is); 3] = [
         ("slowing", "slowing", palette::WARNING, |d| matches!(d, Doing::Slowing(_))),
         ("waiting", "waiting", palette::of_kind("forbidden"), |d| matches!(d, Doing::Waiting(_))),
@@ -117,7 +117,7 @@ fn doing(log: &WatchLog) -> Figure {
     figure("What the arm does", "How fast the planned motion runs, and why not at full speed.", true, true, 340, plot)
 }
 
-fn spans(log: &WatchLog, is: fn(&Doing) -> bool) -> Vec<(f64, f64)> {
+fn spans(log: &WatchLog, is: Is) -> Vec<(f64, f64)> {
     let mut found: Vec<(f64, f64)> = Vec::new();
     for tick in log.ticks.iter().filter(|tick| is(&tick.step.doing)) {
         let from = tick.t_s - log.tick_s;
@@ -139,7 +139,12 @@ fn times(log: &WatchLog) -> Figure {
     let planning =
         clear().filter_map(|f| f.told.as_ref().ok()).map(|(_, o)| ms(o.times.total().as_secs_f64())).collect();
     plot.add_trace(line(xs.clone(), all, "frame to motion", Line::new().color(palette::of_index(0)).width(1.6)));
-    plot.add_trace(line(xs.clone(), seeing, "frame to blocked cells", Line::new().color(palette::of_index(2)).width(1.0)));
+    plot.add_trace(line(
+        xs.clone(),
+        seeing,
+        "frame to blocked cells",
+        Line::new().color(palette::of_index(2)).width(1.0),
+    ));
     plot.add_trace(line(xs, planning, "blocked cells to motion", Line::new().color(palette::of_index(1)).width(1.0)));
     let ends = [log.ticks.first(), log.ticks.last()].map(|t| t.map_or(0.0, |t| t.t_s));
     let goal = Line::new().color("#999999").width(1.0).dash(DashType::Dash);
