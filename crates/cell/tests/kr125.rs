@@ -109,7 +109,7 @@ fn links_lie_within_the_planar_arm_whatever_the_wrist_does() {
     let second = link("link_4").into_iter().map(turned).fold(0.0, f64::max);
     assert!(second + CHORD_M <= arm.fore_radius_m, "second half of the forearm: {second}");
     for name in ["link_5", "link_6"] {
-        let far = link(name).into_iter().map(|p| p.length()).fold(0.0, f64::max);
+        let far = link(name).into_iter().map(Vec3::length).fold(0.0, f64::max);
         assert!(far + CHORD_M <= arm.wrist_radius_m, "{name}: {far}");
     }
 }

@@ -5,6 +5,49 @@
 //! live in one thread or in two: the guide looks at the map through a reader without locks, and a [`Sighting`] is all that
 //! passes between them ([`Sentry`] is a watch on a thread of its own).
 //!
+//! ```
+//! use std::f64::consts::FRAC_PI_2;
+//! use std::sync::Arc;
+//! use elbowroom_cell::watch::{Doing, Guide, GuideSettings, Watch, WatchSettings, WatchedArm};
+//! use elbowroom_cspace::{JointSigns, PlanarArm};
+//! use elbowroom_planner::MotionLimits;
+//! use elbowroom_scene::example;
+//! use elbowroom_spatial::{Pose, Vec3};
+//! use elbowroom_vision::{Camera, Channels, Frame, Intrinsics, Settings};
+//! let arm = Arc::new(WatchedArm {
+//!     robot: example::arm()?,
+//!     base_in_world: Pose::IDENTITY,
+//!     planar: PlanarArm {
+//!         offset_m: 0.0, height_m: 0.35, upper_length_m: 0.45, upper_radius_m: 0.08,
+//!         fore_length_m: 0.35, fore_radius_m: 0.06, wrist_radius_m: 0.06,
+//!     },
+//!     // At zero it stands upright, the forearm too.
+//!     signs: JointSigns { sign: [1.0; 3], offset_rad: [0.0, 0.0, -FRAC_PI_2] },
+//!     joints: [0, 1, 2],
+//! });
+//! let lens = Intrinsics::ideal(160, 120, 0.6);
+//! let camera = Camera::looking_at(lens, Vec3::new(2.0, 0.0, 2.0), Vec3::new(2.0, 0.0, 0.0), Vec3::Y)?;
+//! let seeing = Settings { learning_frames: 5, ..Settings::default() };
+//! let mut watch = Watch::new(Arc::clone(&arm), 0.06, camera.into(), seeing, WatchSettings::default())?;
+//! let limits = MotionLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![100.0; 3] };
+//! let mut q = vec![-1.0, 1.2, 0.3];
+//! let mut guide = Guide::new(arm, watch.map().grid(), watch.reader(), None, GuideSettings::new(limits), &q)?;
+//! guide.go_to(&[1.0, 1.2, 0.3])?;
+//! let mut frame = Frame::new("camera", 160, 120, Channels::Grey, vec![90; 160 * 120])?;
+//! for i in 0..6 {
+//!     frame.stamp_s = f64::from(i) * 0.04;
+//!     let sighting = watch.see_frame(&frame, &q)?; // five frames of the empty floor are learnt
+//!     guide.look(&sighting);
+//!     for tick in 1..=10 {
+//!         let step = guide.tick(frame.stamp_s + 0.004 * f64::from(tick), 0.004);
+//!         assert_eq!(step.doing == Doing::Going, i == 5);
+//!         q = step.q;
+//!     }
+//! }
+//! assert!(q[0] > -1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # What is conservative
 //!
 //! - The prism that vision tells contains what was seen in the frame, grown by
