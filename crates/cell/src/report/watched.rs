@@ -104,7 +104,7 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
 fn region(truth: &crate::watch::Truth) -> RegionTrack {
     RegionTrack {
         name: truth.name.clone(),
-        kind: "forbidden",
+        kind: "thing",
         life: "permanent",
         guards: Guards::default(),
         warning_m: 0.0,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_cspace::{Grid, Reader};
-use elbowroom_planner::{End, How, Path, PlanError, PlanOptions, Planner};
+use elbowroom_planner::{End, How, Path, PlanError, PlanOptions, Planner, Progress, Standing};
 
 use super::doing::{Doing, Reason};
 use super::motion::{Ahead, Motion, distance};
@@ -163,7 +163,7 @@ impl Guide {
     fn follow(&mut self, motion: Motion, outlook: &mut Outlook) {
         let mut clock = Clock::start();
         let is_recalled = self.limit_rad == Some(f64::NEG_INFINITY);
-        let ahead = if is_recalled { Ahead::Lost } else { motion.ahead(self.planner.table(), &self.grid) };
+        let ahead = if is_recalled { Ahead::Lost } else { self.ahead(&motion) };
         outlook.times.standing = clock.lap();
         outlook.how = Some(How::Kept);
         let now_rad = motion.far_rad();
@@ -209,6 +209,18 @@ impl Guide {
                 (outlook.how, outlook.in_motion, outlook.reason) = (Some(how), true, None);
             }
             None => self.motion = Some(motion),
+        }
+    }
+
+    /// The curve is looked at from point to point, its straight legs cell by cell: what a leg no more than grazes counts.
+    fn ahead(&self, motion: &Motion) -> Ahead {
+        let seen = motion.ahead(self.planner.table(), &self.grid);
+        let (Ahead::Free, Some(leg)) = (seen, motion.leg()) else { return seen };
+        let here = Progress { leg, q: motion.state().q };
+        match self.planner.standing(&motion.path, here, &PlanOptions::default()) {
+            Ok(Standing::Clear) => Ahead::Free,
+            Ok(Standing::Blocked { free_rad, .. }) => Ahead::Blocked { far_rad: motion.far_rad() + free_rad },
+            Err(_) => Ahead::Lost,
         }
     }
 

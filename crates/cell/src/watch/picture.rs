@@ -67,7 +67,7 @@ pub fn map_along_elbow(
     draw_map(grid, [0, 1], [columns, rows], &share, ways, here)
 }
 
-/// The slice of the map at that value of the base joint at which most cells are blocked: θ2 to the right, θ3 up.
+/// The slice of the map at that value of the base joint at which most cells are blocked: θ3 to the right, θ2 up.
 ///
 /// # Errors
 /// None that a grid can cause.
@@ -77,11 +77,11 @@ pub fn fullest_slice(
     ways: [Option<&Path>; 2],
     here: [f64; 3],
 ) -> Result<Frame, VisionError> {
-    let [planes, columns, rows] = grid.shape();
+    let [planes, rows, columns] = grid.shape();
     let blocked = |plane: &usize| table.plane(*plane).iter().map(|word| word.count_ones()).sum::<u32>();
     let plane = (0..planes).max_by_key(blocked).unwrap_or(0) as u16;
-    let share = |i: usize, j: usize| f64::from(u8::from(table.is_blocked([plane, i as u16, j as u16])));
-    draw_map(grid, [1, 2], [columns, rows], &share, ways, here)
+    let share = |i: usize, j: usize| f64::from(u8::from(table.is_blocked([plane, j as u16, i as u16])));
+    draw_map(grid, [2, 1], [columns, rows], &share, ways, here)
 }
 
 /// A picture of half the size: each pixel the mean of four.
@@ -109,7 +109,7 @@ fn draw_map(
     ways: [Option<&Path>; 2],
     here: [f64; 3],
 ) -> Result<Frame, VisionError> {
-    let scale = (480 / columns.max(rows).max(1)).max(1);
+    let scale = (560 / columns.max(rows).max(1)).max(1);
     let (width, height) = (columns * scale, rows * scale);
     let mut canvas = Canvas { width, height, rgb: Vec::with_capacity(3 * width * height) };
     for y in 0..height {

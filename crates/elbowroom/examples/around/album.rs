@@ -81,7 +81,7 @@ impl Album {
         let slice = encode_png(&fullest_slice(table, grid, ways, here)?)?;
         for (png, name, what) in [
             (whole, "map", "θ1 to the right, θ2 up; the redder, the more of θ3 is blocked"),
-            (slice, "slice", "the slice of one θ1 in which most is blocked: θ2 to the right, θ3 up"),
+            (slice, "slice", "the slice of one θ1 in which most is blocked: θ3 to the right, θ2 up"),
         ] {
             std::fs::write(self.folder.join(format!("{name}_{t:06.2}.png")), &png)?;
             let title = format!("Joint map at {t:.2} s ({name}), path {how} while moving");
