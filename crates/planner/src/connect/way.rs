@@ -20,21 +20,19 @@ pub(super) struct Way<'s> {
     pub reach: Vec<f64>,
     /// Configurations that were looked at.
     pub states: u64,
-    /// Straight motions that were asked to be proven.
-    pub sweeps: u64,
 }
 
 impl<'s> Way<'s> {
     pub fn new(scene: &'s Scene, robot: usize, reach: Vec<f64>) -> Self {
         let (checker, state) = (Checker::new(scene, Options::default()), SceneState::new(scene));
-        Self { scene, robot, checker, state, sweep: SweepOptions::default(), reach, states: 0, sweeps: 0 }
+        Self { scene, robot, checker, state, sweep: SweepOptions::default(), reach, states: 0 }
     }
 
     /// Everything stands as in `state`; the robot could go to `goal`.
     pub fn stand(&mut self, state: &SceneState, goal: &[f64]) -> Result<(), SceneError> {
         self.state.clone_from(state);
         self.state.set_q(self.scene, self.robot, goal)?;
-        (self.states, self.sweeps) = (0, 0);
+        self.states = 0;
         Ok(())
     }
 
@@ -106,7 +104,6 @@ impl<'s> Way<'s> {
 
     /// Straight from `a` to `b` in joint space, proven free all along.
     pub fn proven(&mut self, a: &[f64], b: &[f64]) -> bool {
-        self.sweeps += 1;
         if !self.put(a) {
             return false;
         }
