@@ -14,6 +14,7 @@ mod model;
 mod npy;
 mod obstacle;
 mod reader;
+mod robot;
 mod seed;
 mod table;
 
@@ -27,5 +28,6 @@ pub use map::JointMap;
 pub use model::{Model, UnknownModel, spheres_until};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use reader::{Reader, Snapshot};
+pub use robot::{Block, Blocks, FillCounts, MOST_JOINTS, Others, RobotFiller, RobotMapError};
 pub use seed::{Expansion, expand};
 pub use table::Table;
