@@ -15,7 +15,7 @@ use super::target::Target;
 use crate::Axis;
 
 /// How often a cell at the border is cut in two before it counts as blocked.
-const LOOKS: u32 = 9;
+const LOOKS: u32 = 18;
 /// Slabs per thread: they take unequal times.
 const SLABS: usize = 8;
 
@@ -93,7 +93,7 @@ impl RobotFiller {
     }
 
     /// How often a cell at the border is cut in two before it counts as blocked: 0 is fast and blocks more cells than
-    /// need be, 9 (unless told otherwise) hardly any.
+    /// need be, 18 (unless told otherwise) hardly any.
     #[must_use]
     pub fn with_looks(self, looks: u32) -> Self {
         Self { looks: looks.min(60), ..self }

@@ -133,6 +133,7 @@ impl Drive {
     pub fn state(&self) -> ChainState {
         let mut state = ChainState::new(&self.chain);
         state.q.copy_from_slice(&self.held);
+        self.chain.forward(&mut state);
         state
     }
 

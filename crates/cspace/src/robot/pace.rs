@@ -32,12 +32,8 @@ const HAIR: f64 = 1e-9;
 impl Pace {
     pub fn of(part: &Part, drive: &Drive, state: &ChainState) -> Self {
         let center = drive.link_in_world(state, part.link).transform_point(part.center);
-        let mut pace = Self {
-            linear: [Vec3::ZERO; MOST_JOINTS],
-            angular: [Vec3::ZERO; MOST_JOINTS],
-            center,
-            depth: part.depth,
-        };
+        let mut pace =
+            Self { linear: [Vec3::ZERO; MOST_JOINTS], angular: [Vec3::ZERO; MOST_JOINTS], center, depth: part.depth };
         for mover in &part.movers {
             let joint = drive.link_in_world(state, mover.child);
             let along = joint.transform_vector(mover.along) * mover.multiplier;
@@ -77,9 +73,8 @@ impl Pace {
             // About one axis nothing moves farther than the arc.
             (Some(_), None) => self.linear[axis].length() + part.radius * self.angular[axis].length(),
             _ => {
-                let of = |(m, lever): (&super::joints::Mover, &f64)| {
-                    m.multiplier.abs() * if m.turns { *lever } else { 1.0 }
-                };
+                let of =
+                    |(m, lever): (&super::joints::Mover, &f64)| m.multiplier.abs() * if m.turns { *lever } else { 1.0 };
                 part.movers.iter().zip(&part.levers).filter(|(m, _)| m.axis == axis).map(of).sum()
             }
         };

@@ -14,7 +14,7 @@ use crate::Obstacle;
 
 /// Size of a piece as a share of how far it is from the farthest axis: what turning adds to its motion is as small a
 /// share of the whole.
-const SHARE: f64 = 0.1;
+const SHARE: f64 = 0.15;
 
 /// A piece of the robot.
 #[derive(Debug, Clone)]

@@ -15,7 +15,7 @@ use crate::Axis;
 /// Distances are looked for up to this many times what would do: it spares measuring again in the parts of a box.
 const BEYOND: f64 = 1.2;
 /// A pair is not measured where it was nearer than this share of what would do, in a box around.
-const HOPE: f64 = 0.7;
+const HOPE: f64 = 0.85;
 
 /// A piece of the robot and something it may touch in the box at hand.
 #[derive(Debug, Clone, Copy)]

@@ -25,14 +25,12 @@ struct Enclosure {
 pub(super) fn enclose(shape: &Shape, in_link: Pose, joints: &[Loose]) -> Option<(Shape, Pose)> {
     let mut all = Enclosure::of(shape, in_link)?;
     for (at, joint) in joints.iter().enumerate().rev() {
-        match joint.slide {
-            Some(ends) => all.slide(joint.along, ends),
-            None => {
-                // A centre where this axis meets the one before it stays small when that one turns.
-                let before = joints[..at].last().filter(|j| j.slide.is_none() && j.child == joint.parent);
-                let meet = before.map(|b| nearest_on_axis(joint, b));
-                all.turn(joint.along, meet);
-            }
+        if let Some(ends) = joint.slide {
+            all.slide(joint.along, ends);
+        } else {
+            // A centre where this axis meets the one before it stays small when that one turns.
+            let before = joints[..at].last().filter(|j| j.slide.is_none() && j.child == joint.parent);
+            all.turn(joint.along, before.map(|b| nearest_on_axis(joint, b)));
         }
         all.place(joint.origin);
     }
@@ -97,8 +95,8 @@ impl Enclosure {
         let (old, off) = level(self.center);
         let z = meet.unwrap_or(old);
         let center = along * z;
-        let from_points = self.fat
-            + self.points.iter().map(|&p| (level(p).0 - z).hypot(level(p).1)).fold(0.0, f64::max);
+        let from_points =
+            self.fat + self.points.iter().map(|&p| (level(p).0 - z).hypot(level(p).1)).fold(0.0, f64::max);
         let from_ball = self.radius + off.hypot(old - z);
         (self.center, self.radius) = (center, from_points.min(from_ball));
         self.points = prism(along, [low - self.fat, high + self.fat], wide + self.fat);
@@ -133,4 +131,58 @@ fn prism(along: Vec3, ends: [f64; 2], radius: f64) -> Vec<Vec3> {
     let hair = 1e-9 * (ends[1] - ends[0]).abs();
     let ends = [ends[0] - hair, ends[1] + hair];
     (0..SIDES).map(corner).flat_map(|(s, c)| ends.map(|z| along * z + (u * c + v * s) * out)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_kinematics::LinkId;
+    use elbowroom_proximity::{Capsule, Cuboid, Cylinder, project_point};
+
+    use super::*;
+
+    /// A joint that turns, at a place, about an axis.
+    fn turning(at: usize, origin: Pose, along: Vec3) -> Loose {
+        Loose { child: LinkId(at + 1), parent: LinkId(at), origin, along, slide: None }
+    }
+
+    #[test]
+    fn no_point_is_outside_wherever_the_joints_are() {
+        let joints = [
+            turning(0, Pose::from_xyz_rpy([0.1, 0.0, 0.3], [0.2, 0.0, 0.1]), Vec3::Z),
+            turning(1, Pose::from_xyz_rpy([0.0, 0.02, 0.05], [0.0, 0.3, 0.0]), Vec3::Y),
+            Loose { slide: Some([-0.1, 0.2]), ..turning(2, Pose::from_xyz_rpy([0.0, 0.0, 0.06], [0.0; 3]), Vec3::X) },
+            turning(3, Pose::from_xyz_rpy([0.03, 0.0, 0.06], [0.0; 3]), Vec3::Z),
+        ];
+        let shapes = [
+            Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.02, 0.05, 0.03) }),
+            Shape::Cylinder(Cylinder { half_length: 0.05, radius: 0.03 }),
+            Shape::Capsule(Capsule { half_length: 0.05, radius: 0.03 }),
+            Shape::Sphere(Sphere { radius: 0.04 }),
+        ];
+        let in_link = Pose::from_xyz_rpy([0.0, 0.03, 0.06], [0.4, 0.1, 0.0]);
+        for shape in &shapes {
+            for first in 0..joints.len() {
+                let joints = &joints[first..];
+                let (around, placed) = enclose(shape, in_link, joints).unwrap();
+                for i in 0..4000u32 {
+                    let value = |j: usize| (f64::from(i) * (j as f64 + 1.0) * 0.618_033_988).fract();
+                    let mut pose = Pose::IDENTITY;
+                    for (j, joint) in joints.iter().enumerate() {
+                        let moved = match joint.slide {
+                            Some([low, high]) => Pose::from_translation(joint.along * (low + (high - low) * value(j))),
+                            None => Pose::new(
+                                elbowroom_spatial::Rotation::from_axis_angle(joint.along, value(j) * 2.0 * PI),
+                                Vec3::ZERO,
+                            ),
+                        };
+                        pose = pose * joint.origin * moved;
+                    }
+                    let direction =
+                        Vec3::new((f64::from(i) * 0.7).sin(), (f64::from(i) * 1.3).cos(), (f64::from(i) * 0.37).sin());
+                    let p = (pose * in_link).transform_point(shape.support(direction));
+                    assert!(project_point(&around, &placed, p).signed_distance <= 0.0, "{shape:?} {first} {i}");
+                }
+            }
+        }
+    }
 }
