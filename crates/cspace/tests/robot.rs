@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use elbowroom_cspace::{Axis, AxisError, Blocks, Filler, Grid, Layer, Obstacle, Others, PlanarArm, RobotFiller, Table};
+use elbowroom_cspace::{
+    Axis, AxisError, Blocks, Filler, Grid, Layer, Model, Obstacle, Others, PlanarArm, RobotFiller, Table,
+};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, collides, separation};
 use elbowroom_scene::{Body, Robot, example};
@@ -189,10 +191,10 @@ impl Case {
         let mut state = ChainState::new(&self.robot.chain);
         let mut cells = Vec::new();
         blocks.each(|b| each_cell(b.first, b.last, |c| cells.push(c.to_vec())));
-        let mut needless = 0;
+        let mut needless = 0u32;
         for _ in 0..looks {
             let cell = &cells[(random.unit() * cells.len() as f64) as usize];
-            needless += usize::from(!self.touches_in(&mut state, blocks.axes(), cell));
+            needless += u32::from(!self.touches_in(&mut state, blocks.axes(), cell));
         }
         f64::from(needless) / looks as f64
     }
@@ -452,4 +454,33 @@ fn bad_input_is_refused_with_a_reason() {
             && blocks.is_blocked(&[0.0, 0.0])
             && blocks.is_blocked(&[9.0, 0.0, 0.0])
     );
+}
+
+#[test]
+fn every_model_of_an_obstacle_holds_it() {
+    let shapes = [
+        Shape::Mesh(Arc::new(crate_mesh(0.4))),
+        Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.5, 0.02) }),
+        Shape::Cylinder(Cylinder { half_length: 0.3, radius: 0.1 }),
+        Shape::Capsule(Capsule { half_length: 0.3, radius: 0.1 }),
+        Shape::Sphere(Sphere { radius: 0.2 }),
+    ];
+    let base = Pose::from_xyz_rpy([0.3, -0.2, 0.1], [0.2, 0.1, 0.7]);
+    let mut random = Random(11);
+    for shape in &shapes {
+        for at in [[0.9, 0.3, 0.4], [0.25, -0.2, 0.4], [-1.2, -0.1, 0.0]] {
+            let in_world = Pose::from_xyz_rpy(at, [0.4, 1.0, -0.3]);
+            for word in ["sphere", "spheres=8", "spheres=64", "box", "slices"] {
+                let solids = word.parse::<Model>().unwrap().solids(shape, &in_world, &base);
+                for _ in 0..400 {
+                    let direction =
+                        Vec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+                    let p = in_world.transform_point(shape.support(direction) * random.unit().sqrt());
+                    let speck = Shape::Sphere(Sphere { radius: 1e-9 });
+                    let held = solids.iter().any(|(s, at)| collides(s, at, &speck, &Pose::from_translation(p)));
+                    assert!(held, "{word} of {shape:?} at {at:?} leaves out {p:?}");
+                }
+            }
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! How long the map of a real robot takes: its own meshes, a mesh obstacle of 5,000 triangles, a cell of 50,000.
 //!
 //! `cargo run --release -p elbowroom-cspace --example robot_map -- ROBOT.urdf [STEP_DEG] [THREADS]`
+#![allow(clippy::print_stdout, reason = "it is what the example is for")]
 
 use std::error::Error;
 use std::sync::Arc;

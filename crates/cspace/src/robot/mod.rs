@@ -10,7 +10,7 @@
 //! | `part.rs`, `pieces.rs` | the robot in small pieces, each with the joints that move it |
 //! | `swept.rs` | what joints that are not of the map can sweep |
 //! | `pace.rs` | how far a piece moves within a box of joint space |
-//! | `target.rs` | what stands around |
+//! | `target.rs`, `stand_in.rs` | what stands around, and simpler solids in its place |
 //! | `search.rs`, `border.rs` | boxes cut in two; cells looked at closely |
 //! | `blocks.rs` | the answer: a tree of boxes |
 //! | `filler.rs` | all of it together, on threads |
@@ -23,6 +23,7 @@ mod pace;
 mod part;
 mod pieces;
 mod search;
+mod stand_in;
 mod swept;
 mod target;
 

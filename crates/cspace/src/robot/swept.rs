@@ -11,13 +11,13 @@ use super::joints::Loose;
 const SIDES: u32 = 24;
 
 /// What is known to hold the solid, in the frame of the joint at hand.
-struct Enclosure {
+pub(super) struct Enclosure {
     /// It lies within `fat` of the convex hull of these.
-    points: Vec<Vec3>,
-    fat: f64,
+    pub points: Vec<Vec3>,
+    pub fat: f64,
     /// And within this ball.
-    center: Vec3,
-    radius: f64,
+    pub center: Vec3,
+    pub radius: f64,
 }
 
 /// A solid of the last link, placed in it, in all its places: a shape in the frame of the link before the first joint.
@@ -47,7 +47,8 @@ fn nearest_on_axis(joint: &Loose, before: &Loose) -> f64 {
 }
 
 impl Enclosure {
-    fn of(shape: &Shape, in_link: Pose) -> Option<Self> {
+    /// Of a solid placed in a frame; `None` where it has no end.
+    pub fn of(shape: &Shape, in_link: Pose) -> Option<Self> {
         let (points, fat) = match shape {
             Shape::Sphere(s) => (vec![Vec3::ZERO], s.radius),
             Shape::Capsule(c) => (vec![Vec3::Z * c.half_length, Vec3::Z * -c.half_length], c.radius),
