@@ -33,6 +33,7 @@ pub mod csv;
 mod file;
 pub mod inspect;
 pub mod motion;
+pub mod plan;
 pub mod query;
 mod recording;
 pub mod report;

@@ -10,7 +10,7 @@ use elbowroom::cell::query::{Ask, Level};
 /// Without a command, the example cell of the interference-region paper's figure 12 runs and its report is written to
 /// elbowroom-out/figure12.
 ///
-/// Exit status: 0 done and free of trouble; 1 the answer is bad news (a collision, a forbidden region entered);
+/// Exit status: 0 done and free of trouble; 1 the answer is bad news (a collision, a forbidden region entered, no path);
 /// 2 the input or the call is wrong.
 #[derive(Debug, Parser)]
 #[command(name = "elbowroom", version, after_help = "Not a certified safety device.")]
@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Say what is in a robot or mesh file
     Inspect(InspectArgs),
+    /// Find a collision-free, timed path of a robot from one joint state to another
+    Plan(PlanArgs),
     /// Turn points that the robot was driven to into a region for the cell file
     Teach(TeachArgs),
     /// List the example cells, or copy them to a folder to start from
@@ -142,6 +144,70 @@ pub(crate) enum Unit {
     Cm,
     Mm,
     In,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0               from the robot's start
+  elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv   and timed samples for the controller
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
+
+Objects, the other robots at their start, the robot itself with tool and load count, by the pair matrix of the cell.
+Exit status: 1 where no path was found, which proves nothing: there may be one (docs/plan.md).")]
+pub(crate) struct PlanArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// Name of the robot; may be left out where there is one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// Where it is: a number per joint in the order of the chain, rad (m where it slides), with commas between;
+    /// default: the robot's start
+    #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
+    pub(crate) from: Option<Numbers>,
+    /// Where it shall go, likewise
+    #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
+    pub(crate) to: Numbers,
+    /// Write timed samples to this file: `t_s` and a column per joint, linear between rows
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// Time from sample to sample in seconds; default: the cell's tick
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) period: Option<f64>,
+    /// Stop looking after this time in seconds
+    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) time_limit: f64,
+    /// Stay away from everything by more than this, in metres
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(crate) clearance: f64,
+    /// Another whole number may find another path; the same finds the same
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Numbers with commas between.
+#[derive(Debug, Clone)]
+pub(crate) struct Numbers(pub(crate) Vec<f64>);
+
+impl std::str::FromStr for Numbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |(i, word): (usize, &str)| {
+            let value = word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+            value.ok_or_else(|| format!("value {} is \"{}\", no finite number: write 0.5,-1.2,0", i + 1, word.trim()))
+        };
+        text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// A time that can be waited for.
+fn seconds(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
+    value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
 }
 
 #[derive(Debug, Args)]

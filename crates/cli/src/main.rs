@@ -6,6 +6,7 @@ mod args;
 mod example;
 mod inspect;
 mod output;
+mod plan;
 mod query;
 mod run;
 mod teach;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Query(args)) => query::query(&args),
         Some(Command::Inspect(args)) => inspect::inspect(&args),
+        Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),

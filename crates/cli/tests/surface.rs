@@ -63,7 +63,7 @@ fn completions_know_the_verbs() {
 fn help_teaches_every_verb() {
     let help = elbowroom(Path::new("."), &["--help"]).expect(0).stdout;
     assert!(help.contains("Exit status") && help.contains("Not a certified safety device."));
-    for verb in ["run", "inspect", "teach", "example", "completions"] {
+    for verb in ["run", "plan", "inspect", "teach", "example", "completions"] {
         assert!(help.contains(verb));
         elbowroom(Path::new("."), &[verb, "--help"]).expect(0);
     }

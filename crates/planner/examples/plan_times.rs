@@ -122,7 +122,8 @@ fn exact(grid: &Grid, map: &JointMap, obstacles: &[Obstacle], paths: &[Path]) ->
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let planner = Planner::new(grid, map.table())?;
     let joints = MappedJoints { robot: 0, joints: [0, 1, 2] };
-    let limits = MotionLimits { velocity: [1.5, 1.5, 2.0], acceleration: [3.0, 3.0, 5.0], jerk: [30.0, 30.0, 50.0] };
+    let [velocity, acceleration, jerk] = [[1.5, 1.5, 2.0], [3.0, 3.0, 5.0], [30.0, 30.0, 50.0]].map(Vec::from);
+    let limits = MotionLimits { velocity, acceleration, jerk };
     let (mut refused, mut stops, mut checks, mut timings) = (0, 0, Vec::new(), Vec::new());
     for path in paths {
         let clock = Instant::now();

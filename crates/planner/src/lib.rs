@@ -8,6 +8,7 @@
 
 mod blocks;
 mod check;
+mod connect;
 mod graph;
 mod labels;
 mod local;
@@ -23,6 +24,7 @@ mod space;
 mod timing;
 
 pub use check::{CheckError, MappedJoints};
+pub use connect::{Connect, Route, RouteError, RouteOptions};
 pub use path::{End, Path, PlanError};
 pub use planner::{PlanOptions, Planner};
 pub use replan::{How, Progress, Standing};

@@ -32,7 +32,7 @@ fn what_the_map_lets_through_the_scene_lets_through() {
     let scene = scene(&grid, &obstacles);
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let mut planner = Planner::new(&grid, map.table()).unwrap();
-    let limits = MotionLimits { velocity: [2.0; 3], acceleration: [6.0; 3], jerk: [60.0; 3] };
+    let limits = MotionLimits { velocity: vec![2.0; 3], acceleration: vec![6.0; 3], jerk: vec![60.0; 3] };
     let mut random = Random(41);
     let mut bent = 0;
     for _ in 0..150 {
@@ -41,7 +41,8 @@ fn what_the_map_lets_through_the_scene_lets_through() {
         bent += usize::from(path.waypoints.len() > 2);
         path.check(&mut checker, &state, JOINTS, &SweepOptions::default()).unwrap();
         let motion = planner.time(&path, &limits).unwrap();
-        let driven: Vec<_> = (0..=100).map(|n| motion.at(motion.seconds() * f64::from(n) / 100.0).q).collect();
+        let driven: Vec<_> =
+            (0..=100).map(|n| motion.at(motion.seconds() * f64::from(n) / 100.0).q.try_into().unwrap()).collect();
         Path::check_through(&driven, &mut checker, &state, JOINTS, &SweepOptions::default()).unwrap();
     }
     assert!(bent > 20, "{bent}");

@@ -6,7 +6,7 @@ mod program;
 mod read;
 mod region;
 pub(crate) mod robot;
-mod suggest;
+pub(crate) mod suggest;
 mod words;
 
 use std::path::Path;

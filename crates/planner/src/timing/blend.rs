@@ -6,40 +6,31 @@
 
 use super::limits::MotionLimits;
 
-/// A rounded corner.
+/// A rounded corner: unit directions of both legs, and the speed at which it is gone along each.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Blend {
-    /// Where it begins.
-    pub from: [f64; 3],
-    /// Velocities before and after, rad/s.
-    pub before: [f64; 3],
-    pub after: [f64; 3],
+pub(super) struct Blend<'l> {
+    pub before: &'l [f64],
+    pub after: &'l [f64],
+    pub speed: f64,
     pub seconds: f64,
 }
 
-impl Blend {
+impl Blend<'_> {
     /// Seconds it takes at a speed along both legs (unit directions).
-    pub fn seconds(speed: f64, [u, v]: [[f64; 3]; 2], limits: &MotionLimits) -> f64 {
-        let each = (0..3).map(|i| {
-            let change = speed * (v[i] - u[i]).abs();
-            (1.5 * change / limits.acceleration[i]).max((6.0 * change / limits.jerk[i]).sqrt())
-        });
-        each.fold(0.0, f64::max)
+    pub fn seconds(speed: f64, [u, v]: [&[f64]; 2], limits: &MotionLimits) -> f64 {
+        let changes = u.iter().zip(v).map(|(u, v)| speed * (v - u).abs());
+        let each = changes.zip(limits.acceleration.iter().zip(&limits.jerk));
+        each.map(|(change, (a, j))| (1.5 * change / a).max((6.0 * change / j).sqrt())).fold(0.0, f64::max)
     }
 
-    /// Position, velocity, acceleration after `t` seconds.
-    pub fn at(&self, t: f64) -> [[f64; 3]; 3] {
+    /// Position, velocity, acceleration of one joint after `t` seconds, from where the blend begins.
+    pub fn at(&self, t: f64, joint: usize) -> [f64; 3] {
         let x = (t / self.seconds).clamp(0.0, 1.0);
         let share = x * x * (3.0 - 2.0 * x);
         let after = self.seconds * x * x * x * (1.0 - 0.5 * x);
         let before = self.seconds * x - after;
         let steep = 6.0 * x * (1.0 - x) / self.seconds;
-        let each = |f: &dyn Fn(usize) -> f64| [f(0), f(1), f(2)];
-        let (u, v) = (self.before, self.after);
-        [
-            each(&|i| self.from[i] + u[i] * before + v[i] * after),
-            each(&|i| u[i] + (v[i] - u[i]) * share),
-            each(&|i| (v[i] - u[i]) * steep),
-        ]
+        let (u, v) = (self.speed * self.before[joint], self.speed * self.after[joint]);
+        [u * before + v * after, u + (v - u) * share, (v - u) * steep]
     }
 }

@@ -1,0 +1,77 @@
+//! Where joints may be, and where it is worth to look.
+
+use elbowroom_kinematics::{Chain, JointKind};
+
+use super::error::RouteError;
+use super::random::Random;
+use crate::path::End;
+
+/// A slide without limits is looked at so far beyond both ends, m.
+const SLIDE_M: f64 = 1.0;
+/// Values beyond a limit by no more than this are taken for it, rad or m.
+const SAME: f64 = 1e-9;
+
+/// The limits of a robot's values.
+#[derive(Debug, Clone)]
+pub(super) struct Bounds {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    names: Vec<String>,
+    slides: Vec<bool>,
+}
+
+impl Bounds {
+    pub fn new(chain: &Chain) -> Self {
+        let joints = || chain.active_joints().iter().map(|id| &chain.joints()[id.0]);
+        Self {
+            lower: chain.lower(),
+            upper: chain.upper(),
+            names: joints().map(|j| j.name.clone()).collect(),
+            slides: joints().map(|j| j.kind == JointKind::Prismatic).collect(),
+        }
+    }
+
+    pub fn dof(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// The values, pulled onto limits that they miss by a rounding.
+    pub fn checked(&self, end: End, q: &[f64]) -> Result<Vec<f64>, RouteError> {
+        for (i, &value) in q.iter().enumerate() {
+            if !(value >= self.lower[i] - SAME && value <= self.upper[i] + SAME) {
+                let (joint, unit) = (self.names[i].clone(), if self.slides[i] { "m" } else { "rad" });
+                return Err(RouteError::Beyond { end, joint, value, lower: self.lower[i], upper: self.upper[i], unit });
+            }
+        }
+        Ok(q.iter().enumerate().map(|(i, v)| v.max(self.lower[i]).min(self.upper[i])).collect())
+    }
+
+    /// What is looked through on the way between two places: everything, where there are limits; a turn beyond them where
+    /// there are none.
+    pub fn window(&self, from: &[f64], to: &[f64]) -> Window {
+        let each = |i: usize| {
+            let (low, high) = (from[i].min(to[i]), from[i].max(to[i]));
+            let beyond = if self.slides[i] { SLIDE_M } else { std::f64::consts::PI };
+            let least = if self.lower[i].is_finite() { self.lower[i] } else { low - beyond };
+            let most = if self.upper[i].is_finite() { self.upper[i] } else { high + beyond };
+            [least.min(low), low, high, most.max(high)]
+        };
+        Window { each: (0..self.dof()).map(each).collect() }
+    }
+}
+
+/// Per value: least, the smaller end, the greater end, most.
+#[derive(Debug, Clone)]
+pub(super) struct Window {
+    each: Vec<[f64; 4]>,
+}
+
+impl Window {
+    /// Anywhere between the ends and a share of what lies beyond them; all of it at 1.
+    pub fn sample(&self, share: f64, random: &mut Random, out: &mut [f64]) {
+        for (value, [least, low, high, most]) in out.iter_mut().zip(&self.each) {
+            let (from, to) = (low + (least - low) * share, high + (most - high) * share);
+            *value = random.between(from, to).clamp(*least, *most);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Robots and cells with more joints and other kinds of them.
+
+use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
+use elbowroom_proximity::{Capsule, Cuboid, Shape};
+use elbowroom_scene::{Body, Checker, Object, Options, Robot, Scene, SceneState, Selection, example};
+use elbowroom_spatial::{Pose, Vec3};
+
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Joint values at which the robot touches nothing.
+    pub fn free(&mut self, scene: &Scene, robot: usize) -> Option<Vec<f64>> {
+        let chain = &scene.robots()[robot].robot.chain;
+        let mut checker = Checker::new(scene, Options::default());
+        (0..500).find_map(|_| {
+            let each = chain.lower().into_iter().zip(chain.upper());
+            let q: Vec<f64> = each.map(|(l, u)| l.max(-3.0) + (u.min(3.0) - l.max(-3.0)) * self.unit()).collect();
+            let state = standing(scene, robot, &q);
+            checker.between(Selection::Robot(robot), Selection::All).within(&state, 1e-3).is_none().then_some(q)
+        })
+    }
+}
+
+/// One robot somewhere, all others at zero.
+pub fn standing(scene: &Scene, robot: usize, q: &[f64]) -> SceneState {
+    let mut state = SceneState::new(scene);
+    state.set_q(scene, robot, q).unwrap();
+    state
+}
+
+pub fn within_limits(scene: &Scene, robot: usize, q: &[f64]) -> bool {
+    let chain = &scene.robots()[robot].robot.chain;
+    q.iter().zip(chain.lower().iter().zip(chain.upper())).all(|(q, (l, u))| *q >= l - 1e-12 && *q <= u + 1e-12)
+}
+
+fn cuboid(name: &str, at: [f64; 3], half: [f64; 3]) -> Object {
+    let shape = Shape::Cuboid(Cuboid { half_extents: half.into() });
+    Object { name: name.into(), shape, in_world: Pose::from_translation(at.into()) }
+}
+
+fn scene(robot: Robot, objects: Vec<Object>) -> Scene {
+    let mut builder = Scene::builder();
+    builder.robot("robot", robot, Pose::IDENTITY);
+    for o in objects {
+        builder.object(o);
+    }
+    builder.build().unwrap()
+}
+
+/// A serial robot of capsules along z: kinds, axes, limits.
+fn serial(joints: &[(JointKind, Vec3, f64, f64)], length: f64, mimic: Option<(usize, Mimic)>) -> Robot {
+    let joint = |(i, (kind, axis, low, high)): (usize, &(JointKind, Vec3, f64, f64))| Joint {
+        name: format!("j{i}"),
+        kind: *kind,
+        parent: LinkId(i),
+        child: LinkId(i + 1),
+        origin: Pose::from_translation(Vec3::Z * if i == 0 { 0.1 } else { length }),
+        axis: *axis,
+        limits: Limits::range(*low, *high),
+        mimic: mimic.filter(|m| m.0 == i).map(|m| m.1),
+    };
+    let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
+    let joints = joints.iter().enumerate().map(joint).collect();
+    let mut robot = Robot::new(Chain::new("serial", links, joints).unwrap());
+    for bodies in robot.bodies.iter_mut().skip(1) {
+        let shape = Shape::Capsule(Capsule { half_length: 0.4 * length, radius: 0.03 });
+        bodies.push(Body { name: String::new(), shape, in_link: Pose::from_translation(Vec3::Z * 0.5 * length) });
+    }
+    robot
+}
+
+/// Seven joints, one of them endless, in front of shelves.
+pub fn cabinet() -> Scene {
+    let turn = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
+    let endless = (JointKind::Continuous, Vec3::Z, 0.0, 0.0);
+    let (y, z) = (Vec3::Y, Vec3::Z);
+    let robot = serial(
+        &[endless, turn(y, 2.0), turn(z, 2.9), turn(y, 2.2), turn(z, 2.9), turn(y, 2.2), turn(z, 2.9)],
+        0.17,
+        None,
+    );
+    let boards = [0.15, 0.5, 0.85].map(|h| cuboid(&format!("board {h}"), [0.65, 0.0, h], [0.15, 0.4, 0.01]));
+    let sides = [-0.41, 0.41].map(|y| cuboid(&format!("side {y}"), [0.65, y, 0.5], [0.15, 0.01, 0.4]));
+    let post = cuboid("post", [-0.3, 0.3, 0.5], [0.03, 0.03, 0.6]);
+    let floor = cuboid("floor", [0.0, 0.0, -0.06], [1.5, 1.5, 0.05]);
+    scene(robot, boards.into_iter().chain(sides).chain([post, floor]).collect())
+}
+
+/// Two slides, an endless turn, an arm whose last joint follows the one before.
+pub fn crane() -> Scene {
+    let slide = |axis, low, high| (JointKind::Prismatic, axis, low, high);
+    let turn = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
+    let mimic = Mimic { joint: JointId(3), multiplier: -0.5, offset: 0.1 };
+    let joints = [
+        slide(Vec3::X, -1.0, 1.0),
+        slide(Vec3::Y, -0.8, 0.8),
+        (JointKind::Continuous, Vec3::Z, 0.0, 0.0),
+        turn(Vec3::Y, 2.4),
+        turn(Vec3::Y, 2.4),
+    ];
+    let robot = serial(&joints, 0.3, Some((4, mimic)));
+    let posts = [(-0.5, 0.1), (0.4, -0.4), (0.3, 0.5), (0.0, -0.1)];
+    let posts = posts.map(|(x, y)| cuboid(&format!("post {x}"), [x, y, 0.9], [0.04, 0.04, 0.5]));
+    scene(robot, posts.to_vec())
+}
+
+/// The example's arm, cut off from the other side: a wall on both sides of the waist, and above the shoulder.
+pub fn halved() -> Scene {
+    let walls = [
+        cuboid("right", [0.65, 0.0, 1.0], [0.55, 0.005, 1.0]),
+        cuboid("left", [-0.65, 0.0, 1.0], [0.55, 0.005, 1.0]),
+        cuboid("above", [0.0, 0.0, 1.3], [0.1, 0.005, 0.7]),
+    ];
+    scene(example::arm().unwrap(), walls.to_vec())
+}
