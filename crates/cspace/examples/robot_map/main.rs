@@ -36,6 +36,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let reach =
         robot.chain.path(chain.tip()).iter().map(|j| chain.joints()[j.0].origin.translation.length()).sum::<f64>();
     let lump = |n: usize, radius: f64, at: Vec3| (Shape::Mesh(Arc::new(lumpy(n, radius))), Pose::from_translation(at));
+    let table = (
+        Shape::Cuboid(elbowroom_proximity::Cuboid { half_extents: Vec3::new(0.3, 0.45, 0.35) }),
+        Pose::from_translation(Vec3::new(0.4, 0.0, 0.15) * reach),
+    );
+    let column = (
+        Shape::Cylinder(elbowroom_proximity::Cylinder { half_length: 1.0, radius: 0.12 }),
+        Pose::from_translation(Vec3::new(0.2, -0.3, 0.3) * reach),
+    );
     let thing = lump(51, 0.12 * reach, Vec3::new(0.55, 0.2, 0.4) * reach);
     let cell: Vec<_> = (0..10)
         .map(|i| {
@@ -44,15 +52,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             lump(51, 0.1 * reach, at)
         })
         .collect();
-    for (name, obstacles) in [("5,000 triangles", vec![thing]), ("50,000 triangles", cell)] {
+    for (name, obstacles) in
+        [("table", vec![table]), ("column", vec![column]), ("5,000 triangles", vec![thing]), ("50,000 triangles", cell)]
+    {
         for looks in [0, 18] {
             let filler = filler.clone().with_looks(looks);
             let begin = Instant::now();
             let (blocks, counts) = filler.fill_counted(&obstacles)?;
             let ms = begin.elapsed().as_secs_f64() * 1e3;
-            let FillCounts { boxes, measured, tried, unsure } = counts;
+            let FillCounts { boxes, looks: asked, tried, unsure } = counts;
             println!(
-                "{name}, looks {looks}: {ms:.1} ms, {} of {} cells blocked, {} kB; {boxes} boxes, {measured} measured, {tried} tried, {unsure} unsure",
+                "{name}, looks {looks}: {ms:.1} ms, {} of {} cells blocked, {} kB; {boxes} boxes, {asked} looks, {tried} tried, {unsure} unsure",
                 blocks.blocked(),
                 blocks.cells(),
                 blocks.bytes() / 1000

@@ -29,29 +29,26 @@ impl Search<'_> {
         let pace = Pace::of(part, task.drive, &self.state);
         let far = pace.farthest(part, &span.half);
         let in_world = self.in_world(pair.part as usize);
-        if pair.gap <= 0.0 {
+        // Inside something, contact is the sooner answer.
+        if tried.is_none() {
             self.counts.tried += 1;
             if self.scratch.collides(&part.shape, &in_world, &target.shape, &target.in_world) {
                 return true;
             }
         }
-        self.counts.measured += 1;
+        self.counts.looks += 1;
         let scratch = &mut self.scratch;
         let found = scratch.separation(&part.shape, &in_world, &target.shape, &target.in_world, far, &mut pair.hint);
-        let Some(gap) = found else { return false };
-        if gap.lower_bound > far {
-            return false;
-        }
+        let Some(gap) = found.filter(|s| s.lower_bound <= far) else { return false };
         if gap.distance <= 0.0 {
             return true;
         }
-        pair.gap = gap.distance;
-        let line = gap.on_b - gap.on_a;
+        let line = (gap.on_b - gap.on_a) * gap.distance.recip();
         let mut corner = span.middle;
         let mut shares = [0.0; MOST_JOINTS];
         let mut nearer = 0.0;
         for axis in 0..part.depth {
-            let speed = pace.velocity(axis, gap.on_a).dot(line) / gap.distance;
+            let speed = pace.velocity(axis, gap.on_a).dot(line);
             nearer += span.half[axis] * speed.abs();
             corner[axis] += span.half[axis] * if speed < 0.0 { -1.0 } else { 1.0 };
             shares[axis] = pace.share(part, axis, &span.half);

@@ -24,9 +24,9 @@ const SLABS: usize = 8;
 pub struct FillCounts {
     /// Boxes of joint space looked at, cells included.
     pub boxes: u64,
-    /// Distances measured.
-    pub measured: u64,
-    /// Configurations at a corner of a cell tried for contact.
+    /// Times that a piece and an obstacle were asked to be apart by so much.
+    pub looks: u64,
+    /// Configurations tried for contact.
     pub tried: u64,
     /// Times that a cell was called blocked because nothing was proven either way.
     pub unsure: u64,
@@ -90,6 +90,11 @@ impl RobotFiller {
     /// The axes.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
+    }
+
+    /// The frame of the first axis in the world, for [`Model::solids`](crate::Model::solids): its z lies along the axis.
+    pub fn base_in_world(&self) -> Pose {
+        self.drive.base_axis()
     }
 
     /// How often a cell at the border is cut in two before it counts as blocked: 0 is fast and blocks more cells than
@@ -204,7 +209,7 @@ type Done = Result<(Vec<Node>, FillCounts), TooLarge>;
 impl FillCounts {
     fn add(&mut self, other: Self) {
         self.boxes += other.boxes;
-        self.measured += other.measured;
+        self.looks += other.looks;
         self.tried += other.tried;
         self.unsure += other.unsure;
     }

@@ -1,7 +1,7 @@
 //! Which joints of a robot the map's axes are, and how links hang on them.
 
 use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::AxisError;
 
@@ -143,6 +143,19 @@ impl Drive {
             state.q[joint] = value;
         }
         self.chain.forward(state);
+    }
+
+    /// The first axis, as a frame whose z lies along it.
+    pub fn base_axis(&self) -> Pose {
+        let movers = self.links.iter().flat_map(|l| &l.movers);
+        let Some(first) = movers.into_iter().find(|m| m.axis == 0) else { return self.base_in_world };
+        let child = self.link_in_world(&self.state(), first.child);
+        let along = child.transform_vector(first.along);
+        let base = self.base_in_world;
+        // The base's own directions where they fit: angles are then those of the joint.
+        let upright = base.transform_vector(Vec3::Z).dot(along) > 1.0 - 1e-12;
+        let rotation = if upright { base.rotation } else { Rotation::from_z(along) };
+        Pose::new(rotation, child.translation)
     }
 
     pub fn link_in_world(&self, state: &ChainState, link: LinkId) -> Pose {

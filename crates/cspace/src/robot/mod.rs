@@ -11,14 +11,16 @@
 //! | `swept.rs` | what joints that are not of the map can sweep |
 //! | `pace.rs` | how far a piece moves within a box of joint space |
 //! | `target.rs`, `stand_in.rs` | what stands around, and simpler solids in its place |
-//! | `search.rs`, `border.rs` | boxes cut in two; cells looked at closely |
-//! | `blocks.rs` | the answer: a tree of boxes |
+//! | `search.rs`, `border.rs`, `look.rs` | boxes cut in two; cells looked at closely; one pair |
+//! | `blocks.rs`, `dense.rs` | the answer: a tree of boxes, or byte by byte |
 //! | `filler.rs` | all of it together, on threads |
 
 mod blocks;
 mod border;
+mod dense;
 mod filler;
 mod joints;
+mod look;
 mod pace;
 mod part;
 mod pieces;
@@ -28,5 +30,6 @@ mod swept;
 mod target;
 
 pub use blocks::{Block, Blocks};
+pub use dense::Dense;
 pub use filler::{FillCounts, RobotFiller};
 pub use joints::{MOST_JOINTS, Others, RobotMapError};

@@ -49,36 +49,20 @@ impl Pace {
 
     /// Farthest that any point of the piece moves within a box of these half widths, metres.
     pub fn farthest(&self, part: &Part, half: &[f64]) -> f64 {
-        let (mut cap, mut growth, mut before) = (0.0, 0.0, 0.0);
-        for (mover, lever) in part.movers.iter().zip(&part.levers) {
-            let rate = half[mover.axis] * mover.multiplier.abs();
-            if mover.turns {
-                cap += rate * lever;
-                growth += (rate + 2.0 * before) * rate * lever;
-                before += rate;
-            } else {
-                cap += rate;
-                growth += 2.0 * before * rate;
-            }
-        }
+        let (cap, growth) = limits(part, half);
         let at_once = largest(&self.linear, half, self.depth) + part.radius * largest(&self.angular, half, self.depth);
         cap.min(at_once + 0.5 * growth) * (1.0 + 1e-9) + HAIR
     }
 
-    /// Farthest that any point of the piece moves when one axis moves by this much, metres.
-    pub fn along(&self, part: &Part, axis: usize, by: f64) -> f64 {
-        let mut on_axis = part.movers.iter().zip(&part.levers).filter(|(m, _)| m.axis == axis);
-        let far = match (on_axis.next(), on_axis.next()) {
-            (None, _) => 0.0,
-            // About one axis nothing moves farther than the arc.
-            (Some(_), None) => self.linear[axis].length() + part.radius * self.angular[axis].length(),
-            _ => {
-                let of =
-                    |(m, lever): (&super::joints::Mover, &f64)| m.multiplier.abs() * if m.turns { *lever } else { 1.0 };
-                part.movers.iter().zip(&part.levers).filter(|(m, _)| m.axis == axis).map(of).sum()
-            }
-        };
-        far * by.abs() * (1.0 + 1e-9) + HAIR
+    /// Farthest that a point of the piece (in the world) moves within a box of these half widths, metres.
+    pub fn farthest_of(&self, part: &Part, half: &[f64], p: Vec3) -> f64 {
+        let mut linear = self.linear;
+        let by = p - self.center;
+        for (v, w) in linear.iter_mut().zip(&self.angular).take(self.depth) {
+            *v += w.cross(by);
+        }
+        let (cap, growth) = limits(part, half);
+        cap.min(largest(&linear, half, self.depth) + 0.5 * growth) * (1.0 + 1e-9) + HAIR
     }
 
     /// How much an axis adds, metres, to first order.
@@ -90,6 +74,23 @@ impl Pace {
     pub fn velocity(&self, axis: usize, p: Vec3) -> Vec3 {
         self.linear[axis] + self.angular[axis].cross(p - self.center)
     }
+}
+
+/// What no point of a piece moves farther than, and the growth.
+fn limits(part: &Part, half: &[f64]) -> (f64, f64) {
+    let (mut cap, mut growth, mut before) = (0.0, 0.0, 0.0);
+    for (mover, lever) in part.movers.iter().zip(&part.levers) {
+        let rate = half[mover.axis] * mover.multiplier.abs();
+        if mover.turns {
+            cap += rate * lever;
+            growth += (rate + 2.0 * before) * rate * lever;
+            before += rate;
+        } else {
+            cap += rate;
+            growth += 2.0 * before * rate;
+        }
+    }
+    (cap, growth)
 }
 
 /// Largest |Σ δᵢ·uᵢ| over all |δᵢ| ≤ hᵢ, from above.

@@ -16,6 +16,9 @@ use crate::Obstacle;
 /// share of the whole.
 const SHARE: f64 = 0.15;
 
+/// Points of a piece that may be found deep inside something.
+const POINTS: usize = 6;
+
 /// A piece of the robot.
 #[derive(Debug, Clone)]
 pub(super) struct Part {
@@ -29,6 +32,8 @@ pub(super) struct Part {
     /// Number of axes, counted from the first, that can move it: in all others it stays where it is.
     pub depth: usize,
     pub movers: Vec<Mover>,
+    /// Some points of it, in the link's frame, far apart.
+    pub points: Vec<Vec3>,
     /// Per mover: farther from its axis no point of the piece ever is, metres.
     pub levers: Vec<f64>,
 }
@@ -126,8 +131,10 @@ impl Parts {
                 return None;
             }
             let levers = levers(drive, link, reach, &movers)?;
+            let points = piece.points(POINTS);
             let Piece { shape, in_solid: in_link, center, radius } = piece;
-            self.parts.push(Part { shape, link, in_link, center, radius, depth, movers: movers.clone(), levers });
+            let movers = movers.clone();
+            self.parts.push(Part { shape, link, in_link, center, radius, depth, movers, points, levers });
         }
         Some(())
     }

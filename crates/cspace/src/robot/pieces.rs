@@ -1,5 +1,6 @@
 //! Solids cut into small pieces: a small piece moves nearly as one point, which tells closely how far.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use elbowroom_proximity::{Capsule, Cylinder, Shape, TriMesh};
@@ -7,6 +8,10 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 /// Pieces of what moves as one at most.
 const MOST: usize = 24;
+/// How far (m) a prism may stand off the cylinder in it.
+const ROUND_M: f64 = 2e-4;
+/// How many times longer than wide the faces of a prism may be.
+const SLIM: f64 = 30.0;
 /// Triangles that a solid may have after long ones were cut.
 const MOST_TRIANGLES: usize = 1 << 20;
 
@@ -36,13 +41,30 @@ impl Piece {
         Self::of(shape).placed(&Pose::from_translation(Vec3::Z * z))
     }
 
+    /// Some points of it, far apart, in the solid's frame.
+    pub fn points(&self, count: usize) -> Vec<Vec3> {
+        let Shape::Mesh(mesh) = &self.shape else { return vec![self.center] };
+        let all = mesh.vertices();
+        let to_middle = |p: &Vec3| self.in_solid.transform_point(*p).distance(self.center);
+        let first = all.iter().min_by(|a, b| to_middle(a).total_cmp(&to_middle(b)));
+        let mut found: Vec<Vec3> = first.copied().into_iter().collect();
+        while found.len() < count.min(all.len()) {
+            let apart = |p: &Vec3| found.iter().map(|q| q.distance(*p)).fold(f64::INFINITY, f64::min);
+            match all.iter().max_by(|a, b| apart(a).total_cmp(&apart(b))) {
+                Some(p) => found.push(*p),
+                None => break,
+            }
+        }
+        found.into_iter().map(|p| self.in_solid.transform_point(p)).collect()
+    }
+
     /// The same in the frame that its own is placed in.
     pub fn placed(self, pose: &Pose) -> Self {
         Self { in_solid: *pose * self.in_solid, center: pose.transform_point(self.center), ..self }
     }
 }
 
-/// The same solid as the fastest kind of shape: flat-sided ones as meshes.
+/// The same solid as the fastest kind of shape: flat-sided ones as meshes, and a cylinder as a prism around it.
 pub(super) fn solid(shape: &Shape) -> Shape {
     let faces = match shape {
         Shape::Cuboid(c) => {
@@ -53,11 +75,39 @@ pub(super) fn solid(shape: &Shape) -> Shape {
             Some((corners, BOX_FACES.to_vec()))
         }
         Shape::Hull(hull) => Some((hull.vertices().to_vec(), hull.triangles().to_vec())),
+        Shape::Cylinder(c) => Some(prism(c)),
         _ => None,
     };
     let mesh = faces.and_then(|(corners, faces)| TriMesh::new(corners, faces).ok());
     // A box without volume has no inside, but a box needs none: the surface is all of it.
     mesh.map_or_else(|| shape.clone(), |mesh| Shape::Mesh(Arc::new(mesh)))
+}
+
+/// A prism around a cylinder, no farther from it than [`ROUND_M`] or so.
+fn prism(cylinder: &Cylinder) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let Cylinder { half_length: h, radius } = *cylinder;
+    let sides = (PI / (2.0 * ROUND_M / radius.max(ROUND_M)).sqrt()).ceil().clamp(16.0, 256.0);
+    let out = radius / (PI / sides).cos() * (1.0 + 1e-12);
+    let n = sides as u32;
+    let corner = |i: u32| (2.0 * PI * f64::from(i) / sides).sin_cos();
+    // Thin triangles take long to measure.
+    let rings = (2.0 * h * sides / (SLIM * 2.0 * PI * out.max(h * 1e-3))).ceil().clamp(1.0, 64.0) as u32;
+    let ring = |k: u32| {
+        let z = h * (2.0 * f64::from(k) / f64::from(rings) - 1.0);
+        (0..n).map(corner).map(move |(s, c)| Vec3::new(out * c, out * s, z))
+    };
+    let corners = (0..=rings).flat_map(ring).chain([Vec3::Z * -h, Vec3::Z * h]).collect();
+    let (bottom, top) = ((rings + 1) * n, (rings + 1) * n + 1);
+    let mut faces = Vec::new();
+    for i in 0..n {
+        let j = (i + 1) % n;
+        for k in 0..rings {
+            let (low, high) = (k * n, (k + 1) * n);
+            faces.extend([[low + i, low + j, high + j], [low + i, high + j, high + i]]);
+        }
+        faces.extend([[bottom, j, i], [top, rings * n + i, rings * n + j]]);
+    }
+    (corners, faces)
 }
 
 /// Corner `i` of a box is at the upper end along axis `b` where bit `b` of `i` is set; faces turn outwards.
@@ -81,9 +131,6 @@ pub(super) fn cut_round(shape: &Shape, size: f64) -> Vec<Piece> {
     match *shape {
         Shape::Capsule(Capsule { half_length, radius }) => {
             along(half_length, size.max(radius), |half_length| Shape::Capsule(Capsule { half_length, radius }))
-        }
-        Shape::Cylinder(Cylinder { half_length, radius }) => {
-            along(half_length, size.max(radius), |half_length| Shape::Cylinder(Cylinder { half_length, radius }))
         }
         _ => vec![Piece::of(shape.clone())],
     }

@@ -7,14 +7,13 @@ use elbowroom_spatial::Pose;
 use super::blocks::{Cells, Node};
 use super::filler::FillCounts;
 use super::joints::{Drive, MOST_JOINTS};
+use super::look::{Look, look};
 use super::pace::Pace;
 use super::part::Parts;
 use super::target::Target;
 use crate::Axis;
 
-/// Distances are looked for up to this many times what would do: it spares measuring again in the parts of a box.
-const BEYOND: f64 = 1.2;
-/// A pair is not measured where it was nearer than this share of what would do, in a box around.
+/// A pair is not looked at where it was nearer than this share of what would do, in a box around.
 const HOPE: f64 = 0.85;
 
 /// A piece of the robot and something it may touch in the box at hand.
@@ -22,9 +21,7 @@ const HOPE: f64 = 0.85;
 pub(super) struct Pair {
     pub part: u32,
     pub target: u32,
-    /// No nearer than this at the middle of the box, metres; negative where nothing is known.
-    pub apart: f64,
-    /// About so far apart there: as last measured, in this box or one around it. Infinite before.
+    /// About so far apart, metres: as last seen, in this box or one around it. Infinite before.
     pub gap: f64,
     pub hint: Hint,
 }
@@ -83,7 +80,7 @@ impl<'a> Search<'a> {
         self.nodes.clear();
         let parts = 0..self.task.parts.parts.len() as u32;
         let targets = self.task.targets.len() as u32;
-        let pair = |part, target| Pair { part, target, apart: -1.0, gap: f64::INFINITY, hint: Hint::default() };
+        let pair = |part, target| Pair { part, target, gap: f64::INFINITY, hint: Hint::default() };
         self.pairs.extend(parts.flat_map(|part| (0..targets).map(move |target| pair(part, target))));
         // Pieces that few axes move come first: what they block is blocked for all values of the others.
         self.pairs.sort_by_key(|pair| self.task.parts.parts[pair.part as usize].depth);
@@ -110,7 +107,11 @@ impl<'a> Search<'a> {
                 break;
             };
             if let Some(axis) = self.longest(cells, &span, begin, depth) {
-                self.cut(cells, &span, begin, axis)?;
+                if self.is_held(&span, begin) {
+                    self.nodes.push(Node::Blocked);
+                } else {
+                    self.cut(cells, begin, axis)?;
+                }
                 break;
             }
             // The cells are single ones on all axes that move these pieces.
@@ -164,26 +165,26 @@ impl<'a> Search<'a> {
     fn is_apart(&mut self, pair: &mut Pair, pace: &Pace, far: f64) -> bool {
         let part = &self.task.parts.parts[pair.part as usize];
         let target = &self.task.targets[pair.target as usize];
-        pair.apart = pair.apart.max(target.at_least(pace.center) - part.radius);
-        if pair.apart > far {
+        if target.at_least(pace.center) - part.radius > far {
             return true;
         }
         // Certainly not farther apart than that.
         if target.point.is_some_and(|p| p.distance(pace.center) + part.radius <= far) {
             return false;
         }
-        // It was nearer a moment ago: measuring would tell what is known.
+        // It was nearer a moment ago: looking would tell what is known.
         if pair.gap < HOPE * far {
             return false;
         }
-        self.counts.measured += 1;
+        self.counts.looks += 1;
         let in_world = self.in_world(pair.part as usize);
-        let limit = BEYOND * far;
-        let scratch = &mut self.scratch;
-        let found = scratch.separation(&part.shape, &in_world, &target.shape, &target.in_world, limit, &mut pair.hint);
-        pair.apart = found.map_or(limit, |s| s.lower_bound);
-        pair.gap = pair.apart;
-        pair.apart > far
+        match look(&mut self.scratch, (&part.shape, &in_world), target, far, &mut pair.hint) {
+            Look::Apart => true,
+            Look::Near { gap, .. } => {
+                pair.gap = gap;
+                false
+            }
+        }
     }
 
     /// The axis along which a box should be cut for pieces of a depth: the one that moves them most.
@@ -207,31 +208,16 @@ impl<'a> Search<'a> {
     }
 
     /// Adds a cut and both parts.
-    fn cut(&mut self, cells: &Cells, span: &Span, begin: usize, axis: usize) -> Result<(), TooLarge> {
+    fn cut(&mut self, cells: &Cells, begin: usize, axis: usize) -> Result<(), TooLarge> {
         let at = cells.first[axis] + cells.count(axis) / 2;
         let parts = cells.cut(axis, at);
         let end = self.pairs.len();
-        // The middles of the parts are so far from the middle of the whole.
-        let shifts = parts.map(|cells| self.span(&cells).middle[axis] - span.middle[axis]);
         let node = self.nodes.len();
         self.nodes.push(Node::Free);
-        let paces: Vec<(u32, Pace)> = self.paces(begin, end);
-        let mut of = paces.iter();
-        let mut known = None;
-        // The right part's pairs lie below the left part's, which are gone when it is done.
-        let mut both = Vec::with_capacity(end - begin);
-        for i in begin..end {
-            let pair = self.pairs[i];
-            if known.is_none_or(|(number, _): (u32, Pace)| number != pair.part) {
-                known = of.next().copied();
-            }
-            let part = &self.task.parts.parts[pair.part as usize];
-            let moved = |by: f64| known.map_or(f64::INFINITY, |(_, pace)| pace.along(part, axis, by));
-            both.push(shifts.map(|by| pair.apart - moved(by)));
-        }
-        self.child(&parts[0], (begin, end), both.iter().map(|x| x[0]))?;
+        self.pairs.extend_from_within(begin..end);
+        self.explore(&parts[0], end)?;
         let right = self.nodes.len();
-        self.child(&parts[1], (begin, end), both.iter().map(|x| x[1]))?;
+        self.explore(&parts[1], begin)?;
         let leaf = self.nodes[right];
         if right == node + 2 && self.nodes[node + 1] == leaf && !matches!(leaf, Node::Cut { .. }) {
             self.nodes.truncate(node);
@@ -242,28 +228,22 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    fn paces(&self, begin: usize, end: usize) -> Vec<(u32, Pace)> {
-        let mut out: Vec<(u32, Pace)> = Vec::new();
-        for pair in &self.pairs[begin..end] {
-            if out.last().is_none_or(|(number, _)| *number != pair.part) {
-                let part = &self.task.parts.parts[pair.part as usize];
-                out.push((pair.part, Pace::of(part, self.task.drive, &self.state)));
-            }
+    /// True where a piece is so deep inside something that it is in it in the whole box.
+    fn is_held(&mut self, span: &Span, begin: usize) -> bool {
+        let Some(&nearest) = self.pairs[begin..].iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return false };
+        let part = &self.task.parts.parts[nearest.part as usize];
+        let target = &self.task.targets[nearest.target as usize];
+        let in_world = self.in_world(nearest.part as usize);
+        self.counts.tried += 1;
+        if !self.scratch.collides(&part.shape, &in_world, &target.shape, &target.in_world) {
+            return false;
         }
-        out
-    }
-
-    fn child(
-        &mut self,
-        cells: &Cells,
-        (begin, end): (usize, usize),
-        apart: impl Iterator<Item = f64>,
-    ) -> Result<(), TooLarge> {
-        for (i, apart) in (begin..end).zip(apart) {
-            let pair = Pair { apart, ..self.pairs[i] };
-            self.pairs.push(pair);
-        }
-        self.explore(cells, end)
+        let link = self.task.drive.link_in_world(&self.state, part.link);
+        let pace = Pace::of(part, self.task.drive, &self.state);
+        part.points.iter().map(|p| link.transform_point(*p)).any(|p| {
+            let depth = target.depth(p);
+            depth > 0.0 && depth > pace.farthest_of(part, &span.half, p)
+        })
     }
 
     /// True where something is inside a link, which no surface tells.

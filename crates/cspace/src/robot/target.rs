@@ -1,6 +1,6 @@
 //! What stands around.
 
-use elbowroom_proximity::Shape;
+use elbowroom_proximity::{Shape, project_point};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use super::joints::RobotMapError;
@@ -11,6 +11,8 @@ use crate::Obstacle;
 #[derive(Debug, Clone)]
 pub(super) struct Target {
     pub shape: Shape,
+    /// As it was given.
+    original: Shape,
     pub in_world: Pose,
     pub bounds: Aabb,
     /// A point of it; `None` where it has no end.
@@ -24,6 +26,7 @@ impl Target {
         if shape.validate().is_err() || !in_world.is_finite() || far(in_world.translation) {
             return Err(refuse());
         }
+        let original = shape.clone();
         let shape = pieces::solid(shape);
         let bounds = shape.aabb(in_world);
         let endless = matches!(shape, Shape::HalfSpace(_));
@@ -36,7 +39,7 @@ impl Target {
             _ => Some(Vec3::ZERO),
         };
         let point = local.map(|p| in_world.transform_point(p));
-        Ok(Self { shape, in_world: *in_world, bounds, point })
+        Ok(Self { shape, original, in_world: *in_world, bounds, point })
     }
 
     /// No point of it is nearer to `p` than this, metres.
@@ -49,6 +52,11 @@ impl Target {
                 p.distance(nearest)
             }
         }
+    }
+
+    /// How deep a point (in the world) is inside, metres; 0 or less outside.
+    pub fn depth(&self, p: Vec3) -> f64 {
+        -project_point(&self.original, &self.in_world, p).signed_distance
     }
 
     /// Half its diagonal, metres: what is larger cannot be inside something of that size.
