@@ -5,6 +5,7 @@ mod figures;
 mod judge;
 mod layers;
 mod models;
+mod paths;
 mod peers;
 mod python;
 mod release;
@@ -39,6 +40,9 @@ cargo xtask COMMAND
   judge [--data DIR] [--states N] [--only NAME] [--json]
         every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the pair matrix beside the SRDF
+  paths [--pairs N] [--robot-pairs N] [--points N] [--data DIR] [--only NAME] [--json]
+        planned paths beside Coal: N random starts and goals in each of three cells of the joint-space map (default 1000) and for
+        each of six robots of DIR among boxes (default 40); every path and every timed motion at N points (default 10000)
   peers [--data DIR] [--json]
         elbowroom beside Coal, FCL and parry on one workload: installs them in target/peers, compares every answer, and
         prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
@@ -100,6 +104,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["judge", rest @ ..] => judge::run(&root, rest),
+        ["paths", rest @ ..] => paths::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
         ["scaling"] => Ok(scaling::run(&root, None)?),

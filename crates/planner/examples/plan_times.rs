@@ -3,8 +3,6 @@
 //! `cargo run --release -p elbowroom-planner --example plan_times`
 #![allow(clippy::print_stdout)]
 
-#[path = "../tests/common/arm.rs"]
-mod arm;
 #[path = "../tests/common/mod.rs"]
 mod common;
 
@@ -12,9 +10,8 @@ use std::time::{Duration, Instant};
 
 use common::{Random, blocked_point, free_cell, grid_optimum, joined};
 use elbowroom_cspace::{Cell, Grid, JointMap, Obstacle};
-use elbowroom_planner::{How, MappedJoints, MotionLimits, Path, PlanOptions, Planner, Progress};
+use elbowroom_planner::{How, MappedJoints, MotionLimits, Path, PlanOptions, Planner, Progress, example};
 use elbowroom_scene::{Checker, Options, SceneState, SweepOptions};
-use elbowroom_spatial::{Pose, Vec3};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -23,9 +20,9 @@ const PAIRS: usize = 1000;
 const JUDGED: usize = 50;
 
 fn main() -> Result<(), Error> {
-    for (name, obstacles) in cells()? {
-        let grid = arm::grid(2.0);
-        let mut map = JointMap::new(arm::ARM, &grid)?;
+    for (name, obstacles) in example::cells() {
+        let grid = example::grid(2.0)?;
+        let mut map = JointMap::new(example::ARM, &grid)?;
         map.set_fixed(&obstacles);
         println!("{name}: {} cells, {} blocked", grid.cells(), map.table().blocked());
         let paths = planning(&grid, &map)?;
@@ -33,43 +30,6 @@ fn main() -> Result<(), Error> {
         replanning(&grid, &mut map, &paths)?;
     }
     Ok(())
-}
-
-fn ball(x: f64, y: f64, z: f64, radius: f64) -> Result<Obstacle, Error> {
-    Ok(Obstacle::sphere(Vec3::new(x, y, z), radius)?)
-}
-
-fn cuboid(at: [f64; 3], yaw: f64, half: [f64; 3]) -> Result<Obstacle, Error> {
-    Ok(Obstacle::cuboid(Pose::from_xyz_rpy(at, [0.0, 0.0, yaw]), Vec3::from(half))?)
-}
-
-fn cells() -> Result<Vec<(&'static str, Vec<Obstacle>)>, Error> {
-    let floor = || cuboid([0.0, 0.0, -0.6], 0.0, [3.0, 3.0, 0.1]);
-    Ok(vec![
-        ("one ball", vec![ball(1.3, 0.4, 0.9, 0.3)?]),
-        (
-            "floor, table, two posts",
-            vec![
-                floor()?,
-                cuboid([1.5, 0.0, 0.2], 0.3, [0.4, 0.6, 0.05])?,
-                cuboid([1.2, -1.2, 1.0], 0.0, [0.08, 0.08, 1.5])?,
-                cuboid([-0.2, 1.6, 1.0], 0.0, [0.08, 0.08, 1.5])?,
-            ],
-        ),
-        (
-            "walls with gaps, a beam overhead, balls",
-            vec![
-                floor()?,
-                cuboid([1.5, 0.5, 0.3], 0.4, [0.7, 0.04, 0.9])?,
-                cuboid([1.5, -0.7, 1.6], -0.5, [0.7, 0.04, 0.7])?,
-                cuboid([-0.9, 0.9, 0.8], 2.3, [0.5, 0.04, 1.4])?,
-                cuboid([0.0, 0.0, 2.9], 0.7, [3.0, 0.1, 0.1])?,
-                ball(1.7, -0.1, 1.3, 0.15)?,
-                ball(-1.2, -1.0, 1.0, 0.4)?,
-                ball(0.3, 1.7, 0.4, 0.2)?,
-            ],
-        ),
-    ])
 }
 
 fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
@@ -118,7 +78,7 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
 
 /// Every path in the exact scene, and every motion in time.
 fn exact(grid: &Grid, map: &JointMap, obstacles: &[Obstacle], paths: &[Path]) -> Result<(), Error> {
-    let scene = arm::scene(grid, obstacles);
+    let scene = example::scene(grid, obstacles)?;
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let planner = Planner::new(grid, map.table())?;
     let joints = MappedJoints { robot: 0, joints: [0, 1, 2] };
@@ -147,7 +107,7 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
         let (mut shares, mut lengths, mut hows, mut lost, mut unequal) = (Vec::new(), Vec::new(), [0; 3], 0, 0);
         for path in paths.iter().filter(|path| path.length_rad > 1.0).take(300) {
             let middle = halfway(path);
-            let wrist = arm::ARM.joints_in_base(middle)[2];
+            let wrist = example::ARM.joints_in_base(middle)[2];
             map.set("intruder", &Obstacle::sphere(wrist, radius)?);
             let here = Progress { leg: 0, q: path.waypoints[0] };
             let clock = Instant::now();

@@ -9,6 +9,7 @@
 mod blocks;
 mod check;
 mod connect;
+pub mod example;
 mod graph;
 mod labels;
 mod local;

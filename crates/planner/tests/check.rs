@@ -1,12 +1,10 @@
 //! Paths of the map in the exact scene.
 
-#[path = "common/arm.rs"]
-mod arm;
 mod common;
 
-use arm::{ARM, grid, scene};
 use common::{Random, free_cell};
 use elbowroom_cspace::{JointMap, Obstacle};
+use elbowroom_planner::example::{ARM, grid, scene};
 use elbowroom_planner::{CheckError, MappedJoints, MotionLimits, Path, PlanOptions, Planner};
 use elbowroom_scene::{Checker, Options, SceneState, SweepOptions};
 use elbowroom_spatial::{Pose, Vec3};
@@ -26,10 +24,10 @@ fn obstacles() -> Vec<Obstacle> {
 
 #[test]
 fn what_the_map_lets_through_the_scene_lets_through() {
-    let (grid, obstacles) = (grid(4.0), obstacles());
+    let (grid, obstacles) = (grid(4.0).unwrap(), obstacles());
     let mut map = JointMap::new(ARM, &grid).unwrap();
     map.set_fixed(&obstacles);
-    let scene = scene(&grid, &obstacles);
+    let scene = scene(&grid, &obstacles).unwrap();
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let mut planner = Planner::new(&grid, map.table()).unwrap();
     let limits = MotionLimits { velocity: vec![2.0; 3], acceleration: vec![6.0; 3], jerk: vec![60.0; 3] };
@@ -50,8 +48,8 @@ fn what_the_map_lets_through_the_scene_lets_through() {
 
 #[test]
 fn a_map_of_another_scene_is_found_out_and_told_where() {
-    let (grid, obstacles) = (grid(4.0), obstacles());
-    let scene = scene(&grid, &obstacles);
+    let (grid, obstacles) = (grid(4.0).unwrap(), obstacles());
+    let scene = scene(&grid, &obstacles).unwrap();
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let empty = JointMap::new(ARM, &grid).unwrap();
     let mut planner = Planner::new(&grid, empty.table()).unwrap();
@@ -68,8 +66,8 @@ fn a_map_of_another_scene_is_found_out_and_told_where() {
 
 #[test]
 fn joints_that_the_robot_does_not_have_are_refused() {
-    let grid = grid(10.0);
-    let scene = scene(&grid, &[]);
+    let grid = grid(10.0).unwrap();
+    let scene = scene(&grid, &[]).unwrap();
     let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
     let path = Path { waypoints: vec![[0.0; 3]], length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
     let mut check = |robot, joints| {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use elbowroom_planner::{Connect, End, MotionLimits, Route, RouteError, RouteOptions, Trajectory};
 use elbowroom_scene::{Checker, Level, Options, Scene, SceneError, SceneState, Selection, example};
-use robots::{Random, cabinet, crane, halved, standing};
+use robots::{Random, cabinet, crane, halved, sheet, standing};
 
 /// Nothing but exact geometry, at many points: what the planner never asks.
 fn dense_check(scene: &Scene, state: &SceneState, robot: usize, path: &[Vec<f64>], points: usize) {
@@ -149,7 +149,8 @@ fn what_is_locked_in_finds_no_way_and_says_that_this_proves_nothing() {
     assert!(error.to_string().contains("proves nothing"), "{error}");
     let none = RouteOptions { time_limit: Duration::ZERO, ..options };
     assert!(Connect::new(&scene, 0).unwrap().plan(&state, &there, &none).is_err());
-    // Nothing to do is done.
+    // Nothing to do is done, even with all the time in the world.
+    let options = RouteOptions { time_limit: Duration::MAX, ..options };
     let route = Connect::new(&scene, 0).unwrap().plan(&state, &here, &options).unwrap();
     assert_eq!((route.waypoints.len(), route.length_rad), (2, 0.0));
 }
@@ -177,6 +178,21 @@ fn bad_ends_are_named() {
         assert!(connect.time(&state, &route, &limits(3), period, &options).is_err());
     }
     assert!(connect.time(&state, &route, &limits(2), 0.01, &options).is_err());
+}
+
+/// A sheet of paper stands in the way, far thinner than any distance between looks.
+#[test]
+fn nothing_is_too_thin_to_be_seen() {
+    let (scene, mut bent) = (sheet(), 0);
+    for turn in [0.4, 0.7, 1.1] {
+        let (from, to) = ([-turn, 1.2, 0.3], [turn, 1.2, 0.3]);
+        let Some((route, _)) = checked(&scene, 0, &standing(&scene, 0, &from), &to, &RouteOptions::default()) else {
+            panic!("there is a way over the sheet");
+        };
+        dense_check(&scene, &standing(&scene, 0, &from), 0, &route.waypoints, 40_000);
+        bent += usize::from(route.waypoints.len() > 2);
+    }
+    assert_eq!(bent, 3);
 }
 
 /// Somebody else's trouble is not ours: the other arm in the table does not keep this one from moving.

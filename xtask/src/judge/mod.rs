@@ -2,9 +2,9 @@
 //! contacts must be equal. And our pair matrix beside each SRDF.
 
 mod compare;
-mod reference;
+pub mod reference;
 mod srdf;
-mod world;
+pub mod world;
 
 use std::path::{Path, PathBuf};
 
@@ -66,7 +66,8 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-fn interpreter(root: &Path) -> Result<PathBuf, String> {
+/// A Python with Pinocchio and Coal; installed where it is not there.
+pub fn interpreter(root: &Path) -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os("ELBOWROOM_PYTHON") {
         return Ok(named.into());
     }

@@ -4,7 +4,7 @@ usage: pin_coal.py FOLDER
 
 FOLDER/job.txt says what there is, a line each, words apart by tabs:
   urdf PATH | joints NAME… | states COUNT | whole COUNT | pair I J ASKED
-  geometry LINK KIND NUMBERS… POSE (12 numbers, rows of 3x4): box x y z | sphere r | cylinder r height | mesh NV NT
+  geometry LINK KIND NUMBERS… POSE (12 numbers, rows of 3x4): box x y z | sphere r | cylinder r height | capsule r height-without-caps | mesh NV NT
   LINK is empty for what stands in the world. ASKED is 0 for a pair whose distance FOLDER/known.bin covers.
 FOLDER/job.bin holds the states (f64), then of each mesh its corners (f64) and triangles (u32).
 FOLDER/known.bin, where there is one, holds the least distance over the pairs not asked for (f64 per state).
@@ -85,6 +85,9 @@ class Job:
         if kind == "cylinder":
             r, height = numbers
             return coal.Cylinder(r, height), np.array([r, r, height / 2]), np.zeros(3)
+        if kind == "capsule":
+            r, height = numbers
+            return coal.Capsule(r, height), np.array([r, r, height / 2 + r]), np.zeros(3)
         corners, triangles = (int(n) for n in numbers)
         vertices = self.take(3 * corners, "<f8").reshape(-1, 3).copy()
         low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -152,16 +155,18 @@ class Bounded:
 
 
 def configurations(job, model, states):
+    """Pinocchio's configuration of each state, a row each."""
     joints = ET.parse(job.urdf).getroot().findall("joint")
     mimics = {j.get("name"): j.find("mimic") for j in joints if j.find("mimic") is not None}
-    for state in states:
-        free = dict(zip(job.joints, state))
-        q = np.zeros(model.nq)
-        for i in range(1, model.njoints):
-            joint, value = model.joints[i], joint_value(model.names[i], mimics, free)
-            # Continuous joints are a point on the unit circle.
-            q[joint.idx_q : joint.idx_q + joint.nq] = [value] if joint.nq == 1 else [np.cos(value), np.sin(value)]
-        yield q
+    free = dict(zip(job.joints, states.T))
+    q = np.zeros((len(states), model.nq))
+    for i in range(1, model.njoints):
+        joint, value = model.joints[i], joint_value(model.names[i], mimics, free)
+        # Continuous joints are a point on the unit circle.
+        parts = [value] if joint.nq == 1 else [np.cos(value), np.sin(value)]
+        for k, part in enumerate(parts):
+            q[:, joint.idx_q + k] = part
+    return q
 
 
 def main():
@@ -206,4 +211,5 @@ def main():
     print(*(1e6 * s / max(n, 1) for s, n in zip(spent, (whole, whole, job.count))))
 
 
-main()
+if __name__ == "__main__":
+    main()

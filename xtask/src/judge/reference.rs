@@ -30,6 +30,9 @@ pub struct Answers {
 /// least distance by a bound is compared with the least of all.
 pub const WHOLE: usize = 200;
 
+/// What is run.
+pub const SCRIPT: &[u8] = include_bytes!("pin_coal.py");
+
 /// What the bound may change of a least distance, as a share of it: nothing but rounding.
 const BOUNDED: f64 = 1e-12;
 
@@ -50,7 +53,7 @@ pub fn ask(
     let write = |name, bytes: &[u8]| std::fs::write(path(name), bytes).map_err(|e| format!("{name}: {e}"));
     write("job.txt", text.as_bytes())?;
     write("job.bin", &binary)?;
-    write("pin_coal.py", include_bytes!("pin_coal.py"))?;
+    write("pin_coal.py", SCRIPT)?;
     let known: Option<Vec<u8>> = known.map(|gaps| gaps.iter().flat_map(|gap| gap.to_le_bytes()).collect());
     match known {
         Some(bytes) => write("known.bin", &bytes)?,
@@ -89,9 +92,9 @@ fn same(least: &[f64], whole: &[f64]) -> Result<(), String> {
 }
 
 /// Text, numbers, pairs of bodies.
-type Job = (String, Vec<u8>, usize);
+pub type Job = (String, Vec<u8>, usize);
 
-fn job(
+pub fn job(
     urdf: &Path,
     scene: &Scene,
     states: &[Vec<f64>],
@@ -133,6 +136,7 @@ fn geometry(text: &mut String, binary: &mut Vec<u8>, link: &str, shape: &Shape, 
             format!("box\t{x:?}\t{y:?}\t{z:?}")
         }
         Shape::Sphere(s) => format!("sphere\t{:?}", s.radius),
+        Shape::Capsule(c) => format!("capsule\t{:?}\t{:?}", c.radius, c.half_length * 2.0),
         Shape::Cylinder(c) => format!("cylinder\t{:?}\t{:?}", c.radius, c.half_length * 2.0),
         Shape::Mesh(mesh) => {
             binary.extend(mesh.vertices().iter().flat_map(|v| v.to_array()).flat_map(f64::to_le_bytes));

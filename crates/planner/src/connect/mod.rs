@@ -23,6 +23,9 @@ use search::Search;
 use shorten::{Shorten, total};
 use way::Way;
 
+/// More time than anybody has: a year. Instants cannot be as far apart as durations can be long.
+const FOREVER: Duration = Duration::from_hours(365 * 24);
+
 /// What a search may take, and how far it stays away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RouteOptions {
@@ -105,7 +108,7 @@ impl<'s> Connect<'s> {
     /// cannot be; no route found in time, which proves nothing.
     pub fn plan(&mut self, start: &SceneState, goal: &[f64], options: &RouteOptions) -> Result<Route, RouteError> {
         let begin = Instant::now();
-        let until = begin + options.time_limit;
+        let until = begin + options.time_limit.min(FOREVER);
         let [from, to] = self.ends(start, goal, options)?;
         let mut random = Random::new(options.seed);
         let path = if self.way.free(&from, &to) {

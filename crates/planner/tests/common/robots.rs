@@ -118,3 +118,8 @@ pub fn halved() -> Scene {
     ];
     scene(example::arm().unwrap(), walls.to_vec())
 }
+
+/// The example's arm and a sheet, a tenth of a millimetre thick, upright in front of it.
+pub fn sheet() -> Scene {
+    scene(example::arm().unwrap(), vec![cuboid("sheet", [0.55, 0.0, 0.35], [0.35, 0.000_05, 0.35])])
+}

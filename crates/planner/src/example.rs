@@ -1,0 +1,132 @@
+//! An arm, cells around it: for documentation, tests and measurements.
+
+use elbowroom_cspace::{Axis, AxisError, Grid, Obstacle, PlanarArm, TooManyCells};
+use elbowroom_kinematics::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
+use elbowroom_proximity::{Capsule, Shape, Sphere};
+use elbowroom_scene::{Body, Object, Robot, Scene, SceneError};
+use elbowroom_spatial::{Pose, Vec3};
+
+/// An arm with the dimensions of a KUKA KR125.
+pub const ARM: PlanarArm = PlanarArm::KR125_SIZED;
+
+/// Its three joints within their limits, in steps of so many degrees.
+///
+/// # Errors
+/// A step that is none.
+pub fn grid(step_degrees: f64) -> Result<Grid, ExampleError> {
+    let axis = |name: &str, min, max| Axis::from_degrees(name, min, max, step_degrees);
+    Ok(Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?)
+}
+
+/// The same arm as a robot of a scene, with the limits of a grid.
+///
+/// # Errors
+/// Two joints of the grid share a name.
+pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
+    let origins = [Vec3::ZERO, Vec3::new(ARM.offset_m, 0.0, ARM.height_m), Vec3::new(0.0, 0.0, ARM.upper_length_m)];
+    let axes = [Vec3::Z, Vec3::Y, Vec3::Y];
+    let joint = |i: usize| Joint {
+        name: grid.axes()[i].joint().to_owned(),
+        kind: JointKind::Revolute,
+        parent: LinkId(i),
+        child: LinkId(i + 1),
+        origin: Pose::from_translation(origins[i]),
+        axis: axes[i],
+        limits: Limits::range(grid.axes()[i].min(), grid.axes()[i].max()),
+        mimic: None,
+    };
+    let links = ["foot", "column", "upper", "fore"].map(String::from).to_vec();
+    let mut robot = Robot::new(Chain::new("arm", links, (0..3).map(joint).collect())?);
+    let body = |shape, in_link| Body { name: String::new(), shape, in_link };
+    let capsule = |length: f64, radius| Shape::Capsule(Capsule { half_length: 0.5 * length, radius });
+    let along_x = Pose::from_xyz_rpy([0.5 * ARM.fore_length_m, 0.0, 0.0], [0.0, std::f64::consts::FRAC_PI_2, 0.0]);
+    let along_z = Pose::from_translation(Vec3::Z * 0.5 * ARM.upper_length_m);
+    let wrist = Pose::from_translation(Vec3::X * ARM.fore_length_m);
+    robot.bodies[2].push(body(capsule(ARM.upper_length_m, ARM.upper_radius_m), along_z));
+    robot.bodies[3].push(body(capsule(ARM.fore_length_m, ARM.fore_radius_m), along_x));
+    robot.bodies[3].push(body(Shape::Sphere(Sphere { radius: ARM.wrist_radius_m }), wrist));
+    Ok(robot)
+}
+
+/// The arm among obstacles, exactly.
+///
+/// ```
+/// use elbowroom_planner::example;
+/// let (name, obstacles) = example::cells().swap_remove(1);
+/// let scene = example::scene(&example::grid(2.0)?, &obstacles)?;
+/// assert_eq!((name, scene.objects().len()), ("floor, table, two posts", 4));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Two joints of the grid share a name.
+pub fn scene(grid: &Grid, obstacles: &[Obstacle]) -> Result<Scene, ExampleError> {
+    let mut builder = Scene::builder();
+    builder.robot("arm", robot(grid)?, Pose::IDENTITY);
+    for (n, obstacle) in obstacles.iter().enumerate() {
+        let (shape, in_world) = obstacle.shape();
+        builder.object(Object { name: format!("obstacle {n}"), shape, in_world });
+    }
+    Ok(builder.build()?)
+}
+
+/// Why an example was not built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExampleError {
+    /// The step is none.
+    #[error(transparent)]
+    Axis(#[from] AxisError),
+    /// The step is too small.
+    #[error(transparent)]
+    Cells(#[from] TooManyCells),
+    /// The grid's joints make no chain.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// The obstacles make no scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// Three cells around the arm: nearly empty, usual, narrow.
+pub fn cells() -> Vec<(&'static str, Vec<Obstacle>)> {
+    let floor = || cuboid([0.0, 0.0, -0.6], 0.0, [3.0, 3.0, 0.1]);
+    let usual = [
+        floor(),
+        cuboid([1.5, 0.0, 0.2], 0.3, [0.4, 0.6, 0.05]),
+        cuboid([1.2, -1.2, 1.0], 0.0, [0.08, 0.08, 1.5]),
+        cuboid([-0.2, 1.6, 1.0], 0.0, [0.08, 0.08, 1.5]),
+    ];
+    let narrow = [
+        floor(),
+        cuboid([1.5, 0.5, 0.3], 0.4, [0.7, 0.04, 0.9]),
+        cuboid([1.5, -0.7, 1.6], -0.5, [0.7, 0.04, 0.7]),
+        cuboid([-0.9, 0.9, 0.8], 2.3, [0.5, 0.04, 1.4]),
+        cuboid([0.0, 0.0, 2.9], 0.7, [3.0, 0.1, 0.1]),
+        ball([1.7, -0.1, 1.3], 0.15),
+        ball([-1.2, -1.0, 1.0], 0.4),
+        ball([0.3, 1.7, 0.4], 0.2),
+    ];
+    let of = |all: &[Option<Obstacle>]| all.iter().flatten().cloned().collect();
+    vec![
+        ("one ball", of(&[ball([1.3, 0.4, 0.9], 0.3)])),
+        ("floor, table, two posts", of(&usual)),
+        ("walls with gaps, a beam overhead, balls", of(&narrow)),
+    ]
+}
+
+// The numbers are constants that an obstacle can have; a test counts what came of them.
+fn ball(at: [f64; 3], radius: f64) -> Option<Obstacle> {
+    Obstacle::sphere(at.into(), radius).ok()
+}
+
+fn cuboid(at: [f64; 3], yaw: f64, half: [f64; 3]) -> Option<Obstacle> {
+    Obstacle::cuboid(Pose::from_xyz_rpy(at, [0.0, 0.0, yaw]), Vec3::from(half)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn all_obstacles_are_there() {
+        assert_eq!(super::cells().iter().map(|cell| cell.1.len()).collect::<Vec<_>>(), [1, 4, 8]);
+    }
+}
