@@ -247,6 +247,8 @@ pub enum Target {
 pub struct MapSpec {
     /// Index of the robot.
     pub robot: usize,
+    /// Line of its table; that of the robot where there is none.
+    pub line: usize,
     /// Indices in `q`.
     pub joints: Vec<usize>,
     /// Width of a cell per joint, rad or m.
@@ -255,7 +257,28 @@ pub struct MapSpec {
     pub others_at_start: bool,
 }
 
+impl MapSpec {
+    /// What a robot has that asks for nothing: its first three joints, 2 degrees (0.02 m where they slide), the others
+    /// anywhere.
+    pub fn of(index: usize, robot: &CellRobot) -> Self {
+        let joints: Vec<usize> = (0..robot.robot.chain.dof().min(3)).collect();
+        let step = joints.iter().map(|&j| Self::default_step(robot, j)).collect();
+        Self { robot: index, line: robot.line, joints, step, others_at_start: false }
+    }
+
+    /// Width of a cell where nothing else is said, rad or m.
+    pub(crate) fn default_step(robot: &CellRobot, joint: usize) -> f64 {
+        if robot.slides(joint) { 0.02 } else { 2.0_f64.to_radians() }
+    }
+}
+
 impl CellRobot {
+    /// True where a joint (by its place in `q`) slides.
+    pub(crate) fn slides(&self, joint: usize) -> bool {
+        let chain = &self.robot.chain;
+        chain.joints()[chain.active_joints()[joint].0].kind == elbowroom_kinematics::JointKind::Prismatic
+    }
+
     /// Names of the joints in the order of `q`.
     pub fn joint_names(&self) -> Vec<String> {
         let chain = &self.robot.chain;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use elbowroom::cell::query::{Ask, Level};
+use elbowroom::cspace::Model;
 
 /// Collision awareness for industrial robot cells.
 ///
@@ -27,6 +28,8 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Say what is in a robot or mesh file
     Inspect(InspectArgs),
+    /// Turn a cell's objects into blocked cells of a robot's joint space
+    Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another
     Plan(PlanArgs),
     /// Turn points that the robot was driven to into a region for the cell file
@@ -100,6 +103,35 @@ pub(crate) struct QueryArgs {
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
     /// Print one JSON document instead of CSV
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom map cell.toml                                a table of what each object blocks
+  elbowroom map cell.toml --out map.npy --json           the cells as NumPy reads them, 0 free, 1 blocked
+  elbowroom map cell.toml --png slices                   pictures, and slices/index.html that shows them
+  elbowroom map cell.toml --model spheres=8              as the paper would, to compare
+
+Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees (docs/map.md).
+A cell is blocked if any configuration in it can touch an object.")]
+pub(crate) struct MapArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The robot; may be left out where there is one, or one [map.ROBOT]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// What stands for each object: exact, slices, sphere, spheres=N or box
+    #[arg(long, default_value = "exact")]
+    pub(crate) model: Model,
+    /// Write the cells to this file: one byte each, 0 free, 1 blocked, axes in the order of the joints
+    #[arg(long, value_name = "FILE.npy")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write pictures of slices, and a page that shows them, to this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) png: Option<PathBuf>,
+    /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -5,6 +5,7 @@
 mod args;
 mod example;
 mod inspect;
+mod map;
 mod output;
 mod plan;
 mod query;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Query(args)) => query::query(&args),
         Some(Command::Inspect(args)) => inspect::inspect(&args),
+        Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Example(args)) => example::copy(&args),

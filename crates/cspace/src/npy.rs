@@ -1,9 +1,27 @@
-//! The table as NumPy reads it.
+//! Tables as NumPy reads them.
 
 use crate::Table;
 
+/// What stands before the numbers of a `.npy` file of `uint8`, C order (NumPy's format, version 1.0).
+pub(crate) fn header(shape: &[usize]) -> Vec<u8> {
+    let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+    // One axis keeps its comma, as Python writes tuples.
+    let sizes = sizes.join(", ") + if shape.len() == 1 { "," } else { "" };
+    let text = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({sizes}), }}");
+    // Magic, version, length; then the text, padded so that the numbers begin at a multiple of 64.
+    let before = 10;
+    let padded = (before + text.len() + 1).next_multiple_of(64) - before;
+    let mut out = Vec::with_capacity(before + padded);
+    out.extend_from_slice(b"\x93NUMPY\x01\x00");
+    out.extend_from_slice(&(padded as u16).to_le_bytes());
+    out.extend_from_slice(text.as_bytes());
+    out.resize(before + padded - 1, b' ');
+    out.push(b'\n');
+    out
+}
+
 impl Table {
-    /// The table as a `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 blocked (NumPy's format, version 1.0).
+    /// The table as a `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 blocked.
     ///
     /// ```
     /// use elbowroom_cspace::{Span, Table};
@@ -16,16 +34,8 @@ impl Table {
     /// ```
     pub fn to_npy(&self) -> Vec<u8> {
         let [a, b, c] = self.shape();
-        let header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({a}, {b}, {c}), }}");
-        // Magic, version, length; then the text, padded so that the numbers begin at a multiple of 64.
-        let before = 10;
-        let padded = (before + header.len() + 1).next_multiple_of(64) - before;
-        let mut out = Vec::with_capacity(before + padded + a * b * c);
-        out.extend_from_slice(b"\x93NUMPY\x01\x00");
-        out.extend_from_slice(&(padded as u16).to_le_bytes());
-        out.extend_from_slice(header.as_bytes());
-        out.resize(before + padded - 1, b' ');
-        out.push(b'\n');
+        let mut out = header(&[a, b, c]);
+        out.reserve(a * b * c);
         for row in 0..a * b {
             let words = self.row(row);
             out.extend((0..c).map(|k| (words[k / 64] >> (k % 64) & 1) as u8));

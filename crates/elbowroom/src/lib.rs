@@ -9,7 +9,7 @@
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
 //! | [`monitor`] | interference regions, checked every control tick |
 //! | [`cspace`] | obstacles as blocked cells of joint space |
-//! | [`planner`] | ways around, on the joint-space map |
+//! | [`planner`] | ways around, on the joint-space map or in the exact scene |
 //! | [`vision`] | camera frames and point clouds to obstacles with an identity |
 //! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
 //!

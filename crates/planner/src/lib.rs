@@ -3,6 +3,9 @@
 //! Two cells are joined where they share a *face*; a straight stretch is allowed where every cell that it so much as
 //! touches is free. So a path exists exactly if start and goal are joined, and it never slips between blocked cells that
 //! meet at an edge.
+//!
+//! Where there is no map, or there are more joints than three, [`Connect`] finds its way by sampling in the exact scene and proves
+//! it there.
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -256,23 +256,19 @@ fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
         t.only(&["joints", "step", "others"])?;
         let (index, robot) = robot_of(name, &t, &cell.robots)?;
         let names = robot.joint_names();
+        let default = MapSpec::of(index, robot);
         let joints = match t.get("joints") {
-            None => (0..names.len().min(3)).collect(),
+            None => default.joints,
             Some(v) => {
                 v.list("joints = [\"joint_1\"]")?.iter().map(|v| map_joint(v, &names)).collect::<Result<Vec<_>>>()?
             }
         };
-        let chain = &robot.robot.chain;
-        let prismatic = |j: usize| {
-            let id = chain.active_joints()[j];
-            chain.joints()[id.0].kind == elbowroom_kinematics::JointKind::Prismatic
-        };
         let step = match t.get("step") {
-            None => joints.iter().map(|j| if prismatic(*j) { 0.02 } else { 2.0_f64.to_radians() }).collect(),
-            Some(v) => map_steps(&v, &joints, |j, x| cell.units.joint(prismatic(j), x))?,
+            None => joints.iter().map(|j| MapSpec::default_step(robot, *j)).collect(),
+            Some(v) => map_steps(&v, &joints, |j, x| cell.units.joint(robot.slides(j), x))?,
         };
         let others_at_start = t.get("others").map_or(Ok(false), |v| v.word(&[("any", false), ("start", true)]))?;
-        maps.push(MapSpec { robot: index, joints, step, others_at_start });
+        maps.push(MapSpec { robot: index, line: t.line, joints, step, others_at_start });
     }
     Ok(maps)
 }

@@ -5,7 +5,6 @@ mod edges;
 mod levels;
 mod pairs;
 mod picture;
-mod png;
 mod quadric;
 mod resolution;
 mod rows;

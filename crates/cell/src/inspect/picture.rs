@@ -8,7 +8,8 @@ use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_scene::{Body, Robot};
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
-use super::{Inspection, png};
+use super::Inspection;
+use crate::png;
 
 const WIDTH: usize = 960;
 const HEIGHT: usize = 720;

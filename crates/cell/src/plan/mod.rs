@@ -3,7 +3,7 @@
 //! The scene is the one of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and load, the pair matrix.
 
 mod answer;
-mod subject;
+pub(crate) mod subject;
 
 use std::time::Instant;
 

@@ -8,7 +8,7 @@ use crate::file::suggest;
 use crate::{Cell, CellRobot};
 
 /// The robot of that name; the only one where none is named.
-pub(super) fn robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(usize, &'c CellRobot), FormatError> {
+pub(crate) fn robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(usize, &'c CellRobot), FormatError> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
     let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
     match (name, &cell.robots[..]) {

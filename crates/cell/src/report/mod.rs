@@ -11,7 +11,7 @@
 mod downsample;
 mod html;
 mod outline;
-mod palette;
+pub(crate) mod palette;
 mod plots;
 mod scene;
 mod spans;

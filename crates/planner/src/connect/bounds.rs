@@ -46,6 +46,17 @@ impl Bounds {
         Ok(q.iter().enumerate().map(|(i, v)| v.max(self.lower[i]).min(self.upper[i])).collect())
     }
 
+    /// Joints that reach the same posture by whole turns nearer to where they are, with that value.
+    pub fn nearer(&self, from: &[f64], to: &[f64]) -> Vec<(String, f64)> {
+        let turn = std::f64::consts::TAU;
+        let other = |i: usize| {
+            let value = to[i] + ((from[i] - to[i]) / turn).round() * turn;
+            let within = value >= self.lower[i] && value <= self.upper[i];
+            (!self.slides[i] && value != to[i] && within).then(|| (self.names[i].clone(), value))
+        };
+        (0..self.dof()).filter_map(other).collect()
+    }
+
     /// What is looked through on the way between two places: everything, where there are limits; a turn beyond them where
     /// there are none.
     pub fn window(&self, from: &[f64], to: &[f64]) -> Window {
@@ -73,5 +84,25 @@ impl Window {
             let (from, to) = (low + (least - low) * share, high + (most - high) * share);
             *value = random.between(from, to).clamp(*least, *most);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_scene::example;
+
+    use super::*;
+
+    #[test]
+    fn a_whole_turn_is_told_where_the_limits_allow_it() {
+        let mut bounds = Bounds::new(&example::arm().unwrap().chain);
+        (bounds.lower, bounds.upper) = (vec![f64::NEG_INFINITY, -6.3, -3.0], vec![f64::INFINITY, 6.3, 3.0]);
+        assert_eq!(bounds.nearer(&[3.0, -1.0, 2.9], &[2.0, 1.0, -2.9]), []);
+        let found = bounds.nearer(&[10.0, -1.0, 2.9], &[-3.0, 2.9, -2.9]);
+        let names: Vec<&str> = found.iter().map(|f| f.0.as_str()).collect();
+        assert_eq!(names, ["waist", "shoulder"]);
+        assert!(
+            (found[0].1 - 9.566_370_614_359_172).abs() < 1e-12 && (found[1].1 + 3.383_185_307_179_586).abs() < 1e-12
+        );
     }
 }

@@ -47,7 +47,8 @@ pub enum RouteError {
     /// None was found in the time allowed. That proves nothing.
     #[error(
         "no path found in {seconds} s ({states} states looked at, {nodes} of them joined to start or goal): this proves nothing, \
-         there may be one; allow more time, or plan over a state in between"
+         there may be one; allow more time, or plan over a state in between{}",
+        also(nearer)
     )]
     NotFound {
         /// The time allowed, s.
@@ -56,6 +57,8 @@ pub enum RouteError {
         states: u64,
         /// Those that are joined to an end.
         nodes: usize,
+        /// Joints of which the same posture has another value, a turn away from the goal's and nearer to the start's, rad.
+        nearer: Vec<(String, f64)>,
     },
     /// An option that cannot be.
     #[error("{what} is {value}: write a finite number of {unit}, 0 or more")]
@@ -73,4 +76,9 @@ pub enum RouteError {
     /// Values that the scene refuses, or a robot that it does not have.
     #[error(transparent)]
     Scene(#[from] SceneError),
+}
+
+fn also(nearer: &[(String, f64)]) -> String {
+    let each: Vec<_> = nearer.iter().map(|(joint, value)| format!("`{joint}` {value} rad")).collect();
+    if each.is_empty() { String::new() } else { format!("; the same posture, by a nearer way: {}", each.join(", ")) }
 }

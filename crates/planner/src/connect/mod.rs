@@ -119,7 +119,11 @@ impl<'s> Connect<'s> {
             let found = search.run();
             let nodes = search.nodes();
             let seconds = options.time_limit.as_secs_f64();
-            found.ok_or(RouteError::NotFound { seconds, states: self.way.states, nodes })?
+            let states = self.way.states;
+            found.ok_or_else(|| {
+                let nearer = self.bounds.nearer(&from, &to);
+                RouteError::NotFound { seconds, states, nodes, nearer }
+            })?
         };
         let planning = begin.elapsed();
         let mut waypoints = path;

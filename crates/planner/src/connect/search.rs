@@ -9,10 +9,8 @@ use super::random::Random;
 use super::tree::Tree;
 use super::way::{Way, lerp};
 
-/// An edge moves the outermost solid so far at most, m.
-const EDGE_M: f64 = 0.4;
-/// A tree grows by so many edges towards a sample.
-const EDGES: usize = 4;
+/// An edge moves solids no farther than about so much (rad or m) of the joint that moves them most would.
+const EDGE: f64 = 0.6;
 /// After so many samples everything within the limits is looked through; before, what is near the ends.
 const WIDE: f64 = 300.0;
 
@@ -54,10 +52,10 @@ impl<'w, 's> Search<'w, 's> {
             let share = if round % 3 == 2 { 0.3 } else { (0.1 + f64::from(round) / WIDE).min(1.0) };
             self.window.sample(share, self.random, &mut sample);
             let from = self.trees[0].nearest(&sample, &self.way.reach);
-            if let Some((node, _)) = self.grow(0, from, &sample, EDGES) {
+            if let Some((node, _)) = self.grow(0, from, &sample) {
                 let target = self.trees[0].q(node).to_vec();
                 let near = self.trees[1].nearest(&target, &self.way.reach);
-                if let Some((other, true)) = self.grow(1, near, &target, usize::MAX)
+                if let Some((other, true)) = self.grow(1, near, &target)
                     && let Some(path) = self.joined(node, other)
                 {
                     return Some(path);
@@ -69,21 +67,22 @@ impl<'w, 's> Search<'w, 's> {
         None
     }
 
-    /// Towards a target, edge by edge; the last node made and whether it is the target. `None`: not even one edge.
-    fn grow(&mut self, tree: usize, from: usize, target: &[f64], edges: usize) -> Option<(usize, bool)> {
+    /// Towards a target, edge by edge until something is in the way; the last node made and whether it is the target. `None`:
+    /// not even one edge.
+    fn grow(&mut self, tree: usize, from: usize, target: &[f64]) -> Option<(usize, bool)> {
         let (mut last, mut made) = (from, None);
         let mut next = target.to_vec();
-        for _ in 0..edges {
+        loop {
             let here = self.trees[tree].q(last).to_vec();
             let far = self.way.travel(&here, target);
             if far == 0.0 {
                 return Some((last, true));
             }
-            let arrives = far <= EDGE_M;
+            let arrives = far <= EDGE;
             if arrives {
                 next.copy_from_slice(target);
             } else {
-                lerp(&here, target, EDGE_M / far, &mut next);
+                lerp(&here, target, EDGE / far, &mut next);
             }
             if !self.way.looks_free(&here, &next) {
                 break;

@@ -4,9 +4,9 @@ use elbowroom_scene::{
     Checker, Contact, Distance, Move, Options, Scene, SceneError, SceneState, Selection, SweepOptions,
 };
 
-/// Between looks the robot's outermost solid moves no farther than about this, m: what is missed in between is found by
-/// the proof.
-const STEP_M: f64 = 0.04;
+/// Between looks solids move no farther than about so much (rad or m) of the joint that moves them most would: what is
+/// missed in between is found by the proof.
+const STEP: f64 = 0.06;
 
 /// The robot, and who watches it.
 #[derive(Debug)]
@@ -18,23 +18,24 @@ pub(super) struct Way<'s> {
     pub sweep: SweepOptions,
     /// Metres per rad or m of each value, see [`super::reach`].
     pub reach: Vec<f64>,
+    /// The most of them.
+    most: f64,
     /// Configurations that were looked at.
     pub states: u64,
-    /// Straight motions that were asked to be proven.
-    pub sweeps: u64,
 }
 
 impl<'s> Way<'s> {
     pub fn new(scene: &'s Scene, robot: usize, reach: Vec<f64>) -> Self {
         let (checker, state) = (Checker::new(scene, Options::default()), SceneState::new(scene));
-        Self { scene, robot, checker, state, sweep: SweepOptions::default(), reach, states: 0, sweeps: 0 }
+        let most = reach.iter().copied().fold(0.0, f64::max);
+        Self { scene, robot, checker, state, sweep: SweepOptions::default(), reach, most, states: 0 }
     }
 
     /// Everything stands as in `state`; the robot could go to `goal`.
     pub fn stand(&mut self, state: &SceneState, goal: &[f64]) -> Result<(), SceneError> {
         self.state.clone_from(state);
         self.state.set_q(self.scene, self.robot, goal)?;
-        (self.states, self.sweeps) = (0, 0);
+        self.states = 0;
         Ok(())
     }
 
@@ -77,10 +78,10 @@ impl<'s> Way<'s> {
         self.put(q) && self.nearer(room).is_none()
     }
 
-    /// How far the outermost solid is moved, about, m.
+    /// How far solids are moved, about, as rad (or m) of the joint that moves them most.
     pub fn travel(&self, a: &[f64], b: &[f64]) -> f64 {
         let each = a.iter().zip(b).zip(&self.reach).map(|((x, y), r)| ((x - y) * r).powi(2));
-        each.sum::<f64>().sqrt()
+        if self.most > 0.0 { each.sum::<f64>().sqrt() / self.most } else { 0.0 }
     }
 
     /// Looks at `b`, then between, coarsely first. True is no proof.
@@ -88,7 +89,7 @@ impl<'s> Way<'s> {
         if !self.is_free(b) {
             return false;
         }
-        let steps = (self.travel(a, b) / STEP_M).ceil() as usize;
+        let steps = (self.travel(a, b) / STEP).ceil() as usize;
         let mut stride = steps.max(1).next_power_of_two();
         let mut q = vec![0.0; a.len()];
         while stride > 1 {
@@ -106,7 +107,6 @@ impl<'s> Way<'s> {
 
     /// Straight from `a` to `b` in joint space, proven free all along.
     pub fn proven(&mut self, a: &[f64], b: &[f64]) -> bool {
-        self.sweeps += 1;
         if !self.put(a) {
             return false;
         }

@@ -142,7 +142,7 @@ impl TriMesh {
     }
 
     /// True where some part of the surface is closed, so that points can be inside.
-    pub(crate) fn has_inside(&self) -> bool {
+    pub fn has_inside(&self) -> bool {
         self.in_closed_part.iter().any(|&c| c)
     }
 }

@@ -1,0 +1,137 @@
+//! `elbowroom map`: a cell's objects as blocked cells of joint space.
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use elbowroom::cell::Cell;
+use elbowroom::cell::map::{CellMap, MapRequest, map as ask};
+use serde::Serialize;
+
+use crate::args::MapArgs;
+use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
+
+pub(crate) fn map(args: &MapArgs) -> Result<Verdict, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let map = ask(&cell, &MapRequest { robot: args.robot.clone(), model: args.model })?;
+    map.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    if let Some(path) = &args.out {
+        write(&map, path)?;
+    }
+    let pictures = match &args.png {
+        Some(folder) => Some((map.write_pictures(folder).map_err(cannot_write(folder))?, folder)),
+        None => None,
+    };
+    if args.json {
+        print_json(&Document::of(&map))?;
+        return Ok(Verdict::Good);
+    }
+    print(&text(&map))?;
+    if let Some(path) = &args.out {
+        print(&format!("\ncells in {}\n", path.display()))?;
+    }
+    if let Some((count, folder)) = pictures {
+        print(&format!("\n{count} pictures: open {}\n", folder.join("index.html").display()))?;
+    }
+    Ok(Verdict::Good)
+}
+
+fn write(map: &CellMap, path: &Path) -> Result<(), Failure> {
+    let dense = map.dense.as_ref().ok_or_else(|| {
+        let what = format!("{}: {} cells are too many for a file of one byte each", path.display(), map.cells());
+        Failure::Wrong(format!("{what}\n  write: a larger step, or fewer joints, in [map.{}]", map.robot))
+    })?;
+    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+    dense.write_npy(file).map_err(cannot_write(path))
+}
+
+/// As the JSON has it.
+#[derive(Serialize)]
+struct Document<'a> {
+    robot: &'a str,
+    axes: Vec<AxisRow<'a>>,
+    cells: u64,
+    static_blocked: u64,
+    obstacles: Vec<ObstacleRow<'a>>,
+    blocked: u64,
+    bytes: usize,
+}
+
+#[derive(Serialize)]
+struct AxisRow<'a> {
+    joint: &'a str,
+    min: f64,
+    max: f64,
+    step: f64,
+    count: usize,
+}
+
+#[derive(Serialize)]
+struct ObstacleRow<'a> {
+    name: &'a str,
+    model: String,
+    blocked: u64,
+    time_us: f64,
+}
+
+impl<'a> Document<'a> {
+    fn of(map: &'a CellMap) -> Self {
+        let axis = |a: &'a elbowroom::cspace::Axis| AxisRow {
+            joint: a.joint(),
+            min: a.min(),
+            max: a.max(),
+            step: a.step(),
+            count: a.count(),
+        };
+        let obstacle = |o: &'a elbowroom::cell::map::MapObstacle| ObstacleRow {
+            name: &o.name,
+            model: o.model.to_string(),
+            blocked: o.blocks.blocked(),
+            time_us: o.time.as_secs_f64() * 1e6,
+        };
+        Self {
+            robot: &map.robot,
+            axes: map.axes.iter().map(axis).collect(),
+            cells: map.cells(),
+            static_blocked: map.static_blocked(),
+            obstacles: map.obstacles.iter().map(obstacle).collect(),
+            blocked: map.blocked,
+            bytes: map.bytes(),
+        }
+    }
+}
+
+/// For people. Writing to a String cannot fail.
+fn text(map: &CellMap) -> String {
+    let share = |blocked: u64| 100.0 * blocked as f64 / map.cells().max(1) as f64;
+    let mut out = format!("{}: {} cells, {:.2} % blocked\n\n", map.robot, grouped(map.cells()), share(map.blocked));
+    for (axis, turns) in map.axes.iter().zip(&map.turns) {
+        let show = |v: f64| if *turns { format!("{:.1}°", v.to_degrees()) } else { format!("{v:.3} m") };
+        let (min, max, step) = (show(axis.min()), show(axis.max()), show(axis.step()));
+        let _ = writeln!(out, "  {:<24} {min:>9} to {max:>8}, {:>5} cells of {step}", axis.joint(), axis.count());
+    }
+    let _ = write!(out, "\n  {:<24} {:<11} {:>14} {:>9} {:>10}", "object", "model", "blocked cells", "share", "time");
+    for o in &map.obstacles {
+        let blocked = o.blocks.blocked();
+        let (model, cells, percent) = (o.model.to_string(), grouped(blocked), share(blocked));
+        let time = format!("{:.1} ms", o.time.as_secs_f64() * 1e3);
+        let _ = write!(out, "\n  {:<24} {model:<11} {cells:>14} {percent:>7.2} % {time:>10}", o.name);
+    }
+    let _ = writeln!(out, "\n\n{} kB of memory", map.bytes().div_ceil(1000));
+    out
+}
+
+/// 1234567 as 1,234,567.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
