@@ -63,9 +63,9 @@ impl PlanarArm {
     };
 
     /// The KUKA KR125 (the robot named in S2), without a tool: published dimensions, radii that enclose the solids of
-    /// `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the forearm's
-    /// length, √(1² + 0.045²) m, and in [`JointSigns::KR125`]. What turns about axis 1 outside of the upper arm's capsule
-    /// is round about that axis: turning moves it nowhere.
+    /// `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the
+    /// forearm's length, √(1² + 0.045²) m, and in [`JointSigns::KR125`](crate::JointSigns::KR125). What turns about axis 1
+    /// outside of the upper arm's capsule is round about that axis: turning moves it nowhere.
     ///
     /// With a tool or a work-piece, `wrist_radius_m` is the farthest that a point of it is from where axes 4 and 5 meet
     /// (the flange is 0.21 m away).

@@ -2,7 +2,7 @@
 
 use elbowroom_planner::{MotionError, MotionLimits, PlanError};
 
-/// What a [`Guide`] goes by. Joints are those of the map, planar values.
+/// What a [`Guide`](super::Guide) goes by. Joints are those of the map, planar values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GuideSettings {
     /// Speed, acceleration and jerk of planned motions, three joints.
