@@ -41,6 +41,7 @@ mod recording;
 pub mod report;
 pub mod run;
 mod summary;
+pub mod watch;
 
 pub use cell::{
     Action, Cell, CellLaws, CellRegion, CellRobot, Encoder, Follow, JointLimits, MapSpec, Program, ProgramBody, Step,

@@ -62,6 +62,24 @@ impl PlanarArm {
         wrist_radius_m: 0.22,
     };
 
+    /// The KUKA KR125 (the robot named in S2), without a tool: published dimensions, radii that enclose the solids of
+    /// `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the
+    /// forearm's length, √(1² + 0.045²) m, and in [`JointSigns::KR125`](crate::JointSigns::KR125). What turns about axis 1
+    /// outside of the upper arm's capsule is round about that axis: turning moves it nowhere.
+    ///
+    /// With a tool or a work-piece, `wrist_radius_m` is the farthest that a point of it is from where axes 4 and 5 meet
+    /// (the flange is 0.21 m away).
+    pub const KR125: Self = Self {
+        offset_m: 0.41,
+        height_m: 0.865,
+        upper_length_m: 1.0,
+        upper_radius_m: 0.2,
+        // √(1² + 0.045²)
+        fore_length_m: 1.001_011_987_940_204,
+        fore_radius_m: 0.2,
+        wrist_radius_m: 0.23,
+    };
+
     /// The small arm of S2: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are θ2 ≥ −30° above the
     /// horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
     pub const PAPER: Self = Self {

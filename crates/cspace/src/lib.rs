@@ -25,6 +25,7 @@ mod obstacle;
 mod reader;
 mod robot;
 mod seed;
+mod signs;
 mod table;
 
 pub use arm::{ArmError, PlanarArm};
@@ -39,4 +40,5 @@ pub use obstacle::{Obstacle, ObstacleError};
 pub use reader::{Reader, Snapshot};
 pub use robot::{Block, Blocks, Dense, FillCounts, MOST_JOINTS, Others, RobotFiller, RobotMapError};
 pub use seed::{Expansion, expand};
+pub use signs::JointSigns;
 pub use table::Table;

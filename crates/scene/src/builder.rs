@@ -200,7 +200,7 @@ impl SceneBuilder {
     }
 }
 
-fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap<String, Member>, SceneError> {
+pub(crate) fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap<String, Member>, SceneError> {
     let mut names = HashMap::new();
     let mut add = |name: String, member| match names.insert(name.clone(), member) {
         Some(_) => Err(SceneError::DuplicateName(name)),

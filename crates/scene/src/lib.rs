@@ -24,6 +24,7 @@ mod counts;
 mod enclose;
 mod error;
 pub mod example;
+mod exchange;
 mod first_contacts;
 mod level;
 mod matrix;

@@ -1,8 +1,13 @@
 //! What the empty cell looks like, pixel by pixel: a running mean and a running mean deviation, in 16-bit fixed point.
 //!
 //! Grey levels carry 7 bits behind the point in means (`_q7`), 4 in differences (`_q4`), 9 in deviations (`_q9`); rows
-//! are plain loops over slices of equal length, which the compiler turns into vector instructions. The model stays in
+//! are plain loops over slices of equal length, which the compiler turns into vector instructions, of the widest kind that
+//! the processor has ([`dispatch!`]). The model stays in
 //! the light in which it was learnt; [`Light`] takes it to the light of today, and slow adaptation does the rest.
+
+#![expect(clippy::inline_always, reason = "code that is not inlined is not compiled for the wider instructions")]
+
+use fearless_simd::{Level, Simd, dispatch};
 
 use crate::light::Light;
 
@@ -46,7 +51,7 @@ pub(crate) struct Kernel {
 pub(crate) const SHADOW: u8 = 1;
 pub(crate) const OBJECT: u8 = 3;
 
-#[inline]
+#[inline(always)]
 fn high_product(a: i16, b: i16) -> i16 {
     ((i32::from(a) * i32::from(b)) >> 16) as i16
 }
@@ -64,19 +69,20 @@ impl Kernel {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn expected_q4(&self, mean_q7: i16) -> i16 {
         high_product(mean_q7, self.gain_q13).saturating_add(self.offset_q4).clamp(0, WHITE_Q4)
     }
 
-    #[inline]
+    #[inline(always)]
     fn limit_q4(&self, deviation_q9: i16) -> i16 {
         high_product(deviation_q9, self.factor_q11).max(self.least_q4)
     }
 
     /// Adds the class of each pixel of a row to `class` (by `|`, so that planes add up).
     #[expect(clippy::needless_bitwise_bool, reason = "branches would keep the loop from becoming vector instructions")]
-    fn classify(&self, row: &[u8], mean_q7: &[i16], deviation_q9: &[i16], class: &mut [u8]) {
+    #[inline(always)]
+    fn classify<S: Simd>(&self, _widest: S, row: &[u8], mean_q7: &[i16], deviation_q9: &[i16], class: &mut [u8]) {
         let n = class.len();
         let (row, mean_q7, deviation_q9) = (&row[..n], &mean_q7[..n], &deviation_q9[..n]);
         for i in 0..n {
@@ -93,7 +99,16 @@ impl Kernel {
 
     /// Moves a row of the model towards what is seen, except where something is `held` and where what is seen is not the
     /// floor: a shadow that stays must not make the floor under it look noisy, and so blind.
-    fn adapt(&self, row: &[u8], held: &[u8], mean_q7: &mut [i16], deviation_q9: &mut [i16], shift: u32) {
+    #[inline(always)]
+    fn adapt<S: Simd>(
+        &self,
+        _widest: S,
+        row: &[u8],
+        held: &[u8],
+        mean_q7: &mut [i16],
+        deviation_q9: &mut [i16],
+        shift: u32,
+    ) {
         let n = row.len();
         let (held, mean_q7, deviation_q9) = (&held[..n], &mut mean_q7[..n], &mut deviation_q9[..n]);
         let half = (1_i16 << shift) >> 1;
@@ -144,15 +159,16 @@ impl Plane {
 
     /// Adds the class of each pixel to `class`.
     pub(crate) fn classify(&self, kernel: &Kernel, pixels: &[u8], class: &mut [u8]) {
-        kernel.classify(pixels, &self.mean_q7, &self.deviation_q9, class);
+        dispatch!(Level::new(), simd => kernel.classify(simd, pixels, &self.mean_q7, &self.deviation_q9, class));
     }
 
     /// Adapts some rows: each of them moves by 1 / 2^`shift` of the difference.
     pub(crate) fn adapt(&mut self, kernel: &Kernel, pixels: &[u8], held: &[u8], rows: Rows, shift: u32) {
+        let level = Level::new();
         for y in (rows.first..rows.height).step_by(rows.each) {
             let row = y * rows.width..(y + 1) * rows.width;
             let model = (&mut self.mean_q7[row.clone()], &mut self.deviation_q9[row.clone()]);
-            kernel.adapt(&pixels[row.clone()], &held[row], model.0, model.1, shift);
+            dispatch!(level, simd => kernel.adapt(simd, &pixels[row.clone()], &held[row.clone()], model.0, model.1, shift));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Example robots of our own: figures in, URDF, SRDF and meshes out. One file per robot.
 
+mod kr125;
 mod ns16;
 mod rx60b;
 mod srdf;
@@ -28,8 +29,33 @@ pub struct Link {
     pub name: &'static str,
     /// None for a bare frame.
     pub solid: Option<Mesh>,
+    /// Solids that a URDF can write down itself, in the link's frame; beside a mesh or instead of one.
+    pub primitives: Vec<Primitive>,
     /// Red, green, blue, 0 to 1.
     pub colour: [f64; 3],
+}
+
+/// A solid that a URDF can write down itself.
+pub struct Primitive {
+    /// What it is.
+    pub kind: PrimitiveKind,
+    /// Its centre in the link, metres.
+    pub at: [f64; 3],
+    /// Its frame in the link: roll, pitch, yaw in radians.
+    pub rpy: [f64; 3],
+}
+
+/// Sizes in metres.
+pub enum PrimitiveKind {
+    /// Edge lengths.
+    Box([f64; 3]),
+    /// Along its z.
+    Cylinder {
+        /// Of the round faces.
+        radius: f64,
+        /// From face to face.
+        length: f64,
+    },
 }
 
 /// A joint between two links.
@@ -63,7 +89,7 @@ pub type File = (String, Vec<u8>);
 
 /// Every robot we generate.
 pub fn all() -> Vec<Robot> {
-    vec![ns16::robot(), rx60b::robot()]
+    vec![ns16::robot(), rx60b::robot(), kr125::robot()]
 }
 
 impl Robot {

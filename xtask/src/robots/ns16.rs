@@ -23,7 +23,7 @@ const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), colour };
+    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), primitives: Vec::new(), colour };
     Robot {
         name: "ns16",
         about: ABOUT,
@@ -35,7 +35,7 @@ pub fn robot() -> Robot {
             solid("link_4", forearm(), PAINT),
             solid("link_5", wrist(), CAST),
             solid("link_6", flange(), STEEL),
-            Link { name: "tool0", solid: None, colour: STEEL },
+            Link { name: "tool0", solid: None, primitives: Vec::new(), colour: STEEL },
         ],
         joints: joints(),
         disabled: Vec::new(),

@@ -25,7 +25,7 @@ const ROUND: usize = 66;
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), colour };
+    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), primitives: Vec::new(), colour };
     Robot {
         name: "rx60b",
         about: ABOUT,
@@ -37,7 +37,7 @@ pub fn robot() -> Robot {
             solid("link_4", forearm(), PAINT),
             solid("link_5", wrist(), CAST),
             solid("link_6", flange(), STEEL),
-            Link { name: "tool0", solid: None, colour: STEEL },
+            Link { name: "tool0", solid: None, primitives: Vec::new(), colour: STEEL },
         ],
         joints: joints(),
         disabled: Vec::new(),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Joint, Link, Robot};
+use super::{Joint, Link, Primitive, PrimitiveKind, Robot};
 
 /// The whole file. Meshes are relative to it.
 pub fn text(robot: &Robot) -> String {
@@ -20,16 +20,34 @@ pub fn text(robot: &Robot) -> String {
 }
 
 fn link(out: &mut String, link: &Link) {
-    if link.solid.is_none() {
+    if link.solid.is_none() && link.primitives.is_empty() {
         let _ = writeln!(out, "  <link name=\"{}\"/>", link.name);
         return;
     }
-    let geometry = format!("<geometry><mesh filename=\"meshes/{}.stl\"/></geometry>", link.name);
+    let mesh = format!("<geometry><mesh filename=\"meshes/{}.stl\"/></geometry>", link.name);
+    let geometries: Vec<String> =
+        link.solid.iter().map(|_| mesh.clone()).chain(link.primitives.iter().map(primitive)).collect();
     let colour =
         format!("<material name=\"{}_paint\"><color rgba=\"{} 1\"/></material>", link.name, triple(link.colour));
     let _ = writeln!(out, "  <link name=\"{}\">", link.name);
-    let _ = writeln!(out, "    <visual>{geometry}{colour}</visual>");
-    let _ = writeln!(out, "    <collision>{geometry}</collision>\n  </link>");
+    for geometry in &geometries {
+        let _ = writeln!(out, "    <visual>{geometry}{colour}</visual>");
+    }
+    for geometry in &geometries {
+        let _ = writeln!(out, "    <collision>{geometry}</collision>");
+    }
+    out.push_str("  </link>\n");
+}
+
+fn primitive(primitive: &Primitive) -> String {
+    let shape = match primitive.kind {
+        PrimitiveKind::Box(size) => format!("<box size=\"{}\"/>", triple(size)),
+        PrimitiveKind::Cylinder { radius, length } => {
+            format!("<cylinder radius=\"{radius}\" length=\"{length}\"/>")
+        }
+    };
+    let (at, rpy) = (triple(primitive.at), triple(primitive.rpy));
+    format!("<origin xyz=\"{at}\" rpy=\"{rpy}\"/><geometry>{shape}</geometry>")
 }
 
 fn joint(out: &mut String, joint: &Joint) {

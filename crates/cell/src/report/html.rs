@@ -21,6 +21,20 @@ const SCRIPTS: [&str; 3] = [
     include_str!("../../assets/report/player.js"),
 ];
 
+/// What is put into the page.
+pub(super) struct Parts<'a> {
+    /// Heading, plain text.
+    pub title: &'a str,
+    /// Below it, HTML.
+    pub facts: String,
+    /// Options of the run's selection, HTML.
+    pub options: String,
+    pub figures: &'a [plots::Figure],
+    /// After the figures, HTML.
+    pub tables: String,
+    pub scene: Value,
+}
+
 /// Writes the report of one or several runs of the same cell, each with a label (`"control on"`).
 ///
 /// Several runs are drawn over each other; the first is shown in the 3-D scene until another is chosen. The regions'
@@ -29,21 +43,33 @@ const SCRIPTS: [&str; 3] = [
 /// # Errors
 ///
 /// Whatever `out` answers.
-pub fn write_html(mut out: impl Write, scene: &ReportScene, runs: &[(&str, &Recording)]) -> io::Result<()> {
-    let figures = plots::all(scene, runs);
-    let plot_data = Value::from(figures.iter().map(figure_data).collect::<Vec<_>>());
+pub fn write_html(out: impl Write, scene: &ReportScene, runs: &[(&str, &Recording)]) -> io::Result<()> {
+    let parts = Parts {
+        title: runs.first().map_or("no run", |(_, r)| &r.cell),
+        facts: facts(runs),
+        options: options(runs),
+        figures: &plots::all(scene, runs),
+        tables: run_tables(runs),
+        scene: view::data(scene, runs),
+    };
+    write_page(out, &parts)
+}
+
+/// Fills in the page.
+pub(super) fn write_page(mut out: impl Write, parts: &Parts<'_>) -> io::Result<()> {
+    let plot_data = Value::from(parts.figures.iter().map(figure_data).collect::<Vec<_>>());
     for piece in PAGE.split("{{") {
         let (key, rest) = piece.split_once("}}").unwrap_or(("", piece));
         match key {
             "" => {}
-            "title" => out.write_all(escape(runs.first().map_or("no run", |(_, r)| &r.cell)).as_bytes())?,
+            "title" => out.write_all(escape(parts.title).as_bytes())?,
             "style" => out.write_all(STYLE.as_bytes())?,
-            "facts" => out.write_all(facts(runs).as_bytes())?,
-            "options" => out.write_all(options(runs).as_bytes())?,
-            "figures" => out.write_all(placeholders(&figures).as_bytes())?,
-            "tables" => out.write_all(run_tables(runs).as_bytes())?,
+            "facts" => out.write_all(parts.facts.as_bytes())?,
+            "options" => out.write_all(parts.options.as_bytes())?,
+            "figures" => out.write_all(placeholders(parts.figures).as_bytes())?,
+            "tables" => out.write_all(parts.tables.as_bytes())?,
             "plot_data" => out.write_all(json_in_script(&plot_data.to_string()).as_bytes())?,
-            "scene_data" => out.write_all(json_in_script(&view::data(scene, runs).to_string()).as_bytes())?,
+            "scene_data" => out.write_all(json_in_script(&parts.scene.to_string()).as_bytes())?,
             "plotly" => out.write_all(plotly_script(&Plot::offline_js_sources()).as_bytes())?,
             "three" => out.write_all(THREE.as_bytes())?,
             "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,

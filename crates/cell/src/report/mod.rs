@@ -19,7 +19,9 @@ mod spark;
 mod summary;
 mod tables;
 mod view;
+mod watched;
 
 pub use html::write_html;
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
 pub use summary::{Summary, summary};
+pub use watched::{stage_table, write_watch_html};

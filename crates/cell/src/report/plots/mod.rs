@@ -5,6 +5,7 @@ mod figure12;
 mod joints;
 mod overrides;
 mod timing;
+mod watched;
 
 use elbowroom_monitor::Reason;
 use plotly::Plot;
@@ -12,6 +13,7 @@ use plotly::Plot;
 use crate::recording::{Recording, RobotTrack};
 
 use super::scene::ReportScene;
+pub use watched::all as watched;
 
 /// One plot of the page.
 pub struct Figure {
