@@ -11,6 +11,7 @@ use super::intervals::{Plane, rows};
 use super::lanes::{WIDTH, load, mad, splat};
 use super::outline::Outline;
 use super::row::Rows;
+use super::sift::reached_from;
 use super::support::reach;
 use super::{Filler, upper};
 use crate::{Layer, PlanarArm};
@@ -29,11 +30,14 @@ pub(super) struct Shared {
     pub turn: [f32; 2],
     /// Margin for single precision, metres.
     pub margin: f32,
-    /// From an elbow farther than this from the enclosing ball's middle nothing is reached, whatever θ1 and θ2 within their
-    /// cells, metres.
-    pub reach: f32,
     pub sectors: [f64; 2],
     pub apart: f32,
+    /// Cosine and sine of half the arc of the elbow over sixteen rows.
+    pub arc: [f32; 2],
+    /// What single precision may lose of a distance from a line, metres.
+    pub rounding: f32,
+    /// From an elbow farther outside than this, tangents are good to the margins, metres.
+    pub clear: f32,
 }
 
 /// Outlines for the radii of the three parts: the upper arm's as it is, the others turned by half a step of θ2.
@@ -43,6 +47,8 @@ pub(super) struct Outlines {
     pub upper: Outline,
     pub fore: Outline,
     pub wrist: Outline,
+    /// See [`reached_from`].
+    pub reached_from: [f32; SIZE],
 }
 
 #[inline(always)]
@@ -55,7 +61,9 @@ pub(super) fn fill<S: Simd, B: Body>(
     layer: &mut Layer,
 ) {
     let [half1, half2, _] = filler.grid.half_widths();
-    let arm = filler.arm;
+    // The forearm ends in half a ball: the wrist's is no smaller.
+    let wrist_radius_m = filler.arm.wrist_radius_m.max(filler.arm.fore_radius_m);
+    let arm = PlanarArm { wrist_radius_m, ..filler.arm };
     let thickest = arm.upper_radius_m.max(arm.fore_radius_m).max(arm.wrist_radius_m);
     let size = center.length() + radius + arm.reach_m();
     let shared = Shared {
@@ -67,9 +75,11 @@ pub(super) fn fill<S: Simd, B: Body>(
         stretch: 1.0 / half1.cos() - 1.0,
         turn: [half2.sin() as f32, half2.cos() as f32],
         margin: (4e-6 * size) as f32,
-        reach: ((radius + thickest + arm.fore_length_m) * 1.001 + size * (half1 + half2)) as f32,
         sectors: sectors(half2 * 2.0, radius > arm.fore_length_m),
         apart: apart(half2 * 2.0),
+        arc: arc(half2 * (WIDTH - 1) as f64),
+        rounding: (0.5e-6 * size) as f32,
+        clear: (arm.fore_length_m / 8.0) as f32,
     };
     let mut outlines = Outlines {
         fan: Fan::new([[1.0, 0.0]].into_iter(), shared.apart),
@@ -77,8 +87,9 @@ pub(super) fn fill<S: Simd, B: Body>(
         upper: Outline::EMPTY,
         fore: Outline::EMPTY,
         wrist: Outline::EMPTY,
+        reached_from: [0.0; SIZE],
     };
-    let Filler { grid, planes, middles, scratch, .. } = filler;
+    let Filler { grid, planes, middles, borders, scratch, .. } = filler;
     let shoulder = &grid.axes()[1];
     for (i, &plane) in planes.iter().enumerate().take(which.end).skip(which.start) {
         let before = layer.spans.len();
@@ -97,10 +108,8 @@ pub(super) fn fill<S: Simd, B: Body>(
             {
                 upper::mark(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, &mut scratch.full);
             }
-            let out = center.x * plane[0] + center.y * plane[1] - arm.offset_m;
-            let middle = [out as f32, (arm.height_m - center.z) as f32];
             let plane =
-                Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, middle };
+                Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, borders };
             ordered &= before == layer.spans.len();
             ordered &= outlines.parts(simd, &shared, body, side, &plane, layer);
         }
@@ -220,8 +229,18 @@ impl Outlines {
             });
             raw.turned_both_ways(simd, fan, shared.turn, part);
         }
+        // Where rounding says that there is no such outline, the forearm's serves for its end.
+        if self.fore.exists && !self.wrist.exists {
+            self.wrist.clone_from(&self.fore);
+        }
+        reached_from(simd, shared, &self.fan, &self.wrist, &mut self.reached_from);
         spread.flatten()
     }
+}
+
+/// Cosine and sine of half an arc; of half a turn where it is more than a quarter.
+fn arc(half: f64) -> [f32; 2] {
+    if half < std::f64::consts::FRAC_PI_2 { [half.cos() as f32, half.sin() as f32] } else { [-1.0, 1.0] }
 }
 
 /// Seen within the first angle from the shoulder a solid is taken whole, otherwise in sectors of about the second; radians.

@@ -26,6 +26,7 @@ mod lanes;
 mod links;
 mod outline;
 mod row;
+mod sift;
 mod slice;
 mod sphere;
 mod support;

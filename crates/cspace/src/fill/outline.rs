@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
-use super::clip;
+use super::{arcs, clip};
 use super::fan::{Fan, SIZE};
 use super::lanes::{F, WIDTH, load, mad, splat};
 
@@ -19,8 +19,8 @@ pub(super) struct Outline {
     pub from: [f32; SIZE],
     pub to: [f32; SIZE],
     /// Corner `k`, between lines `k − 1` and `k`.
-    corner_x: [f32; SIZE],
-    corner_y: [f32; SIZE],
+    pub corner_x: [f32; SIZE],
+    pub corner_y: [f32; SIZE],
     /// False where nothing is inside.
     pub exists: bool,
 }
@@ -59,8 +59,8 @@ impl Outline {
         let first = self.far[0];
         self.far[fan.count..].fill(first);
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y, far] = [&fan.x, &fan.y, &self.far].map(|list| load(simd, &list[at..]));
-            let [next_x, next_y, next_far] = [&fan.x, &fan.y, &self.far].map(|list| load(simd, &list[at + 1..]));
+            let [x, y, far] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..]), load(simd, &self.far[at..])];
+            let [next_x, next_y, next_far] = [load(simd, &fan.x[at + 1..]), load(simd, &fan.y[at + 1..]), load(simd, &self.far[at + 1..])];
             let over = splat(simd, 1.0) / (x * next_y - y * next_x);
             let corner_x = (far * next_y - next_far * y) * over;
             let corner_y = (next_far * x - far * next_x) * over;
@@ -70,7 +70,7 @@ impl Outline {
         self.corner_x[0] = self.corner_x[fan.count];
         self.corner_y[0] = self.corner_y[fan.count];
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y] = [&fan.x, &fan.y].map(|list| load(simd, &list[at..]));
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
             let along = |corner_x: F<S>, corner_y: F<S>| corner_y * x - corner_x * y;
             let before = along(load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..]));
             let after = along(load(simd, &self.corner_x[at + 1..]), load(simd, &self.corner_y[at + 1..]));
@@ -85,7 +85,7 @@ impl Outline {
     pub fn turned_both_ways<S: Simd>(&self, simd: S, fan: &Fan, [sine, cosine]: [f32; 2], out: &mut Self) {
         let (sine, cosine) = (splat(simd, sine), splat(simd, cosine));
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y] = [&fan.x, &fan.y].map(|list| load(simd, &list[at..]));
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
             let mut most = splat(simd, f32::NEG_INFINITY);
             for k in 0..fan.count {
                 let (corner_x, corner_y) = (splat(simd, self.corner_x[k]), splat(simd, self.corner_y[k]));
@@ -120,29 +120,9 @@ impl Outline {
     /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
     /// radians; `None` where it never does.
     pub fn seen_from_shoulder(&self, fan: &Fan, reach: f64) -> Option<(f64, f64)> {
-        let lines = || (0..fan.count).map(|k| (k, f64::from(self.far[k])));
-        // The line that the shoulder is farthest outside of: all of the outline is beyond it.
-        let (k, nearest) = lines().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        if nearest >= 0.0 {
+        if (0..fan.count).all(|k| self.far[k] >= 0.0) {
             return Some((-std::f64::consts::PI, std::f64::consts::PI));
         }
-        let ahead = [-f64::from(fan.x[k]), -f64::from(fan.y[k])];
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (k, far) in lines() {
-            let half = reach * reach - far * far;
-            let (x, y) = (f64::from(fan.x[k]), f64::from(fan.y[k]));
-            let half = half.max(0.0).sqrt();
-            let (from, to) = (f64::from(self.from[k]).max(-half), f64::from(self.to[k]).min(half));
-            if from > to || far.abs() > reach {
-                continue;
-            }
-            for s in [from, to] {
-                let (px, py) = (far * x - s * y, far * y + s * x);
-                let tangent = (ahead[0] * py - ahead[1] * px) / (ahead[0] * px + ahead[1] * py).max(1e-12);
-                (lo, hi) = (lo.min(tangent), hi.max(tangent));
-            }
-        }
-        let middle = ahead[1].atan2(ahead[0]);
-        (lo <= hi).then(|| (middle + lo.atan(), middle + hi.atan()))
+        arcs::seen(self, fan, [0.0; 2], reach)
     }
 }
