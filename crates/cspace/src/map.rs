@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::layer::group;
 use crate::reader::{Reader, Snapshot, Window};
-use crate::table::mark_row;
 use crate::{Cell, Changes, FillError, Filler, Grid, Layer, Obstacle, PlanarArm, Span, Table};
 
 /// Obstacles as blocked cells of joint space, each in a layer of its own.
@@ -149,21 +148,27 @@ impl JointMap {
         let (mut was, mut now) = (old.spans(), self.layers[index].1.spans());
         let mut others: Vec<&[Span]> =
             self.layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, l))| l.spans()).collect();
-        let last = self.table.shape()[2] as u16 - 1;
-        let rows = self.table.shape()[0] * self.table.shape()[1];
+        let [planes, rows, _] = self.table.shape();
+        let width = self.table.words_per_row();
+        let (mut plane, mut words): (usize, &mut [u64]) = (usize::MAX, &mut []);
         while let Some(row) = first_row(was, now) {
             let (before, after) = (group(&mut was, row), group(&mut now, row));
             // A layer made for another grid may know rows that this one has not.
-            if before == after || row as usize >= rows {
+            if before == after || row as usize >= rows * planes {
                 continue;
             }
             self.row.copy_from_slice(self.fixed.row(row as usize));
             let from_others = others.iter_mut().flat_map(|spans| group(spans, row));
-            for span in after.iter().chain(from_others) {
-                mark_row(&mut self.row, span.first, span.last.min(last));
+            for &span in after.iter().chain(from_others) {
+                self.fixed.mark_in(&mut self.row, span);
             }
-            self.changes.note(row as usize, self.table.row(row as usize), &self.row);
-            self.table.replace_row(row as usize, &self.row);
+            if row as usize / rows != plane {
+                plane = row as usize / rows;
+                words = self.table.plane_mut(plane);
+            }
+            let there = &mut words[(row as usize - plane * rows) * width..][..width];
+            self.changes.note(row as usize, there, &self.row);
+            there.copy_from_slice(&self.row);
         }
     }
 }

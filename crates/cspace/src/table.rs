@@ -22,14 +22,24 @@ pub struct Table {
     words_per_row: usize,
     planes: Vec<Arc<[u64]>>,
     free: Arc<[u64]>,
+    /// For every cell and one more, a row in which all cells below are set; empty where rows are long.
+    below: Arc<[u64]>,
 }
+
+/// Rows of at most this many words are written with masks from a list.
+const SHORT: usize = 8;
 
 impl Table {
     /// A table of free cells; numbers of cells along θ1, θ2, θ3.
     pub fn new(shape: [usize; 3]) -> Self {
         let words_per_row = shape[2].div_ceil(64);
         let free: Arc<[u64]> = vec![0; words_per_row * shape[1]].into();
-        Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free }
+        let cells = if words_per_row <= SHORT { shape[2] + 1 } else { 0 };
+        let mut below = vec![0; cells * words_per_row];
+        for (count, words) in below.chunks_exact_mut(words_per_row.max(1)).enumerate().skip(1) {
+            mark_row(words, 0, count as u16 - 1);
+        }
+        Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free, below: below.into() }
     }
 
     /// Numbers of cells along the axes.
@@ -101,11 +111,43 @@ impl Table {
             let (here, later) = rest.split_at(count.max(1));
             rest = later;
             let Some(words) = self.planes.get_mut(plane).map(Arc::make_mut) else { continue };
-            for span in here {
-                let row = span.row as usize - plane * rows;
-                mark_row(&mut words[row * width..][..width], span.first, span.last.min(self.shape[2] as u16 - 1));
+            let first = (plane * rows) as u32;
+            match width {
+                1 => mark_spans::<1>(words, &self.below, first, here),
+                2 => mark_spans::<2>(words, &self.below, first, here),
+                3 => mark_spans::<3>(words, &self.below, first, here),
+                4 => mark_spans::<4>(words, &self.below, first, here),
+                5 => mark_spans::<5>(words, &self.below, first, here),
+                6 => mark_spans::<6>(words, &self.below, first, here),
+                7 => mark_spans::<7>(words, &self.below, first, here),
+                8 => mark_spans::<8>(words, &self.below, first, here),
+                _ => {
+                    for span in here {
+                        let row = span.row as usize - plane * rows;
+                        let last = span.last.min(self.shape[2] as u16 - 1);
+                        mark_row(&mut words[row * width..][..width], span.first, last);
+                    }
+                }
             }
         }
+    }
+
+    /// Sets a span's cells in a row; what lies outside the table is left out.
+    #[inline]
+    pub(crate) fn mark_in(&self, row: &mut [u64], span: Span) {
+        if self.below.is_empty() {
+            return mark_row(row, span.first, span.last.min(self.shape[2] as u16 - 1));
+        }
+        let at = |cell: usize| &self.below[cell.min(self.shape[2]) * self.words_per_row..][..self.words_per_row];
+        let (from, to) = (at(usize::from(span.first)), at(usize::from(span.last) + 1));
+        for ((word, from), to) in row.iter_mut().zip(from).zip(to) {
+            *word |= to & !from;
+        }
+    }
+
+    /// All words of one θ1 and one table's own from now on, to be written; empty beyond the axis.
+    pub(crate) fn plane_mut(&mut self, plane: usize) -> &mut [u64] {
+        self.planes.get_mut(plane).map_or(&mut [], |words| Arc::make_mut(words))
     }
 
     /// True where both tables have one and the same plane in memory.
@@ -114,15 +156,6 @@ impl Table {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
-    }
-
-    pub(crate) fn replace_row(&mut self, row: usize, words: &[u64]) {
-        if self.row(row) == words {
-            return;
-        }
-        let start = row % self.shape[1] * self.words_per_row;
-        let plane = Arc::make_mut(&mut self.planes[row / self.shape[1]]);
-        plane[start..start + self.words_per_row].copy_from_slice(words);
     }
 
     /// Blocked cells in order.
@@ -138,6 +171,20 @@ impl Table {
 impl PartialEq for Table {
     fn eq(&self, other: &Self) -> bool {
         self.shape == other.shape && self.planes == other.planes
+    }
+}
+
+/// Sets the spans' cells in the words of a plane, `W` to a row, of which `first` is the first.
+#[inline]
+fn mark_spans<const W: usize>(words: &mut [u64], below: &[u64], first: u32, spans: &[Span]) {
+    let (rows, below) = (words.as_chunks_mut::<W>().0, below.as_chunks::<W>().0);
+    let Some(end) = below.len().checked_sub(1) else { return };
+    for span in spans {
+        let (from, to) = (&below[usize::from(span.first).min(end)], &below[(usize::from(span.last) + 1).min(end)]);
+        let row = &mut rows[(span.row - first) as usize];
+        for w in 0..W {
+            row[w] |= to[w] & !from[w];
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use super::outline::Outline;
 use super::row::Rows;
 use super::sift::reached_from;
 use super::support::reach;
-use super::{Filler, upper};
+use super::{Filler, arc, upper};
 use crate::{Layer, PlanarArm};
 
 /// What all planes share.
@@ -236,11 +236,6 @@ impl Outlines {
         reached_from(simd, shared, &self.fan, &self.wrist, &mut self.reached_from);
         spread.flatten()
     }
-}
-
-/// Cosine and sine of half an arc; of half a turn where it is more than a quarter.
-fn arc(half: f64) -> [f32; 2] {
-    if half < std::f64::consts::FRAC_PI_2 { [half.cos() as f32, half.sin() as f32] } else { [-1.0, 1.0] }
 }
 
 /// Seen within the first angle from the shoulder a solid is taken whole, otherwise in sectors of about the second; radians.

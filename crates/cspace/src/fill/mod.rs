@@ -179,6 +179,11 @@ impl Filler {
     }
 }
 
+/// Cosine and sine of half an arc; of half a turn where it is more than a quarter.
+fn arc(half: f64) -> [f32; 2] {
+    if half < std::f64::consts::FRAC_PI_2 { [half.cos() as f32, half.sin() as f32] } else { [-1.0, 1.0] }
+}
+
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::{Pose, Vec3};
