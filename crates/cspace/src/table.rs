@@ -113,14 +113,14 @@ impl Table {
             let Some(words) = self.planes.get_mut(plane).map(Arc::make_mut) else { continue };
             let first = (plane * rows) as u32;
             match width {
-                1 => mark_spans::<1>(words, &self.below, first, here),
-                2 => mark_spans::<2>(words, &self.below, first, here),
-                3 => mark_spans::<3>(words, &self.below, first, here),
-                4 => mark_spans::<4>(words, &self.below, first, here),
-                5 => mark_spans::<5>(words, &self.below, first, here),
-                6 => mark_spans::<6>(words, &self.below, first, here),
-                7 => mark_spans::<7>(words, &self.below, first, here),
-                8 => mark_spans::<8>(words, &self.below, first, here),
+                1 => mark_spans::<1>(words, Masks(self.below.as_chunks().0), first, here),
+                2 => mark_spans::<2>(words, Masks(self.below.as_chunks().0), first, here),
+                3 => mark_spans::<3>(words, Masks(self.below.as_chunks().0), first, here),
+                4 => mark_spans::<4>(words, Masks(self.below.as_chunks().0), first, here),
+                5 => mark_spans::<5>(words, Masks(self.below.as_chunks().0), first, here),
+                6 => mark_spans::<6>(words, Masks(self.below.as_chunks().0), first, here),
+                7 => mark_spans::<7>(words, Masks(self.below.as_chunks().0), first, here),
+                8 => mark_spans::<8>(words, Masks(self.below.as_chunks().0), first, here),
                 _ => {
                     for span in here {
                         let row = span.row as usize - plane * rows;
@@ -132,17 +132,9 @@ impl Table {
         }
     }
 
-    /// Sets a span's cells in a row; what lies outside the table is left out.
-    #[inline]
-    pub(crate) fn mark_in(&self, row: &mut [u64], span: Span) {
-        if self.below.is_empty() {
-            return mark_row(row, span.first, span.last.min(self.shape[2] as u16 - 1));
-        }
-        let at = |cell: usize| &self.below[cell.min(self.shape[2]) * self.words_per_row..][..self.words_per_row];
-        let (from, to) = (at(usize::from(span.first)), at(usize::from(span.last) + 1));
-        for ((word, from), to) in row.iter_mut().zip(from).zip(to) {
-            *word |= to & !from;
-        }
+    /// For every number of cells a row in which as many are set, from the first on; `W` is the number of words of a row.
+    pub(crate) fn masks<const W: usize>(&self) -> Masks<'_, W> {
+        Masks(self.below.as_chunks().0)
     }
 
     /// All words of one θ1 and one table's own from now on, to be written; empty beyond the axis.
@@ -174,17 +166,29 @@ impl PartialEq for Table {
     }
 }
 
-/// Sets the spans' cells in the words of a plane, `W` to a row, of which `first` is the first.
-#[inline]
-fn mark_spans<const W: usize>(words: &mut [u64], below: &[u64], first: u32, spans: &[Span]) {
-    let (rows, below) = (words.as_chunks_mut::<W>().0, below.as_chunks::<W>().0);
-    let Some(end) = below.len().checked_sub(1) else { return };
-    for span in spans {
-        let (from, to) = (&below[usize::from(span.first).min(end)], &below[(usize::from(span.last) + 1).min(end)]);
-        let row = &mut rows[(span.row - first) as usize];
+/// Rows of `W` words, and `n` cells of them set from the first on.
+#[derive(Clone, Copy)]
+pub(crate) struct Masks<'a, const W: usize>(&'a [[u64; W]]);
+
+impl<const W: usize> Masks<'_, W> {
+    /// Sets a span's cells in a row; what lies outside the table is left out.
+    #[inline(always)]
+    pub fn mark(self, row: &mut [u64; W], span: Span) {
+        let end = self.0.len().saturating_sub(1);
+        let (from, to) = (usize::from(span.first).min(end), (usize::from(span.last) + 1).min(end));
+        let (from, to) = (&self.0[from], &self.0[to]);
         for w in 0..W {
             row[w] |= to[w] & !from[w];
         }
+    }
+}
+
+/// Sets the spans' cells in the words of a plane, `W` to a row, of which `first` is the first.
+#[inline]
+fn mark_spans<const W: usize>(words: &mut [u64], masks: Masks<'_, W>, first: u32, spans: &[Span]) {
+    let rows = words.as_chunks_mut::<W>().0;
+    for &span in spans {
+        masks.mark(&mut rows[(span.row - first) as usize], span);
     }
 }
 

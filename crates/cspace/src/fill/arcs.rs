@@ -45,7 +45,8 @@ pub(super) fn each(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64, mut f
 /// Directions from `at` in which a link of length `reach` meets the outline: lowest and highest angle, radians; `None`
 /// where it never does. `at` is outside.
 pub(super) fn seen(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64) -> Option<(f64, f64)> {
-    let lines = || (0..fan.count).map(|k| [fan.x[k], fan.y[k], outline.far[k]].map(f64::from)).enumerate();
+    let line = |k: usize| [f64::from(fan.x[k]), f64::from(fan.y[k]), f64::from(outline.far[k])];
+    let lines = || (0..fan.count).map(line).enumerate();
     let gap = |[x, y, far]: [f64; 3]| far - x * at[0] - y * at[1];
     // The line that `at` is farthest outside of: all of the outline is beyond it.
     let (_, nearest) = lines().min_by(|a, b| gap(a.1).total_cmp(&gap(b.1)))?;

@@ -8,7 +8,7 @@ use fearless_simd::{Select, Simd, SimdBase};
 use super::body::{Body, Tilt};
 use super::fan::{Fan, SIZE};
 use super::intervals::{Plane, rows};
-use super::lanes::{WIDTH, load, mad, splat};
+use super::lanes::{ANGLE_ERROR, WIDTH, load, mad, splat};
 use super::outline::Outline;
 use super::row::Rows;
 use super::sift::reached_from;
@@ -34,6 +34,8 @@ pub(super) struct Shared {
     pub apart: f32,
     /// Cosine and sine of half the arc of the elbow over sixteen rows.
     pub arc: [f32; 2],
+    /// Length of the upper arm and what single precision may lose of it, metres.
+    pub upper_reach: f32,
     /// What single precision may lose of a distance from a line, metres.
     pub rounding: f32,
     /// From an elbow farther outside than this, tangents are good to the margins, metres.
@@ -78,6 +80,7 @@ pub(super) fn fill<S: Simd, B: Body>(
         sectors: sectors(half2 * 2.0, radius > arm.fore_length_m),
         apart: apart(half2 * 2.0),
         arc: arc(half2 * (WIDTH - 1) as f64),
+        upper_reach: (arm.upper_length_m + 1e-6 * size) as f32,
         rounding: (0.5e-6 * size) as f32,
         clear: (arm.fore_length_m / 8.0) as f32,
     };
@@ -104,7 +107,7 @@ pub(super) fn fill<S: Simd, B: Body>(
             }
             scratch.full.fill(0);
             if outlines.upper.exists
-                && let Some((lo, hi)) = outlines.upper.seen_from_shoulder(&outlines.fan, arm.upper_length_m)
+                && let Some((lo, hi)) = outlines.upper.seen_from_shoulder(simd, &outlines.fan, shared.upper_reach)
             {
                 upper::mark(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, &mut scratch.full);
             }
@@ -119,8 +122,8 @@ pub(super) fn fill<S: Simd, B: Body>(
     }
 }
 
-/// What the corners of outlines may be wrong by in single precision, seen from the shoulder, radians.
-const UPPER_MARGIN: f64 = 1e-5;
+/// What angles seen from the shoulder may be wrong by in single precision, radians.
+const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
 
 impl Shared {
     /// False where not even the enclosing ball, grown by the thickest part, reaches into the wedge.
@@ -221,7 +224,7 @@ impl Outlines {
                 part.exists = false;
                 continue;
             }
-            let seen = raw.spread(fan);
+            let seen = raw.spread(simd, fan);
             spread = Some(match (spread, seen) {
                 (None, seen) => seen,
                 (Some(Some(a)), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),

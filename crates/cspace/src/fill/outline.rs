@@ -1,10 +1,10 @@
 //! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, mask32x16};
 
-use super::{arcs, clip};
+use super::clip;
 use super::fan::{Fan, SIZE};
-use super::lanes::{F, WIDTH, load, mad, splat};
+use super::lanes::{F, WIDTH, atan2, load, mad, splat};
 
 /// A line beside the outline whose neighbours meet before it by more than this is drawn in, metres.
 const LOOSE: f32 = 2e-4;
@@ -101,28 +101,89 @@ impl Outline {
 
     /// Directions from the shoulder in which the outline lies, lowest and highest angle, radians; `None` where the
     /// shoulder is inside.
-    pub fn spread(&self, fan: &Fan) -> Option<(f64, f64)> {
-        let (k, nearest) = (0..fan.count).map(|k| (k, self.far[k])).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        if !(nearest < 0.0) {
-            return None;
+    #[inline(always)]
+    pub fn spread<S: Simd>(&self, simd: S, fan: &Fan) -> Option<(f64, f64)> {
+        let mut seen = Seen::from_shoulder(simd, fan, self)?;
+        for at in (0..fan.count).step_by(WIDTH) {
+            let corner = [load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..])];
+            seen.take(simd, in_fan(fan, at), corner);
         }
-        let ahead = [-f64::from(fan.x[k]), -f64::from(fan.y[k])];
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for k in 0..fan.count {
-            let (x, y) = (f64::from(self.corner_x[k]), f64::from(self.corner_y[k]));
-            let tangent = (ahead[0] * y - ahead[1] * x) / (ahead[0] * x + ahead[1] * y).max(1e-12);
-            (lo, hi) = (lo.min(tangent), hi.max(tangent));
-        }
-        let middle = ahead[1].atan2(ahead[0]);
-        Some((middle + lo.atan(), middle + hi.atan()))
+        seen.angles(simd)
     }
 
     /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
     /// radians; `None` where it never does.
-    pub fn seen_from_shoulder(&self, fan: &Fan, reach: f64) -> Option<(f64, f64)> {
-        if (0..fan.count).all(|k| self.far[k] >= 0.0) {
+    #[inline(always)]
+    pub fn seen_from_shoulder<S: Simd>(&self, simd: S, fan: &Fan, reach: f32) -> Option<(f64, f64)> {
+        let Some(mut seen) = Seen::from_shoulder(simd, fan, self) else {
             return Some((-std::f64::consts::PI, std::f64::consts::PI));
+        };
+        for at in (0..fan.count).step_by(WIDTH) {
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
+            let far = load(simd, &self.far[at..]);
+            let square = splat(simd, reach * reach) - far * far;
+            let half = square.max(splat(simd, 0.0)).sqrt();
+            let [from, to] = [load(simd, &self.from[at..]).max(-half), load(simd, &self.to[at..]).min(half)];
+            let meets = (from.simd_le(to) & square.simd_ge(splat(simd, 0.0))).to_bitmask() & in_fan(fan, at);
+            for s in [from, to] {
+                seen.take(simd, meets, [far * x - s * y, mad(far, y, s * x)]);
+            }
         }
-        arcs::seen(self, fan, [0.0; 2], reach)
+        seen.angles(simd)
+    }
+}
+
+/// Bits of the lanes from line `at` on that are lines of the fan.
+fn in_fan(fan: &Fan, at: usize) -> u64 {
+    !0 >> (64 - (fan.count - at).min(WIDTH))
+}
+
+/// What of an outline was seen, as tangents of the angle from a direction ahead.
+struct Seen<S: Simd> {
+    ahead: [f32; 2],
+    /// How far the shoulder is outside.
+    depth: f32,
+    lo: F<S>,
+    hi: F<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    /// Looks square at the line that the shoulder is farthest outside of: all of the outline is beyond it. `None` where the
+    /// shoulder is inside.
+    #[inline(always)]
+    fn from_shoulder(simd: S, fan: &Fan, outline: &Outline) -> Option<Self> {
+        let (mut k, mut least) = (0, f32::INFINITY);
+        for (line, &far) in outline.far[..fan.count].iter().enumerate() {
+            if far < least {
+                (k, least) = (line, far);
+            }
+        }
+        let ahead = [-fan.x[k], -fan.y[k]];
+        let (lo, hi) = (splat(simd, f32::INFINITY), splat(simd, f32::NEG_INFINITY));
+        (least < 0.0).then_some(Self { ahead, depth: -least, lo, hi })
+    }
+
+    #[inline(always)]
+    fn take(&mut self, simd: S, lanes: u64, [x, y]: [F<S>; 2]) {
+        let lanes = mask32x16::from_bitmask(simd, lanes);
+        let [ahead_x, ahead_y] = [splat(simd, self.ahead[0]), splat(simd, self.ahead[1])];
+        let ahead = mad(ahead_x, x, ahead_y * y).max(splat(simd, self.depth));
+        let tangent = (ahead_x * y - ahead_y * x) / ahead;
+        self.lo = lanes.select(self.lo.min(tangent), self.lo);
+        self.hi = lanes.select(self.hi.max(tangent), self.hi);
+    }
+
+    /// Lowest and highest angle; `None` where nothing was seen.
+    #[inline(always)]
+    fn angles(&self, simd: S) -> Option<(f64, f64)> {
+        let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
+        for (&a, &b) in self.lo.to_array().iter().zip(&self.hi.to_array()) {
+            (lo, hi) = (lo.min(a), hi.max(b));
+        }
+        let (mut x, mut y) = ([1.0; WIDTH], [0.0; WIDTH]);
+        (x[0], y[0], y[1], y[2]) = (self.ahead[0], self.ahead[1], lo, hi);
+        let angles = atan2(simd, load(simd, &y), load(simd, &x)).to_array();
+        let middle = f64::from(angles[0]);
+        (lo <= hi).then(|| (middle + f64::from(angles[1]), middle + f64::from(angles[2])))
     }
 }

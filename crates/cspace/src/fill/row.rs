@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdInt, SimdMask, i32x16, mask32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, i32x16, mask32x16};
 
 use super::lanes::{ANGLE_ERROR, F, splat};
 use crate::{Axis, Layer, Span};
