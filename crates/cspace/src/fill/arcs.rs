@@ -30,7 +30,8 @@ pub(super) fn each(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64, mut f
         *f = (f.0 - turn, f.1 - turn);
     }
     free.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut reached = start;
+    // The last may reach over the start.
+    let mut reached = free.iter().map(|f| f.1 - TAU).fold(start, f64::max);
     for &(from, to) in free.iter() {
         if from > reached {
             found(reached, from);

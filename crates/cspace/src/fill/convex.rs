@@ -13,7 +13,7 @@ use super::outline::Outline;
 use super::row::Rows;
 use super::sift::reached_from;
 use super::support::reach;
-use super::{Filler, arc, upper};
+use super::{Filler, MARGIN, ROUNDING, arc, upper};
 use crate::{Layer, PlanarArm};
 
 /// What all planes share.
@@ -38,7 +38,8 @@ pub(super) struct Shared {
     pub upper_reach: f32,
     /// What single precision may lose of a distance from a line, metres.
     pub rounding: f32,
-    /// From an elbow farther outside than this, tangents are good to the margins, metres.
+    /// From an elbow farther outside than this, tangents are good to the margins, metres: what rounding turns a tangent by at
+    /// a corner this near moves it by no more than the margin (eight times the rounding) at the end of the forearm.
     pub clear: f32,
 }
 
@@ -76,12 +77,12 @@ pub(super) fn fill<S: Simd, B: Body>(
         tangent: half1.tan(),
         stretch: 1.0 / half1.cos() - 1.0,
         turn: [half2.sin() as f32, half2.cos() as f32],
-        margin: (4e-6 * size) as f32,
+        margin: (MARGIN * size) as f32,
         sectors: sectors(half2 * 2.0, radius > arm.fore_length_m),
         apart: apart(half2 * 2.0),
         arc: arc(half2 * (WIDTH - 1) as f64),
         upper_reach: (arm.upper_length_m + 1e-6 * size) as f32,
-        rounding: (0.5e-6 * size) as f32,
+        rounding: (ROUNDING * size) as f32,
         clear: (arm.fore_length_m / 8.0) as f32,
     };
     let mut outlines = Outlines {
@@ -131,8 +132,7 @@ impl Shared {
         let x = (self.center.x * cos + self.center.y * sin) * side;
         let y = (self.center.y * cos - self.center.x * sin).abs();
         let around = self.around + f64::from(self.margin);
-        let beyond = (y - self.tangent * x) / (1.0 + self.tangent * self.tangent).sqrt();
-        x + around > 0.0 && beyond <= around
+        x + around > 0.0 && y - self.tangent * x <= around * (1.0 + self.stretch)
     }
 }
 

@@ -30,6 +30,8 @@ pub(super) fn rows<S: Simd>(
     layer: &mut Layer,
 ) -> bool {
     let mut ordered = true;
+    #[cfg(test)]
+    let before = layer.spans.len();
     for (chunk, start) in (0..plane.rows).step_by(WIDTH).enumerate() {
         let left = plane.rows - start;
         let inside = if left < WIDTH { (1u16 << left) - 1 } else { !0 };
@@ -44,6 +46,8 @@ pub(super) fn rows<S: Simd>(
         }
         ordered &= sixteen(simd, shared, outlines, plane, (row, start), (full, inside & !known), layer);
     }
+    #[cfg(test)]
+    super::audit::compare(shared, outlines, plane, &layer.spans[before..]);
     ordered
 }
 

@@ -61,7 +61,8 @@ impl<S: Simd> Known<'_, S> {
     fn reached(&self, simd: S, k: usize) -> Mask<S> {
         let Outlines { wrist, reached_from, .. } = self.outlines;
         if self.mixed.has(k) {
-            let [x, y, from] = [splat(simd, wrist.corner_x[k]), splat(simd, wrist.corner_y[k]), splat(simd, reached_from[k])];
+            let [x, y, from] =
+                [splat(simd, wrist.corner_x[k]), splat(simd, wrist.corner_y[k]), splat(simd, reached_from[k])];
             return from.simd_le(mad(x, self.elbow[0], y * self.elbow[1]));
         }
         Mask::splat(simd, self.certain.has(k))
@@ -78,7 +79,8 @@ impl<S: Simd> Forearm<S> {
         let (fan, outline) = (&outlines.fan, &outlines.fore);
         let s = |value: f32| splat(simd, value);
         let (none, all, zero) = (Mask::splat(simd, false), Mask::splat(simd, true), s(0.0));
-        let never = Self { inside: none, lo: [zero; 2], hi: [zero; 2], lo_reached: none, hi_reached: none, widen: zero };
+        let never =
+            Self { inside: none, lo: [zero; 2], hi: [zero; 2], lo_reached: none, hi_reached: none, widen: zero };
         if !outline.exists {
             return never;
         }
@@ -221,7 +223,8 @@ impl<S: Simd> Wrist<S> {
             for k in each(sieve.poke_out) {
                 let [gap, along] = Self::foot(simd, outlines, k, elbow);
                 let beside = s(outline.from[k] - BESIDE).simd_le(along) & along.simd_le(s(outline.to[k] + BESIDE));
-                let out = beside & gap.simd_lt(s(length)) & !known.reached(simd, k) & !known.reached(simd, known.next(k));
+                let out =
+                    beside & gap.simd_lt(s(length)) & !known.reached(simd, k) & !known.reached(simd, known.next(k));
                 wrist.several |= out & wrist.around & !wrist.all;
             }
         }

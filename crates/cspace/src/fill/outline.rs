@@ -60,7 +60,8 @@ impl Outline {
         self.far[fan.count..].fill(first);
         for at in (0..fan.count).step_by(WIDTH) {
             let [x, y, far] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..]), load(simd, &self.far[at..])];
-            let [next_x, next_y, next_far] = [load(simd, &fan.x[at + 1..]), load(simd, &fan.y[at + 1..]), load(simd, &self.far[at + 1..])];
+            let [next_x, next_y, next_far] =
+                [load(simd, &fan.x[at + 1..]), load(simd, &fan.y[at + 1..]), load(simd, &self.far[at + 1..])];
             let over = splat(simd, 1.0) / (x * next_y - y * next_x);
             let corner_x = (far * next_y - next_far * y) * over;
             let corner_y = (next_far * x - far * next_x) * over;
@@ -176,10 +177,10 @@ impl<S: Simd> Seen<S> {
     /// Lowest and highest angle; `None` where nothing was seen.
     #[inline(always)]
     fn angles(&self, simd: S) -> Option<(f64, f64)> {
-        let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
-        for (&a, &b) in self.lo.to_array().iter().zip(&self.hi.to_array()) {
-            (lo, hi) = (lo.min(a), hi.max(b));
-        }
+        let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));
+        let (lo, hi) = (lo.min(lo.slide::<4>(lo)), hi.max(hi.slide::<4>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<2>(lo)), hi.max(hi.slide::<2>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<1>(lo)).to_array()[0], hi.max(hi.slide::<1>(hi)).to_array()[0]);
         let (mut x, mut y) = ([1.0; WIDTH], [0.0; WIDTH]);
         (x[0], y[0], y[1], y[2]) = (self.ahead[0], self.ahead[1], lo, hi);
         let angles = atan2(simd, load(simd, &y), load(simd, &x)).to_array();

@@ -78,6 +78,18 @@ impl Rows {
         }));
     }
 
+    /// True where the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
+    /// angle 0.
+    #[cfg(test)]
+    pub fn holds(&self, spans: &[&Span], angle: f64, base: f64) -> bool {
+        let turn = f64::from(self.turn);
+        let cell = (angle * f64::from(self.scale) + base).rem_euclid(turn);
+        (0..=(f64::from(self.count) / turn) as u32).map(|k| cell + turn * f64::from(k)).all(|cell| {
+            let inside = |span: &&&Span| u32::from(span.first) <= cell as u32 && cell as u32 <= u32::from(span.last);
+            cell >= f64::from(self.count) || spans.iter().find(inside).is_some()
+        })
+    }
+
     fn one_by_one(&self, row: u32, full: u16, hit: u16, [first, last, again]: [[i32; 16]; 3], layer: &mut Layer) {
         let mut rest = full | hit;
         while rest != 0 {

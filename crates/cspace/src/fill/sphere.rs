@@ -7,7 +7,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::lanes::{F, WIDTH, acos, atan2, load, mad, splat};
 use super::row::Rows;
-use super::{Directions, Filler, arc, upper};
+use super::{Directions, Filler, MARGIN, arc, upper};
 use crate::{Layer, PlanarArm};
 
 /// A ball in the arm's base frame.
@@ -29,6 +29,10 @@ struct Disks {
 /// What all planes share.
 struct Wedge {
     tangent: f64,
+    /// 1/cos δ1.
+    slant: f64,
+    /// Ball and thickest part together, metres.
+    around: f64,
     /// By what a point of the wedge may be farther from the base axis than along the middle: 1/cos δ1 − 1.
     stretch: f64,
     /// sin and 1 − cos of half a step of θ2.
@@ -42,12 +46,16 @@ impl Wedge {
     fn new(filler: &Filler, ball: &Ball) -> Self {
         let [half1, half2, _] = filler.grid.half_widths();
         let size = ball.center.length() + ball.radius + filler.arm.reach_m();
+        let arm = &filler.arm;
+        let thickest = arm.upper_radius_m.max(arm.fore_radius_m).max(arm.wrist_radius_m);
         Self {
+            slant: 1.0 / half1.cos(),
+            around: (ball.radius + thickest) * (1.0 + 1e-9) + MARGIN * size,
             tangent: half1.tan(),
             stretch: 1.0 / half1.cos() - 1.0,
             sine: half2.sin(),
             sagitta: 1.0 - half2.cos(),
-            margin: 4e-6 * size,
+            margin: MARGIN * size,
         }
     }
 }
@@ -89,10 +97,14 @@ impl Disks {
     /// Where the middle lies in the wedge that is the whole disk. Where it lies beside, at distance `d` from the wedge's
     /// side, the cut is an ellipse about the middle's foot with half axes √(R² − d²) and a little less; what of it lies
     /// inside the wedge again is at most `w` beyond (w: how far the disk's far end lies within the wedge).
+    #[inline(always)]
     fn in_plane(arm: &PlanarArm, wedge: &Wedge, ball: &Ball, [cos, sin]: [f64; 2], side: f64) -> Option<Self> {
         let t = wedge.tangent;
         let x = (ball.center.x * cos + ball.center.y * sin) * side;
         let y = (ball.center.y * cos - ball.center.x * sin).abs();
+        if y - t * x > wedge.around * wedge.slant || x + wedge.around < 0.0 {
+            return None;
+        }
         let beside = y > t * x;
         let (middle, distance) =
             if beside { ((x + t * y) / (1.0 + t * t), (y - t * x) / (1.0 + t * t).sqrt()) } else { (x, 0.0) };
