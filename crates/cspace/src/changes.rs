@@ -26,7 +26,7 @@ impl Changes {
     }
 
     /// Notes a row before and after.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn note(&mut self, row: usize, was: &[u64], now: &[u64]) {
         for index in 0..was.len().min(now.len()) {
             let (was, now) = (was[index], now[index]);

@@ -69,7 +69,7 @@ impl Layer {
 }
 
 /// Takes the spans of one row from the front of a list, and those of earlier rows with them.
-#[inline(always)]
+#[inline]
 pub(crate) fn group<'a>(spans: &mut &'a [Span], row: u32) -> &'a [Span] {
     let mut rest = *spans;
     while let [first, later @ ..] = rest

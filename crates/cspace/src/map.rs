@@ -224,7 +224,7 @@ impl<'a> Changed<'a> {
     }
 
     /// The next row, and its new spans.
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<(u32, &'a [Span])> {
         while let Some(row) = first_row(self.was, self.now).filter(|&row| row < self.rows) {
             let (before, after) = (group(&mut self.was, row), group(&mut self.now, row));

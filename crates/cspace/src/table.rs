@@ -172,7 +172,7 @@ pub(crate) struct Masks<'a, const W: usize>(&'a [[u64; W]]);
 
 impl<const W: usize> Masks<'_, W> {
     /// Sets a span's cells in a row; what lies outside the table is left out.
-    #[inline(always)]
+    #[inline]
     pub fn mark(self, row: &mut [u64; W], span: Span) {
         let end = self.0.len().saturating_sub(1);
         let (from, to) = (usize::from(span.first).min(end), (usize::from(span.last) + 1).min(end));
