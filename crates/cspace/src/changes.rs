@@ -28,7 +28,8 @@ impl Changes {
     /// Notes a row before and after.
     #[inline]
     pub(crate) fn note(&mut self, row: usize, was: &[u64], now: &[u64]) {
-        for (index, (&was, &now)) in was.iter().zip(now).enumerate() {
+        for index in 0..was.len().min(now.len()) {
+            let (was, now) = (was[index], now[index]);
             if was != now {
                 self.words.push(Word { row: row as u32, index: index as u16, was, now });
             }

@@ -69,10 +69,19 @@ impl Layer {
 }
 
 /// Takes the spans of one row from the front of a list, and those of earlier rows with them.
+#[inline]
 pub(crate) fn group<'a>(spans: &mut &'a [Span], row: u32) -> &'a [Span] {
-    let skip = spans.iter().take_while(|span| span.row < row).count();
-    let rest = &spans[skip..];
-    let (here, later) = rest.split_at(rest.iter().take_while(|span| span.row == row).count());
+    let mut rest = *spans;
+    while let [first, later @ ..] = rest
+        && first.row < row
+    {
+        rest = later;
+    }
+    let mut count = 0;
+    while rest.get(count).is_some_and(|span| span.row == row) {
+        count += 1;
+    }
+    let (here, later) = rest.split_at(count);
     *spans = later;
     here
 }

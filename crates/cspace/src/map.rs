@@ -146,25 +146,93 @@ impl JointMap {
     /// Writes the rows in which a layer differs from what it was.
     fn update(&mut self, index: usize, old: &Layer) {
         self.changes.restart(self.table.shape());
-        let (mut was, mut now) = (old.spans(), self.layers[index].1.spans());
-        let mut others: Vec<&[Span]> =
-            self.layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, l))| l.spans()).collect();
-        let last = self.table.shape()[2] as u16 - 1;
-        let rows = self.table.shape()[0] * self.table.shape()[1];
-        while let Some(row) = first_row(was, now) {
-            let (before, after) = (group(&mut was, row), group(&mut now, row));
-            // A layer made for another grid may know rows that this one has not.
-            if before == after || row as usize >= rows {
-                continue;
-            }
-            self.row.copy_from_slice(self.fixed.row(row as usize));
-            let from_others = others.iter_mut().flat_map(|spans| group(spans, row));
-            for span in after.iter().chain(from_others) {
-                mark_row(&mut self.row, span.first, span.last.min(last));
-            }
-            self.changes.note(row as usize, self.table.row(row as usize), &self.row);
-            self.table.replace_row(row as usize, &self.row);
+        match self.table.words_per_row() {
+            1 => self.update_short::<1>(index, old),
+            2 => self.update_short::<2>(index, old),
+            3 => self.update_short::<3>(index, old),
+            4 => self.update_short::<4>(index, old),
+            5 => self.update_short::<5>(index, old),
+            6 => self.update_short::<6>(index, old),
+            7 => self.update_short::<7>(index, old),
+            8 => self.update_short::<8>(index, old),
+            _ => self.update_long(index, old),
         }
+    }
+
+    /// With rows of `W` words.
+    fn update_short<const W: usize>(&mut self, index: usize, old: &Layer) {
+        let Self { fixed, table, changes, layers, .. } = self;
+        let masks = fixed.masks::<W>();
+        let (mut changed, mut others) = (Changed::new(old, &layers[index].1, table), others(layers, index));
+        let rows = table.shape()[1] as u32;
+        let (mut first, mut end, mut words): (u32, u32, &mut [[u64; W]]) = (0, 0, &mut []);
+        let mut below: &[[u64; W]] = &[];
+        while let Some((row, after)) = changed.next() {
+            if row >= end {
+                let plane = row / rows;
+                (first, end) = (plane * rows, (plane + 1) * rows);
+                words = table.plane_mut(plane as usize).as_chunks_mut().0;
+                below = fixed.plane(plane as usize).as_chunks().0;
+            }
+            let mut now = below[(row - first) as usize];
+            for &span in after {
+                masks.mark(&mut now, span);
+            }
+            for spans in &mut others {
+                for &span in group(spans, row) {
+                    masks.mark(&mut now, span);
+                }
+            }
+            let was = &mut words[(row - first) as usize];
+            changes.note(row as usize, was, &now);
+            *was = now;
+        }
+    }
+
+    fn update_long(&mut self, index: usize, old: &Layer) {
+        let Self { fixed, table, changes, layers, row: now, .. } = self;
+        let (mut changed, mut others) = (Changed::new(old, &layers[index].1, table), others(layers, index));
+        let (rows, width, last) = (table.shape()[1], table.words_per_row(), table.shape()[2] as u16 - 1);
+        while let Some((row, after)) = changed.next() {
+            now.copy_from_slice(fixed.row(row as usize));
+            for span in after.iter().chain(others.iter_mut().flat_map(|spans| group(spans, row))) {
+                mark_row(now, span.first, span.last.min(last));
+            }
+            let was = &mut table.plane_mut(row as usize / rows)[row as usize % rows * width..][..width];
+            changes.note(row as usize, was, now);
+            was.copy_from_slice(now);
+        }
+    }
+}
+
+/// All spans but those of one layer.
+fn others(layers: &[(String, Layer)], index: usize) -> Vec<&[Span]> {
+    layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, layer))| layer.spans()).collect()
+}
+
+/// Rows in which two layers differ.
+struct Changed<'a> {
+    was: &'a [Span],
+    now: &'a [Span],
+    /// A layer made for another grid may know rows that this one has not.
+    rows: u32,
+}
+
+impl<'a> Changed<'a> {
+    fn new(was: &'a Layer, now: &'a Layer, table: &Table) -> Self {
+        Self { was: was.spans(), now: now.spans(), rows: (table.shape()[0] * table.shape()[1]) as u32 }
+    }
+
+    /// The next row, and its new spans.
+    #[inline]
+    fn next(&mut self) -> Option<(u32, &'a [Span])> {
+        while let Some(row) = first_row(self.was, self.now).filter(|&row| row < self.rows) {
+            let (before, after) = (group(&mut self.was, row), group(&mut self.now, row));
+            if before != after {
+                return Some((row, after));
+            }
+        }
+        None
     }
 }
 

@@ -22,14 +22,24 @@ pub struct Table {
     words_per_row: usize,
     planes: Vec<Arc<[u64]>>,
     free: Arc<[u64]>,
+    /// For every cell and one more, a row in which all cells below are set; empty where rows are long.
+    below: Arc<[u64]>,
 }
+
+/// Rows of at most this many words are written with masks from a list.
+const SHORT: usize = 8;
 
 impl Table {
     /// A table of free cells; numbers of cells along θ1, θ2, θ3.
     pub fn new(shape: [usize; 3]) -> Self {
         let words_per_row = shape[2].div_ceil(64);
         let free: Arc<[u64]> = vec![0; words_per_row * shape[1]].into();
-        Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free }
+        let cells = if words_per_row <= SHORT { shape[2] + 1 } else { 0 };
+        let mut below = vec![0; cells * words_per_row];
+        for (count, words) in below.chunks_exact_mut(words_per_row.max(1)).enumerate().skip(1) {
+            mark_row(words, 0, count as u16 - 1);
+        }
+        Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free, below: below.into() }
     }
 
     /// Numbers of cells along the axes.
@@ -101,11 +111,35 @@ impl Table {
             let (here, later) = rest.split_at(count.max(1));
             rest = later;
             let Some(words) = self.planes.get_mut(plane).map(Arc::make_mut) else { continue };
-            for span in here {
-                let row = span.row as usize - plane * rows;
-                mark_row(&mut words[row * width..][..width], span.first, span.last.min(self.shape[2] as u16 - 1));
+            let first = (plane * rows) as u32;
+            match width {
+                1 => mark_spans::<1>(words, Masks(self.below.as_chunks().0), first, here),
+                2 => mark_spans::<2>(words, Masks(self.below.as_chunks().0), first, here),
+                3 => mark_spans::<3>(words, Masks(self.below.as_chunks().0), first, here),
+                4 => mark_spans::<4>(words, Masks(self.below.as_chunks().0), first, here),
+                5 => mark_spans::<5>(words, Masks(self.below.as_chunks().0), first, here),
+                6 => mark_spans::<6>(words, Masks(self.below.as_chunks().0), first, here),
+                7 => mark_spans::<7>(words, Masks(self.below.as_chunks().0), first, here),
+                8 => mark_spans::<8>(words, Masks(self.below.as_chunks().0), first, here),
+                _ => {
+                    for span in here {
+                        let row = span.row as usize - plane * rows;
+                        let last = span.last.min(self.shape[2] as u16 - 1);
+                        mark_row(&mut words[row * width..][..width], span.first, last);
+                    }
+                }
             }
         }
+    }
+
+    /// For every number of cells a row in which as many are set, from the first on; `W` is the number of words of a row.
+    pub(crate) fn masks<const W: usize>(&self) -> Masks<'_, W> {
+        Masks(self.below.as_chunks().0)
+    }
+
+    /// All words of one θ1 and one table's own from now on, to be written; empty beyond the axis.
+    pub(crate) fn plane_mut(&mut self, plane: usize) -> &mut [u64] {
+        self.planes.get_mut(plane).map_or(&mut [], |words| Arc::make_mut(words))
     }
 
     /// True where both tables have one and the same plane in memory.
@@ -114,15 +148,6 @@ impl Table {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
-    }
-
-    pub(crate) fn replace_row(&mut self, row: usize, words: &[u64]) {
-        if self.row(row) == words {
-            return;
-        }
-        let start = row % self.shape[1] * self.words_per_row;
-        let plane = Arc::make_mut(&mut self.planes[row / self.shape[1]]);
-        plane[start..start + self.words_per_row].copy_from_slice(words);
     }
 
     /// Blocked cells in order.
@@ -138,6 +163,32 @@ impl Table {
 impl PartialEq for Table {
     fn eq(&self, other: &Self) -> bool {
         self.shape == other.shape && self.planes == other.planes
+    }
+}
+
+/// Rows of `W` words, and `n` cells of them set from the first on.
+#[derive(Clone, Copy)]
+pub(crate) struct Masks<'a, const W: usize>(&'a [[u64; W]]);
+
+impl<const W: usize> Masks<'_, W> {
+    /// Sets a span's cells in a row; what lies outside the table is left out.
+    #[inline]
+    pub fn mark(self, row: &mut [u64; W], span: Span) {
+        let end = self.0.len().saturating_sub(1);
+        let (from, to) = (usize::from(span.first).min(end), (usize::from(span.last) + 1).min(end));
+        let (from, to) = (&self.0[from], &self.0[to]);
+        for w in 0..W {
+            row[w] |= to[w] & !from[w];
+        }
+    }
+}
+
+/// Sets the spans' cells in the words of a plane, `W` to a row, of which `first` is the first.
+#[inline]
+fn mark_spans<const W: usize>(words: &mut [u64], masks: Masks<'_, W>, first: u32, spans: &[Span]) {
+    let rows = words.as_chunks_mut::<W>().0;
+    for &span in spans {
+        masks.mark(&mut rows[(span.row - first) as usize], span);
     }
 }
 

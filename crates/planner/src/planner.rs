@@ -88,12 +88,38 @@ impl Planner {
     pub fn update(&mut self, table: &Table) -> Result<Changes, PlanError> {
         check_shape(self.space.grid(), table)?;
         let changes = Changes::between(&self.table, table);
+        self.apply(table, &changes)?;
+        Ok(changes)
+    }
+
+    /// The same where the changes are known, as [`elbowroom_cspace::JointMap::set`] tells them: costs what changed, no plane
+    /// is compared. `changes` must be all that differs between the planner's table and the newer one; changes of several
+    /// updates are handed over one by one, in order.
+    ///
+    /// ```
+    /// # use elbowroom_cspace::{Axis, Grid, JointMap, Obstacle, PlanarArm};
+    /// # use elbowroom_planner::Planner;
+    /// # use elbowroom_spatial::Vec3;
+    /// # let axis = |name: &str| Axis::from_degrees(name, -90.0, 90.0, 5.0);
+    /// # let grid = Grid::new([axis("base")?, axis("shoulder")?, axis("elbow")?])?;
+    /// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
+    /// let mut planner = Planner::new(&grid, map.table())?;
+    /// let changes = map.set("head", &Obstacle::sphere(Vec3::new(1.5, 0.0, 1.0), 0.3)?).clone();
+    /// planner.apply(map.table(), &changes)?;
+    /// assert_eq!(planner.table().blocked(), map.table().blocked());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The table is not of the grid's shape.
+    pub fn apply(&mut self, table: &Table, changes: &Changes) -> Result<(), PlanError> {
+        check_shape(self.space.grid(), table)?;
         self.table = table.clone();
         if !changes.is_empty() {
-            self.graph.update(table, &changes);
+            self.graph.update(table, changes);
             self.labels.forget();
         }
-        Ok(changes)
+        Ok(())
     }
 
     /// The table that paths are planned on.

@@ -14,7 +14,7 @@ mod straightforward;
 use std::hint::black_box;
 use std::time::Duration;
 
-use elbowroom_cspace::{Axis, Filler, Grid, JointMap, Layer, Obstacle, PlanarArm, Table};
+use elbowroom_cspace::{Axis, Changes, Filler, Grid, JointMap, Layer, Obstacle, PlanarArm, Table};
 use elbowroom_spatial::{Pose, Vec3};
 use straightforward::{Planar, Solid};
 
@@ -31,16 +31,19 @@ fn main() {
             let spheres = best(3, || planar.spheres(&solid, &mut cells));
             let spheres_blocked = count(&cells);
             let (fill, whole, blocked) = ours(&grid, &obstacle);
-            let (entered, moved) = updates(&grid, &obstacle, &moved);
+            let (entered, anew, moved) = updates(&grid, &obstacle, &moved);
             println!("{name}, {step_deg} degrees, {} cells", grid.cells());
             line("pruned, by middles", pruned, pruned_blocked);
             line("19 spheres, by middles", spheres, spheres_blocked);
             line("elbowroom, row intervals", fill, blocked);
             line("elbowroom, whole table", whole, blocked);
             line("elbowroom, enters an empty map", entered, blocked);
+            line("elbowroom, all anew, changes told", anew, blocked);
             line("elbowroom, moves by 1 cm", moved, blocked);
             let ratio = |other: Duration| other.as_secs_f64() / whole.as_secs_f64();
-            println!("  ratio: {:.1} to pruned, {:.1} to spheres\n", ratio(pruned), ratio(spheres));
+            println!("  ratio: {:.1} to pruned, {:.1} to spheres", ratio(pruned), ratio(spheres));
+            let share = |whole: Duration| moved.as_secs_f64() / whole.as_secs_f64() * 100.0;
+            println!("  a move: {:.0} % of all anew, {:.0} % of entering\n", share(anew), share(entered));
         }
     }
 }
@@ -77,8 +80,8 @@ fn ours(grid: &Grid, obstacle: &Obstacle) -> (Duration, Duration, usize) {
     (fill, whole, table.blocked())
 }
 
-/// Through the map, with the changed cells told: an obstacle enters, an obstacle moves.
-fn updates(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> (Duration, Duration) {
+/// With the changed cells told: an obstacle enters a map, the whole table made anew, an obstacle of a map moves.
+fn updates(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> (Duration, Duration, Duration) {
     let mut map = JointMap::new(ARM, grid).expect("a sound arm");
     let mut entered = Duration::MAX;
     for _ in 0..100 {
@@ -90,7 +93,21 @@ fn updates(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> (Duration, Dur
         black_box(map.set("it", moved));
         black_box(map.set("it", obstacle));
     });
-    (entered, both / 2)
+    (entered, anew(grid, obstacle, moved), both / 2)
+}
+
+/// What a map without layers would do when an obstacle moves.
+fn anew(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> Duration {
+    let mut filler = Filler::new(ARM, grid).expect("a sound arm");
+    let (mut layer, mut old, mut new) = (Layer::new(), Table::new(grid.shape()), Table::new(grid.shape()));
+    filler.fill(obstacle, &mut layer);
+    old.add(&layer);
+    best(100, || {
+        filler.fill(moved, &mut layer);
+        new.clear();
+        new.add(&layer);
+        black_box(Changes::between(&old, &new));
+    })
 }
 
 fn line(what: &str, time: Duration, blocked: usize) {

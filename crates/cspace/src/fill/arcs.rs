@@ -1,4 +1,4 @@
-//! Rows in which the wrist's sphere meets the outline in several arcs, one by one.
+//! Rows in which the wrist's sphere meets the outline in several arcs, one by one, in double precision.
 
 use std::f64::consts::TAU;
 
@@ -30,7 +30,8 @@ pub(super) fn each(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64, mut f
         *f = (f.0 - turn, f.1 - turn);
     }
     free.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut reached = start;
+    // The last may reach over the start.
+    let mut reached = free.iter().map(|f| f.1 - TAU).fold(start, f64::max);
     for &(from, to) in free.iter() {
         if from > reached {
             found(reached, from);
@@ -40,4 +41,33 @@ pub(super) fn each(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64, mut f
     if start + TAU > reached {
         found(reached, start + TAU);
     }
+}
+
+/// Directions from `at` in which a link of length `reach` meets the outline: lowest and highest angle, radians; `None`
+/// where it never does. `at` is outside.
+pub(super) fn seen(outline: &Outline, fan: &Fan, at: [f64; 2], reach: f64) -> Option<(f64, f64)> {
+    let line = |k: usize| [f64::from(fan.x[k]), f64::from(fan.y[k]), f64::from(outline.far[k])];
+    let lines = || (0..fan.count).map(line).enumerate();
+    let gap = |[x, y, far]: [f64; 3]| far - x * at[0] - y * at[1];
+    // The line that `at` is farthest outside of: all of the outline is beyond it.
+    let (_, nearest) = lines().min_by(|a, b| gap(a.1).total_cmp(&gap(b.1)))?;
+    let ahead = [-nearest[0], -nearest[1]];
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (k, line) in lines() {
+        let ([x, y, _], gap) = (line, gap(line));
+        let along = x * at[1] - y * at[0];
+        let half = (reach * reach - gap * gap).max(0.0).sqrt();
+        let from = (f64::from(outline.from[k]) - along).max(-half);
+        let to = (f64::from(outline.to[k]) - along).min(half);
+        if from > to || gap.abs() > reach {
+            continue;
+        }
+        for s in [from, to] {
+            let (px, py) = (gap * x - s * y, gap * y + s * x);
+            let tangent = (ahead[0] * py - ahead[1] * px) / (ahead[0] * px + ahead[1] * py).max(1e-12);
+            (lo, hi) = (lo.min(tangent), hi.max(tangent));
+        }
+    }
+    let middle = ahead[1].atan2(ahead[0]);
+    (lo <= hi).then(|| (middle + lo.atan(), middle + hi.atan()))
 }

@@ -102,7 +102,8 @@ impl Body for BoxBody {
         let [offset, height] = self.shoulder;
         let x = self.center.x * plane[0] + self.center.y * plane[1] - offset;
         self.from_shoulder = P { x: x as f32, y: self.middle.y, z: (self.center.z - height) as f32 };
-        self.half = self.edges.map(|edge| turned(edge, plane));
+        let [a, b, c] = self.edges;
+        self.half = [turned(a, plane), turned(b, plane), turned(c, plane)];
     }
 
     fn own_directions(&self, lean: f32) -> impl Iterator<Item = [f32; 2]> {

@@ -8,11 +8,12 @@ use fearless_simd::{Select, Simd, SimdBase};
 use super::body::{Body, Tilt};
 use super::fan::{Fan, SIZE};
 use super::intervals::{Plane, rows};
-use super::lanes::{WIDTH, load, mad, splat};
+use super::lanes::{ANGLE_ERROR, WIDTH, load, mad, splat};
 use super::outline::Outline;
 use super::row::Rows;
+use super::sift::reached_from;
 use super::support::reach;
-use super::{Filler, upper};
+use super::{Filler, MARGIN, ROUNDING, arc, upper};
 use crate::{Layer, PlanarArm};
 
 /// What all planes share.
@@ -29,11 +30,17 @@ pub(super) struct Shared {
     pub turn: [f32; 2],
     /// Margin for single precision, metres.
     pub margin: f32,
-    /// From an elbow farther than this from the enclosing ball's middle nothing is reached, whatever θ1 and θ2 within their
-    /// cells, metres.
-    pub reach: f32,
     pub sectors: [f64; 2],
     pub apart: f32,
+    /// Cosine and sine of half the arc of the elbow over sixteen rows.
+    pub arc: [f32; 2],
+    /// Length of the upper arm and what single precision may lose of it, metres.
+    pub upper_reach: f32,
+    /// What single precision may lose of a distance from a line, metres.
+    pub rounding: f32,
+    /// From an elbow farther outside than this, tangents are good to the margins, metres: what rounding turns a tangent by at
+    /// a corner this near moves it by no more than the margin (eight times the rounding) at the end of the forearm.
+    pub clear: f32,
 }
 
 /// Outlines for the radii of the three parts: the upper arm's as it is, the others turned by half a step of θ2.
@@ -43,6 +50,8 @@ pub(super) struct Outlines {
     pub upper: Outline,
     pub fore: Outline,
     pub wrist: Outline,
+    /// See [`reached_from`].
+    pub reached_from: [f32; SIZE],
 }
 
 #[inline(always)]
@@ -55,7 +64,9 @@ pub(super) fn fill<S: Simd, B: Body>(
     layer: &mut Layer,
 ) {
     let [half1, half2, _] = filler.grid.half_widths();
-    let arm = filler.arm;
+    // The forearm ends in half a ball: the wrist's is no smaller.
+    let wrist_radius_m = filler.arm.wrist_radius_m.max(filler.arm.fore_radius_m);
+    let arm = PlanarArm { wrist_radius_m, ..filler.arm };
     let thickest = arm.upper_radius_m.max(arm.fore_radius_m).max(arm.wrist_radius_m);
     let size = center.length() + radius + arm.reach_m();
     let shared = Shared {
@@ -66,10 +77,13 @@ pub(super) fn fill<S: Simd, B: Body>(
         tangent: half1.tan(),
         stretch: 1.0 / half1.cos() - 1.0,
         turn: [half2.sin() as f32, half2.cos() as f32],
-        margin: (4e-6 * size) as f32,
-        reach: ((radius + thickest + arm.fore_length_m) * 1.001 + size * (half1 + half2)) as f32,
+        margin: (MARGIN * size) as f32,
         sectors: sectors(half2 * 2.0, radius > arm.fore_length_m),
         apart: apart(half2 * 2.0),
+        arc: arc(half2 * (WIDTH - 1) as f64),
+        upper_reach: (arm.upper_length_m + 1e-6 * size) as f32,
+        rounding: (ROUNDING * size) as f32,
+        clear: (arm.fore_length_m / 8.0) as f32,
     };
     let mut outlines = Outlines {
         fan: Fan::new([[1.0, 0.0]].into_iter(), shared.apart),
@@ -77,8 +91,9 @@ pub(super) fn fill<S: Simd, B: Body>(
         upper: Outline::EMPTY,
         fore: Outline::EMPTY,
         wrist: Outline::EMPTY,
+        reached_from: [0.0; SIZE],
     };
-    let Filler { grid, planes, middles, scratch, .. } = filler;
+    let Filler { grid, planes, middles, borders, scratch, .. } = filler;
     let shoulder = &grid.axes()[1];
     for (i, &plane) in planes.iter().enumerate().take(which.end).skip(which.start) {
         let before = layer.spans.len();
@@ -93,14 +108,12 @@ pub(super) fn fill<S: Simd, B: Body>(
             }
             scratch.full.fill(0);
             if outlines.upper.exists
-                && let Some((lo, hi)) = outlines.upper.seen_from_shoulder(&outlines.fan, arm.upper_length_m)
+                && let Some((lo, hi)) = outlines.upper.seen_from_shoulder(simd, &outlines.fan, shared.upper_reach)
             {
                 upper::mark(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, &mut scratch.full);
             }
-            let out = center.x * plane[0] + center.y * plane[1] - arm.offset_m;
-            let middle = [out as f32, (arm.height_m - center.z) as f32];
             let plane =
-                Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, middle };
+                Plane { row: i * shoulder.count(), rows: shoulder.count(), full: &scratch.full, middles, borders };
             ordered &= before == layer.spans.len();
             ordered &= outlines.parts(simd, &shared, body, side, &plane, layer);
         }
@@ -110,8 +123,8 @@ pub(super) fn fill<S: Simd, B: Body>(
     }
 }
 
-/// What the corners of outlines may be wrong by in single precision, seen from the shoulder, radians.
-const UPPER_MARGIN: f64 = 1e-5;
+/// What angles seen from the shoulder may be wrong by in single precision, radians.
+const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
 
 impl Shared {
     /// False where not even the enclosing ball, grown by the thickest part, reaches into the wedge.
@@ -119,8 +132,7 @@ impl Shared {
         let x = (self.center.x * cos + self.center.y * sin) * side;
         let y = (self.center.y * cos - self.center.x * sin).abs();
         let around = self.around + f64::from(self.margin);
-        let beyond = (y - self.tangent * x) / (1.0 + self.tangent * self.tangent).sqrt();
-        x + around > 0.0 && beyond <= around
+        x + around > 0.0 && y - self.tangent * x <= around * (1.0 + self.stretch)
     }
 }
 
@@ -212,7 +224,7 @@ impl Outlines {
                 part.exists = false;
                 continue;
             }
-            let seen = raw.spread(fan);
+            let seen = raw.spread(simd, fan);
             spread = Some(match (spread, seen) {
                 (None, seen) => seen,
                 (Some(Some(a)), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
@@ -220,6 +232,11 @@ impl Outlines {
             });
             raw.turned_both_ways(simd, fan, shared.turn, part);
         }
+        // Where rounding says that there is no such outline, the forearm's serves for its end.
+        if self.fore.exists && !self.wrist.exists {
+            self.wrist.clone_from(&self.fore);
+        }
+        reached_from(simd, shared, &self.fan, &self.wrist, &mut self.reached_from);
         spread.flatten()
     }
 }

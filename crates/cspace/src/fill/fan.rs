@@ -3,7 +3,7 @@
 use super::lanes::WIDTH;
 
 /// Most directions of an outline: sixteen of the obstacle's own, the rest to round corners.
-pub(super) const MOST: usize = 80;
+pub(super) const MOST: usize = 64;
 /// Room for them and a whole vector of padding.
 pub(super) const SIZE: usize = MOST + WIDTH;
 /// Directions of the obstacle's own that are used.

@@ -1,10 +1,10 @@
 //! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, mask32x16};
 
 use super::clip;
 use super::fan::{Fan, SIZE};
-use super::lanes::{F, WIDTH, load, mad, splat};
+use super::lanes::{F, WIDTH, atan2, load, mad, splat};
 
 /// A line beside the outline whose neighbours meet before it by more than this is drawn in, metres.
 const LOOSE: f32 = 2e-4;
@@ -19,8 +19,8 @@ pub(super) struct Outline {
     pub from: [f32; SIZE],
     pub to: [f32; SIZE],
     /// Corner `k`, between lines `k − 1` and `k`.
-    corner_x: [f32; SIZE],
-    corner_y: [f32; SIZE],
+    pub corner_x: [f32; SIZE],
+    pub corner_y: [f32; SIZE],
     /// False where nothing is inside.
     pub exists: bool,
 }
@@ -59,8 +59,9 @@ impl Outline {
         let first = self.far[0];
         self.far[fan.count..].fill(first);
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y, far] = [&fan.x, &fan.y, &self.far].map(|list| load(simd, &list[at..]));
-            let [next_x, next_y, next_far] = [&fan.x, &fan.y, &self.far].map(|list| load(simd, &list[at + 1..]));
+            let [x, y, far] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..]), load(simd, &self.far[at..])];
+            let [next_x, next_y, next_far] =
+                [load(simd, &fan.x[at + 1..]), load(simd, &fan.y[at + 1..]), load(simd, &self.far[at + 1..])];
             let over = splat(simd, 1.0) / (x * next_y - y * next_x);
             let corner_x = (far * next_y - next_far * y) * over;
             let corner_y = (next_far * x - far * next_x) * over;
@@ -70,7 +71,7 @@ impl Outline {
         self.corner_x[0] = self.corner_x[fan.count];
         self.corner_y[0] = self.corner_y[fan.count];
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y] = [&fan.x, &fan.y].map(|list| load(simd, &list[at..]));
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
             let along = |corner_x: F<S>, corner_y: F<S>| corner_y * x - corner_x * y;
             let before = along(load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..]));
             let after = along(load(simd, &self.corner_x[at + 1..]), load(simd, &self.corner_y[at + 1..]));
@@ -85,7 +86,7 @@ impl Outline {
     pub fn turned_both_ways<S: Simd>(&self, simd: S, fan: &Fan, [sine, cosine]: [f32; 2], out: &mut Self) {
         let (sine, cosine) = (splat(simd, sine), splat(simd, cosine));
         for at in (0..fan.count).step_by(WIDTH) {
-            let [x, y] = [&fan.x, &fan.y].map(|list| load(simd, &list[at..]));
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
             let mut most = splat(simd, f32::NEG_INFINITY);
             for k in 0..fan.count {
                 let (corner_x, corner_y) = (splat(simd, self.corner_x[k]), splat(simd, self.corner_y[k]));
@@ -101,48 +102,89 @@ impl Outline {
 
     /// Directions from the shoulder in which the outline lies, lowest and highest angle, radians; `None` where the
     /// shoulder is inside.
-    pub fn spread(&self, fan: &Fan) -> Option<(f64, f64)> {
-        let (k, nearest) = (0..fan.count).map(|k| (k, self.far[k])).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        if !(nearest < 0.0) {
-            return None;
+    #[inline(always)]
+    pub fn spread<S: Simd>(&self, simd: S, fan: &Fan) -> Option<(f64, f64)> {
+        let mut seen = Seen::from_shoulder(simd, fan, self)?;
+        for at in (0..fan.count).step_by(WIDTH) {
+            let corner = [load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..])];
+            seen.take(simd, in_fan(fan, at), corner);
         }
-        let ahead = [-f64::from(fan.x[k]), -f64::from(fan.y[k])];
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for k in 0..fan.count {
-            let (x, y) = (f64::from(self.corner_x[k]), f64::from(self.corner_y[k]));
-            let tangent = (ahead[0] * y - ahead[1] * x) / (ahead[0] * x + ahead[1] * y).max(1e-12);
-            (lo, hi) = (lo.min(tangent), hi.max(tangent));
-        }
-        let middle = ahead[1].atan2(ahead[0]);
-        Some((middle + lo.atan(), middle + hi.atan()))
+        seen.angles(simd)
     }
 
     /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
     /// radians; `None` where it never does.
-    pub fn seen_from_shoulder(&self, fan: &Fan, reach: f64) -> Option<(f64, f64)> {
-        let lines = || (0..fan.count).map(|k| (k, f64::from(self.far[k])));
-        // The line that the shoulder is farthest outside of: all of the outline is beyond it.
-        let (k, nearest) = lines().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        if nearest >= 0.0 {
+    #[inline(always)]
+    pub fn seen_from_shoulder<S: Simd>(&self, simd: S, fan: &Fan, reach: f32) -> Option<(f64, f64)> {
+        let Some(mut seen) = Seen::from_shoulder(simd, fan, self) else {
             return Some((-std::f64::consts::PI, std::f64::consts::PI));
-        }
-        let ahead = [-f64::from(fan.x[k]), -f64::from(fan.y[k])];
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (k, far) in lines() {
-            let half = reach * reach - far * far;
-            let (x, y) = (f64::from(fan.x[k]), f64::from(fan.y[k]));
-            let half = half.max(0.0).sqrt();
-            let (from, to) = (f64::from(self.from[k]).max(-half), f64::from(self.to[k]).min(half));
-            if from > to || far.abs() > reach {
-                continue;
-            }
+        };
+        for at in (0..fan.count).step_by(WIDTH) {
+            let [x, y] = [load(simd, &fan.x[at..]), load(simd, &fan.y[at..])];
+            let far = load(simd, &self.far[at..]);
+            let square = splat(simd, reach * reach) - far * far;
+            let half = square.max(splat(simd, 0.0)).sqrt();
+            let [from, to] = [load(simd, &self.from[at..]).max(-half), load(simd, &self.to[at..]).min(half)];
+            let meets = (from.simd_le(to) & square.simd_ge(splat(simd, 0.0))).to_bitmask() & in_fan(fan, at);
             for s in [from, to] {
-                let (px, py) = (far * x - s * y, far * y + s * x);
-                let tangent = (ahead[0] * py - ahead[1] * px) / (ahead[0] * px + ahead[1] * py).max(1e-12);
-                (lo, hi) = (lo.min(tangent), hi.max(tangent));
+                seen.take(simd, meets, [far * x - s * y, mad(far, y, s * x)]);
             }
         }
-        let middle = ahead[1].atan2(ahead[0]);
-        (lo <= hi).then(|| (middle + lo.atan(), middle + hi.atan()))
+        seen.angles(simd)
+    }
+}
+
+/// Bits of the lanes from line `at` on that are lines of the fan.
+fn in_fan(fan: &Fan, at: usize) -> u64 {
+    !0 >> (64 - (fan.count - at).min(WIDTH))
+}
+
+/// What of an outline was seen, as tangents of the angle from a direction ahead.
+struct Seen<S: Simd> {
+    ahead: [f32; 2],
+    /// How far the shoulder is outside.
+    depth: f32,
+    lo: F<S>,
+    hi: F<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    /// Looks square at the line that the shoulder is farthest outside of: all of the outline is beyond it. `None` where the
+    /// shoulder is inside.
+    #[inline(always)]
+    fn from_shoulder(simd: S, fan: &Fan, outline: &Outline) -> Option<Self> {
+        let (mut k, mut least) = (0, f32::INFINITY);
+        for (line, &far) in outline.far[..fan.count].iter().enumerate() {
+            if far < least {
+                (k, least) = (line, far);
+            }
+        }
+        let ahead = [-fan.x[k], -fan.y[k]];
+        let (lo, hi) = (splat(simd, f32::INFINITY), splat(simd, f32::NEG_INFINITY));
+        (least < 0.0).then_some(Self { ahead, depth: -least, lo, hi })
+    }
+
+    #[inline(always)]
+    fn take(&mut self, simd: S, lanes: u64, [x, y]: [F<S>; 2]) {
+        let lanes = mask32x16::from_bitmask(simd, lanes);
+        let [ahead_x, ahead_y] = [splat(simd, self.ahead[0]), splat(simd, self.ahead[1])];
+        let ahead = mad(ahead_x, x, ahead_y * y).max(splat(simd, self.depth));
+        let tangent = (ahead_x * y - ahead_y * x) / ahead;
+        self.lo = lanes.select(self.lo.min(tangent), self.lo);
+        self.hi = lanes.select(self.hi.max(tangent), self.hi);
+    }
+
+    /// Lowest and highest angle; `None` where nothing was seen.
+    #[inline(always)]
+    fn angles(&self, simd: S) -> Option<(f64, f64)> {
+        let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));
+        let (lo, hi) = (lo.min(lo.slide::<4>(lo)), hi.max(hi.slide::<4>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<2>(lo)), hi.max(hi.slide::<2>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<1>(lo)).to_array()[0], hi.max(hi.slide::<1>(hi)).to_array()[0]);
+        let (mut x, mut y) = ([1.0; WIDTH], [0.0; WIDTH]);
+        (x[0], y[0], y[1], y[2]) = (self.ahead[0], self.ahead[1], lo, hi);
+        let angles = atan2(simd, load(simd, &y), load(simd, &x)).to_array();
+        let middle = f64::from(angles[0]);
+        (lo <= hi).then(|| (middle + f64::from(angles[1]), middle + f64::from(angles[2])))
     }
 }

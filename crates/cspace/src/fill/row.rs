@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, i32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, i32x16, mask32x16};
 
 use super::lanes::{ANGLE_ERROR, F, splat};
 use crate::{Axis, Layer, Span};
@@ -24,6 +24,8 @@ pub(super) struct Rows {
     /// The axis is longer than a turn: an interval may appear more than twice.
     long: bool,
 }
+
+const LANES: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 impl Rows {
     pub fn new(elbow: &Axis) -> Self {
@@ -54,8 +56,41 @@ impl Rows {
         let first: i32x16<S> = a.min(splat(simd, self.count)).floor().to_int();
         let last: i32x16<S> = b.min(turn + turn).floor().to_int();
         let again: i32x16<S> = (b - turn).max(splat(simd, -1.0)).min(splat(simd, self.count)).floor().to_int();
-        let (first, last, again) = (first.to_array(), last.to_array(), again.to_array());
         let full = full | all;
+        let hit = hit & !full;
+        let twice = again.simd_ge(i32x16::splat(simd, 0)).to_bitmask() as u16 & hit;
+        if self.long || twice != 0 {
+            return self.one_by_one(row, full, hit, [first.to_array(), last.to_array(), again.to_array()], layer);
+        }
+        let end = i32x16::splat(simd, i32::from(self.last));
+        let whole = mask32x16::from_bitmask(simd, u64::from(full));
+        let inside = whole | mask32x16::from_bitmask(simd, u64::from(hit)) & first.simd_le(end);
+        let zero = i32x16::splat(simd, 0);
+        let (first, last) = (whole.select(zero, first), whole.select(end, last.min(end)));
+        // Both ends in one number, and the rows of those that are kept to the front.
+        let ends = (first + (last << 16)).compress(inside).to_array();
+        let lanes = i32x16::simd_from(simd, LANES).compress(inside).to_array();
+        let count = inside.to_bitmask().count_ones() as usize;
+        layer.spans.extend(lanes[..count].iter().zip(&ends[..count]).map(|(&lane, &ends)| Span {
+            row: row + lane as u32,
+            first: ends as u16,
+            last: (ends >> 16) as u16,
+        }));
+    }
+
+    /// True where the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
+    /// angle 0.
+    #[cfg(test)]
+    pub fn holds(&self, spans: &[&Span], angle: f64, base: f64) -> bool {
+        let turn = f64::from(self.turn);
+        let cell = (angle * f64::from(self.scale) + base).rem_euclid(turn);
+        (0..=(f64::from(self.count) / turn) as u32).map(|k| cell + turn * f64::from(k)).all(|cell| {
+            let inside = |span: &&&Span| u32::from(span.first) <= cell as u32 && cell as u32 <= u32::from(span.last);
+            cell >= f64::from(self.count) || spans.iter().find(inside).is_some()
+        })
+    }
+
+    fn one_by_one(&self, row: u32, full: u16, hit: u16, [first, last, again]: [[i32; 16]; 3], layer: &mut Layer) {
         let mut rest = full | hit;
         while rest != 0 {
             let lane = rest.trailing_zeros();
@@ -88,7 +123,6 @@ impl Rows {
     }
 
     /// The interval from the turn it begins in, and what of it lies in the turn before.
-    #[inline(always)]
     fn pieces(&self, row: u32, first: i32, last: i32, again: i32, layer: &mut Layer) {
         let end = i32::from(self.last);
         if self.long {

@@ -23,8 +23,10 @@ pub(super) fn mark(shoulder: &Axis, lo: f64, hi: f64, full: &mut [u16]) {
 }
 
 fn mark_cells(first: usize, last: usize, full: &mut [u16]) {
-    for row in first..=last {
-        full[row / 16] |= 1 << (row % 16);
+    for word in first / 16..=last / 16 {
+        let from = first.saturating_sub(word * 16);
+        let to = (last - word * 16).min(15);
+        full[word] |= (!0 << from) & (!0 >> (15 - to));
     }
 }
 
@@ -34,7 +36,7 @@ pub(super) fn of_disk([x, y]: [f64; 2], radius: f64, reach: f64) -> Option<(f64,
     if !(square > 0.0) {
         return Some((0.0, PI));
     }
-    let distance = x.hypot(y);
+    let distance = (x * x + y * y).sqrt();
     let tangent = square.sqrt().min(reach);
     let cosine = (square + tangent * tangent) / (2.0 * distance * tangent);
     (cosine <= 1.0).then(|| (y.atan2(x), cosine.acos()))
