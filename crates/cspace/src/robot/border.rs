@@ -15,7 +15,7 @@ impl Search<'_> {
             self.pairs[begin..].iter().filter(|pair| parts[pair.part as usize].depth == depth).copied().collect();
         // The nearest most likely touches, and one is enough.
         here.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-        let touches = here.into_iter().any(|pair| self.touches(pair, span, None, self.task.looks));
+        let touches = here.into_iter().any(|pair| self.touches(pair, span, None, self.task.looks[depth]));
         self.go_to(&span.middle);
         touches
     }

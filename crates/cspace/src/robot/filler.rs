@@ -8,14 +8,17 @@ use elbowroom_scene::Robot;
 use elbowroom_spatial::Pose;
 
 use super::blocks::{Blocks, Cells, Node};
-use super::joints::{Drive, Others, RobotMapError};
+use super::joints::{Drive, MOST_JOINTS, Others, RobotMapError};
 use super::part::Parts;
 use super::search::{Search, Task, TooLarge};
 use super::target::Target;
 use crate::Axis;
 
-/// How often a cell at the border is cut in two before it counts as blocked.
-const LOOKS: u32 = 18;
+/// A cell at the border is cut until its parts are no wider than twice this (rad, or m where a joint slides), before it counts
+/// as blocked: its doubtful ones are then few of all blocked cells.
+const FINE: f64 = 3e-4;
+/// How often it is cut at most: with many axes its border has many parts.
+const MOST_LOOKS: u32 = 24;
 /// Slabs per thread: they take unequal times.
 const SLABS: usize = 8;
 
@@ -56,7 +59,8 @@ pub struct RobotFiller {
     drive: Drive,
     parts: Parts,
     axes: Vec<Axis>,
-    looks: u32,
+    /// How often a cell is cut, where the user says so.
+    looks: Option<u32>,
     most_bytes: usize,
     threads: usize,
 }
@@ -84,7 +88,7 @@ impl RobotFiller {
         let parts = Parts::of(robot, &drive)?;
         let threads = std::thread::available_parallelism().map_or(1, Into::into);
         let axes = axes.to_vec();
-        Ok(Self { drive, parts, axes, looks: LOOKS, most_bytes: Self::MOST_BYTES, threads })
+        Ok(Self { drive, parts, axes, looks: None, most_bytes: Self::MOST_BYTES, threads })
     }
 
     /// The axes.
@@ -98,10 +102,10 @@ impl RobotFiller {
     }
 
     /// How often a cell at the border is cut in two before it counts as blocked: 0 is fast and blocks more cells than
-    /// need be, 18 (unless told otherwise) hardly any.
+    /// need be, 18 (about what 2 degrees have unless told otherwise) hardly any.
     #[must_use]
     pub fn with_looks(self, looks: u32) -> Self {
-        Self { looks: looks.min(60), ..self }
+        Self { looks: Some(looks.min(60)), ..self }
     }
 
     /// Memory that the answer may take, bytes.
@@ -139,7 +143,7 @@ impl RobotFiller {
             axes: &self.axes,
             targets: &targets,
             suspects: &suspects,
-            looks: self.looks,
+            looks: self.looks(),
             most_nodes: self.most_bytes / size_of::<Node>() / slabs.len().max(1),
         };
         let done = self.run(task, &slabs);
@@ -153,6 +157,16 @@ impl RobotFiller {
             counts.add(part);
         }
         Ok((out, counts))
+    }
+
+    /// Per number of axes, counted from the first: how often to cut.
+    fn looks(&self) -> [u32; MOST_JOINTS + 1] {
+        let mut out = [0; MOST_JOINTS + 1];
+        for (i, axis) in self.axes.iter().enumerate() {
+            let more = (0.5 * axis.step() / FINE).log2().ceil().clamp(0.0, 60.0) as u32;
+            out[i + 1] = self.looks.unwrap_or(MOST_LOOKS.min(out[i] + more));
+        }
+        out
     }
 
     fn run(&self, task: Task<'_>, slabs: &[Cells]) -> Vec<Option<Done>> {

@@ -35,8 +35,8 @@ pub(super) struct Task<'a> {
     pub targets: &'a [Target],
     /// Solid and target small enough to be inside.
     pub suspects: &'a [(u32, u32)],
-    /// How often a cell at the border is cut in two to tell whether it is free.
-    pub looks: u32,
+    /// How often a cell at the border is cut in two to tell whether it is free, per number of axes that move a piece.
+    pub looks: [u32; MOST_JOINTS + 1],
     /// Nodes at most.
     pub most_nodes: usize,
 }
