@@ -112,7 +112,9 @@ impl LayerMap {
     pub fn set_fixed(&mut self, layers: &[Layer]) -> Changes {
         let before = self.table.clone();
         let mut fixed = Table::new(self.grid.shape());
-        layers.iter().for_each(|layer| fixed.add(layer));
+        for layer in layers {
+            fixed.add(layer);
+        }
         self.table = fixed.clone();
         self.fixed = fixed;
         for (_, layer) in &self.layers {
