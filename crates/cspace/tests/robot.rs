@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use elbowroom_cspace::{Axis, AxisError, Filler, Grid, Layer, Model, Obstacle, Others, PlanarArm, RobotFiller, Table};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, Mimic};
-use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, collides};
+use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, collides};
 use elbowroom_scene::{Body, Robot, example};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -63,6 +63,13 @@ fn what_fits_inside_a_link_without_touching_it_is_found() {
     }
     let big = Shape::Mesh(Arc::new(crate_mesh(0.25)));
     case.robot.bodies[3].push(Body { name: String::new(), shape: big, in_link: Pose::from_translation(Vec3::Z * 0.2) });
+    // Two small things that are one mesh, far apart.
+    let speck = crate_mesh(0.012);
+    let far = Vec3::new(0.9, -0.5, 0.3);
+    let vertices = speck.vertices().iter().copied().chain(speck.vertices().iter().map(|v| *v + far)).collect();
+    let faces = speck.triangles().iter().copied().chain(speck.triangles().iter().map(|t| t.map(|v| v + 8))).collect();
+    let both = Shape::Mesh(Arc::new(TriMesh::new(vertices, faces).unwrap()));
+    case.obstacles.push((both, Pose::from_xyz_rpy([-0.5, -0.1, 0.4], [0.0; 3])));
     let tiny = (Shape::Mesh(Arc::new(crate_mesh(0.01))), Pose::from_xyz_rpy([-0.4, 0.3, 0.5], [0.1, 0.2, 0.3]));
     case.obstacles.push(tiny);
     case.step = 3.0;

@@ -1,4 +1,5 @@
-//! The tick allocates nothing (P.6).
+//! The tick allocates nothing (P.6). Without the test harness: its threads take memory, too, and the counter counts the
+//! whole process.
 
 mod common;
 
@@ -12,8 +13,7 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-#[test]
-fn ticks_of_all_laws_over_a_thousand_regions_allocate_nothing() {
+fn main() {
     let mut r = Random(3);
     let regions = (0..1000).map(|i| {
         let at = r.vec3(1.5);

@@ -211,7 +211,7 @@ impl RobotFiller {
     fn suspects(&self, targets: &[Target]) -> Vec<(u32, u32)> {
         let mut out = Vec::new();
         for (solid, hollow) in self.parts.hollows.iter().enumerate() {
-            let fits = |(_, t): &(usize, &Target)| t.point.is_some() && t.size() <= hollow.radius * (1.0 + 1e-9);
+            let fits = |(_, t): &(usize, &Target)| t.fits_into(hollow.radius);
             out.extend(targets.iter().enumerate().filter(fits).map(|(target, _)| (solid as u32, target as u32)));
         }
         out

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::mesh::{Hint, Scratch};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
 use super::blocks::{Cells, Node};
 use super::filler::FillCounts;
@@ -169,7 +169,7 @@ impl<'a> Search<'a> {
             return true;
         }
         // Certainly not farther apart than that.
-        if target.point.is_some_and(|p| p.distance(pace.center) + part.radius <= far) {
+        if target.points.first().is_some_and(|p| p.distance(pace.center) + part.radius <= far) {
             return false;
         }
         // It was nearer a moment ago: looking would tell what is known.
@@ -250,10 +250,15 @@ impl<'a> Search<'a> {
     fn is_inside(&self) -> bool {
         self.task.suspects.iter().any(|&(solid, target)| {
             let hollow = &self.task.parts.hollows[solid as usize];
-            let Some(point) = self.task.targets[target as usize].point else { return false };
             let link = self.task.drive.link_in_world(&self.state, hollow.link);
-            let near = link.transform_point(hollow.center).distance(point) <= hollow.radius * (1.0 + 1e-9);
-            near && hollow.mesh.contains((link * hollow.in_link).inverse_transform_point(point))
+            let center = link.transform_point(hollow.center);
+            let radius = hollow.radius * (1.0 + 1e-9);
+            let mesh_in_world = link * hollow.in_link;
+            // Apart surfaces: a connected part is inside as a whole or not at all.
+            let inside = |p: &Vec3| {
+                center.distance(*p) <= radius && hollow.mesh.contains(mesh_in_world.inverse_transform_point(*p))
+            };
+            self.task.targets[target as usize].points.iter().any(inside)
         })
     }
 

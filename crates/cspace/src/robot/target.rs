@@ -15,8 +15,8 @@ pub(super) struct Target {
     original: Shape,
     pub in_world: Pose,
     pub bounds: Aabb,
-    /// A point of it; `None` where it has no end.
-    pub point: Option<Vec3>,
+    /// A point of each connected part of it; none where it has no end.
+    pub points: Vec<Vec3>,
 }
 
 impl Target {
@@ -33,13 +33,12 @@ impl Target {
         if !endless && (far(bounds.min) || far(bounds.max)) {
             return Err(refuse());
         }
-        let local = match &shape {
-            Shape::HalfSpace(_) => None,
-            Shape::Mesh(mesh) => mesh.vertices().first().copied(),
-            _ => Some(Vec3::ZERO),
+        let points = match &shape {
+            Shape::HalfSpace(_) => Vec::new(),
+            Shape::Mesh(mesh) => mesh.parts().iter().map(|p| in_world.transform_point(*p)).collect(),
+            _ => vec![in_world.translation],
         };
-        let point = local.map(|p| in_world.transform_point(p));
-        Ok(Self { shape, original, in_world: *in_world, bounds, point })
+        Ok(Self { shape, original, in_world: *in_world, bounds, points })
     }
 
     /// No point of it is nearer to `p` than this, metres.
@@ -59,8 +58,12 @@ impl Target {
         -project_point(&self.original, &self.in_world, p).signed_distance
     }
 
-    /// Half its diagonal, metres: what is larger cannot be inside something of that size.
-    pub fn size(&self) -> f64 {
-        self.bounds.extent().length() * 0.5
+    /// True where something of it may be inside something of this radius: what is in one piece and larger cannot.
+    pub fn fits_into(&self, radius: f64) -> bool {
+        match self.points.len() {
+            0 => false,
+            1 => self.bounds.extent().length() * 0.5 <= radius * (1.0 + 1e-9),
+            _ => true,
+        }
     }
 }

@@ -141,6 +141,11 @@ impl TriMesh {
         self.triangles[triangle].map(|i| self.vertices[i as usize])
     }
 
+    /// A vertex of each connected part.
+    pub fn parts(&self) -> &[Vec3] {
+        &self.parts
+    }
+
     /// True where some part of the surface is closed, so that points can be inside.
     pub fn has_inside(&self) -> bool {
         self.in_closed_part.iter().any(|&c| c)
