@@ -241,3 +241,40 @@ fn every_model_of_an_obstacle_holds_it() {
         }
     }
 }
+
+#[test]
+fn joints_before_the_maps_may_be_anywhere() {
+    let ball = |x: f64| (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::new(x, 0.0, 0.6)));
+    let robot = example::arm().unwrap();
+    let blocked = |x: f64| {
+        let axes = axes(&robot, &[1, 2], 5.0);
+        let filler = RobotFiller::new(&robot, Pose::IDENTITY, &axes, &[1, 2], Others::Any).unwrap();
+        let blocks = filler.fill(&[ball(x)]).unwrap();
+        (blocks.blocked(), blocks.cells())
+    };
+    let (all, cells) = blocked(-0.5);
+    assert_eq!(all, cells);
+    assert_eq!(blocked(3.0).0, 0);
+}
+
+#[test]
+fn what_nearly_fills_a_link_from_inside_is_found() {
+    let mut case =
+        Case::new(vec![(Shape::Mesh(Arc::new(crate_mesh(0.3))), Pose::from_xyz_rpy([0.3, 0.0, 0.55], [0.0; 3]))]);
+    for bodies in &mut case.robot.bodies {
+        bodies.clear();
+    }
+    let big = Shape::Mesh(Arc::new(crate_mesh(0.35)));
+    // At these joint values the crate is inside and touches nothing.
+    let mut state = ChainState::new(&case.robot.chain);
+    state.q.copy_from_slice(&[0.0, 1.2, 0.8]);
+    case.robot.chain.forward(&mut state);
+    let (_, at) = case.obstacles[0];
+    let in_link = state.link_in_root(elbowroom_kinematics::LinkId(3)).inverse() * at;
+    case.robot.bodies[3].push(Body { name: String::new(), shape: big, in_link });
+    case.joints = vec![0, 1, 2];
+    case.step = 4.0;
+    let blocks = case.filler().fill(&case.obstacles).unwrap();
+    assert!(blocks.is_blocked(&[0.0, 1.2, 0.8]));
+    case.compare(&blocks, 10_000);
+}

@@ -91,7 +91,7 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
     let refuse = |e: RobotMapError| {
         let hint = match e {
             RobotMapError::Memory { .. } => "step = 5   (a larger step, or fewer joints)",
-            RobotMapError::Count(_) => "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]",
+            RobotMapError::Count(_) | RobotMapError::Joint { .. } => "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]",
             _ => "a number for every place and size",
         };
         wrong(format!("robot \"{}\": {e}", robot.name), hint)

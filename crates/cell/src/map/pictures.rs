@@ -79,12 +79,15 @@ fn color(index: usize) -> [u8; 3] {
 }
 
 fn value(map: &CellMap, axis: usize, value: f64) -> String {
-    let name = map.axes[axis].joint();
+    let name = escape(map.axes[axis].joint());
     if map.turns[axis] { format!("{name} {:.1}°", value.to_degrees()) } else { format!("{name} {value:.3} m") }
 }
 
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
 fn page(map: &CellMap, figures: &str) -> String {
-    let escape = |t: &str| t.replace('&', "&amp;").replace('<', "&lt;");
     let range = |i: usize, a: &Axis| format!("{} to {}", value(map, i, a.min()), value(map, i, a.max()));
     let last = map.axes.len() - 1;
     let mut text = format!("right: {}", range(last, &map.axes[last]));
@@ -104,7 +107,6 @@ fn page(map: &CellMap, figures: &str) -> String {
         "<!DOCTYPE html><meta charset=\"utf-8\"><title>map of {name}</title>\
          <style>body{{font:15px sans-serif;margin:1em}}figure{{display:inline-block;margin:4px}}\
          figcaption{{text-align:center}}img{{border:1px solid #888;image-rendering:pixelated;max-width:24em}}</style>\
-         <h1>map of {name}</h1><p>{}</p><p>{legend}</p>{figures}",
-        escape(&text)
+         <h1>map of {name}</h1><p>{text}</p><p>{legend}</p>{figures}"
     )
 }

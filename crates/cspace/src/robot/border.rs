@@ -4,13 +4,19 @@ use super::joints::MOST_JOINTS;
 use super::pace::Pace;
 use super::search::{Pair, Search, Span};
 
+/// So often a cell of three axes is looked at before it counts as blocked; with more axes, less: its border has more parts.
+const LOOKS_PER_CELL: u32 = 4096;
 /// A corner is tried where it seems to lead nearer by this share of the gap.
 const WORTH: f64 = 0.8;
 
 impl Search<'_> {
     /// True where a piece moved by `depth` axes may touch in a cell, of the pairs from `begin` on.
     pub fn touch_in(&mut self, span: &Span, begin: usize, depth: usize) -> bool {
-        let parts = &self.task.parts.parts;
+        if self.is_inside(depth, None) {
+            return true;
+        }
+        self.left = LOOKS_PER_CELL >> (4 * depth.saturating_sub(3));
+        let parts = &self.task.parts.pieces;
         let mut here: Vec<Pair> =
             self.pairs[begin..].iter().filter(|pair| parts[pair.part as usize].depth == depth).copied().collect();
         // The nearest most likely touches, and one is enough.
@@ -23,7 +29,7 @@ impl Search<'_> {
     /// True where a pair may touch in a box. Looks at the middle, then at the corner that leads nearer, then at both halves.
     fn touches(&mut self, mut pair: Pair, span: &Span, tried: Option<&[f64; MOST_JOINTS]>, looks: u32) -> bool {
         let task = self.task;
-        let part = &task.parts.parts[pair.part as usize];
+        let part = &task.parts.pieces[pair.part as usize];
         let target = &task.targets[pair.target as usize];
         self.go_to(&span.middle);
         let pace = Pace::of(part, task.drive, &self.state);
@@ -62,7 +68,8 @@ impl Search<'_> {
                 return true;
             }
         }
-        if looks == 0 {
+        self.left = self.left.saturating_sub(1);
+        if looks == 0 || self.left == 0 {
             self.counts.unsure += 1;
             return true;
         }

@@ -23,14 +23,18 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// Most cells: 4 GiB.
-    pub const MOST: usize = 1 << 32;
+    /// Most cells: 1 GiB.
+    pub const MOST: usize = 1 << 30;
 
-    /// The cells that any of some maps blocks; `None` where there are more than [`Dense::MOST`], or a map has other axes.
+    /// The cells that any of some maps blocks; `None` where there are more than [`Dense::MOST`], no
+    /// memory for them, or a map has other axes.
     pub fn of<'b>(axes: &[Axis], maps: impl IntoIterator<Item = &'b Blocks>) -> Option<Self> {
         let shape: Vec<usize> = axes.iter().map(Axis::count).collect();
         let count = shape.iter().try_fold(1usize, |all, n| all.checked_mul(*n)).filter(|n| *n <= Self::MOST)?;
-        let mut dense = Self { shape, cells: vec![0; count] };
+        let mut cells = Vec::new();
+        cells.try_reserve_exact(count).ok()?;
+        cells.resize(count, 0);
+        let mut dense = Self { shape, cells };
         for map in maps {
             if map.axes() != axes {
                 return None;

@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use elbowroom_proximity::Shape;
+use elbowroom_proximity::{Shape, collides};
 use elbowroom_scene::Robot;
 use elbowroom_spatial::Pose;
 
@@ -136,6 +136,12 @@ impl RobotFiller {
         let targets: Vec<Target> =
             obstacles.iter().map(|(shape, in_world)| Target::new(shape, in_world)).collect::<Result<_, _>>()?;
         let suspects = self.suspects(&targets);
+        if self.is_blocked_throughout(&targets) {
+            return Ok((
+                Blocks { axes: self.axes.clone(), slabs: vec![(0, vec![Node::Blocked])] },
+                FillCounts::default(),
+            ));
+        }
         let slabs = self.slabs();
         let task = Task {
             drive: &self.drive,
@@ -144,7 +150,8 @@ impl RobotFiller {
             targets: &targets,
             suspects: &suspects,
             looks: self.looks(),
-            most_nodes: self.most_bytes / size_of::<Node>() / slabs.len().max(1),
+            most_nodes: self.most_bytes / size_of::<Node>(),
+            used: &AtomicUsize::new(0),
         };
         let done = self.run(task, &slabs);
         let mut out = Blocks { axes: self.axes.clone(), slabs: Vec::with_capacity(slabs.len()) };
@@ -192,6 +199,12 @@ impl RobotFiller {
         done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 
+    /// True where something can be touched by what none of the axes moves and other joints may have anywhere.
+    fn is_blocked_throughout(&self, targets: &[Target]) -> bool {
+        let touches = |(shape, at): &(Shape, Pose), t: &Target| collides(shape, at, &t.shape, &t.in_world);
+        self.parts.still.iter().any(|solid| targets.iter().any(|t| touches(solid, t)))
+    }
+
     /// Cuts along the first axis.
     fn slabs(&self) -> Vec<Cells> {
         let all = Cells::all(&self.axes);
@@ -211,7 +224,7 @@ impl RobotFiller {
     fn suspects(&self, targets: &[Target]) -> Vec<(u32, u32)> {
         let mut out = Vec::new();
         for (solid, hollow) in self.parts.hollows.iter().enumerate() {
-            let fits = |(_, t): &(usize, &Target)| t.fits_into(hollow.radius);
+            let fits = |(_, t): &(usize, &Target)| t.fits_into(hollow.part.radius);
             out.extend(targets.iter().enumerate().filter(fits).map(|(target, _)| (solid as u32, target as u32)));
         }
         out

@@ -7,7 +7,7 @@ use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_scene::Robot;
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::joints::{Drive, Mover, RobotMapError};
+use super::joints::{Drive, Hanging, Mover, RobotMapError};
 use super::pieces::{self, Piece, Soup};
 use super::swept;
 use crate::Obstacle;
@@ -38,22 +38,36 @@ pub(super) struct Part {
     pub levers: Vec<f64>,
 }
 
-/// A closed mesh: it can hold something inside that does not touch its surface.
+impl Part {
+    /// A piece that hangs on some joints, placed in the frame of the last one's child; `None` where it reaches too far.
+    fn of(drive: &Drive, piece: Piece, movers: &[Mover]) -> Option<Self> {
+        let reach = piece.center.length() + piece.radius;
+        if !(reach <= Obstacle::FARTHEST_M) {
+            return None;
+        }
+        let link = movers.last()?.child;
+        let levers = levers(drive, link, reach, movers)?;
+        let depth = 1 + movers.iter().map(|m| m.axis).max()?;
+        let points = piece.points(POINTS);
+        let Piece { shape, in_solid: in_link, center, radius } = piece;
+        Some(Self { shape, link, in_link, center, radius, depth, movers: movers.to_vec(), points, levers })
+    }
+}
+
+/// A closed mesh, whole: it can hold something inside that does not touch its surface.
 #[derive(Debug, Clone)]
 pub(super) struct Hollow {
     pub mesh: Arc<TriMesh>,
-    pub link: LinkId,
-    pub in_link: Pose,
-    /// A ball around it, in the link's frame.
-    pub center: Vec3,
-    pub radius: f64,
+    pub part: Part,
 }
 
 /// All pieces of the links that the map moves.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parts {
-    pub parts: Vec<Part>,
+    pub pieces: Vec<Part>,
     pub hollows: Vec<Hollow>,
+    /// What joints carry that may be anywhere, and none of the map's before them: solids in the world.
+    pub still: Vec<(Shape, Pose)>,
 }
 
 /// What moves as one: everything that hangs on the same joints of the map.
@@ -71,7 +85,10 @@ impl Parts {
         let mut rigid: Vec<Rigid> = Vec::new();
         let state = drive.state();
         for (link, hanging) in drive.links.iter().enumerate() {
-            let Some(last) = hanging.movers.last() else { continue };
+            let Some(last) = hanging.movers.last() else {
+                all.add_still(robot, drive, link)?;
+                continue;
+            };
             let on = |m: &Rigid| m.movers.last().is_some_and(|m| m.child == last.child);
             let at = rigid.iter().position(on).unwrap_or_else(|| {
                 rigid.push(Rigid { movers: hanging.movers.clone(), ..Rigid::default() });
@@ -88,7 +105,7 @@ impl Parts {
                 };
                 let carrier = if hanging.loose.is_empty() { LinkId(link) } else { hanging.carrier };
                 let in_last = between(&state, last.child, carrier) * in_carrier;
-                all.take(&mut rigid[at], &pieces::solid(&shape), in_last);
+                all.take(drive, &mut rigid[at], &pieces::solid(&shape), in_last).ok_or_else(refuse)?;
             }
         }
         for rigid in rigid {
@@ -98,24 +115,36 @@ impl Parts {
         Ok(all)
     }
 
-    fn take(&mut self, rigid: &mut Rigid, shape: &Shape, in_last: Pose) {
+    /// A link that the map does not move and other joints do: wherever they have it.
+    fn add_still(&mut self, robot: &Robot, drive: &Drive, link: usize) -> Result<(), RobotMapError> {
+        let Hanging { loose, carrier, .. } = &drive.links[link];
+        if loose.is_empty() {
+            return Ok(());
+        }
+        let carrier_in_world = drive.link_in_world(&drive.state(), *carrier);
+        for body in &robot.bodies[link] {
+            let refuse = || RobotMapError::Place(format!("link `{}`", drive.chain.links()[link]));
+            let (shape, in_carrier) = swept::enclose(&body.shape, body.in_link, loose).ok_or_else(refuse)?;
+            self.still.push((shape, carrier_in_world * in_carrier));
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, drive: &Drive, rigid: &mut Rigid, shape: &Shape, in_last: Pose) -> Option<()> {
         let Shape::Mesh(mesh) = shape else {
             rigid.round.push((shape.clone(), in_last));
-            return;
+            return Some(());
         };
         rigid.soup.add(mesh, &in_last);
-        if let Some(last) = rigid.movers.last()
-            && mesh.has_inside()
-        {
-            let Piece { center, radius, .. } = Piece::of(shape.clone());
-            let center = in_last.transform_point(center);
-            self.hollows.push(Hollow { mesh: Arc::clone(mesh), link: last.child, in_link: in_last, center, radius });
+        if mesh.has_inside() {
+            let part = Part::of(drive, Piece::of(shape.clone()).placed(&in_last), &rigid.movers)?;
+            self.hollows.push(Hollow { mesh: Arc::clone(mesh), part });
         }
+        Some(())
     }
 
     fn cut(&mut self, drive: &Drive, rigid: Rigid) -> Option<()> {
         let Rigid { movers, soup, round } = rigid;
-        let depth = 1 + movers.iter().map(|m| m.axis).max()?;
         let link = movers.last()?.child;
         let far = levers(drive, link, 0.0, &movers)?.into_iter().fold(0.0, f64::max);
         let size = |reach: f64| SHARE * (far + reach);
@@ -126,15 +155,7 @@ impl Parts {
             found.extend(pieces::cut_round(&shape, size(reach)).into_iter().map(|p| p.placed(&in_link)));
         }
         for piece in found {
-            let reach = piece.center.length() + piece.radius;
-            if !(reach <= Obstacle::FARTHEST_M) {
-                return None;
-            }
-            let levers = levers(drive, link, reach, &movers)?;
-            let points = piece.points(POINTS);
-            let Piece { shape, in_solid: in_link, center, radius } = piece;
-            let movers = movers.clone();
-            self.parts.push(Part { shape, link, in_link, center, radius, depth, movers, points, levers });
+            self.pieces.push(Part::of(drive, piece, &movers)?);
         }
         Some(())
     }

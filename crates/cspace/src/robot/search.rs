@@ -1,5 +1,7 @@
 //! Boxes of joint space, cut in two until each is free or blocked.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::mesh::{Hint, Scratch};
 use elbowroom_spatial::{Pose, Vec3};
@@ -9,8 +11,8 @@ use super::filler::FillCounts;
 use super::joints::{Drive, MOST_JOINTS};
 use super::look::{Look, look};
 use super::pace::Pace;
-use super::part::Parts;
-use super::target::Target;
+use super::part::{Hollow, Parts};
+use super::target::{Target, depth_in};
 use crate::Axis;
 
 /// A pair is not looked at where it was nearer than this share of what would do, in a box around.
@@ -37,8 +39,10 @@ pub(super) struct Task<'a> {
     pub suspects: &'a [(u32, u32)],
     /// How often a cell at the border is cut in two to tell whether it is free, per number of axes that move a piece.
     pub looks: [u32; MOST_JOINTS + 1],
-    /// Nodes at most.
+    /// Nodes at most, of all slabs together.
     pub most_nodes: usize,
+    /// Nodes of the slabs that are done.
+    pub used: &'a AtomicUsize,
 }
 
 /// One thread's work on slabs.
@@ -49,6 +53,8 @@ pub(super) struct Search<'a> {
     pub pairs: Vec<Pair>,
     nodes: Vec<Node>,
     pub counts: FillCounts,
+    /// Looks that are left for the cell at hand.
+    pub left: u32,
 }
 
 /// The tree would become too large.
@@ -71,6 +77,7 @@ impl<'a> Search<'a> {
             pairs: Vec::new(),
             nodes: Vec::new(),
             counts: FillCounts::default(),
+            left: 0,
         }
     }
 
@@ -78,19 +85,22 @@ impl<'a> Search<'a> {
     pub fn run(&mut self, cells: &Cells) -> Result<Vec<Node>, TooLarge> {
         self.pairs.clear();
         self.nodes.clear();
-        let parts = 0..self.task.parts.parts.len() as u32;
+        let parts = 0..self.task.parts.pieces.len() as u32;
         let targets = self.task.targets.len() as u32;
         let pair = |part, target| Pair { part, target, gap: f64::INFINITY, hint: Hint::default() };
         self.pairs.extend(parts.flat_map(|part| (0..targets).map(move |target| pair(part, target))));
         // Pieces that few axes move come first: what they block is blocked for all values of the others.
-        self.pairs.sort_by_key(|pair| self.task.parts.parts[pair.part as usize].depth);
+        self.pairs.sort_by_key(|pair| self.task.parts.pieces[pair.part as usize].depth);
         self.explore(cells, 0)?;
+        self.task.used.fetch_add(self.nodes.len(), Ordering::Relaxed);
         Ok(std::mem::take(&mut self.nodes))
     }
 
     /// Adds the tree of a box in which the pairs from `first` on are in question. They are gone afterwards.
     fn explore(&mut self, cells: &Cells, first: usize) -> Result<(), TooLarge> {
-        if self.nodes.len() >= self.task.most_nodes {
+        if self.nodes.len() + self.task.used.load(Ordering::Relaxed) >= self.task.most_nodes {
+            // The others need not go on, either.
+            self.task.used.store(self.task.most_nodes, Ordering::Relaxed);
             return Err(TooLarge);
         }
         let span = self.span(cells);
@@ -102,12 +112,12 @@ impl<'a> Search<'a> {
             let lowest = self.sift(&span, from, begin);
             from = begin;
             let Some(depth) = lowest else {
-                let leaf = if self.is_inside() { Node::Blocked } else { Node::Free };
+                let leaf = if self.is_inside(MOST_JOINTS, None) { Node::Blocked } else { Node::Free };
                 self.nodes.push(leaf);
                 break;
             };
             if let Some(axis) = self.longest(cells, &span, begin, depth) {
-                if self.is_held(&span, begin) {
+                if self.is_held(&span, begin) || self.is_inside(MOST_JOINTS, Some(&span)) {
                     self.nodes.push(Node::Blocked);
                 } else {
                     self.cut(cells, begin, axis)?;
@@ -119,7 +129,7 @@ impl<'a> Search<'a> {
                 self.nodes.push(Node::Blocked);
                 break;
             }
-            let parts = &self.task.parts.parts;
+            let parts = &self.task.parts.pieces;
             let begin = self.pairs.len();
             for i in from..begin {
                 if parts[self.pairs[i].part as usize].depth > depth {
@@ -139,7 +149,7 @@ impl<'a> Search<'a> {
         let mut last: Option<(u32, Pace, f64)> = None;
         for i in from..to {
             let mut pair = self.pairs[i];
-            let part = &task.parts.parts[pair.part as usize];
+            let part = &task.parts.pieces[pair.part as usize];
             // A box that is to be cut for others first is often too long for this one.
             if lowest.is_some_and(|depth| part.depth > depth && later(part, &span.half, depth)) {
                 self.pairs.push(pair);
@@ -163,7 +173,7 @@ impl<'a> Search<'a> {
 
     /// True where a pair stays apart in the whole box; what is learnt is kept.
     fn is_apart(&mut self, pair: &mut Pair, pace: &Pace, far: f64) -> bool {
-        let part = &self.task.parts.parts[pair.part as usize];
+        let part = &self.task.parts.pieces[pair.part as usize];
         let target = &self.task.targets[pair.target as usize];
         if target.at_least(pace.center) - part.radius > far {
             return true;
@@ -189,7 +199,7 @@ impl<'a> Search<'a> {
 
     /// The axis along which a box should be cut for pieces of a depth: the one that moves them most.
     fn longest(&self, cells: &Cells, span: &Span, begin: usize, depth: usize) -> Option<usize> {
-        let parts = &self.task.parts.parts;
+        let parts = &self.task.parts.pieces;
         let mut shares = [0.0; MOST_JOINTS];
         let mut last = u32::MAX;
         for pair in &self.pairs[begin..] {
@@ -231,7 +241,7 @@ impl<'a> Search<'a> {
     /// True where a piece is so deep inside something that it is in it in the whole box.
     fn is_held(&mut self, span: &Span, begin: usize) -> bool {
         let Some(&nearest) = self.pairs[begin..].iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return false };
-        let part = &self.task.parts.parts[nearest.part as usize];
+        let part = &self.task.parts.pieces[nearest.part as usize];
         let target = &self.task.targets[nearest.target as usize];
         let in_world = self.in_world(nearest.part as usize);
         self.counts.tried += 1;
@@ -240,25 +250,34 @@ impl<'a> Search<'a> {
         }
         let link = self.task.drive.link_in_world(&self.state, part.link);
         let pace = Pace::of(part, self.task.drive, &self.state);
-        part.points.iter().map(|p| link.transform_point(*p)).any(|p| {
-            let depth = target.depth(p);
-            depth > 0.0 && depth > pace.farthest_of(part, &span.half, p)
-        })
+        let stays = |depth: f64, p: Vec3| depth > 0.0 && depth > pace.farthest_of(part, &span.half, p);
+        part.points.iter().map(|p| link.transform_point(*p)).any(|p| stays(target.depth(p), p))
+            || target.points.iter().any(|&p| stays(depth_in(&part.shape, &in_world, p), p))
     }
 
-    /// True where something is inside a link, which no surface tells.
-    fn is_inside(&self) -> bool {
+    /// True where something is inside a link that no more than `depth` axes move, at the middle of the box: no surface
+    /// tells it. With the box, only where it is so deep inside that it is in the whole box.
+    pub fn is_inside(&self, depth: usize, throughout: Option<&Span>) -> bool {
         self.task.suspects.iter().any(|&(solid, target)| {
-            let hollow = &self.task.parts.hollows[solid as usize];
-            let link = self.task.drive.link_in_world(&self.state, hollow.link);
-            let center = link.transform_point(hollow.center);
-            let radius = hollow.radius * (1.0 + 1e-9);
-            let mesh_in_world = link * hollow.in_link;
+            let Hollow { mesh, part } = &self.task.parts.hollows[solid as usize];
+            if part.depth > depth {
+                return false;
+            }
+            let link = self.task.drive.link_in_world(&self.state, part.link);
+            let center = link.transform_point(part.center);
+            let mesh_in_world = link * part.in_link;
             // Apart surfaces: a connected part is inside as a whole or not at all.
             let inside = |p: &Vec3| {
-                center.distance(*p) <= radius && hollow.mesh.contains(mesh_in_world.inverse_transform_point(*p))
+                let near = center.distance(*p) <= part.radius * (1.0 + 1e-9);
+                near && mesh.contains(mesh_in_world.inverse_transform_point(*p))
             };
-            self.task.targets[target as usize].points.iter().any(inside)
+            let stays = |p: &Vec3| {
+                throughout.is_none_or(|span| {
+                    let pace = Pace::of(part, self.task.drive, &self.state);
+                    depth_in(&part.shape, &mesh_in_world, *p) > pace.farthest_of(part, &span.half, *p)
+                })
+            };
+            self.task.targets[target as usize].points.iter().any(|p| inside(p) && stays(p))
         })
     }
 
@@ -277,7 +296,7 @@ impl<'a> Search<'a> {
 
     /// Where a piece is now.
     pub fn in_world(&self, part: usize) -> Pose {
-        let part = &self.task.parts.parts[part];
+        let part = &self.task.parts.pieces[part];
         self.task.drive.link_in_world(&self.state, part.link) * part.in_link
     }
 }

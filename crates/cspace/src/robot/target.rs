@@ -55,15 +55,20 @@ impl Target {
 
     /// How deep a point (in the world) is inside, metres; 0 or less outside.
     pub fn depth(&self, p: Vec3) -> f64 {
-        -project_point(&self.original, &self.in_world, p).signed_distance
+        depth_in(&self.original, &self.in_world, p)
     }
 
     /// True where something of it may be inside something of this radius: what is in one piece and larger cannot.
     pub fn fits_into(&self, radius: f64) -> bool {
         match self.points.len() {
             0 => false,
-            1 => self.bounds.extent().length() * 0.5 <= radius * (1.0 + 1e-9),
+            1 => self.bounds.extent().max_element() <= 2.0 * radius * (1.0 + 1e-9),
             _ => true,
         }
     }
+}
+
+/// How deep a point (in the world) is inside a solid, metres; 0 or less outside.
+pub(super) fn depth_in(shape: &Shape, in_world: &Pose, p: Vec3) -> f64 {
+    -project_point(shape, in_world, p).signed_distance
 }
