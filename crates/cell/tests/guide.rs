@@ -146,6 +146,83 @@ fn an_arm_in_the_way_retreats_and_comes_back() {
 }
 
 #[test]
+fn a_picture_from_the_future_is_none() {
+    let map = map();
+    let mut guide = guide(&map, GuideSettings::new(limits()));
+    guide.go_to(&radians(B)).unwrap();
+    guide.look(&sighting(1.1));
+    // Clocks may differ a little …
+    let mut t = 1.0;
+    for _ in 0..50 {
+        t += TICK_S;
+        assert_eq!(guide.tick(t, TICK_S).doing, Doing::Going);
+    }
+    // … but not by an hour: nothing would ever be too old.
+    guide.look(&sighting(t + 3600.0));
+    let steps: Vec<Step> = (0..250)
+        .map(|_| {
+            t += TICK_S;
+            guide.tick(t, TICK_S)
+        })
+        .collect();
+    assert!(matches!(steps[0].doing, Doing::Slowing(Reason::NoPicture { age_s }) if age_s < -3599.0), "{:?}", steps[0]);
+    let last = steps.last().unwrap();
+    assert!(matches!(last.doing, Doing::Waiting(Reason::NoPicture { .. })) && last.qd == [0.0; 3], "{last:?}");
+    assert!(last.doing.reason().unwrap().to_string().contains("future"));
+    guide.look(&sighting(t));
+    assert_eq!(guide.tick(t + TICK_S, TICK_S).doing, Doing::Going);
+}
+
+#[test]
+fn a_tick_that_takes_no_time_moves_nothing() {
+    let mut map = map();
+    map.set("behind", &wall(std::f64::consts::PI));
+    map.publish();
+    for dt in [0.0, -0.0, -TICK_S, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for is_blocked in [false, true] {
+            map.remove("wall");
+            map.publish();
+            let mut guide = guide(&map, GuideSettings::new(limits()));
+            guide.go_to(&radians(B)).unwrap();
+            guide.look(&sighting(0.0));
+            (0..60).for_each(|_| _ = guide.tick(0.0, TICK_S));
+            if is_blocked {
+                map.set("wall", &wall(0.0));
+                map.publish();
+                assert!(guide.look(&sighting(0.0)).was_blocked);
+            }
+            let before = guide.planar();
+            let step = guide.tick(0.0, dt);
+            assert!(guide.planar() == before && step.qd == [0.0; 3] && step.rate.to_bits() == 0, "{dt}: {step:?}");
+            assert!(matches!(step.doing, Doing::Waiting(Reason::NoTime { .. })), "{dt}: {step:?}");
+            assert!(step.doing.reason().unwrap().to_string().contains("seconds"));
+            // It goes on from rest.
+            let next = guide.tick(0.0, TICK_S);
+            assert!(next.rate < 0.1 && guide.planar().iter().all(|q| q.is_finite()), "{dt}: {next:?}");
+        }
+    }
+}
+
+#[test]
+fn a_very_short_tick_is_worked_out_as_fast_as_any() {
+    let mut map = map();
+    map.set("behind", &wall(std::f64::consts::PI));
+    map.publish();
+    let mut guide = guide(&map, GuideSettings::new(limits()));
+    guide.go_to(&radians(B)).unwrap();
+    guide.look(&sighting(0.0));
+    (0..60).for_each(|_| _ = guide.tick(0.0, TICK_S));
+    map.set("wall", &wall(0.0));
+    map.publish();
+    assert!(guide.look(&sighting(0.0)).was_blocked);
+    let before = guide.planar();
+    for dt in [1e-9, 1e-300, f64::MIN_POSITIVE] {
+        guide.tick(0.0, dt);
+    }
+    assert!((0..3).all(|i| (guide.planar()[i] - before[i]).abs() < 1e-6));
+}
+
+#[test]
 fn what_cannot_be_guided_is_refused() {
     let map = map();
     let settings = GuideSettings::new(limits());

@@ -7,8 +7,13 @@ use std::fmt;
 pub enum Reason {
     /// The newest picture that could be believed is too old.
     NoPicture {
-        /// Its age, seconds.
+        /// Its age, seconds; below 0 where its stamp is in the future.
         age_s: f64,
+    },
+    /// A tick without a length: not finite, or not above 0.
+    NoTime {
+        /// What was given, seconds.
+        dt_s: f64,
     },
     /// It was given a goal; the way is planned at the next picture.
     Unplanned,
@@ -23,10 +28,18 @@ pub enum Reason {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::NoPicture { age_s } if age_s.is_finite() && *age_s < 0.0 => write!(
+                f,
+                "the newest picture is stamped {:.0} ms in the future: give ticks and frames times of the same clock",
+                -age_s * 1e3
+            ),
             Self::NoPicture { age_s } if age_s.is_finite() => {
                 write!(f, "no picture that can be believed for {:.0} ms", age_s * 1e3)
             }
             Self::NoPicture { .. } => f.write_str("no picture yet that can be believed"),
+            Self::NoTime { dt_s } => {
+                write!(f, "a tick of {dt_s} seconds moves nothing: give the time since the last one, above 0")
+            }
             Self::Unplanned => f.write_str("the way is planned at the next picture"),
             Self::Blocked => f.write_str("the way ahead is blocked"),
             Self::NoPath(why) | Self::NotProven(why) => f.write_str(why),

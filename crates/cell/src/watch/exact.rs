@@ -7,7 +7,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_scene::{Checker, Object, Options, Scene, SceneError, SceneState, SweepOptions};
 use elbowroom_spatial::Pose;
 
-use super::watcher::hull;
+use super::known::hull;
 use super::{Prism, Reason, WatchedArm};
 
 /// Proves that a way is free of the prisms and of what stands in the cell for good, continuously.

@@ -271,24 +271,33 @@ impl Guide {
         PlanOptions { weights: self.settings.weights, nearest_rad }
     }
 
-    /// Goes on for `dt` seconds until `now_s` (on the clock of the frames' stamps).
+    /// Goes on for `dt` seconds until `now_s` (on the clock of the frames' stamps). A `dt` that is not finite or not above 0
+    /// moves nothing: the arm counts as standing and goes on from rest. A picture stamped more than
+    /// [`GuideSettings::stale_s`] after `now_s` counts as none.
     pub fn tick(&mut self, now_s: f64, dt: f64) -> Step {
         let age_s = self.seen_s.map_or(f64::INFINITY, |seen| now_s - seen);
         // Written so that an age that is no number counts as old.
-        let stale = (!(age_s <= self.settings.stale_s)).then_some(Reason::NoPicture { age_s });
+        let stale = (!(age_s.abs() <= self.settings.stale_s)).then_some(Reason::NoPicture { age_s });
+        let takes_time = dt.is_finite() && dt > 0.0;
+        let halted = (!takes_time).then_some(Reason::NoTime { dt_s: dt }).or(stale);
         let Some(mut motion) = self.motion.take() else {
             let wants = self.goal.is_some_and(|goal| distance(goal, self.q) > 1e-9);
-            let why = stale.or_else(|| self.reason.clone()).unwrap_or(Reason::Blocked);
+            let why = halted.or_else(|| self.reason.clone()).unwrap_or(Reason::Blocked);
             return self.step([0.0; 3], 0.0, if wants { Doing::Waiting(why) } else { Doing::Arrived });
         };
+        if let (false, Some(why)) = (takes_time, &halted) {
+            motion.rate = 0.0;
+            self.motion = Some(motion);
+            return self.step([0.0; 3], 0.0, Doing::Waiting(why.clone()));
+        }
         let before = motion.rate;
-        let wanted = if stale.is_some() { 0.0 } else { self.allowed(&motion, dt) };
+        let wanted = if halted.is_some() { 0.0 } else { self.allowed(&motion, dt) };
         let accelerate = three(&self.settings.limits.acceleration);
         (motion.tau_s, motion.rate) = motion.after(dt, wanted, self.settings.stop, accelerate);
         let state = motion.state();
         self.q = state.q;
         let (rate, is_over) = (motion.rate, motion.is_over());
-        let why = || stale.clone().or_else(|| self.reason.clone()).unwrap_or(Reason::Blocked);
+        let why = || halted.clone().or_else(|| self.reason.clone()).unwrap_or(Reason::Blocked);
         let doing = match () {
             () if is_over => Doing::Arrived,
             () if rate <= 0.0 => Doing::Waiting(why()),

@@ -64,6 +64,7 @@ mod arm;
 mod doing;
 mod exact;
 mod guide;
+mod known;
 mod log;
 mod motion;
 pub mod picture;

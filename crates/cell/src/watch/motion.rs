@@ -7,6 +7,10 @@ use elbowroom_planner::{MotionLimits, Path, Trajectory};
 const RESERVE: f64 = 0.1;
 /// The curve is looked at so often per cell.
 const PER_CELL: f64 = 4.0;
+/// A stop is worked out in ticks, none shorter than this, seconds …
+const BRAKE_STEP_S: f64 = 1e-4;
+/// … and no more of them: a stop that takes longer counts as none.
+const BRAKE_STEPS: usize = 100_000;
 
 /// Where the map's joints are at an instant.
 #[derive(Debug, Clone, Copy)]
@@ -138,14 +142,22 @@ impl Motion {
         kept
     }
 
-    /// Where the trajectory's time stands after braking from (`tau_s`, `rate`).
+    /// Where the trajectory's time stands after braking from (`tau_s`, `rate`) in ticks of `dt`; infinity where no end of
+    /// that is in sight, or `dt` is no number.
     pub fn stops_at(&self, mut tau_s: f64, mut rate: f64, stop: [f64; 3], dt: f64) -> f64 {
-        while rate > 0.0 {
+        if dt.is_nan() {
+            return f64::INFINITY;
+        }
+        let dt = dt.max(BRAKE_STEP_S);
+        for _ in 0..BRAKE_STEPS {
+            if rate <= 0.0 {
+                return tau_s;
+            }
             let next = (rate - change_of_rate(&state_at(&self.trajectory, tau_s), rate, stop, -1.0) * dt).max(0.0);
             tau_s += dt * f64::midpoint(rate, next);
             rate = next;
         }
-        tau_s
+        f64::INFINITY
     }
 
     /// What the state would be after `dt` seconds, towards a rate: time and rate.

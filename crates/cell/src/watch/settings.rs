@@ -9,7 +9,8 @@ pub struct GuideSettings {
     pub limits: MotionLimits,
     /// Deceleration while slowing for something, rad/s² per joint. Jerk is not limited then.
     pub stop: [f64; 3],
-    /// Without a picture that can be believed for so long, the arm slows to a stop, seconds.
+    /// Without a picture that can be believed for so long, the arm slows to a stop, seconds; so it does where the newest is
+    /// stamped more than this in the future.
     pub stale_s: f64,
     /// The arm stops at least so far before the first blocked cell of its way, radians in joint space.
     pub short_rad: f64,

@@ -3,17 +3,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use elbowroom_cspace::{FillError, JointMap, Obstacle, ObstacleError, Reader};
+use elbowroom_cspace::{FillError, JointMap, ObstacleError, Reader};
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::{ConvexHull, HullError};
-use elbowroom_spatial::Vec3;
+use elbowroom_proximity::HullError;
 use elbowroom_vision::{
-    self as vision, ArmPart, Calibration, Change, Frame, ObstacleId, PixelMask, Point2, RawLayout, Settings, Sight,
-    Vision, VisionError, polygon,
+    self as vision, ArmPart, Calibration, Frame, PixelMask, RawLayout, Settings, Sight, Vision, VisionError,
 };
 
+use super::known::{Known, Sweep};
 use super::times::Clock;
-use super::{Prism, SeeTimes, Sighting, WatchedArm};
+use super::{SeeTimes, Sighting, WatchedArm};
 
 /// Why a watch cannot be set up, or a frame cannot be used. What was known stays as it was.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -100,7 +99,7 @@ pub struct Watch {
     mask: PixelMask,
     parts: Vec<ArmPart>,
     chain: ChainState,
-    prisms: Vec<Prism>,
+    known: Known,
 }
 
 impl Watch {
@@ -130,7 +129,7 @@ impl Watch {
             mask: PixelMask::new(width, height),
             parts: Vec::new(),
             chain: ChainState::new(&arm.robot.chain),
-            prisms: Vec::new(),
+            known: Known::default(),
             arm,
         })
     }
@@ -175,7 +174,8 @@ impl Watch {
     ///
     /// # Errors
     /// Bytes that are no picture, or one of the wrong size, or out of order; joint values that are not the robot's. The map
-    /// stays as it was: unknown is not free.
+    /// stays as it was: unknown is not free. An obstacle that is no solid of this world: it stays where it was, the others
+    /// are followed, and readers see none of it before a frame that is all right.
     pub fn see(&mut self, bytes: &[u8], name: &Path, stamp_s: f64, q: &[f64]) -> Result<Sighting, WatchError> {
         let mut clock = Clock::start();
         let mut frame = std::mem::take(&mut self.frame);
@@ -219,81 +219,17 @@ impl Watch {
             times,
         };
         if sighting.sight == Sight::Clear {
-            self.fill(&mut sighting)?;
+            let sweep = Sweep {
+                world_in_base: self.arm.base_in_world.inverse(),
+                ahead_s: self.settings.ahead_s,
+                slack_m: self.vision.settings().slack_m,
+            };
+            self.known.follow(&self.vision.report().obstacles, &sweep, &mut self.map, &mut sighting)?;
             sighting.times.fill = clock.lap();
             self.map.publish();
             sighting.times.publish = clock.lap();
         }
-        sighting.prisms.clone_from(&self.prisms);
+        sighting.prisms.clone_from(self.known.prisms());
         Ok(sighting)
     }
-
-    /// Puts what entered and moved into the map, takes out what left.
-    fn fill(&mut self, sighting: &mut Sighting) -> Result<(), WatchError> {
-        let (ahead_s, slack_m) = (self.settings.ahead_s, self.vision.settings().slack_m);
-        for seen in &self.vision.report().obstacles {
-            let known = self.prisms.iter().position(|p| p.id == seen.id);
-            if seen.change == Change::Left {
-                known.map(|at| self.prisms.remove(at));
-                sighting.left.push(seen.id);
-                if let Some(changes) = self.map.remove(&name_of(seen.id)) {
-                    sighting.freed += changes.freed();
-                }
-                continue;
-            }
-            if known.is_none() {
-                sighting.entered.push(seen.id);
-            }
-            let mut prism = prism(seen, ahead_s);
-            if let Some(at) = known {
-                let old = &mut self.prisms[at];
-                let drift_m = (prism.velocity_mps - old.velocity_mps).length() * ahead_s;
-                if seen.change == Change::Still && drift_m <= slack_m {
-                    // Noise of the velocity alone moves nothing.
-                    (prism.swept_m, prism.velocity_mps) = (std::mem::take(&mut old.swept_m), old.velocity_mps);
-                    *old = prism;
-                    continue;
-                }
-            }
-            let hull = hull(&prism.swept_m, [prism.z_from_m, prism.z_to_m])?;
-            let world_in_base = self.arm.base_in_world.inverse();
-            let changes = self.map.set(&name_of(seen.id), &Obstacle::hull(world_in_base, Arc::new(hull))?);
-            sighting.blocked += changes.blocked();
-            sighting.freed += changes.freed();
-            match known {
-                Some(at) => self.prisms[at] = prism,
-                None => self.prisms.push(prism),
-            }
-        }
-        Ok(())
-    }
-}
-
-fn name_of(id: ObstacleId) -> String {
-    id.to_string()
-}
-
-fn prism(seen: &vision::Obstacle, ahead_s: f64) -> Prism {
-    let way = seen.velocity_mps * ahead_s;
-    let mut points: Vec<Point2> = seen.footprint_m.iter().flat_map(|&p| [p, p + way]).collect();
-    let mut swept_m = Vec::new();
-    polygon::convex_hull(&mut points, &mut swept_m);
-    Prism {
-        id: seen.id,
-        kind: seen.kind.as_deref().map(str::to_owned),
-        footprint_m: seen.footprint_m.clone(),
-        swept_m,
-        z_from_m: seen.z_from_m,
-        z_to_m: seen.z_to_m,
-        centre_m: seen.centre_m,
-        velocity_mps: seen.velocity_mps,
-        is_remembered: seen.is_remembered,
-    }
-}
-
-/// An upright prism as a solid.
-pub(super) fn hull(footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<ConvexHull, HullError> {
-    let at = |z: f64| footprint_m.iter().map(move |p| Vec3::new(p.x, p.y, z));
-    let points: Vec<Vec3> = heights_m.into_iter().flat_map(at).collect();
-    ConvexHull::from_points(&points)
 }
