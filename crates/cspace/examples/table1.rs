@@ -8,11 +8,14 @@
 #![allow(clippy::print_stdout, reason = "an example prints")]
 #![allow(clippy::unwrap_used, reason = "the numbers are constants")]
 
+#[path = "clock/mod.rs"]
+mod clock;
 #[path = "../tests/common/mod.rs"]
 mod common;
 
 use std::time::Duration;
 
+use clock::best;
 use common::{Random, grid, grid_of, misses, needless};
 use elbowroom_cspace::{Filler, Grid, Layer, Model, Obstacle, PlanarArm, Table, expand};
 use elbowroom_spatial::{Pose, Vec3};
@@ -65,26 +68,4 @@ fn remake(title: &str, arm: &PlanarArm, grid: &Grid, solid: &Obstacle, paper: bo
     let time = best(1, || table = expand(arm, grid, solid).table);
     judge("expansion from seeds", time, &table, "");
     println!();
-}
-
-fn best(rounds: usize, mut run: impl FnMut()) -> Duration {
-    let once = |_| {
-        let start = processor_time();
-        run();
-        processor_time().saturating_sub(start)
-    };
-    (0..rounds).map(once).min().unwrap_or_default()
-}
-
-#[cfg(unix)]
-fn processor_time() -> Duration {
-    use rustix::time::{ClockId, clock_gettime};
-    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
-}
-
-/// Wall-clock time, where the system gives no other.
-#[cfg(not(unix))]
-fn processor_time() -> Duration {
-    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
-    START.get_or_init(std::time::Instant::now).elapsed()
 }

@@ -48,7 +48,7 @@ fn obstacles(reach: f64) -> Vec<(Shape, Pose)> {
 }
 
 #[test]
-#[ignore = "minutes: a million configurations for each of several robots and steps"]
+#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_robots -- --ignored --nocapture"]
 fn nothing_that_touches_is_free() {
     let Some(data) = data() else {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::sets::Sets;
 use crate::{Point2, polygon};
 
 /// A connected patch of the picture.
@@ -40,7 +41,7 @@ struct Run {
 #[derive(Debug, Clone, Default)]
 pub struct Labeller {
     runs: Vec<Run>,
-    parent: Vec<u32>,
+    sets: Sets,
     blob_of: Vec<u32>,
     sums: Vec<Sums>,
     blobs: Vec<Blob>,
@@ -68,12 +69,12 @@ impl Labeller {
     /// the order of their first pixels, row by row.
     pub fn blobs(&mut self, plane: &[u8], width: usize, least_px: usize) -> &[Blob] {
         self.runs.clear();
-        self.parent.clear();
+        self.sets.parent.clear();
         let mut above = 0..0;
         for (y, row) in plane.chunks_exact(width.max(1)).enumerate() {
             let first = self.runs.len();
             runs_of_row(row, y as u32, &mut self.runs);
-            self.parent.extend(first as u32..self.runs.len() as u32);
+            self.sets.parent.extend(first as u32..self.runs.len() as u32);
             self.join(above, first);
             above = first..self.runs.len();
         }
@@ -96,31 +97,17 @@ impl Labeller {
             }
             let mut b = a;
             while b < above.end && self.runs[b].begin <= run.end {
-                self.unite(b as u32, here as u32);
+                self.sets.unite(b as u32, here as u32);
                 b += 1;
             }
         }
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            self.parent[i as usize] = self.parent[self.parent[i as usize] as usize];
-            i = self.parent[i as usize];
-        }
-        i
-    }
-
-    /// The root of a set is its first run.
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
     }
 
     fn gather(&mut self) {
         self.sums.clear();
         self.blob_of.clear();
         for i in 0..self.runs.len() {
-            let root = self.root(i as u32) as usize;
+            let root = self.sets.root(i as u32) as usize;
             let blob = if root == i { self.sums.len() as u32 } else { self.blob_of[root] };
             self.blob_of.push(blob);
             let run = self.runs[i];

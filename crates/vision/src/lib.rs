@@ -71,6 +71,7 @@ pub mod polygon;
 mod raster;
 pub mod render;
 mod report;
+mod sets;
 mod settings;
 mod shadow;
 mod source;

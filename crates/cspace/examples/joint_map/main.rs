@@ -9,11 +9,14 @@
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
+#[path = "../clock/mod.rs"]
+mod clock;
 mod straightforward;
 
 use std::hint::black_box;
 use std::time::Duration;
 
+use clock::best;
 use elbowroom_cspace::{Axis, Changes, Filler, Grid, JointMap, Layer, Obstacle, PlanarArm, Table};
 use elbowroom_spatial::{Pose, Vec3};
 use straightforward::{Planar, Solid};
@@ -116,26 +119,4 @@ fn line(what: &str, time: Duration, blocked: usize) {
 
 fn count(cells: &[u8]) -> usize {
     cells.iter().map(|&c| usize::from(c)).sum()
-}
-
-fn best(rounds: usize, mut run: impl FnMut()) -> Duration {
-    let once = |_| {
-        let start = processor_time();
-        run();
-        processor_time().saturating_sub(start)
-    };
-    (0..rounds).map(once).min().unwrap_or_default()
-}
-
-#[cfg(unix)]
-fn processor_time() -> Duration {
-    use rustix::time::{ClockId, clock_gettime};
-    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
-}
-
-/// Wall-clock time, where the system gives no other.
-#[cfg(not(unix))]
-fn processor_time() -> Duration {
-    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
-    START.get_or_init(std::time::Instant::now).elapsed()
 }

@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::blocks::{Cells, Node};
 use super::filler::FillCounts;
 use super::joints::{Drive, MOST_JOINTS};
-use super::look::{Look, look};
+use super::look::look;
 use super::pace::Pace;
 use super::part::{Hollow, Parts};
 use super::target::{Target, depth_in};
@@ -188,13 +188,9 @@ impl<'a> Search<'a> {
         }
         self.counts.looks += 1;
         let in_world = self.in_world(pair.part as usize);
-        match look(&mut self.scratch, (&part.shape, &in_world), target, far, &mut pair.hint) {
-            Look::Apart => true,
-            Look::Near { gap, .. } => {
-                pair.gap = gap;
-                false
-            }
-        }
+        let found = look(&mut self.scratch, (&part.shape, &in_world), target, far, &mut pair.hint);
+        pair.gap = found.unwrap_or(far);
+        found.is_none()
     }
 
     /// The axis along which a box should be cut for pieces of a depth: the one that moves them most.

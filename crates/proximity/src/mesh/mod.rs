@@ -25,7 +25,7 @@ mod touch;
 mod tree;
 
 pub use landmarks::{Landmarks, PlacedLandmarks};
-pub use nearest::{Hint, Nearest, distance, distance_at, farther, guess, promising, within};
+pub use nearest::{Hint, Nearest, distance, distance_at, farther, guess, within};
 pub(crate) use probe::{Box as BoxProbe, Height, Ray};
 pub(crate) use scratch::with_scratch;
 pub use scratch::{Scratch, Visits};

@@ -131,47 +131,14 @@ pub fn guess(
     hint: Option<Hint>,
     scratch: &mut Scratch,
 ) -> (f64, Hint) {
-    let found = promising(a, a_in_world, b, b_in_world, hint, scratch);
-    found.map_or((f64::INFINITY, Hint::default()), |near| (near.distance, near.hint))
-}
-
-/// The pair of triangles that [`guess`] finds: its distance is an upper bound of that of the meshes, nothing is known of a
-/// lower one. `None` where a pose is not finite.
-///
-/// ```
-/// use elbowroom_proximity::{TriMesh, mesh::{Scratch, promising}};
-/// use elbowroom_spatial::{Pose, Vec3};
-/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
-/// let there = Pose::from_translation(Vec3::X * 1.5);
-/// let near = promising(&mesh, &Pose::IDENTITY, &mesh, &there, None, &mut Scratch::new()).expect("poses are finite");
-/// assert!(near.distance >= 0.5 && (near.on_b - near.on_a).length() <= near.distance);
-/// # Ok::<(), elbowroom_proximity::MeshError>(())
-/// ```
-pub fn promising(
-    a: &TriMesh,
-    a_in_world: &Pose,
-    b: &TriMesh,
-    b_in_world: &Pose,
-    hint: Option<Hint>,
-    scratch: &mut Scratch,
-) -> Option<Nearest> {
     scratch.visits = Visits::default();
     let pairing = Pairing::new(&a.tree, a_in_world, &b.tree, b_in_world);
+    let unknown = (f64::INFINITY, Hint::default());
     if !pairing.is_usable() {
-        return None;
+        return unknown;
     }
-    let best = promising_pair(scratch.level(), a, b, &pairing, (hint, Start::Landmarks(GUESS_WIDTH)), scratch)?;
-    let unit = a.tree.frame.unit;
-    let to_world = |p: Vec3| a_in_world.transform_point(p * unit + a.tree.frame.center);
-    Some(Nearest {
-        distance: (best.distance + pairing.slack) * unit,
-        lower_bound: 0.0,
-        on_a: to_world(best.near.on_a),
-        on_b: to_world(best.near.on_b),
-        pair: Pair::Triangles(best.triangles.0, best.triangles.1),
-        hint: best.hint,
-    })
+    let found = promising_pair(scratch.level(), a, b, &pairing, (hint, Start::Landmarks(GUESS_WIDTH)), scratch);
+    found.map_or(unknown, |best| ((best.distance + pairing.slack) * a.tree.frame.unit, best.hint))
 }
 
 /// Pairs of nodes that landmarks follow in search of the nearest pair, and of one that is near enough.

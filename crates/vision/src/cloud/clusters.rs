@@ -1,11 +1,12 @@
 //! Cubes that touch to clusters: union-find over the 26 neighbours.
 
 use super::voxels::Voxels;
+use crate::sets::Sets;
 
 /// Clusters of cubes; memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
-    parent: Vec<u32>,
+    sets: Sets,
     /// Cubes, cluster by cluster.
     pub(super) members: Vec<u32>,
     /// Where each cluster ends in `members`.
@@ -20,14 +21,14 @@ impl Clusters {
     /// Clusters cubes with at least `least_points` points; clusters of fewer than `least_voxels` cubes are left out. In
     /// the order in which their first cubes were met.
     pub(super) fn find(&mut self, voxels: &Voxels, least_points: u32, least_voxels: u32) {
-        self.parent.clear();
+        self.sets.parent.clear();
         let counts = |place: usize| voxels.list[place].points >= least_points;
-        self.parent.extend((0..voxels.list.len()).map(|i| if counts(i) { i as u32 } else { NONE }));
+        self.sets.parent.extend((0..voxels.list.len()).map(|i| if counts(i) { i as u32 } else { NONE }));
         for place in 0..voxels.list.len() {
             if counts(place) {
                 voxels.neighbours(place, |other| {
                     if counts(other) {
-                        self.unite(place as u32, other as u32);
+                        self.sets.unite(place as u32, other as u32);
                     }
                 });
             }
@@ -35,30 +36,16 @@ impl Clusters {
         self.list(least_voxels);
     }
 
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            self.parent[i as usize] = self.parent[self.parent[i as usize] as usize];
-            i = self.parent[i as usize];
-        }
-        i
-    }
-
-    /// The root of a set is the cube met first.
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-
     /// Counts, keeps the large ones, and lists their cubes (counting sort).
     fn list(&mut self, least_voxels: u32) {
-        let n = self.parent.len();
+        let n = self.sets.parent.len();
         self.sizes.clear();
         self.sizes.resize(n, 0);
         self.cluster_of.clear();
         self.cluster_of.resize(n, NONE);
         for i in 0..n as u32 {
-            if self.parent[i as usize] != NONE {
-                let root = self.root(i);
+            if self.sets.parent[i as usize] != NONE {
+                let root = self.sets.root(i);
                 self.sizes[root as usize] += 1;
             }
         }
@@ -74,8 +61,8 @@ impl Clusters {
         self.members.clear();
         self.members.resize(start as usize, 0);
         for i in 0..n as u32 {
-            if self.parent[i as usize] != NONE {
-                let root = self.root(i) as usize;
+            if self.sets.parent[i as usize] != NONE {
+                let root = self.sets.root(i) as usize;
                 if self.cluster_of[root] != NONE {
                     let end = &mut self.ends[self.cluster_of[root] as usize];
                     self.members[*end as usize] = i;
