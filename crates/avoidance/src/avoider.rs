@@ -1,0 +1,506 @@
+//! The loop: sense, correct, check, command.
+
+use std::time::{Duration, Instant};
+
+use elbowroom_planner::{Connect, RouteError, RouteOptions};
+use elbowroom_proximity::impact::Steady;
+use elbowroom_scene::{Member, Move, Scene, SceneError, SweepOptions};
+use elbowroom_spatial::Motion;
+
+use crate::calm::Calm;
+use crate::joint::{self, JointLimit};
+use crate::sense::Senses;
+use crate::{Around, Other, Reaction, Reflex, ReflexSettings, Rules, VelocityBounds};
+
+/// Below this override nothing is commanded but a stop.
+const NO_OVERRIDE: f64 = 1e-6;
+/// A deviation of so many seconds at full joint speed is none.
+const NONE_S: f64 = 1e-9;
+/// Slower than this share of its speed the robot counts as standing.
+const STANDS: f64 = 5e-3;
+/// An obstacle slower than this stands, m/s.
+const OBSTACLE_STANDS_M_S: f64 = 0.01;
+
+/// How the loop behaves beyond a single look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoiderSettings {
+    /// Of the single look.
+    pub reflex: ReflexSettings,
+    /// Share of the joints' top speeds on the way back.
+    pub return_share: f64,
+    /// A path that need not be kept is gone on with while the robot is off it by no more than this, in seconds of joint
+    /// motion at full speed.
+    pub stray_s: f64,
+    /// A joint does not turn back twice within this time, s.
+    pub quiet_s: f64,
+    /// After so long without headway another way is asked for, s.
+    pub patience_s: f64,
+}
+
+impl Default for AvoiderSettings {
+    /// Half the speed back, 0.4 s astray, 0.25 s between reversals, 0.6 s of patience.
+    fn default() -> Self {
+        Self { reflex: ReflexSettings::default(), return_share: 0.5, stray_s: 0.4, quiet_s: 0.25, patience_s: 0.6 }
+    }
+}
+
+/// Where the path wants the robot to be at the end of the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference<'a> {
+    /// Joint values, rad or m.
+    pub q: &'a [f64],
+    /// Their velocities at the full rate of the path (override 1), rad/s or m/s.
+    pub qd: &'a [f64],
+    /// What the path is for.
+    pub path: PathKind,
+}
+
+/// What a path is for (S4.11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathKind {
+    /// Every point of it counts (a seam, a line): it is slowed down on rather than left, and resumed where it was left.
+    Continuous,
+    /// Only its end counts: it may be left and joined again farther on.
+    PointToPoint,
+}
+
+/// What the robot is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Doing {
+    /// On its path.
+    #[default]
+    Following,
+    /// Correcting its motion.
+    Evading,
+    /// On the way back to its path.
+    Returning,
+    /// Going around on a planned way.
+    Rounding,
+    /// Wants to move and cannot.
+    Waiting,
+    /// The override is 0.
+    Halted,
+}
+
+impl Doing {
+    /// In one word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Following => "following",
+            Self::Evading => "evading",
+            Self::Returning => "returning",
+            Self::Rounding => "rounding",
+            Self::Waiting => "waiting",
+            Self::Halted => "halted",
+        }
+    }
+}
+
+/// How long the stages of a tick took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TickTimes {
+    /// Placing everything and finding what is near.
+    pub sense: Duration,
+    /// Rules and least squares.
+    pub correct: Duration,
+    /// The sweep between this command and the next.
+    pub check: Duration,
+}
+
+impl TickTimes {
+    /// All stages.
+    pub fn total(&self) -> Duration {
+        self.sense + self.correct + self.check
+    }
+}
+
+/// What the tick says beside the joint values.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Advice {
+    /// How fast the path may be gone on with, as a share of its full rate, 0 to 1.
+    pub rate: f64,
+    /// What the robot is doing.
+    pub doing: Doing,
+    /// Of the single look.
+    pub reaction: Reaction,
+    /// Least distance to anything in the way, m; infinite where nothing is near.
+    pub nearest_m: f64,
+    /// The object or robot link that asked for the correction.
+    pub governed_by: Option<usize>,
+    /// Off the path by so many seconds of joint motion at full speed.
+    pub astray_s: f64,
+    /// The sweep found that the command would have hit something; it was replaced by braking.
+    pub braked: bool,
+    /// No headway for the time of patience, and what is in the way stands: a planned way is needed
+    /// ([`Avoider::plan_to`]).
+    pub stuck: bool,
+    /// How long it took.
+    pub times: TickTimes,
+}
+
+/// Keeps one robot of a scene out of the way of what moves, and brings it back (S4.11).
+///
+/// The path is the caller's: each tick it says where the path wants the robot, at the rate that the last advice allowed;
+/// where nothing is near the command is exactly that. See the crate's documentation for a whole loop.
+#[derive(Debug)]
+pub struct Avoider<'s> {
+    senses: Senses<'s>,
+    reflex: Reflex,
+    limits: Vec<JointLimit>,
+    settings: AvoiderSettings,
+    bounds: VelocityBounds,
+    calm: Calm,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    wanted: Vec<f64>,
+    next: Vec<f64>,
+    braked: Vec<f64>,
+    /// A planned way, the next waypoint last.
+    way: Vec<Vec<f64>>,
+    /// Farthest that anything of the robot is from any axis, m: for a bound of its speed.
+    reach_m: f64,
+    standing_s: f64,
+    following: bool,
+}
+
+impl<'s> Avoider<'s> {
+    /// For a robot of a scene that stands at `q`. `limits` has one entry per independent joint.
+    ///
+    /// # Errors
+    /// No such robot, wrong joint values, or a number of limits that is not the robot's.
+    pub fn new(
+        scene: &'s Scene,
+        robot: usize,
+        q: &[f64],
+        limits: &[JointLimit],
+        rules: Rules,
+        settings: AvoiderSettings,
+    ) -> Result<Self, SceneError> {
+        let count = scene.robots().len();
+        let chain = &scene.robots().get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?.robot.chain;
+        let mut senses = Senses::new(scene, robot);
+        senses.place(q, &Around::default())?;
+        let n = chain.dof();
+        let mut limits = limits.to_vec();
+        limits.truncate(n);
+        let missing = JointLimit::of(chain, 0.25, 0.1, 1.0).into_iter().skip(limits.len());
+        limits.extend(missing);
+        let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
+        Ok(Self {
+            reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
+            reach_m: reach(scene, robot),
+            senses,
+            bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
+            calm: Calm::new(n, settings.quiet_s),
+            settings,
+            limits,
+            q: q.to_vec(),
+            qd: vec![0.0; n],
+            qdd: vec![0.0; n],
+            wanted: vec![0.0; n],
+            next: vec![0.0; n],
+            braked: vec![0.0; n],
+            way: Vec::new(),
+            standing_s: 0.0,
+            following: true,
+        })
+    }
+
+    /// The commanded joint values, rad or m.
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// The commanded joint velocities, rad/s or m/s.
+    pub fn qd(&self) -> &[f64] {
+        &self.qd
+    }
+
+    /// The commanded joint accelerations, rad/s² or m/s².
+    pub fn qdd(&self) -> &[f64] {
+        &self.qdd
+    }
+
+    /// The rules it reacts by.
+    pub fn rules(&self) -> &Rules {
+        self.reflex.rules()
+    }
+
+    /// True while a planned way is gone.
+    pub fn has_way(&self) -> bool {
+        !self.way.is_empty()
+    }
+
+    /// One tick of `dt` seconds. `around` is what is seen now; `reference` where the path wants to be after the tick;
+    /// `speed_override` (0 to 1) what a monitor allows, which scales all motion last.
+    ///
+    /// # Errors
+    /// Poses or joint values of what is around that are not finite or do not exist. Nothing has moved then, and the caller
+    /// should stop the robot.
+    pub fn tick(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        around: &Around<'_>,
+        speed_override: f64,
+    ) -> Result<Advice, SceneError> {
+        let begin = Instant::now();
+        self.senses.place(&self.q, around)?;
+        self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach());
+        let sensed = Instant::now();
+        let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
+        joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
+        let (reaction, exactly) = self.correct(dt, reference, allowed);
+        let corrected = Instant::now();
+        let braked = self.check(dt, around);
+        let checked = Instant::now();
+        let exactly = exactly && !braked;
+        self.command(dt, exactly.then_some(reference.q));
+        let times = TickTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
+        Ok(self.advice(dt, reference, allowed, Advice { reaction, braked, times, ..Advice::default() }))
+    }
+
+    /// Plans a way from where the robot stands to `goal`, around everything as it stands now, and goes it from the next tick
+    /// on. Takes as long as planning takes: a controller does it beside its loop.
+    ///
+    /// # Errors
+    /// As [`Connect::plan`].
+    pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
+        let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
+        let route = connect.plan(&self.senses.state, goal, options)?;
+        self.way = route.waypoints;
+        self.way.reverse();
+        // The first waypoint is where the robot stands.
+        self.way.pop();
+        self.standing_s = 0.0;
+        self.following = false;
+        Ok(())
+    }
+
+    /// How near what is known must be to matter: what a stop from twice the evasion speed takes.
+    fn fixed_reach(&self) -> f64 {
+        let s = &self.settings.reflex;
+        s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s
+    }
+
+    /// Fills `next` with the velocity to command; true where it is exactly the path's.
+    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) -> (Reaction, bool) {
+        self.want(dt, reference, allowed);
+        if allowed == 0.0 {
+            brake(&self.limits, &self.qd, dt, &mut self.next);
+            return (Reaction::default(), false);
+        }
+        self.calm.hold(&mut self.bounds);
+        for (now, soon) in self.bounds.now.iter_mut().zip(&self.bounds.soon) {
+            // All but limits is scaled last.
+            *now = now.map(|v| (v / allowed).clamp(soon[0], soon[1]));
+        }
+        let hold_path = reference.path == PathKind::Continuous && self.way.is_empty();
+        let Senses { scene, robot, chains, threats, .. } = &self.senses;
+        let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
+        let reaction =
+            self.reflex.react(chain, state, &self.wanted, &self.bounds, threats, hold_path, &mut self.next);
+        self.next.iter_mut().for_each(|v| *v *= allowed);
+        let exactly = self.following && self.way.is_empty() && !reaction.asked;
+        if exactly {
+            let path = self.next.iter_mut().zip(reference.q).zip(&self.q);
+            path.for_each(|((v, to), from)| *v = (to - from) / dt);
+        }
+        (reaction, exactly)
+    }
+
+    /// Fills `wanted`: along the path and back to it, at override 1.
+    fn want(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) {
+        let share = self.settings.return_share;
+        let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
+        let scale = allowed.max(NO_OVERRIDE);
+        while let Some(waypoint) = self.way.last() {
+            let left_s = astray(waypoint, &self.q, &self.limits);
+            let last = self.way.len() == 1;
+            if left_s <= if last { NONE_S } else { 2.0 * share * dt } {
+                self.way.pop();
+                continue;
+            }
+            let speed = if last { slowing(left_s, rise_s).min(share) } else { share };
+            let rate = (speed / left_s).min(1.0 / dt);
+            for ((v, to), from) in self.wanted.iter_mut().zip(waypoint).zip(&self.q) {
+                *v = (to - from) * rate;
+            }
+            return;
+        }
+        let left_s = astray(reference.q, &self.q, &self.limits);
+        if self.following {
+            // The path's own velocity: what it asks for in this tick.
+            for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+                *v = (to - from) / (dt * scale);
+            }
+            return;
+        }
+        let speed = slowing(left_s, rise_s).min(share);
+        let rate = if left_s > 0.0 { (speed / left_s).min(1.0 / dt) } else { 0.0 };
+        for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+            *v = (to - from) * rate;
+        }
+    }
+
+    /// No collision falls between two commands: replaces `next` by braking where that is hit later.
+    fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
+        let Some(first) = self.senses.threats.first() else { return false };
+        let own: f64 = self.next.iter().map(|v| v.abs() * self.reach_m).sum();
+        let theirs = around.objects.iter().map(|s| s.motion.velocity.length() + s.motion.angular_velocity.length() * 10.0);
+        let theirs = theirs.fold(0.0, f64::max);
+        if first.distance_m > 2.0 * (own + theirs) * dt {
+            return false;
+        }
+        let Some(hit) = self.hit(dt, around, false) else { return false };
+        brake(&self.limits, &self.qd, dt, &mut self.braked);
+        let braked_hit = self.hit(dt, around, true).unwrap_or(f64::INFINITY);
+        if braked_hit > hit {
+            self.next.copy_from_slice(&self.braked);
+            return true;
+        }
+        false
+    }
+
+    /// When the command (or the braking) first hits something that is loose or fixed, as a share of the tick.
+    fn hit(&mut self, dt: f64, around: &Around<'_>, braking: bool) -> Option<f64> {
+        let Senses { scene, robot, checker, state, .. } = &mut self.senses;
+        let velocity = if braking { &self.braked } else { &self.next };
+        self.wanted.iter_mut().zip(&self.q).zip(velocity).for_each(|((to, q), v)| *to = q + v * dt);
+        let paths: [Option<Steady>; 8] = std::array::from_fn(|i| {
+            around.objects.get(i).map(|s| Steady::from_motion(s.in_world, &s.motion, dt))
+        });
+        let mut moves = [Move::Robot { robot: *robot, to: &self.wanted }; 9];
+        let mut count = 1;
+        for (seen, path) in around.objects.iter().zip(&paths) {
+            let Some(path) = path else { break };
+            moves[count] = Move::Object { object: seen.object, path };
+            count += 1;
+        }
+        let options = SweepOptions::default();
+        let pairs = elbowroom_scene::Selection::Robot(*robot);
+        let answer = checker.between(pairs, elbowroom_scene::Selection::All).sweep(state, &moves[..count], &options);
+        match answer {
+            Ok(hit) => hit.filter(|h| !h.at_start() || concerns_more(h.a, h.b)).map(|h| h.time),
+            // What cannot be checked is not done.
+            Err(_) => Some(0.0),
+        }
+    }
+
+    /// Takes `next` as the command; the values that the path has are taken as they are.
+    fn command(&mut self, dt: f64, exactly: Option<&[f64]>) {
+        for j in 0..self.q.len() {
+            let v = self.next[j];
+            self.qdd[j] = (v - self.qd[j]) / dt;
+            self.qd[j] = v;
+            let limit = &self.limits[j];
+            let q = exactly.map_or_else(|| (self.q[j] + v * dt).clamp(limit.lower, limit.upper), |q| q[j]);
+            self.q[j] = q;
+        }
+        self.calm.note(&self.qd, self.limits.iter().map(|l| l.speed), dt);
+    }
+
+    fn advice(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mut advice: Advice) -> Advice {
+        advice.astray_s = astray(reference.q, &self.q, &self.limits);
+        self.following = self.way.is_empty() && advice.astray_s <= NONE_S;
+        advice.nearest_m = self.senses.threats.first().map_or(f64::INFINITY, |t| t.distance_m);
+        let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
+        advice.governed_by = governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
+        let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);
+        let wants = !self.following || reference.qd.iter().any(|v| *v != 0.0);
+        let stands = fastest < STANDS && wants && allowed > 0.0;
+        self.standing_s = if stands { self.standing_s + dt } else { 0.0 };
+        let loose_moves = self.senses.threats.iter().any(|t| t.velocity().length() > OBSTACLE_STANDS_M_S);
+        advice.stuck = self.standing_s >= self.settings.patience_s && !loose_moves;
+        advice.rate = self.rate(reference, advice.astray_s);
+        advice.doing = if allowed == 0.0 {
+            Doing::Halted
+        } else if stands && self.standing_s > 0.1 {
+            Doing::Waiting
+        } else if !self.way.is_empty() {
+            Doing::Rounding
+        } else if self.following {
+            Doing::Following
+        } else if advice.reaction.size > 0.0 {
+            Doing::Evading
+        } else {
+            Doing::Returning
+        };
+        advice
+    }
+
+    /// How fast the path may go on.
+    fn rate(&self, reference: &Reference<'_>, astray_s: f64) -> f64 {
+        if !self.way.is_empty() {
+            return 0.0;
+        }
+        let ahead: f64 = reference
+            .qd
+            .iter()
+            .zip(reference.q.iter().zip(&self.q))
+            .zip(&self.limits)
+            .map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed))
+            .sum();
+        match reference.path {
+            PathKind::Continuous if astray_s > NONE_S => 0.0,
+            PathKind::Continuous => self.slowed(reference),
+            // The robot is ahead of its path: the nearest point of the path lies farther on.
+            PathKind::PointToPoint if astray_s > NONE_S && ahead > 0.0 => 1.0,
+            PathKind::PointToPoint => (1.0 - astray_s / self.settings.stray_s).max(0.0),
+        }
+    }
+
+    /// The share of the path's speed at which gaps close half as fast as they may.
+    fn slowed(&self, reference: &Reference<'_>) -> f64 {
+        let chain = &self.senses.scene.robots()[self.senses.robot].robot.chain;
+        let state = &self.senses.chains[self.senses.robot];
+        let s = &self.settings.reflex;
+        let mut rate: f64 = 1.0;
+        let mut columns = [[0.0; 6]; 16];
+        for threat in self.senses.threats.iter().filter(|t| matches!(t.other, Other::Loose { .. })) {
+            let in_link = state.link_in_root(threat.link).inverse().transform_point(threat.on_link);
+            chain.jacobian(state, threat.link, in_link, &mut columns);
+            let along = |c: &[f64; 6]| c[0] * threat.away.x + c[1] * threat.away.y + c[2] * threat.away.z;
+            let closing: f64 = -columns.iter().zip(reference.qd).map(|(c, v)| along(c) * v).sum::<f64>();
+            if closing > 0.0 {
+                let may = 0.5 * (threat.distance_m - s.clearance_m) / s.closing_s - threat.away.dot(threat.velocity()).max(0.0);
+                rate = rate.min((may / closing).max(0.0));
+            }
+        }
+        rate
+    }
+}
+
+/// A hit that is there at the start of the command cannot be prevented by it.
+fn concerns_more(_: Member, _: Member) -> bool {
+    true
+}
+
+/// Slower by as much as a stop allows.
+fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
+    for ((out, v), limit) in out.iter_mut().zip(qd).zip(limits) {
+        *out = v.signum() * (v.abs() - limit.stop * dt).max(0.0);
+    }
+}
+
+/// Seconds of joint motion at full speed between two configurations.
+fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
+    to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
+}
+
+/// Share of the speed from which the rest of the way is enough to stop.
+fn slowing(left_s: f64, rise_s: f64) -> f64 {
+    (1.6 * left_s / rise_s.max(1e-6)).sqrt()
+}
+
+/// No point of the robot is farther from any joint axis than this, m.
+fn reach(scene: &Scene, robot: usize) -> f64 {
+    let robot = &scene.robots()[robot].robot;
+    let joints: f64 = robot.chain.joints().iter().map(|j| j.origin.translation.length()).sum();
+    let bodies = robot.bodies.iter().map(|b| elbowroom_scene::radius(b)).fold(0.0, f64::max);
+    joints + bodies
+}
+
+/// What stands still while it is looked at.
+pub const AT_REST: Motion = Motion::REST;

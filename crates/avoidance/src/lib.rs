@@ -1,0 +1,25 @@
+//! Reacting while moving: near what is in the way the planned motion is corrected, and taken up again afterwards (S4.10, S4.11).
+//!
+//! | | |
+//! | --- | --- |
+//! | [`fuzzy`] | variables, rules as sentences, Mamdani inference, control surfaces: general, data in TOML |
+//! | [`Rules`] | how near and how fast to how hard and where to |
+//! | [`Reflex`] | one look: a wanted joint velocity becomes one that evades, by weighted least squares on the Jacobians of the collision points |
+//! | [`Avoider`] | the loop: senses in a scene, corrects, checks by a sweep, commands; leaves its path, waits, returns |
+//!
+//! Avoidance proposes a motion. A monitor of interference regions stands above it and scales last; it never depends on
+//! this crate.
+
+mod avoider;
+pub mod fuzzy;
+mod least;
+mod reflex;
+mod rules;
+mod side;
+mod threat;
+
+pub use avoider::*;
+pub use least::{LeastSquares, Wish};
+pub use reflex::{Reaction, Reflex, ReflexSettings, VelocityBounds};
+pub use rules::{Correction, DEFAULT_RULES, Rules};
+pub use threat::{Other, Threat};
