@@ -37,6 +37,8 @@ fn main() {
                 found += usize::from(checker.distance(state).is_some_and(|d| d.metres > 0.0));
                 found += usize::from(checker.between(one, other).distance(state).is_some());
                 checker.contacts(state, |_| found += 1);
+                checker.near(state, 0.2, |_| found += 1);
+                checker.between(one, other).near(state, 0.2, |_| found += 1);
             }
             let used = region.change();
             assert_eq!((used.allocations, used.reallocations), (0, 0), "{level}");

@@ -13,7 +13,7 @@ const ROUND_UP: f32 = 1.0 + 4.0 * f32::EPSILON;
 impl<'s> Core<'s> {
     /// A pair that is not farther apart than its margin and `tolerance` metres.
     pub(super) fn first(&mut self, list: &mut PairList, state: &SceneState, tolerance: f64) -> Option<Contact> {
-        self.collect(list, state, tolerance);
+        self.collect(list, state, tolerance, self.options.level == Level::L1);
         if self.options.weights {
             for c in &mut self.candidates {
                 c.key = -list.pairs[c.index as usize].weight;
@@ -38,7 +38,7 @@ impl<'s> Core<'s> {
 
     /// Every pair in contact.
     pub(super) fn all(&mut self, list: &mut PairList, state: &SceneState, mut found: impl FnMut(Contact)) {
-        self.collect(list, state, 0.0);
+        self.collect(list, state, 0.0, self.options.level == Level::L1);
         self.sort();
         for i in 0..self.candidates.len() {
             let pair = &mut list.pairs[self.candidates[i].index as usize];
@@ -99,8 +99,8 @@ impl<'s> Core<'s> {
         if holds { pair.least } else { 0.0 }
     }
 
-    /// Pairs that boxes do not dismiss.
-    fn collect(&mut self, list: &PairList, state: &SceneState, tolerance: f64) {
+    /// Pairs that boxes do not dismiss. With `by_robot`, one pair stands for all of a robot against another or an object.
+    pub(super) fn collect(&mut self, list: &PairList, state: &SceneState, tolerance: f64, by_robot: bool) {
         self.candidates.clear();
         self.deepest = Level::L1;
         let (boxes, wholes) = (self.boxes_decide(), self.wholes_decide());
@@ -113,8 +113,7 @@ impl<'s> Core<'s> {
                 self.narrow.counts.pairs_cleared.l1 += (block.end - block.start) as u64;
                 continue;
             }
-            // Robots against each other at L1: one pair stands for all.
-            let coarse = self.options.level == Level::L1 && !same;
+            let coarse = by_robot && !same;
             for (i, sides) in list.sides[block.start..block.end].iter().enumerate() {
                 let index = block.start + i;
                 if sides.proven && self.known(&list.pairs[index], state) > list.pairs[index].margin + tolerance {

@@ -4,6 +4,7 @@ mod answer;
 mod first;
 mod list;
 pub(crate) mod narrow;
+mod near;
 mod nearest;
 
 pub use answer::{Contact, Distance};
@@ -168,6 +169,29 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All).distance(state)
     }
 
+    /// Tells every pair that is not certainly farther apart than `margin_m` beyond its own margin: distance, proven lower
+    /// bound, nearest points; in the order of the hierarchy (nearest to a base first). What is in contact has distance 0
+    /// and a point in or near both. Work ends where a pair is proven to be farther. A pair is told exactly where
+    /// [`Checker::within`] would tell one; less than 0 counts as 0, NaN as infinite. [`Level::L1`] is answered at
+    /// [`Level::L2`].
+    ///
+    /// ```
+    /// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+    /// let scene = example::two_arms();
+    /// let mut state = SceneState::new(&scene);
+    /// state.set_q(&scene, 0, &[0.0, 1.2, 0.3])?;
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// let mut near = Vec::new();
+    /// checker.between(Selection::Robots, Selection::Objects).near(&state, 0.15, |pair| near.push(pair));
+    /// let names: Vec<_> = near.iter().map(|d| [scene.name(d.a), scene.name(d.b)].join(" - ")).collect();
+    /// assert_eq!(names, ["left/upper_arm - part", "left/upper_arm - table", "left/forearm - part"]);
+    /// assert!(near.iter().all(|d| d.lower_bound <= d.metres && d.metres <= 0.15));
+    /// # Ok::<(), elbowroom_scene::SceneError>(())
+    /// ```
+    pub fn near(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(Distance)) {
+        self.between(Selection::All, Selection::All).near(state, margin_m, found);
+    }
+
     /// The first time that a pair is nearer than its margin while things move, or `None` where nothing is during all of
     /// the motion: proven, not sampled, so that no thin plate is jumped over. What is not in `moves` stands where `start`
     /// has it. Pairs that are none by rule (neighbours, SRDF, by hand) never count; a link that no joint moves counts
@@ -287,9 +311,14 @@ impl<'s> Between<'_, 's> {
 
     /// As [`Checker::within`].
     pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
-        let tolerance = if tolerance_m.is_nan() { f64::INFINITY } else { tolerance_m.max(0.0) };
         let (core, list) = self.fresh(state);
-        core.first(list, state, tolerance)
+        core.first(list, state, tolerance(tolerance_m))
+    }
+
+    /// As [`Checker::near`].
+    pub fn near(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(Distance)) {
+        let (core, list) = self.fresh(state);
+        core.near(list, state, tolerance(margin_m), found);
     }
 
     /// As [`Checker::sweep`].
@@ -333,4 +362,9 @@ impl<'s> Between<'_, 's> {
         let (core, list) = self.fresh(state);
         core.nearest(list, state)
     }
+}
+
+/// What is no number of metres is all of them.
+fn tolerance(metres: f64) -> f64 {
+    if metres.is_nan() { f64::INFINITY } else { metres.max(0.0) }
 }

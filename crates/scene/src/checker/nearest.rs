@@ -156,7 +156,7 @@ impl Core<'_> {
 }
 
 /// Distance and proven lower bound between padded solids.
-fn less_margin(s: &Separation, margin: f64) -> (f64, f64) {
+pub(super) fn less_margin(s: &Separation, margin: f64) -> (f64, f64) {
     if margin == 0.0 {
         return (s.distance, s.lower_bound);
     }
