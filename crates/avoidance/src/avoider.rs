@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use elbowroom_planner::{Connect, RouteError, RouteOptions};
 use elbowroom_proximity::impact::Steady;
 use elbowroom_scene::{Member, Move, Scene, SceneError, SweepOptions};
-use elbowroom_spatial::Motion;
 
 use crate::calm::Calm;
 use crate::joint::{self, JointLimit};
+use crate::levers::Levers;
 use crate::sense::Senses;
 use crate::{Around, Other, Reaction, Reflex, ReflexSettings, Rules, VelocityBounds};
 
@@ -158,8 +158,7 @@ pub struct Avoider<'s> {
     braked: Vec<f64>,
     /// A planned way, the next waypoint last.
     way: Vec<Vec<f64>>,
-    /// Farthest that anything of the robot is from any axis, m: for a bound of its speed.
-    reach_m: f64,
+    levers: Levers,
     standing_s: f64,
     following: bool,
 }
@@ -189,7 +188,7 @@ impl<'s> Avoider<'s> {
         let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
         Ok(Self {
             reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
-            reach_m: reach(scene, robot),
+            levers: Levers::new(&scene.robots()[robot].robot, 0.0),
             senses,
             bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
             calm: Calm::new(n, settings.quiet_s),
@@ -346,13 +345,6 @@ impl<'s> Avoider<'s> {
 
     /// No collision falls between two commands: replaces `next` by braking where that is hit later.
     fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
-        let Some(first) = self.senses.threats.first() else { return false };
-        let own: f64 = self.next.iter().map(|v| v.abs() * self.reach_m).sum();
-        let theirs = around.objects.iter().map(|s| s.motion.velocity.length() + s.motion.angular_velocity.length() * 10.0);
-        let theirs = theirs.fold(0.0, f64::max);
-        if first.distance_m > 2.0 * (own + theirs) * dt {
-            return false;
-        }
         let Some(hit) = self.hit(dt, around, false) else { return false };
         brake(&self.limits, &self.qd, dt, &mut self.braked);
         let braked_hit = self.hit(dt, around, true).unwrap_or(f64::INFINITY);
@@ -363,29 +355,33 @@ impl<'s> Avoider<'s> {
         false
     }
 
-    /// When the command (or the braking) first hits something that is loose or fixed, as a share of the tick.
+    /// When the command (or the braking) first hits something, as a share of the tick. Only pairs that can close in this
+    /// time are swept.
     fn hit(&mut self, dt: f64, around: &Around<'_>, braking: bool) -> Option<f64> {
-        let Senses { scene, robot, checker, state, .. } = &mut self.senses;
         let velocity = if braking { &self.braked } else { &self.next };
         self.wanted.iter_mut().zip(&self.q).zip(velocity).for_each(|((to, q), v)| *to = q + v * dt);
-        let paths: [Option<Steady>; 8] = std::array::from_fn(|i| {
-            around.objects.get(i).map(|s| Steady::from_motion(s.in_world, &s.motion, dt))
-        });
-        let mut moves = [Move::Robot { robot: *robot, to: &self.wanted }; 9];
-        let mut count = 1;
-        for (seen, path) in around.objects.iter().zip(&paths) {
-            let Some(path) = path else { break };
-            moves[count] = Move::Object { object: seen.object, path };
-            count += 1;
-        }
-        let options = SweepOptions::default();
-        let pairs = elbowroom_scene::Selection::Robot(*robot);
-        let answer = checker.between(pairs, elbowroom_scene::Selection::All).sweep(state, &moves[..count], &options);
-        match answer {
-            Ok(hit) => hit.filter(|h| !h.at_start() || concerns_more(h.a, h.b)).map(|h| h.time),
+        let Senses { robot, checker, state, threats, members, .. } = &mut self.senses;
+        let own = Move::Robot { robot: *robot, to: &self.wanted };
+        let mut first: Option<f64> = None;
+        for (threat, (a, b)) in threats.iter().zip(members.iter()) {
+            let theirs = if let Other::Loose { velocity, .. } = threat.other { velocity.length() * 2.0 } else { 0.0 };
+            if threat.distance_m > self.levers.closing(threat, velocity, dt) + theirs * dt {
+                continue;
+            }
+            let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
+            let path = seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, dt)));
+            let mut pair = checker.between((*a).into(), (*b).into());
+            let answer = match &path {
+                Some((object, path)) => {
+                    pair.sweep(state, &[own, Move::Object { object: *object, path }], &SweepOptions::default())
+                }
+                None => pair.sweep(state, &[own], &SweepOptions::default()),
+            };
             // What cannot be checked is not done.
-            Err(_) => Some(0.0),
+            let time = answer.map_or(Some(0.0), |hit| hit.map(|h| h.time));
+            first = [first, time].into_iter().flatten().reduce(f64::min);
         }
+        first
     }
 
     /// Takes `next` as the command; the values that the path has are taken as they are.
@@ -472,11 +468,6 @@ impl<'s> Avoider<'s> {
     }
 }
 
-/// A hit that is there at the start of the command cannot be prevented by it.
-fn concerns_more(_: Member, _: Member) -> bool {
-    true
-}
-
 /// Slower by as much as a stop allows.
 fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
     for ((out, v), limit) in out.iter_mut().zip(qd).zip(limits) {
@@ -493,14 +484,3 @@ fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
 fn slowing(left_s: f64, rise_s: f64) -> f64 {
     (1.6 * left_s / rise_s.max(1e-6)).sqrt()
 }
-
-/// No point of the robot is farther from any joint axis than this, m.
-fn reach(scene: &Scene, robot: usize) -> f64 {
-    let robot = &scene.robots()[robot].robot;
-    let joints: f64 = robot.chain.joints().iter().map(|j| j.origin.translation.length()).sum();
-    let bodies = robot.bodies.iter().map(|b| elbowroom_scene::radius(b)).fold(0.0, f64::max);
-    joints + bodies
-}
-
-/// What stands still while it is looked at.
-pub const AT_REST: Motion = Motion::REST;

@@ -26,7 +26,7 @@ impl JointLimit {
         let joints = chain.active_joints().iter().map(|id| &chain.joints()[id.0].limits);
         joints
             .map(|l| {
-                let speed = if l.velocity.is_finite() && l.velocity > 0.0 { l.velocity } else { fallback_speed };
+                let speed = l.velocity.filter(|v| v.is_finite() && *v > 0.0).unwrap_or(fallback_speed);
                 Self { lower: l.lower, upper: l.upper, speed, acceleration: speed / rise_s, stop: speed / stop_s.min(rise_s) }
             })
             .collect()

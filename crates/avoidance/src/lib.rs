@@ -11,15 +11,21 @@
 //! this crate.
 
 mod avoider;
+mod calm;
 pub mod fuzzy;
+mod joint;
 mod least;
+mod levers;
 mod reflex;
 mod rules;
+mod sense;
 mod side;
 mod threat;
 
-pub use avoider::*;
+pub use avoider::{Advice, Avoider, AvoiderSettings, Doing, PathKind, Reference, TickTimes};
+pub use joint::JointLimit;
 pub use least::{LeastSquares, Wish};
 pub use reflex::{Reaction, Reflex, ReflexSettings, VelocityBounds};
 pub use rules::{Correction, DEFAULT_RULES, Rules};
+pub use sense::{Around, Neighbour, Seen};
 pub use threat::{Other, Threat};

@@ -55,11 +55,14 @@ pub struct Senses<'s> {
     /// Per object: how it moves, where it is seen.
     loose: Vec<Option<Motion>>,
     pub threats: Vec<Threat>,
+    /// Who they are, in the same order.
+    pub members: Vec<(Member, Member)>,
+    found: Vec<(Threat, Member, Member)>,
 }
 
 impl<'s> Senses<'s> {
     pub fn new(scene: &'s Scene, robot: usize) -> Self {
-        let radii = scene.objects().iter().map(|o| elbowroom_scene::radius(&o.bodies)).collect();
+        let radii = scene.objects().iter().map(|o| farthest(&o.shape.aabb(&Pose::IDENTITY))).collect();
         Self {
             scene,
             robot,
@@ -68,7 +71,9 @@ impl<'s> Senses<'s> {
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             radii,
             loose: vec![None; scene.objects().len()],
-            threats: Vec::with_capacity(64),
+            threats: Vec::with_capacity(MOST_THREATS),
+            members: Vec::with_capacity(MOST_THREATS),
+            found: Vec::with_capacity(64),
         }
     }
 
@@ -99,26 +104,30 @@ impl<'s> Senses<'s> {
 
     /// Finds what is nearer than `reach_m` (what is loose) or `fixed_reach_m` (all else), the nearest first.
     pub fn look(&mut self, around: &Around<'_>, reach_m: f64, fixed_reach_m: f64) {
-        let Self { scene, robot, checker, state, chains, radii, loose, threats } = self;
+        let Self { scene, robot, checker, state, chains, radii, loose, found, .. } = self;
         let base = scene.robots()[*robot].base_in_world;
         let view = View { scene, robot: *robot, root_in_world: base, world_in_root: base.inverse(), chains, radii, loose, state };
-        threats.clear();
-        for seen in around.objects {
-            checker.between(Selection::Robot(*robot), Selection::Object(seen.object)).near(state, reach_m, |d| {
-                threats.extend(view.threat(&d));
+        found.clear();
+        let own = Selection::Robot(*robot);
+        let objects = around.objects.iter().map(|s| Selection::Object(s.object));
+        let robots = around.robots.iter().filter(|n| n.robot != *robot).map(|n| Selection::Robot(n.robot));
+        for other in objects.chain(robots) {
+            checker.between(own, other).near(state, reach_m, |d| {
+                found.extend(view.threat(&d).map(|t| (t, d.a, d.b)));
             });
         }
-        for neighbour in around.robots.iter().filter(|n| n.robot != *robot) {
-            checker.between(Selection::Robot(*robot), Selection::Robot(neighbour.robot)).near(state, reach_m, |d| {
-                threats.extend(view.threat(&d));
-            });
-        }
-        let told = |t: &Threat| matches!(t.other, Other::Loose { .. });
-        checker.between(Selection::Robot(*robot), Selection::All).near(state, fixed_reach_m, |d| {
-            threats.extend(view.threat(&d).filter(|t| !told(t)));
+        checker.between(own, Selection::All).near(state, fixed_reach_m, |d| {
+            let told = |t: &Threat| matches!(t.other, Other::Loose { .. });
+            found.extend(view.threat(&d).filter(|t| !told(t)).map(|t| (t, d.a, d.b)));
         });
-        threats.sort_unstable_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-        threats.truncate(MOST_THREATS);
+        found.sort_unstable_by(|a, b| a.0.distance_m.total_cmp(&b.0.distance_m));
+        found.truncate(MOST_THREATS);
+        self.threats.clear();
+        self.members.clear();
+        for (threat, a, b) in found.iter() {
+            self.threats.push(*threat);
+            self.members.push((*a, *b));
+        }
     }
 }
 
@@ -200,4 +209,9 @@ impl View<'_> {
             key,
         }
     }
+}
+
+/// Farthest corner of the box from the origin, m.
+fn farthest(aabb: &elbowroom_spatial::Aabb) -> f64 {
+    aabb.min.abs().max(aabb.max.abs()).length()
 }
