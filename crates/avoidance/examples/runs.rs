@@ -40,7 +40,7 @@ impl PathPtp {
     }
 }
 
-struct Outcome { hit: Option<f64>, t: f64, done: bool, min: f64, doing: Vec<(f64, Doing)>, travel: f64, overrun: f64, over_speed: f64, limit: f64, flips: u32, times: Vec<f64>, braked: u32, what: String }
+struct Outcome { hit: Option<f64>, t: f64, done: bool, min: f64, doing: Vec<(f64, Doing)>, travel: f64, overrun: f64, over_speed: f64, limit: f64, flips: u32, times: Vec<[f64; 4]>, braked: u32, what: String }
 
 fn main() {
     let n: usize = std::env::args().nth(1).and_then(|s| s.parse().ok()).unwrap_or(100);
@@ -57,8 +57,8 @@ fn main() {
     let chain = &scene.robots()[0].robot.chain;
     let limits = JointLimit::of(chain, 0.25, 0.1, 2.0);
     let mut random = Random(12345);
-    let a = vec![-0.6, -0.6, 1.2, 0.0, 0.9, 0.0];
-    let b = vec![1.3, -0.7, 1.3, 0.0, 0.9, 0.5];
+    let a = vec![-0.6, -0.9, 1.2, 0.0, 1.0, 0.0];
+    let b = vec![1.3, -1.0, 1.3, 0.0, 1.0, 0.5];
     for q in [&a, &b] {
         let mut s = SceneState::new(&scene);
         s.set_q(&scene, 0, q).unwrap();
@@ -102,12 +102,10 @@ fn main() {
         off_hits += usize::from(off.hit.is_some());
         on_hits += usize::from(with.hit.is_some());
         if with.hit.is_some() || !with.done || with.flips > 0 {
-            println!("run {run}: speed {speed:.2} off {:?} on {:?} done {} t {:.2} min {:.3} overrun {:.2} flips {} braked {} {} dir {dir:?} doing {:?}", off.hit, with.hit, with.done, with.t, with.min, with.overrun, with.flips, with.braked, with.what, &with.doing[with.doing.len().saturating_sub(6)..]);
+            println!("run {run}: speed {speed:.2} off {:?} on {:?} done {} t {:.2} travel {:.1}/{:.1} min {:.3} overrun {:.2} flips {} braked {} {} dir {dir:?} doing {:?}", off.hit, with.hit, with.done, with.t, with.travel, off.travel, with.min, with.overrun, with.flips, with.braked, with.what, &with.doing[with.doing.len().saturating_sub(6)..]);
         }
         on.push((off, with));
     }
-    let mut times: Vec<f64> = on.iter().flat_map(|o| o.1.times.iter().copied()).collect();
-    times.sort_by(f64::total_cmp);
     let hitters: Vec<_> = on.iter().filter(|o| o.0.hit.is_some()).collect();
     let resolved = hitters.iter().filter(|o| o.1.hit.is_none()).count();
     let free: Vec<_> = on.iter().filter(|o| o.1.hit.is_none() && o.1.done).collect();
@@ -115,7 +113,11 @@ fn main() {
     println!("{tried} runs: off {off_hits} hits, on {on_hits} hits; of those that hit {resolved}/{} resolved", hitters.len());
     println!("extra time {:.3} s, travel {:.3}x, not done {}", mean(&|o| o.1.t - o.0.t), mean(&|o| o.1.travel / o.0.travel), on.iter().filter(|o| !o.1.done).count());
     println!("over speed {:.2e}, over limit {:.2e}, flips {}", on.iter().map(|o| o.1.over_speed).fold(0.0, f64::max), on.iter().map(|o| o.1.limit).fold(0.0, f64::max), on.iter().map(|o| o.1.flips).sum::<u32>());
-    if !times.is_empty() { println!("tick us median {:.1} p99 {:.1} max {:.1}", times[times.len() / 2], times[times.len() * 99 / 100], times[times.len() - 1]); }
+    for k in 0..4 {
+        let mut times: Vec<f64> = on.iter().flat_map(|o| o.1.times.iter().map(|t| t[k])).collect();
+        times.sort_by(f64::total_cmp);
+        if !times.is_empty() { println!("{k} tick us median {:.1} p99 {:.1} max {:.1}", times[times.len() / 2], times[times.len() * 99 / 100], times[times.len() - 1]); }
+    }
 }
 
 fn simulate(scene: &Scene, limits: &[JointLimit], a: &[f64], b: &[f64], cart: usize, mover: &dyn Fn(f64) -> Seen, on: bool, talk: bool) -> Outcome {
@@ -137,7 +139,8 @@ fn simulate(scene: &Scene, limits: &[JointLimit], a: &[f64], b: &[f64], cart: us
             let around = [seen];
             let advice = avoider.tick(DT, &Reference { q: &q_ref, qd: &qd_ref, path: PathKind::PointToPoint }, &Around { objects: &around, robots: &[] }, 1.0).unwrap();
             next = avoider.q().to_vec();
-            out.times.push(advice.times.total().as_secs_f64() * 1e6);
+            let us = |d: std::time::Duration| d.as_secs_f64() * 1e6;
+            out.times.push([us(advice.times.sense), us(advice.times.correct), us(advice.times.check), us(advice.times.total())]);
             // path rate under acceleration limits
             rate = advice.rate.clamp(rate - DT / 0.1, rate + DT / 0.25).clamp(0.0, 1.0);
             out.overrun = out.overrun.max(advice.reaction.overrun_m_s);
@@ -151,7 +154,7 @@ fn simulate(scene: &Scene, limits: &[JointLimit], a: &[f64], b: &[f64], cart: us
                 out.over_speed = out.over_speed.max(v.abs() / limits[j].speed - 1.0);
                 out.limit = out.limit.max(next[j] - limits[j].upper).max(limits[j].lower - next[j]);
                 since[j] += DT;
-                if v.abs() > 1e-3 * limits[j].speed {
+                if v.abs() > 1e-4 * limits[j].speed {
                     if sign[j] * v < 0.0 { if since[j] < 0.249 { out.flips += 1; } since[j] = 0.0; }
                     sign[j] = v.signum();
                 }

@@ -188,7 +188,7 @@ impl<'s> Avoider<'s> {
         let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
         Ok(Self {
             reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
-            levers: Levers::new(&scene.robots()[robot].robot, 0.0),
+            levers: Levers::new(&scene.robots()[robot].robot),
             senses,
             bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
             calm: Calm::new(n, settings.quiet_s),

@@ -1,7 +1,7 @@
 //! How far joints can move links, at most: for proofs that nothing can happen before the next look.
 
 use elbowroom_kinematics::LinkId;
-use elbowroom_scene::{Body, Object, Robot, SceneState, pairs};
+use elbowroom_scene::{Robot, pairs};
 
 use crate::{Other, Threat};
 
@@ -15,13 +15,13 @@ pub struct Levers {
 }
 
 impl Levers {
-    /// For a robot; what it carries reaches `carried_m` beyond its link at most.
-    pub fn new(robot: &Robot, carried_m: f64) -> Self {
+    /// For a robot.
+    pub fn new(robot: &Robot) -> Self {
         let chain = &robot.chain;
         let (links, joints) = (chain.links().len(), chain.dof());
         let mut levers =
             Self { links, joints, alone: vec![0.0; links * joints], against: vec![0.0; links * links * joints] };
-        let radius = |l: usize| reach(&robot.bodies[l]) + carried_m;
+        let radius = |l: usize| pairs::radius(&robot.bodies[l]);
         for a in 0..links {
             let all = chain.path(LinkId(a));
             for (joint, lever) in pairs::motion_bound(chain, LinkId(a), radius(a), &all) {
@@ -49,18 +49,4 @@ impl Levers {
         };
         row.iter().zip(qd).map(|(lever, v)| lever * v.abs()).sum::<f64>() * dt
     }
-}
-
-fn reach(bodies: &[Body]) -> f64 {
-    pairs::radius(bodies)
-}
-
-/// How far anything that the robot carries reaches from the origin of its link, m.
-pub fn carried(objects: &[Object], state: &SceneState, robot: usize) -> f64 {
-    let reach = |(i, o): (usize, &Object)| {
-        let a = state.attachment(i).filter(|a| a.robot == robot)?;
-        let aabb = o.shape.aabb(&a.in_link);
-        Some(aabb.min.abs().max(aabb.max.abs()).length())
-    };
-    objects.iter().enumerate().filter_map(reach).fold(0.0, f64::max)
 }

@@ -31,8 +31,8 @@ pub struct Correction {
     pub direction_rad: f64,
 }
 
-/// Below this the rules ask for nothing: rounding of the centre of gravity.
-const NOTHING: f64 = 1e-9;
+/// Below this the rules ask for nothing: the centre of gravity is found by samples.
+const NOTHING: f64 = 1e-3;
 
 impl Rules {
     /// Reads rules in the form of [`DEFAULT_RULES`].

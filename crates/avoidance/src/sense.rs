@@ -148,8 +148,7 @@ impl View<'_> {
     fn threat(&self, d: &Distance) -> Option<Threat> {
         let mine = |m: Member| match m {
             Member::Link { robot, link } if robot == self.robot => Some(link),
-            Member::Link { .. } => None,
-            Member::Object(o) => self.state.attachment(o).filter(|a| a.robot == self.robot).map(|a| a.link),
+            _ => None,
         };
         let (link, on_link, other, on_other) = match (mine(d.a), mine(d.b)) {
             (Some(link), _) => (link, d.on_a, d.b, d.on_b),
