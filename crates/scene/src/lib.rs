@@ -44,8 +44,9 @@ mod world_box;
 
 pub use attach::Attachment;
 pub use builder::SceneBuilder;
-pub use checker::{Between, Checker, Contact, Distance, Options};
+pub use checker::{Between, Checker, CollisionPoint, Contact, Distance, Options};
 pub use counts::{Counts, PerLevel};
+pub use elbowroom_proximity::contact::Detail;
 pub use error::{MatrixError, SceneError};
 pub use first_contacts::FirstContacts;
 pub use level::{Level, UnknownLevel};
