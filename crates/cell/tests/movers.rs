@@ -6,6 +6,7 @@ use common::{parse, rail, run};
 use elbowroom_cell::map::{MapRequest, map};
 use elbowroom_cell::report::{self, ReportScene};
 use elbowroom_cell::{Mover, RunOptions, simulate};
+use elbowroom_proximity::impact::Path;
 use elbowroom_spatial::{Rotation, Vec3};
 use proptest::prelude::*;
 
@@ -94,7 +95,6 @@ proptest! {
             }
             let leg = mover.between(t, t + 0.3);
             let (a, b) = (mover.pose(t), mover.pose(t + 0.3));
-            use elbowroom_proximity::impact::Path;
             for p in [Vec3::ZERO, Vec3::X * 0.4, Vec3::new(0.0, -0.3, 0.2)] {
                 let gone = a.transform_point(p).distance(b.transform_point(p));
                 prop_assert!(gone <= leg.speed(0.4, 0.0, 1.0) + 1e-12);

@@ -71,7 +71,7 @@ struct Lever {
     /// Index in q.
     joint: usize,
     /// m per unit.
-    lever: f64,
+    reach: f64,
     /// Value at the last measurement.
     then: f64,
 }
@@ -164,7 +164,7 @@ impl<'a> FirstContacts<'a> {
 impl Watched {
     /// How far joints can have moved its members since the last measurement, m.
     fn moved(&self, now: impl Fn(&Lever) -> f64) -> f64 {
-        self.levers.iter().map(|l| l.lever * (now(l) - l.then).abs()).sum()
+        self.levers.iter().map(|l| l.reach * (now(l) - l.then).abs()).sum()
     }
 
     fn measured(&mut self, states: &[&ChainState], gap: Option<f64>) {
@@ -188,7 +188,7 @@ impl Between<'_, '_> {
     fn first(&self, pair: &Watched, travel: f64, gap: Option<f64>) -> Option<f64> {
         let now = |l: &Lever| self.world.states[l.robot].q[l.joint];
         let before = |l: &Lever| self.last[l.robot][l.joint];
-        let way: f64 = travel + pair.levers.iter().map(|l| l.lever * (now(l) - before(l)).abs()).sum::<f64>();
+        let way: f64 = travel + pair.levers.iter().map(|l| l.reach * (now(l) - before(l)).abs()).sum::<f64>();
         // Seen from now, backwards: too far apart to have touched. Without a bound only instants are looked at.
         if gap.is_some_and(|gap| gap * 0.999 > way) || !way.is_finite() {
             return gap.is_none().then_some(1.0);
@@ -236,7 +236,7 @@ fn watched(robots: &[(&Robot, Pose)], a: Member, b: Member) -> Watched {
         };
         let radius = radius(&robots[robot].0.bodies[link.0]);
         let bounds = motion_bound(chain, link, radius, &joints);
-        bounds.into_iter().map(|(joint, lever)| Lever { robot, joint, lever, then: 0.0 }).collect()
+        bounds.into_iter().map(|(joint, reach)| Lever { robot, joint, reach, then: 0.0 }).collect()
     };
     levers.extend(side(a, b));
     levers.extend(side(b, a));
