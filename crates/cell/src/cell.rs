@@ -10,6 +10,8 @@ use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::Mover;
+
 /// Everything that a cell file says. Read by [`Cell::load`].
 #[derive(Debug, Clone)]
 pub struct Cell {
@@ -25,8 +27,10 @@ pub struct Cell {
     pub max_s: f64,
     /// In file order.
     pub robots: Vec<CellRobot>,
-    /// In file order.
+    /// In file order, where they stand at the start.
     pub objects: Vec<Object>,
+    /// The objects that move, in the same order.
+    pub movers: Vec<Mover>,
     /// In file order.
     pub regions: Vec<CellRegion>,
     /// In file order.

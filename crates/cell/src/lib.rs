@@ -34,6 +34,7 @@ mod file;
 pub mod inspect;
 pub mod map;
 pub mod motion;
+mod mover;
 pub mod plan;
 mod png;
 pub mod query;
@@ -48,6 +49,9 @@ pub use cell::{
     Target, TrajectoryRow, Travel, Units,
 };
 pub use file::{CellFile, NumberTable};
-pub use recording::{Collision, EventRow, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes};
+pub use mover::{Drive, Leg, Mover, Repeat, Way};
+pub use recording::{
+    Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes,
+};
 pub use run::{RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

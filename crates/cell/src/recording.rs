@@ -21,6 +21,8 @@ pub struct Recording {
     pub robots: Vec<RobotTrack>,
     /// One per region, in the order of the cell file.
     pub regions: Vec<RegionTrack>,
+    /// One per object that moves, in the order of the cell file.
+    pub objects: Vec<ObjectTrack>,
     /// In order of time.
     pub events: Vec<EventRow>,
     /// How long the monitor's ticks took on this machine.
@@ -69,10 +71,19 @@ pub struct Sample {
     pub reason: Reason,
 }
 
+/// Where one moving object was.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectTrack {
+    /// The object's name in the cell file.
+    pub name: String,
+    /// Its frame in the world, one per tick.
+    pub poses: Vec<Pose>,
+}
+
 /// A pair of solids that touched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collision {
-    /// When they first touched, s.
+    /// When they first touched, s; also between ticks.
     pub t_s: f64,
     /// `robot/link`.
     pub a: String,

@@ -13,6 +13,9 @@ fn sound() -> String {
          [robot.c]\n{ARM}base = {{ at = [0, 3000, 0] }}\nstart = [0, 0, 0, 0, 40, 0]\nvolumes = \"capsule\"\n\
          [robot.c.tool]\ntcp = {{ at = [0, 0, 250], rpy = [0, 0, 0] }}\nbox = {{ at = [0, 0, 125], size = [80, 80, 250] }}\n\
          [object.table]\nshape = \"box\"\nat = [0, 0, -900]\nsize = [600, 400, 700]\n\
+         [object.cart]\nshape = \"sphere\"\nat = [0, 7000, 0]\nradius = 30\n\
+         motion = {{ via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }}\n\
+         [object.part]\nshape = \"sphere\"\nat = [0, 9500, 0]\nradius = 30\nfollow = {{encoder = \"belt\"}}\n\
          [encoder.belt]\ndirection = [1, 0, 0]\nspeed = 100\n\
          [region.column]\nshape = \"cylinder\"\nbase = [900, 0, 0]\nradius = 150\nheight = 1200\nwarning = 250\n\
          guards = [\"tcp\"]\nrobots = [\"a\"]\n\
@@ -131,6 +134,87 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("{ region = \"gate\", active = true },", "{ region = \"gaat\", active = true },", "region \"gaat\"", "gate"),
     ("{ wait = 0.1 },", "{ wait = -0.1 },", "0 or more", "wait"),
     ("{ wait = 0.1 },", "{ wait = 0.1, speed = 3 },", "no key `speed`", "wait"),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [0, 8000, 0], speed = 500 }",
+        "must be a point",
+        "via = [[",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 7000, 0]], speed = 500 }",
+        "is already",
+        "each point",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [], speed = 500 }",
+        "is empty",
+        "via = [[",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 8000]], speed = 500 }",
+        "needs 3 numbers",
+        "[0, 0, 0]",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 8000, 0]] }",
+        "needs the key `speed`",
+        "speed = 500",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 8000, 0]], speed = 0 }",
+        "above 0",
+        "speed",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 8000, 0]], speed = 5, start = -1 }",
+        "0 or more",
+        "start",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { via = [[0, 8000, 0]], speed = 5, repeat = \"again\" }",
+        "cannot be \"again\"",
+        "back and forth",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { path = [[0, 8000, 0]], speed = 5 }",
+        "no key `path`",
+        "via",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { speed = 5 }",
+        "moves nothing",
+        "via = [[",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { turn = [0, 0, 9], speed = 5 }",
+        "goes with `via`",
+        "via",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = 500",
+        "must be a table",
+        "via = [[",
+    ),
+    (
+        "motion = { via = [[0, 8000, 0]], speed = 500, start = 0.5, repeat = \"loop\" }",
+        "motion = { turn = [0, 0, 9] }\nfollow = { encoder = \"belt\" }",
+        "beside `follow`",
+        "either",
+    ),
+    ("follow = {encoder = \"belt\"}", "follow = { encoder = \"best\" }", "[encoder.best]", "belt"),
+    ("follow = {encoder = \"belt\"}", "follow = { robot = \"a\" }", "`load`", "load = {"),
+    ("follow = {encoder = \"belt\"}", "follow = { }", "needs the key `encoder`", "encoder = "),
     ("[object.table]", "[object.a]", "both named \"a\"", "a_2"),
     ("[object.table]", "[object.\"x,y\"]", "no name", "comma"),
 ];

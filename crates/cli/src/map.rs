@@ -95,7 +95,7 @@ impl<'a> Document<'a> {
             robot: &map.robot,
             axes: map.axes.iter().map(axis).collect(),
             cells: map.cells(),
-            static_blocked: map.static_blocked(),
+            static_blocked: map.static_blocked,
             obstacles: map.obstacles.iter().map(obstacle).collect(),
             blocked: map.blocked,
             bytes: map.bytes(),

@@ -9,6 +9,7 @@
 //! | glTF, GLB | [`gltf`] | node transforms, sparse accessors, strips and fans |
 //! | PLY | [`ply`] | ASCII, both binary byte orders |
 //! | OFF | [`off`] | ASCII |
+//! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
 //!
 //! Everything comes out in metres and radians. A file either becomes a sound model, with [`Warning`]s where its user
 //! should know something, or a [`FormatError`] that names the file, the line, what is wrong and what to write
@@ -32,6 +33,7 @@ pub mod dae;
 mod error;
 pub mod gltf;
 pub mod mesh;
+pub mod nodetree;
 pub mod obj;
 pub mod off;
 pub mod ply;
@@ -42,10 +44,12 @@ mod scan;
 mod source;
 pub mod srdf;
 pub mod stl;
+pub mod tds;
 mod transform;
 pub mod urdf;
 mod xml;
 
 pub use error::{FormatError, Warning};
 pub use mesh::{LoadedMeshes, MeshData, units_suspicion};
+pub use nodetree::NodeTree;
 pub use robot::{LoadOptions, LoadedRobot};

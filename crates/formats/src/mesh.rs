@@ -6,7 +6,8 @@ use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Aabb, Vec3};
 
-use crate::{FormatError, Warning, dae, gltf, obj, off, ply, source, stl};
+use crate::nodetree::NodeTree;
+use crate::{FormatError, Warning, dae, gltf, obj, off, ply, source, stl, tds};
 
 /// The most vertices or triangles that a file may unfold into, instances counted.
 pub(crate) const MOST_ELEMENTS: usize = 20_000_000;
@@ -105,6 +106,8 @@ pub enum Format {
     Ply,
     /// Object File Format.
     Off,
+    /// 3D Studio.
+    Tds,
 }
 
 impl Format {
@@ -114,9 +117,9 @@ impl Format {
     }
 }
 
-/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY or OFF, told apart by content first and extension second.
+/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS, told apart by content first and extension second.
 ///
-/// `unit` is the unit of formats that state none (STL, OBJ, PLY, OFF); `None` means metres. A COLLADA file is
+/// `unit` is the unit of formats that state none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
 /// turned so that its up axis is +z. One entry per object.
 ///
 /// # Errors
@@ -164,6 +167,7 @@ pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) ->
         Format::Gltf => gltf::parse(bytes, file),
         Format::Ply => ply::parse(bytes, file),
         Format::Off => off::parse(bytes, file),
+        Format::Tds => tds::parse(bytes, file).map(NodeTree::flatten),
     }?;
     apply_unit(&mut loaded, format, file, unit);
     loaded.meshes.retain(|m| !m.triangles.is_empty());
@@ -231,7 +235,7 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<Format, FormatError> {
     if let Some(format) = by_magic(bytes, head) {
         return Ok(format);
     }
-    if let Some((kind, hint)) = known_but_not_read(bytes, head) {
+    if let Some((kind, hint)) = known_but_not_read(head) {
         return Err(FormatError::new(file, None, format!("is {kind}")).hint(hint));
     }
     if head.starts_with(b"<") || bytes.starts_with(b"<\0") {
@@ -246,7 +250,7 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<Format, FormatError> {
     })
 }
 
-const READABLE: &str = "a mesh as STL, OBJ, DAE, glTF/GLB, PLY or OFF";
+const READABLE: &str = "a mesh as STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS";
 
 fn by_magic(bytes: &[u8], head: &[u8]) -> Option<Format> {
     if bytes.starts_with(b"glTF") || (head.starts_with(b"{") && contains(head, b"\"")) {
@@ -258,13 +262,13 @@ fn by_magic(bytes: &[u8], head: &[u8]) -> Option<Format> {
     if off::is_header(head) {
         return Some(Format::Off);
     }
+    if tds::is_header(bytes) {
+        return Some(Format::Tds);
+    }
     (stl::is_ascii(head) || stl::is_exact_binary(bytes)).then_some(Format::Stl)
 }
 
-fn known_but_not_read(bytes: &[u8], head: &[u8]) -> Option<(&'static str, &'static str)> {
-    if bytes.starts_with(&[0x4d, 0x4d]) && bytes.len() >= 6 {
-        return Some(("a 3DS file, which is not read as a mesh", READABLE));
-    }
+fn known_but_not_read(head: &[u8]) -> Option<(&'static str, &'static str)> {
     [
         (&b"#VRML"[..], "VRML", READABLE),
         (b"#Inventor", "an Open Inventor file", READABLE),
@@ -295,6 +299,7 @@ fn by_extension(file: &Path) -> Option<Format> {
         ("glb", Format::Gltf),
         ("ply", Format::Ply),
         ("off", Format::Off),
+        ("3ds", Format::Tds),
     ]
     .into_iter()
     .find(|(extension, _)| extension_is(file, extension))

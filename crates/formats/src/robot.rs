@@ -1,6 +1,7 @@
 //! A whole robot: URDF, its meshes, and the SRDF that goes with it.
 
 mod meshes;
+mod to_tree;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,6 +18,8 @@ use crate::mesh;
 use crate::urdf::{Geometry, Model, Solid};
 use crate::{FormatError, Warning, source, srdf, urdf};
 use meshes::Meshes;
+
+pub use to_tree::to_tree;
 
 /// How to load a robot.
 #[derive(Debug, Clone, Default)]

@@ -1,6 +1,6 @@
 //! Affine maps of mesh files: unlike a pose they may scale, shear and mirror.
 
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::mesh::MeshData;
 
@@ -43,11 +43,62 @@ impl Affine {
         row(0).dot(row(1).cross(row(2))) < 0.0
     }
 
+    fn column(&self, c: usize) -> Vec3 {
+        Vec3::from(self.0.map(|row| row[c]))
+    }
+
+    /// The map back; `None` where this one flattens space, or nearly: where its axes are 1e-9 of a unit cube or less
+    /// against their lengths.
+    pub(crate) fn inverse(&self) -> Option<Self> {
+        let (x, y, z) = (self.column(0), self.column(1), self.column(2));
+        let volume = x.dot(y.cross(z));
+        if !(volume.abs() > 1e-9 * x.length() * y.length() * z.length()) || !volume.is_normal() {
+            return None;
+        }
+        let rows = [y.cross(z), z.cross(x), x.cross(y)].map(|v| (v * (1.0 / volume)).to_array());
+        let turned = Self::rotation(rows);
+        turned.0.iter().flatten().all(|n| n.is_finite()).then(|| {
+            let origin = turned.point(-self.column(3));
+            turned.moved(origin)
+        })
+    }
+
+    fn moved(mut self, origin: Vec3) -> Self {
+        self.0.iter_mut().zip(origin.to_array()).for_each(|(row, o)| row[3] = o);
+        self
+    }
+
     /// The mesh moved; under a mirror image its outside stays outside.
     pub(crate) fn apply(&self, mesh: &mut MeshData) {
         mesh.vertices.iter_mut().for_each(|v| *v = self.point(*v));
         if self.is_mirror() {
             mesh.flip();
         }
+    }
+}
+
+impl From<&Pose> for Affine {
+    fn from(pose: &Pose) -> Self {
+        Self(pose.to_rows())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn difference(a: &Affine, b: &Affine) -> f64 {
+        a.0.iter().flatten().zip(b.0.iter().flatten()).fold(0.0, |most, (a, b)| (a - b).abs().max(most))
+    }
+
+    #[test]
+    fn the_inverse_undoes_scale_shear_and_mirror() {
+        let map = Affine([[0.5, 0.2, 0.0, 3.0], [0.0, -2.0, 0.1, 4.0], [0.3, 0.0, 7.0, -5.0]]);
+        let back = map.inverse().unwrap();
+        assert!(difference(&back.after(&map), &Affine::IDENTITY) < 1e-12);
+        assert!(difference(&map.after(&back), &Affine::IDENTITY) < 1e-12);
+        assert!(Affine::scale([1.0, 0.0, 1.0]).inverse().is_none());
+        assert!(Affine::scale([1e-300, 1e-300, 1e-300]).inverse().is_none());
+        assert!(Affine([[1.0, 2.0, 3.0, 0.0]; 3]).inverse().is_none());
     }
 }

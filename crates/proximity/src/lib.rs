@@ -8,6 +8,7 @@
 //! | yes or no | [`collides`], [`within`] |
 //! | nearest surface point, signed distance | [`project_point`] |
 //! | how far and which way to separate | [`escape`] |
+//! | where two surfaces meet: point, triangle, normals | [`contact`] |
 //! | when two moving shapes first touch | [`impact`] |
 //! | which faces a motion can bring into contact | [`facing`] |
 //! | corners, sides and parts of a drawn mesh put right | [`repair`] |
@@ -42,6 +43,7 @@
 //! assert!((gap.distance - (0.6 - 0.06 - 0.15)).abs() < 1e-15);
 //! ```
 
+pub mod contact;
 mod escape;
 pub mod facing;
 pub mod fit;

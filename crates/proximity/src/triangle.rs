@@ -97,7 +97,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
 }
 
 /// True where the segment passes through the triangle (its border included, up to rounding).
-fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
+pub(crate) fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     let n = (b - a).cross(c - a);
     let (hp, hq) = (n.dot(p - a), n.dot(q - a));
     if (hp > 0.0) == (hq > 0.0) || hp == hq {

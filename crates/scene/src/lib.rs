@@ -44,10 +44,11 @@ mod world_box;
 
 pub use attach::Attachment;
 pub use builder::SceneBuilder;
-pub use checker::{Between, Checker, Contact, Distance, Options};
+pub use checker::{Between, Checker, CollisionPoint, Contact, Distance, Options};
 pub use counts::{Counts, PerLevel};
+pub use elbowroom_proximity::contact::Detail;
 pub use error::{MatrixError, SceneError};
-pub use first_contacts::FirstContacts;
+pub use first_contacts::{FirstContact, FirstContacts, ObjectStep};
 pub use level::{Level, UnknownLevel};
 pub use matrix::{Edit, PairEntry, PairMatrix, PairState, Reason};
 pub use member::Member;

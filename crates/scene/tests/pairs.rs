@@ -1,9 +1,10 @@
 //! The pair rules, and the checker against asking every pair at every step.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
+use elbowroom_proximity::impact::{Path, Steady};
 use elbowroom_proximity::{Capsule, Shape, Sphere, collides};
 use elbowroom_scene::pairs::{FirstContacts, Member, links_can_meet, pairs};
-use elbowroom_scene::{Body, Object, Robot};
+use elbowroom_scene::{Body, Object, ObjectStep, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 /// Five links in a row, joints about y and z in turn; link 2 has no solid.
@@ -39,52 +40,103 @@ fn neighbours_are_no_pair_not_even_across_a_link_without_solids() {
     assert_eq!(pairs(&[&robot, &robot], 2).len(), 4 + 15 + 12);
 }
 
+/// Two snakes beside each other, and a ball that passes.
+struct Stage {
+    robot: Robot,
+    base: [Pose; 2],
+    objects: [Object; 1],
+}
+
+impl Stage {
+    fn new() -> Self {
+        let ball = Shape::Sphere(Sphere { radius: 0.1 });
+        let in_world = Pose::from_translation(Vec3::new(0.4, -0.9, 0.7));
+        let base = [Pose::IDENTITY, Pose::from_translation(Vec3::X * 0.9)];
+        Self { robot: snake(), base, objects: [Object { name: "ball".into(), shape: ball, in_world }] }
+    }
+
+    fn pairs(&self) -> Vec<(Member, Member)> {
+        let mut list = pairs(&[&self.robot, &self.robot], 1);
+        list.extend((0..2).map(|robot| (Member::Link { robot, link: LinkId(0) }, Member::Object(0))));
+        list
+    }
+
+    fn touch(&self, (a, b): (Member, Member), states: &[ChainState], ball: Pose) -> bool {
+        let solid = |m: Member| match m {
+            Member::Object(o) => (self.objects[o].shape.clone(), ball),
+            Member::Link { robot, link } => {
+                let body = &self.robot.bodies[link.0][0];
+                (body.shape.clone(), self.base[robot] * states[robot].link_in_root(link) * body.in_link)
+            }
+        };
+        let ((sa, pa), (sb, pb)) = (solid(a), solid(b));
+        collides(&sa, &pa, &sb, &pb)
+    }
+}
+
 #[test]
-fn the_checker_finds_every_first_contact_at_the_step_where_it_begins() {
-    let robot = snake();
-    let base = [Pose::IDENTITY, Pose::from_translation(Vec3::X * 0.9)];
-    let objects = [Object {
-        name: "ball".into(),
-        shape: Shape::Sphere(Sphere { radius: 0.15 }),
-        in_world: Pose::from_translation(Vec3::new(0.4, 0.5, 0.7)),
-    }];
+fn the_checker_finds_every_first_contact_and_when_it_begins() {
+    let stage = Stage::new();
     let mut seed = 7_u64;
     let mut random = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 40) as f64 / (1_u64 << 23) as f64 - 1.0
     };
-    let mut contacts = 0;
-    for _ in 0..150 {
-        let mut checker = FirstContacts::new(vec![(&robot, base[0]), (&robot, base[1])], &objects);
-        let mut states = [ChainState::new(&robot.chain), ChainState::new(&robot.chain)];
+    let (mut contacts, mut with_ball, mut passed) = (0, 0, 0);
+    for run in 0..120 {
+        let robots = stage.base.map(|base| (&stage.robot, base)).to_vec();
+        let mut checker = FirstContacts::new(robots, &stage.objects).moving(&[0]);
+        assert_eq!(checker.len(), stage.pairs().len());
+        // Every other run in steps so coarse that a contact may come and go within one.
+        let (steps, fine) = if run % 2 == 0 { (200, 4) } else { (12, 50) };
         let goals: Vec<Vec<f64>> = (0..2).map(|_| (0..4).map(|_| random() * 2.4).collect()).collect();
+        let way = Vec3::new(random(), 2.5, random() * 0.5);
+        let at = |share: f64| {
+            let states = goals.iter().map(|goal| {
+                let mut state = ChainState::new(&stage.robot.chain);
+                state.q.iter_mut().zip(goal).for_each(|(q, g)| *q = g * share);
+                stage.robot.chain.forward(&mut state);
+                state
+            });
+            let start = stage.objects[0].in_world;
+            (states.collect::<Vec<_>>(), Pose::new(start.rotation, start.translation + way * share))
+        };
         let mut known: Vec<(Member, Member)> = Vec::new();
-        for step in 0..200 {
-            for (state, goal) in states.iter_mut().zip(&goals) {
-                state.q.iter_mut().zip(goal).for_each(|(q, g)| *q = g * f64::from(step) / 200.0);
-                robot.chain.forward(state);
-            }
+        for step in 0..steps {
+            let time = |fraction: f64| (f64::from(step) - 1.0 + fraction).max(0.0) / f64::from(steps);
+            let (states, ball) = at(time(1.0));
+            let path = Steady::linear(at(time(0.0)).1, ball.translation - at(time(0.0)).1.translation);
+            let moves = [ObjectStep { object: 0, path: &path as &dyn Path, jumps: false }];
             let mut found = Vec::new();
-            checker.check(&[&states[0], &states[1]], |a, b| found.push((a, b)));
-            let solid = |m: Member| match m {
-                Member::Object(o) => (objects[o].shape.clone(), objects[o].in_world),
-                Member::Link { robot: r, link } => {
-                    let body = &robot.bodies[link.0][0];
-                    (body.shape.clone(), base[r] * states[r].link_in_root(link) * body.in_link)
+            checker.check(&[&states[0], &states[1]], &moves, |c| found.push(((c.a, c.b), c.fraction)));
+            for pair in stage.pairs().into_iter().filter(|p| !known.contains(p)) {
+                let first = (1..=fine).map(|k| f64::from(k) / f64::from(fine)).find(|f| {
+                    let (states, ball) = at(time(*f));
+                    stage.touch(pair, &states, ball)
+                });
+                let told = found.iter().find(|f| f.0 == pair).map(|f| f.1);
+                match (first, told) {
+                    (Some(first), Some(told)) => {
+                        let late = told - first;
+                        assert!(late < 1e-9 && late > -1.0 / f64::from(fine) - 1e-9, "{pair:?}: {told} {first}");
+                    }
+                    (None, Some(told)) => {
+                        // A touch so short that the samples are on both sides of it.
+                        let (states, ball) = at(time(told));
+                        assert!(stage.touch(pair, &states, ball), "{pair:?} in step {step}");
+                    }
+                    (Some(first), None) => panic!("{pair:?} missed in step {step} at {first}"),
+                    (None, None) => {}
                 }
-            };
-            let touching: Vec<_> = pairs(&[&robot, &robot], 1)
-                .into_iter()
-                .filter(|p| !known.contains(p))
-                .filter(|(a, b)| {
-                    let ((sa, pa), (sb, pb)) = (solid(*a), solid(*b));
-                    collides(&sa, &pa, &sb, &pb)
-                })
-                .collect();
-            assert_eq!(found, touching, "step {step}");
-            contacts += found.len();
-            known.extend(found);
+            }
+            let here = at(time(1.0));
+            for (pair, _) in found {
+                contacts += 1;
+                with_ball += usize::from(pair.1 == Member::Object(0));
+                passed += usize::from(!stage.touch(pair, &here.0, here.1));
+                known.push(pair);
+            }
         }
     }
-    assert!(contacts > 20, "{contacts}");
+    assert!(contacts > 40 && with_ball > 20 && passed > 3, "{contacts} {with_ball} {passed}");
 }

@@ -13,6 +13,7 @@ const Stage = (() => {
       for (const key of ['poses', 'tcp', 'override', 'speed', 'distance', 'nearest']) robot[key] = floats(robot[key]);
     }
     for (const region of run.regions) region.poses = floats(region.poses);
+    run.objects = run.objects.map((poses) => poses && floats(poses));
   }
 
   let renderer;
@@ -81,7 +82,11 @@ const Stage = (() => {
     scene.add(group);
     return group;
   }));
-  for (const object of data.objects) scene.add(new THREE.Mesh(geometry(object.mesh), solidMaterial(object.color)));
+  const objects = data.objects.map((object) => {
+    const thing = new THREE.Mesh(geometry(object.mesh), solidMaterial(object.color));
+    scene.add(thing);
+    return thing;
+  });
 
   const regions = data.regions.map((region) => {
     const group = new THREE.Group();
@@ -232,6 +237,7 @@ const Stage = (() => {
     paths.forEach((path, i) => { path.visible = i === runIndex; });
     run.robots.forEach((_, i) => showRobot(i, run, at));
     regions.forEach((_, i) => showRegion(i, run, t, at));
+    run.objects.forEach((poses, i) => { if (poses) place(objects[i], poses, 7, 0, at.frame, at.next, at.part); });
     request();
   }
 

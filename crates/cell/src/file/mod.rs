@@ -2,6 +2,7 @@
 
 mod models;
 mod node;
+mod object;
 mod program;
 mod read;
 mod region;
@@ -13,7 +14,6 @@ use std::path::Path;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
-use elbowroom_scene::Object;
 
 pub use models::NumberTable;
 use read::{Table, Value};
@@ -87,6 +87,7 @@ impl CellFile {
             max_s: root.get("max_s").map_or(Ok(600.0), |v| v.positive())?,
             robots: Vec::new(),
             objects: Vec::new(),
+            movers: Vec::new(),
             regions: Vec::new(),
             encoders: Vec::new(),
             laws: laws(&root)?,
@@ -98,7 +99,10 @@ impl CellFile {
         for (name, t) in root.named("robot")? {
             cell.robots.push(robot::read(name, &t, units, &mut warnings)?);
         }
-        objects(&root, &mut cell)?;
+        for (name, t) in root.named("encoder")? {
+            cell.encoders.push(region::encoder(name, &t, units)?);
+        }
+        object::read(&root, &mut cell)?;
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
@@ -194,35 +198,7 @@ fn laws(root: &Table<'_>) -> Result<CellLaws> {
     Ok(CellLaws { laws, stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0) })
 }
 
-fn objects(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
-    for (name, t) in root.named("object")? {
-        let units = cell.units;
-        let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, mesh)")?;
-        let words = ["box", "sphere", "cylinder", "capsule", "mesh"].map(|w| (w, w));
-        let (shape, in_world) = match word.word(&words)? {
-            "box" => t.only(&["shape", "at", "rpy", "size"]).and_then(|()| units.cuboid(&t)),
-            "sphere" => t.only(&["shape", "at", "rpy", "radius"]).and_then(|()| units.sphere(&t)),
-            "cylinder" => {
-                t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t))
-            }
-            "capsule" => {
-                t.only(&["shape", "at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t))
-            }
-            _ => t.only(&["shape", "at", "rpy", "mesh", "mesh_unit"]).and_then(|()| units.mesh(&t, "mesh")),
-        }?;
-        if cell.robots.iter().any(|r| r.name == name) {
-            let what = format!("object and robot are both named \"{name}\"; reports could not tell them apart");
-            return Err(t.error(what).hint(format!("[object.{name}_2]")));
-        }
-        cell.objects.push(Object { name: name.to_owned(), shape, in_world });
-    }
-    Ok(())
-}
-
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
-    for (name, t) in root.named("encoder")? {
-        cell.encoders.push(region::encoder(name, &t, cell.units)?);
-    }
     let known = region::Known { robots: &cell.robots, encoders: &cell.encoders };
     let mut regions = Vec::new();
     for (name, t) in root.named("region")? {

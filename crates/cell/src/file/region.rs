@@ -192,6 +192,15 @@ pub(super) fn robot_index(v: &Value<'_>, robots: &[CellRobot]) -> Result<usize> 
     })
 }
 
+pub(super) fn encoder_index(v: &Value<'_>, encoders: &[Encoder]) -> Result<usize> {
+    let name = v.text()?;
+    let names = || encoders.iter().map(|e| e.name.as_str());
+    names().position(|n| n == name).ok_or_else(|| {
+        let what = format!("names the encoder \"{name}\", which has no table [encoder.{name}]");
+        v.error(what).hint(suggest::hint(name, names()))
+    })
+}
+
 fn robots(t: &Table<'_>, known: &Known<'_>, follow: Option<Follow>) -> Result<Vec<usize>> {
     let followed = match follow {
         Some(Follow::Robot { robot, .. }) => Some(robot),
@@ -230,12 +239,7 @@ fn follow(v: &Value<'_>, known: &Known<'_>) -> Result<Follow> {
             if let Some(frame) = t.get("frame") {
                 return Err(frame.error("goes with `robot`; an encoder has one frame").hint("leave it out"));
             }
-            let name = e.text()?;
-            let names = || known.encoders.iter().map(|e| e.name.as_str());
-            names().position(|n| n == name).map(Follow::Encoder).ok_or_else(|| {
-                let what = format!("names the encoder \"{name}\", which has no table [encoder.{name}]");
-                e.error(what).hint(suggest::hint(name, names()))
-            })
+            encoder_index(&e, known.encoders).map(Follow::Encoder)
         }
         (Some(robot), None) => {
             let robot = robot_index(&robot, known.robots)?;

@@ -1,6 +1,6 @@
 //! The joint-space map of a robot of a cell: what `elbowroom map` answers.
 //!
-//! Every object is an obstacle. The robot's own links among themselves, other robots, and links that none of the map's
+//! Every object is an obstacle, those that move where they are at the start. The robot's own links among themselves, other robots, and links that none of the map's
 //! joints moves are left out.
 
 mod pictures;
@@ -38,6 +38,8 @@ pub struct CellMap {
     pub obstacles: Vec<MapObstacle>,
     /// Number of cells that any object blocks.
     pub blocked: u64,
+    /// Number of cells that an object blocks that nothing moves.
+    pub static_blocked: u64,
     /// All of it, cell by cell; `None` where there are too many cells.
     pub dense: Option<Dense>,
     /// What a user should know, none of it fatal.
@@ -106,29 +108,37 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         let (name, model) = (object.name.clone(), request.model);
         obstacles.push(MapObstacle { name, model, blocks, time: begin.elapsed() });
     }
-    let dense = Dense::of(&axes, obstacles.iter().map(|o| &o.blocks));
-    let blocked = if let Some(dense) = &dense {
-        dense.blocked()
-    } else {
-        let all: Vec<_> = cell.objects.iter().flat_map(solids).collect();
-        filler.fill(&all).map_err(refuse)?.blocked()
+    let moves = |o: usize| cell.movers.iter().any(|m| m.object == o);
+    let count = |dense: Option<&Dense>, which: &dyn Fn(usize) -> bool| {
+        if let Some(dense) = dense {
+            return Ok(dense.blocked());
+        }
+        let all: Vec<_> = cell.objects.iter().enumerate().filter(|o| which(o.0)).flat_map(|o| solids(o.1)).collect();
+        filler.fill(&all).map(|b| b.blocked()).map_err(refuse)
     };
+    let dense = Dense::of(&axes, obstacles.iter().map(|o| &o.blocks));
+    let blocked = count(dense.as_ref(), &|_| true)?;
+    let static_blocked = if cell.movers.is_empty() {
+        blocked
+    } else {
+        let standing = obstacles.iter().enumerate().filter(|o| !moves(o.0)).map(|o| &o.1.blocks);
+        count(Dense::of(&axes, standing).as_ref(), &|o| !moves(o))?
+    };
+    for m in &cell.movers {
+        let what = format!("object \"{}\" moves: the map has it where it is at the start", cell.objects[m.object].name);
+        warnings.push(Warning::new(&cell.file, spec.line, what));
+    }
     if cell.robots.len() > 1 {
         let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
-    Ok(CellMap { robot: robot.name.clone(), axes, turns, obstacles, blocked, dense, warnings })
+    Ok(CellMap { robot: robot.name.clone(), axes, turns, obstacles, blocked, static_blocked, dense, warnings })
 }
 
 impl CellMap {
     /// Number of cells.
     pub fn cells(&self) -> u64 {
         self.axes.iter().map(|a| a.count() as u64).fold(1, u64::saturating_mul)
-    }
-
-    /// Number of cells blocked by objects that nothing moves: of a cell file, all.
-    pub fn static_blocked(&self) -> u64 {
-        self.blocked
     }
 
     /// Memory of the trees of boxes, bytes.

@@ -37,3 +37,5 @@ pub fn of_robot(i: usize) -> &'static str {
 pub const TOOL: &str = "#59636f";
 /// Colour of objects.
 pub const OBJECT: &str = "#9aa3ad";
+/// Colour of objects that move.
+pub const MOVING: &str = "#8a6fb3";

@@ -16,7 +16,7 @@ const CHORD_ERROR_M: f64 = 1e-3;
 pub struct ReportScene {
     /// In the order of the recording.
     pub robots: Vec<ReportRobot>,
-    /// Things that do not move.
+    /// Solid things, where they stand at the start.
     pub objects: Vec<ReportObject>,
 }
 
@@ -52,7 +52,7 @@ pub struct ReportMesh {
     pub color: [u8; 3],
 }
 
-/// A thing that does not move.
+/// A solid thing.
 #[derive(Debug, Clone)]
 pub struct ReportObject {
     /// Its name in the cell.

@@ -18,7 +18,7 @@ const STANDING_M_S: f64 = 1e-4;
 /// use elbowroom_cell::{Recording, TickTimes, report};
 /// let recording = Recording {
 ///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, monitored: true,
-///     robots: vec![], regions: vec![], events: vec![], tick_ns: TickTimes::default(),
+///     robots: vec![], regions: vec![], objects: vec![], events: vec![], tick_ns: TickTimes::default(),
 /// };
 /// assert!(report::summary(&recording, 80, false).contains("welding column"));
 /// ```

@@ -26,7 +26,10 @@ pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Value {
         "robots": scene.robots.iter().map(robot).collect::<Vec<_>>(),
         "objects": scene.objects.iter().map(|o| {
             let surface = (o.vertices.clone(), o.triangles.clone());
-            json!({ "name": o.name, "mesh": mesh(&surface, &o.in_world), "color": palette::OBJECT })
+            let moves = runs.iter().any(|(_, rec)| rec.objects.iter().any(|t| t.name == o.name));
+            // What moves is placed by each frame.
+            let (pose, color) = if moves { (&Pose::IDENTITY, palette::MOVING) } else { (&o.in_world, palette::OBJECT) };
+            json!({ "name": o.name, "mesh": mesh(&surface, pose), "color": color })
         }).collect::<Vec<_>>(),
         "regions": regions.iter().map(region).collect::<Vec<_>>(),
         "runs": runs.iter().map(|(label, rec)| run(scene, label, rec)).collect::<Vec<_>>(),
@@ -108,10 +111,15 @@ fn run(scene: &ReportScene, label: &str, rec: &Recording) -> Value {
         "warning": spans(&r.warning_spans),
         "inside": spans(&r.inside_spans),
     })).collect::<Vec<_>>();
+    let objects = scene.objects.iter().map(|o| {
+        let track = rec.objects.iter().find(|t| t.name == o.name)?;
+        Some(floats(frames.iter().flat_map(|&i| seven(track.poses.get(i).unwrap_or(&o.in_world)))))
+    });
     let robots = rec.robots.iter().enumerate().map(|(i, track)| frames_of(scene.robots.get(i), track, rec, &frames));
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
         "t": times.unwrap_or_default(), "robots": robots.collect::<Vec<_>>(), "regions": regions,
+        "objects": objects.collect::<Vec<_>>(),
     })
 }
 

@@ -96,6 +96,7 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
         monitored: true,
         robots: vec![robot],
         regions: log.truth.iter().map(region).collect(),
+        objects: Vec::new(),
         events: Vec::new(),
         tick_ns: TickTimes::default(),
     }

@@ -4,7 +4,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::Source;
 use elbowroom_spatial::{Motion, Pose, Vec3};
 
-use crate::{Cell, Encoder, Follow, Travel};
+use crate::{Cell, Follow};
 
 /// Frames of robots and encoders.
 #[derive(Debug)]
@@ -57,38 +57,10 @@ impl<'a> Frames<'a> {
         ((r.base_in_world * tcp_in_root).translation, speed)
     }
 
-    /// True where an encoder moves that a region follows.
+    /// True where an encoder moves that a region follows, or an object moves.
     pub fn anything_travels(&self, t_s: f64) -> bool {
-        self.cell
-            .regions
-            .iter()
-            .any(|r| matches!(r.follow, Some(Follow::Encoder(e)) if self.cell.encoders[e].at(t_s).1 != 0.0))
-    }
-}
-
-impl Encoder {
-    /// Travel (m) and speed (m/s) at a time (s).
-    pub fn at(&self, t_s: f64) -> (f64, f64) {
-        let (travel, speed) = match &self.travel {
-            Travel::Constant { at_m, speed, start_s, end_s } => {
-                let moving = t_s >= *start_s && t_s < *end_s;
-                (at_m + speed * (t_s.min(*end_s) - start_s).max(0.0), if moving { *speed } else { 0.0 })
-            }
-            Travel::Table(rows) => table(rows, t_s),
-        };
-        (self.wrap_m.map_or(travel, |wrap| travel.rem_euclid(wrap)), speed)
-    }
-}
-
-fn table(rows: &[(f64, f64)], t_s: f64) -> (f64, f64) {
-    let next = rows.partition_point(|r| r.0 <= t_s);
-    match (next.checked_sub(1).map(|i| rows[i]), rows.get(next)) {
-        (None, Some(first)) => (first.1, 0.0),
-        (Some(last), None) => (last.1, 0.0),
-        (Some(a), Some(b)) => {
-            let speed = (b.1 - a.1) / (b.0 - a.0);
-            (a.1 + speed * (t_s - a.0), speed)
-        }
-        (None, None) => (0.0, 0.0),
+        let belt =
+            |f: &Option<Follow>| matches!(f, Some(Follow::Encoder(e)) if self.cell.encoders[*e].at(t_s).1 != 0.0);
+        self.cell.regions.iter().any(|r| belt(&r.follow)) || self.cell.movers.iter().any(|m| m.moving(t_s))
     }
 }

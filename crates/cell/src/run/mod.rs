@@ -9,11 +9,11 @@ use std::time::Instant;
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{AccessClass, EventKind, Kind, Monitor, Reason, Snapshot, Source};
-use elbowroom_scene::{FirstContacts, Member};
+use elbowroom_scene::{FirstContact, FirstContacts, Member, ObjectStep};
 
 use crate::configure::{self, Setup};
 use crate::motion::{Clock, plan};
-use crate::{Cell, Collision, EventRow, Recording, RobotTrack, Sample, TickTimes};
+use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
 use ending::{Ending, Halt};
 use frames::Frames;
 use regions::Regions;
@@ -123,6 +123,9 @@ struct Run<'a> {
     regions: Regions<'a>,
     checker: FirstContacts<'a>,
     tracks: Vec<RobotTrack>,
+    objects: Vec<ObjectTrack>,
+    /// When collisions were last looked for, s.
+    looked_s: f64,
     halts: Vec<Halt>,
     /// Override that each robot obeys until the next tick.
     obeyed: Vec<f64>,
@@ -159,8 +162,11 @@ impl<'a> Run<'a> {
             checker: FirstContacts::new(
                 cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
                 &cell.objects,
-            ),
+            )
+            .moving(&cell.movers.iter().map(|m| m.object).collect::<Vec<_>>()),
             tracks: cell.robots.iter().map(track).collect(),
+            objects: cell.movers.iter().map(|m| moving_track(cell, m)).collect(),
+            looked_s: 0.0,
             halts: vec![Halt::default(); cell.robots.len()],
             obeyed: vec![0.0; cell.robots.len()],
             events: Vec::new(),
@@ -334,8 +340,17 @@ impl<'a> Run<'a> {
     }
 
     fn collide(&mut self, t_s: f64) {
-        let Self { checker, states, tracks, cell, .. } = self;
+        let Self { checker, states, tracks, objects, cell, looked_s, .. } = self;
         let states: Vec<&ChainState> = states.iter().collect();
+        let before = std::mem::replace(looked_s, t_s);
+        let legs: Vec<Leg<'_>> = cell.movers.iter().map(|m| m.between(before, t_s)).collect();
+        let steps: Vec<ObjectStep<'_>> = cell
+            .movers
+            .iter()
+            .zip(&legs)
+            .map(|(m, leg)| ObjectStep { object: m.object, path: leg, jumps: leg.jumps() })
+            .collect();
+        objects.iter_mut().zip(&cell.movers).for_each(|(track, m)| track.poses.push(m.pose(t_s)));
         let name = |m: Member| match m {
             Member::Object(o) => cell.objects[o].name.clone(),
             Member::Link { robot, link } => {
@@ -343,7 +358,9 @@ impl<'a> Run<'a> {
                 format!("{}/{}", r.name, r.robot.chain.links()[link.0])
             }
         };
-        checker.check(&states, |a, b| {
+        checker.check(&states, &steps, |FirstContact { a, b, fraction }| {
+            // The tick's own time where it is now, not a hair beside it.
+            let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
             let collision = Collision { t_s, a: name(a), b: name(b) };
             let robot = |m: Member| if let Member::Link { robot, .. } = m { Some(robot) } else { None };
             // Both robots of a pair touched: each one's list tells it.
@@ -389,10 +406,15 @@ impl<'a> Run<'a> {
             monitored: self.options.monitored,
             robots,
             regions: self.regions.finish(t_s),
+            objects: self.objects,
             events: self.events,
             tick_ns: tick_times(self.tick_ns),
         }
     }
+}
+
+fn moving_track(cell: &Cell, mover: &Mover) -> ObjectTrack {
+    ObjectTrack { name: cell.objects[mover.object].name.clone(), poses: Vec::new() }
 }
 
 /// Time of a tick, s, without the digits that only rounding put there.

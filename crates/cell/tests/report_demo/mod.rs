@@ -157,6 +157,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 vec![Collision { t_s: 3.1, a: "ns16/fore".into(), b: "table".into() }]
             },
         }],
+        objects: vec![],
         regions: vec![
             RegionTrack {
                 name: name.into(),

@@ -1,12 +1,16 @@
 //! Small sound files of every kind, ways to damage them, and one door to all readers.
 
+#[path = "waving.rs"]
+mod waving;
+
 use std::path::Path;
 
 use elbowroom_formats::mesh::{self, UpAxis};
-use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, urdf};
-
+use elbowroom_formats::nodetree::{Node, NodeTree};
+use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
+use elbowroom_spatial::Pose;
 /// All readers; `mesh` is the one that finds out the kind by itself.
-pub const PARSERS: [&str; 9] = ["stl", "obj", "dae", "gltf", "ply", "off", "urdf", "srdf", "mesh"];
+pub const PARSERS: [&str; 10] = ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "mesh"];
 
 /// What a reader made of some bytes: the size of its result in bytes, roughly.
 pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
@@ -25,10 +29,27 @@ pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
         "gltf" => gltf::parse(bytes, &file).map(size),
         "ply" => ply::parse(bytes, &file).map(size),
         "off" => off::parse(bytes, &file).map(size),
+        "3ds" => tds::parse(bytes, &file).map(|t| tree_size(&t)),
         "urdf" => urdf::parse(bytes, &file).and_then(|m| robot::chain(&m, &file)).map(|c| c.links().len() * 200),
         "srdf" => srdf::parse(bytes, &file).map(|s| s.disabled.len() * 100),
         _ => mesh::parse(bytes, &file, None, UpAxis::Ignore).map(size),
     }
+}
+
+fn tree_size(tree: &NodeTree) -> usize {
+    for (i, node) in tree.nodes.iter().enumerate() {
+        assert!(node.parent.is_none_or(|p| p < i), "a parent behind its child");
+        for m in &node.meshes {
+            assert!(m.vertices.iter().all(|v| v.is_finite()), "a vertex is not finite");
+            assert!(m.triangles.iter().flatten().all(|&i| (i as usize) < m.vertices.len()), "a corner does not exist");
+        }
+    }
+    assert!(tree.in_world().iter().all(Pose::is_finite), "a frame is not finite");
+    let of = |n: &Node| {
+        200 + n.track.len() * 104
+            + n.meshes.iter().map(|m| m.vertices.len() * 24 + m.triangles.len() * 12).sum::<usize>()
+    };
+    tree.nodes.iter().map(of).sum()
 }
 
 /// Sound files for a reader.
@@ -49,9 +70,10 @@ pub fn samples(parser: &str) -> Vec<Vec<u8>> {
             list
         }
         "off" => of(&[OFF]),
+        "3ds" => vec![tds::write(&waving::waving(), Path::new("a.3ds")).unwrap()],
         "urdf" => of(&[URDF]),
         "srdf" => of(&[SRDF]),
-        _ => PARSERS[..6].iter().flat_map(|p| samples(p)).collect(),
+        _ => PARSERS[..7].iter().flat_map(|p| samples(p)).collect(),
     }
 }
 

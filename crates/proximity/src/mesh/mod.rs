@@ -7,6 +7,7 @@ mod any;
 mod approach;
 #[cfg(test)]
 mod audit;
+mod coarse;
 mod exact;
 mod gilbert;
 mod landmarks;
@@ -24,6 +25,7 @@ mod swallowed;
 mod touch;
 mod tree;
 
+pub use coarse::{Coarse, bound_at, bound_of, depth};
 pub use landmarks::{Landmarks, PlacedLandmarks};
 pub use nearest::{Hint, Nearest, distance, distance_at, farther, guess, within};
 pub(crate) use probe::{Box as BoxProbe, Height, Ray};

@@ -23,8 +23,20 @@ pub(super) fn open<const MODE: u8>(
     limit: &Limit,
     stack: &mut Stack,
 ) -> u32 {
+    open_as::<MODE>(level, (a, b), pair, pair.opens(), pairing, limit, stack)
+}
+
+/// [`open`] of one side, both or none: a node that is not opened is compared itself.
+pub(super) fn open_as<const MODE: u8>(
+    level: Level,
+    (a, b): (&Tree, &Tree),
+    pair: &Entry,
+    (open_a, open_b): (bool, bool),
+    pairing: &Pairing,
+    limit: &Limit,
+    stack: &mut Stack,
+) -> u32 {
     dispatch!(level, simd => {
-        let (open_a, open_b) = pair.opens();
         let first = stack.len();
         let side_a = side(a, pair.a, pair.height_a, open_a);
         let side_b = side(b, pair.b, pair.height_b, open_b);
@@ -33,7 +45,7 @@ pub(super) fn open<const MODE: u8>(
             if key < best.0 {
                 best = (key, stack.len());
             }
-            stack.push(pair.child(i, j, key));
+            stack.push(pair.child_as((open_a, open_b), i, j, key));
         });
         stack.bring_to_top(best.1);
         tests

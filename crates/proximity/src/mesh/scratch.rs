@@ -172,7 +172,12 @@ impl Entry {
     /// The pair of children `i` and `j` as numbered by [`side`].
     #[inline(always)]
     pub fn child(&self, i: usize, j: usize, key: f32) -> Self {
-        let (open_a, open_b) = self.opens();
+        self.child_as(self.opens(), i, j, key)
+    }
+
+    /// The same where these are opened.
+    #[inline(always)]
+    pub fn child_as(&self, (open_a, open_b): (bool, bool), i: usize, j: usize, key: f32) -> Self {
         let (a, height_a) =
             if open_a { (self.a * FAN as u32 + i as u32, self.height_a - 1) } else { (self.a, self.height_a) };
         let (b, height_b) =

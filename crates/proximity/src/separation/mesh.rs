@@ -139,3 +139,10 @@ pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
     });
     (best.1, best.2)
 }
+
+/// The point of a triangle (mesh frame) nearest to a cylinder; where they overlap, one in both.
+pub(crate) fn nearest_to_cylinder(cylinder: &crate::Cylinder, in_mesh: &Pose, triangle: [Vec3; 3]) -> Vec3 {
+    let local = triangle.map(|p| in_mesh.inverse_transform_point(p));
+    let gap = projections::distance(&Core::Triangle(local), &Core::Cylinder(*cylinder), &Pose::IDENTITY, f64::INFINITY);
+    gap.map_or(triangle[0], |g| nearest_on_triangle(in_mesh.transform_point(g.on_a), triangle))
+}

@@ -17,7 +17,7 @@ use crate::mesh::distance_at;
 use crate::{Capsule, Cuboid, Shape, Sphere};
 
 pub(crate) use box_box::best_axis;
-pub(crate) use mesh::nearest_on_mesh;
+pub(crate) use mesh::{nearest_on_mesh, nearest_to_cylinder};
 
 /// How far apart two shapes are, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,16 @@
 //! Questions about a state of a scene.
 
 mod answer;
+mod collision;
 mod first;
 mod list;
 pub(crate) mod narrow;
 mod near;
 mod nearest;
 
-pub use answer::{Contact, Distance};
+pub use answer::{CollisionPoint, Contact, Distance};
+
+use elbowroom_proximity::contact::Detail;
 
 use crate::sweep::Sweeper;
 use crate::{Counts, Impact, Level, Member, Move, Scene, SceneError, SceneState, Selection, SweepOptions};
@@ -169,6 +172,32 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All).distance(state)
     }
 
+    /// Where the robot collides: the point, the link, the body and its triangle, and the normals (S4). Of several
+    /// collisions it is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` where
+    /// nothing collides, margins included.
+    ///
+    /// [`Detail::Boxes`] stops at a depth of the meshes' trees of boxes: "nothing collides" is certain then, a
+    /// collision may be none, and the point is a point of the surface in the box. [`Detail::Exact`] goes on to the triangles;
+    /// which of those that touch is told is laid down in [`contact`](elbowroom_proximity::contact), alike on every
+    /// instruction set. Solids are looked at, whatever [`Options::level`] says. Allocates only for hulls.
+    ///
+    /// ```
+    /// use elbowroom_proximity::contact::Detail;
+    /// use elbowroom_scene::{Checker, Options, SceneState, example};
+    /// let scene = example::two_arms();
+    /// let mut state = SceneState::new(&scene);
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// assert!(checker.collision(&state, Detail::Exact).is_none());
+    /// state.set_q(&scene, 0, &[0.0, 1.57, 0.0])?;
+    /// let met = checker.collision(&state, Detail::Exact).expect("the arm lies in the part and the table");
+    /// assert_eq!([met.link, met.other].map(|m| scene.name(m)), ["left/forearm", "part"]);
+    /// assert!(met.touching && met.on_link.distance(met.on_other) < 0.1);
+    /// # Ok::<(), elbowroom_scene::SceneError>(())
+    /// ```
+    pub fn collision(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
+        self.between(Selection::All, Selection::All).collision(state, detail)
+    }
+
     /// Tells every pair that is not certainly farther apart than `margin_m` beyond its own margin: distance, proven lower
     /// bound, nearest points; in the order of the hierarchy (nearest to a base first). What is in contact has distance 0
     /// and a point in or near both. Work ends where a pair is proven to be farther. A pair is told exactly where
@@ -313,6 +342,12 @@ impl<'s> Between<'_, 's> {
     pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
         let (core, list) = self.fresh(state);
         core.first(list, state, tolerance(tolerance_m))
+    }
+
+    /// As [`Checker::collision`].
+    pub fn collision(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
+        let (core, list) = self.fresh(state);
+        core.collision(list, state, detail)
     }
 
     /// As [`Checker::near`].

@@ -1,5 +1,6 @@
 //! Two members against each other.
 
+use elbowroom_proximity::contact::{ContactPoint, Detail, contact_at};
 use elbowroom_proximity::mesh::{Hint, Scratch};
 use elbowroom_proximity::{Separation, Shape, separation_within};
 use elbowroom_spatial::{Obb, Pose};
@@ -144,6 +145,38 @@ impl Narrow {
             }
         }
         best
+    }
+
+    /// Where the exact models meet, or are no farther apart than `limit` metres, and which of their solids: the first pair
+    /// that touches, else the first that is near.
+    pub fn meet(
+        &mut self,
+        a: &Placed,
+        b: &Placed,
+        detail: Detail,
+        limit: f64,
+    ) -> Option<((usize, usize), ContactPoint)> {
+        self.counts.pairs_tested.add(Level::L3, 1);
+        let (of_a, of_b) = (&a.model.exact, &b.model.exact);
+        let margin = round_up(limit);
+        let mut near = None;
+        self.fill_bounds(of_b, &b.in_world);
+        for (i, x) in of_a.iter().enumerate() {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                if bounds.clear(&self.bounds[j], margin) {
+                    continue;
+                }
+                let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+                let found = contact_at(&x.shape, &in_a, &y.shape, &in_b, detail, limit, &mut self.scratch);
+                match found {
+                    Some(c) if c.touching => return Some(((i, j), c)),
+                    Some(c) => near = near.or(Some(((i, j), c))),
+                    None => {}
+                }
+            }
+        }
+        near
     }
 
     /// An upper bound of the distance of the exact models, metres; `None` where it would not come cheap.

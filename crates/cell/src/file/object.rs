@@ -1,0 +1,122 @@
+//! `[object.NAME]`: solid things, and what moves them.
+
+use elbowroom_formats::FormatError;
+use elbowroom_scene::Object;
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::read::{Table, Value};
+use super::region::encoder_index;
+use crate::{Cell, Drive, Mover, Repeat, Units, Way};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+const COMMON: &[&str] = &["shape", "at", "rpy", "follow", "motion"];
+const MOTION: &str = "motion = { via = [[2000, 1000, 100]], speed = 500 }";
+/// Corners nearer than this (m) are one.
+const ONE_POINT_M: f64 = 1e-9;
+
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    for (name, t) in root.named("object")? {
+        let units = cell.units;
+        let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, mesh)")?;
+        let words = ["box", "sphere", "cylinder", "capsule", "mesh"].map(|w| (w, w));
+        let shape = word.word(&words)?;
+        let own: &[&str] = match shape {
+            "box" => &["size"],
+            "sphere" => &["radius"],
+            "cylinder" | "capsule" => &["radius", "height", "from", "to"],
+            _ => &["mesh", "mesh_unit"],
+        };
+        t.only(&[COMMON, own].concat())?;
+        let (shape, in_world) = match shape {
+            "box" => units.cuboid(&t),
+            "sphere" => units.sphere(&t),
+            "cylinder" => units.cylinder(&t),
+            "capsule" => units.capsule(&t),
+            _ => units.mesh(&t, "mesh"),
+        }?;
+        if cell.robots.iter().any(|r| r.name == name) {
+            let what = format!("object and robot are both named \"{name}\"; reports could not tell them apart");
+            return Err(t.error(what).hint(format!("[object.{name}_2]")));
+        }
+        let drive = drive(&t, cell, in_world)?;
+        let mover = drive.map(|drive| Mover { object: cell.objects.len(), rest_in_world: in_world, drive });
+        let in_world = mover.as_ref().map_or(in_world, |m| m.pose(0.0));
+        cell.objects.push(Object { name: name.to_owned(), shape, in_world });
+        cell.movers.extend(mover);
+    }
+    Ok(())
+}
+
+/// What moves the object; `None` where it stands.
+fn drive(t: &Table<'_>, cell: &Cell, rest_in_world: Pose) -> Result<Option<Drive>> {
+    match (t.get("follow"), t.get("motion")) {
+        (None, None) => Ok(None),
+        (Some(_), Some(motion)) => {
+            Err(motion.error("stands beside `follow`: one thing moves an object").hint("either follow or motion"))
+        }
+        (Some(v), None) => belt(&v, cell).map(Some),
+        (None, Some(v)) => way(&v, cell.units, rest_in_world).map(|way| Some(Drive::Way(way))),
+    }
+}
+
+fn belt(v: &Value<'_>, cell: &Cell) -> Result<Drive> {
+    const EXAMPLE: &str = "follow = { encoder = \"belt\" }";
+    let t = v.table(EXAMPLE)?;
+    if let Some(robot) = t.get("robot") {
+        let what = "makes an object ride on a robot: what a robot carries is its `load` or its tool";
+        return Err(robot
+            .error(what)
+            .hint("[robot.NAME] load = { box = { at = [0, 0, 350], size = [200, 200, 200] } }"));
+    }
+    t.only(&["encoder"])?;
+    let index = encoder_index(&t.need("encoder", "encoder = \"belt\"")?, &cell.encoders)?;
+    Ok(Drive::Belt(cell.encoders[index].clone()))
+}
+
+fn way(v: &Value<'_>, units: Units, rest_in_world: Pose) -> Result<Way> {
+    let t = v.table(MOTION)?;
+    t.only(&["via", "speed", "start", "repeat", "turn"])?;
+    let turn = t.get("turn").map_or(Ok(Vec3::ZERO), |v| v.three().map(|w| w * units.angle.to_radians(1.0)))?;
+    let start_s = t.get("start").map_or(Ok(0.0), |v| v.not_negative())?;
+    let corners = corners(&t, units, rest_in_world.translation, turn)?;
+    if corners.len() == 1 {
+        if let Some(v) = ["speed", "repeat"].iter().find_map(|k| t.get(k)) {
+            return Err(v.error("goes with `via`: what only turns has no way").hint(MOTION));
+        }
+        return Ok(Way::new(corners, 0.0, start_s, Repeat::No, turn));
+    }
+    let speed = units.positive_length(&t.need("speed", "speed = 500   (length units per second)")?)?;
+    let repeat = t.get("repeat").map_or(Ok(Repeat::No), |v| {
+        v.word(&[("no", Repeat::No), ("loop", Repeat::Loop), ("back and forth", Repeat::BackAndForth)])
+    })?;
+    Ok(Way::new(corners, speed, start_s, repeat, turn))
+}
+
+/// From where the object stands through the points of `via`.
+fn corners(t: &Table<'_>, units: Units, rest: Vec3, turn: Vec3) -> Result<Vec<Vec3>> {
+    const EXAMPLE: &str = "via = [[2000, 1000, 100]]   (where the object goes from its `at`, one point or more)";
+    let Some(via) = t.get("via") else {
+        if turn != Vec3::ZERO {
+            return Ok(vec![rest]);
+        }
+        return Err(t.error(format!("`{}` moves nothing: it has neither `via` nor `turn`", t.name)).hint(EXAMPLE));
+    };
+    let mut corners = vec![rest];
+    let points = via.list(EXAMPLE)?;
+    if points.is_empty() {
+        return Err(via.error("is empty").hint(EXAMPLE));
+    }
+    for v in &points {
+        if !v.is_list() {
+            return Err(v.error("must be a point, not one number").hint(EXAMPLE));
+        }
+        let point = units.point(v)?;
+        if corners.last().is_some_and(|last| last.distance(point) < ONE_POINT_M) {
+            let what = "is where the object is already: before the first point of `via` it stands at its `at`";
+            return Err(v.error(what).hint("each point away from the one before"));
+        }
+        corners.push(point);
+    }
+    Ok(corners)
+}

@@ -1,0 +1,148 @@
+//! A model as a tree of frames that carry meshes and may be animated: what 3DS and glTF have in common.
+
+use std::path::Path;
+
+use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
+
+use crate::mesh::{LoadedMeshes, MeshData};
+use crate::transform::Affine;
+use crate::{FormatError, Warning};
+
+/// Frames with meshes, parents before their children.
+///
+/// ```
+/// use elbowroom_formats::nodetree::{Node, NodeTree};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let mut tree = NodeTree::new("arm");
+/// let base = tree.push(Node::new("base", None, Pose::from_xyz_rpy([0.0, 0.0, 0.5], [0.0; 3])));
+/// tree.push(Node::new("link_1", Some(base), Pose::from_xyz_rpy([0.1, 0.0, 0.2], [0.0; 3])));
+/// assert_eq!(tree.in_world()[1].translation, Vec3::new(0.1, 0.0, 0.7));
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct NodeTree {
+    /// The model's name, or the file's stem.
+    pub name: String,
+    /// Every node stands behind its parent.
+    pub nodes: Vec<Node>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// A frame of a [`NodeTree`].
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Node {
+    /// Its name in the file; may repeat.
+    pub name: String,
+    /// Index of the node that carries it; `None` at the top.
+    pub parent: Option<usize>,
+    /// Its frame at rest in its parent's, or the world's at the top (m). In a 3DS file the origin is the pivot.
+    pub in_parent: Pose,
+    /// Objects in its frame (m), any scale of the file applied.
+    pub meshes: Vec<MeshData>,
+    /// How it moves, in order of time; empty where it does not. The first key is the frame at rest.
+    pub track: Vec<Key>,
+}
+
+/// Where a node is at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Key {
+    /// Seconds.
+    pub time_s: f64,
+    /// The node's frame in its parent's.
+    pub in_parent: Pose,
+}
+
+impl Node {
+    /// A node without meshes that does not move.
+    pub fn new(name: impl Into<String>, parent: Option<usize>, in_parent: Pose) -> Self {
+        Self { name: name.into(), parent, in_parent, ..Self::default() }
+    }
+}
+
+impl NodeTree {
+    /// A tree without nodes.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    /// Adds a node; the answer is its index.
+    pub fn push(&mut self, node: Node) -> usize {
+        self.nodes.push(node);
+        self.nodes.len() - 1
+    }
+
+    /// The frame of every node at rest in the world. A parent that does not stand before its child counts as the world.
+    pub fn in_world(&self) -> Vec<Pose> {
+        let mut all: Vec<Pose> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let parent = node.parent.and_then(|p| all.get(p)).copied().unwrap_or(Pose::IDENTITY);
+            all.push(parent * node.in_parent);
+        }
+        all
+    }
+
+    /// Indices of the nodes that a node carries itself; `None`: of those at the top.
+    pub fn children(&self, of: Option<usize>) -> impl Iterator<Item = usize> + '_ {
+        self.nodes.iter().enumerate().filter(move |(_, n)| n.parent == of).map(|(i, _)| i)
+    }
+
+    /// Index of the first node of this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.nodes.iter().position(|n| n.name == name)
+    }
+
+    /// Multiplies all lengths.
+    pub fn scale(&mut self, factor: f64) {
+        for node in &mut self.nodes {
+            node.in_parent.translation = node.in_parent.translation * factor;
+            node.track.iter_mut().for_each(|k| k.in_parent.translation = k.in_parent.translation * factor);
+            node.meshes.iter_mut().flat_map(|m| &mut m.vertices).for_each(|v| *v = *v * factor);
+        }
+    }
+
+    /// The box around all meshes at rest, in the world.
+    pub fn aabb(&self) -> Aabb {
+        let frames = self.in_world();
+        let points = self
+            .nodes
+            .iter()
+            .zip(&frames)
+            .flat_map(|(n, frame)| n.meshes.iter().flat_map(|m| &m.vertices).map(|v| frame.transform_point(*v)));
+        Aabb::from_points(points)
+    }
+
+    /// All meshes at rest, in the world, without the tree.
+    pub(crate) fn flatten(self) -> LoadedMeshes {
+        let frames = self.in_world();
+        let mut meshes = Vec::new();
+        for (node, frame) in self.nodes.into_iter().zip(frames) {
+            for mut mesh in node.meshes {
+                mesh.vertices.iter_mut().for_each(|v| *v = frame.transform_point(*v));
+                meshes.push(mesh);
+            }
+        }
+        LoadedMeshes { meshes, warnings: self.warnings }
+    }
+
+    /// Refuses frames and corners that a scale has pushed over the edge.
+    pub(crate) fn check_finite(&self, file: &Path) -> Result<(), FormatError> {
+        let frames = self.in_world();
+        for (node, frame) in self.nodes.iter().zip(&frames) {
+            let moves = node.track.iter().all(|k| k.in_parent.is_finite() && k.time_s.is_finite());
+            let corners = node.meshes.iter().flat_map(|m| &m.vertices).all(|v| v.is_finite());
+            if !(frame.is_finite() && moves && corners) {
+                let what = format!("the node `{}` is infinitely large or far away", node.name);
+                return Err(FormatError::new(file, None, what).hint("finite numbers; export the model again"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rigid part of an affine map: its origin, and its axes made orthonormal, x first. What is left over (scale,
+/// shear, mirror) belongs into the meshes.
+pub(crate) fn rigid(map: &Affine) -> Pose {
+    let column = |c: usize| Vec3::new(map.0[0][c], map.0[1][c], map.0[2][c]);
+    let x = if map.is_mirror() { -column(0) } else { column(0) };
+    Pose::new(Rotation::from_x_and_xy(x, column(1)).unwrap_or(Rotation::IDENTITY), column(3))
+}

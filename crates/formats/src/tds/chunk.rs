@@ -1,0 +1,151 @@
+//! Chunks in chunks, and the numbers in them; every length is checked against what holds it.
+
+use std::path::Path;
+
+use elbowroom_spatial::Vec3;
+
+use crate::FormatError;
+
+/// Number and length.
+const HEAD: usize = 6;
+
+/// A numbered stretch of bytes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chunk<'a> {
+    pub(super) id: u16,
+    body: &'a [u8],
+    /// Where the body begins in the file.
+    at: usize,
+}
+
+/// The chunk that is the whole file. Its length is not believed: some writers leave it at 0 or forget what they added.
+pub(super) fn main<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunk<'a>, FormatError> {
+    if bytes.len() < HEAD || !bytes.starts_with(&[0x4d, 0x4d]) {
+        return Err(FormatError::new(file, None, "is no 3DS file: it does not begin with the bytes 4D 4D")
+            .hint("a model saved as .3ds by 3D Studio, 3ds Max or another program"));
+    }
+    let length = u32::from_le_bytes([bytes[2], bytes[3], bytes[4], bytes[5]]) as usize;
+    let end = if (HEAD..=bytes.len()).contains(&length) { length } else { bytes.len() };
+    Ok(Chunk { id: 0x4d4d, body: &bytes[HEAD..end], at: HEAD })
+}
+
+impl<'a> Chunk<'a> {
+    pub(super) fn children<'f>(&self, file: &'f Path) -> Children<'a, 'f> {
+        self.cursor(file).children()
+    }
+
+    pub(super) fn cursor<'f>(&self, file: &'f Path) -> Cursor<'a, 'f> {
+        Cursor { rest: self.body, at: self.at, id: self.id, file }
+    }
+}
+
+/// The chunks in a stretch of bytes.
+pub(super) struct Children<'a, 'f> {
+    cursor: Cursor<'a, 'f>,
+}
+
+impl<'a> Iterator for Children<'a, '_> {
+    type Item = Result<Chunk<'a>, FormatError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        // A few bytes too many are the padding of some writers.
+        if self.cursor.rest.len() < HEAD {
+            return None;
+        }
+        let chunk = self.cursor.chunk();
+        if chunk.is_err() {
+            self.cursor.rest = &[];
+        }
+        Some(chunk)
+    }
+}
+
+/// Reads numbers one after the other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cursor<'a, 'f> {
+    rest: &'a [u8],
+    at: usize,
+    id: u16,
+    file: &'f Path,
+}
+
+impl<'a, 'f> Cursor<'a, 'f> {
+    pub(super) fn error(&self, what: &str) -> FormatError {
+        FormatError::new(self.file, None, format!("chunk {:04X}, byte {}: {what}", self.id, self.at))
+    }
+
+    pub(super) fn children(self) -> Children<'a, 'f> {
+        Children { cursor: self }
+    }
+
+    fn chunk(&mut self) -> Result<Chunk<'a>, FormatError> {
+        let (id, length) = (self.u16()?, self.u32()? as usize);
+        let Some(body) = length.checked_sub(HEAD).and_then(|n| self.rest.get(..n)) else {
+            let left = self.rest.len() + HEAD;
+            let what = format!("a chunk {id:04X} claims {length} bytes where {left} are left");
+            return Err(self.error(&what).hint("the whole file: copy or export it again"));
+        };
+        let chunk = Chunk { id, body, at: self.at };
+        self.skip(body.len())?;
+        Ok(chunk)
+    }
+
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], FormatError> {
+        let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
+            return Err(self.error("ends too early").hint("the whole file: copy or export it again"));
+        };
+        self.rest = rest;
+        self.at += N;
+        Ok(*first)
+    }
+
+    pub(super) fn skip(&mut self, bytes: usize) -> Result<(), FormatError> {
+        let Some(rest) = self.rest.get(bytes..) else {
+            return Err(self.error("ends too early").hint("the whole file: copy or export it again"));
+        };
+        self.rest = rest;
+        self.at += bytes;
+        Ok(())
+    }
+
+    /// A count of things that take so many bytes each, no more than can be there.
+    pub(super) fn count(&self, count: usize, bytes_each: usize, of: &str) -> Result<usize, FormatError> {
+        if self.rest.len() / bytes_each < count {
+            let what = format!("claims {count} {of}, and has bytes for {}", self.rest.len() / bytes_each);
+            return Err(self.error(&what).hint("the whole file: copy or export it again"));
+        }
+        Ok(count)
+    }
+
+    pub(super) fn u16(&mut self) -> Result<u16, FormatError> {
+        self.take().map(u16::from_le_bytes)
+    }
+
+    pub(super) fn u32(&mut self) -> Result<u32, FormatError> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    /// A finite number.
+    pub(super) fn f32(&mut self) -> Result<f32, FormatError> {
+        let number = self.take().map(f32::from_le_bytes)?;
+        if number.is_finite() {
+            return Ok(number);
+        }
+        Err(self.error(&format!("has a number that is none: {number}")).hint("finite numbers; export again"))
+    }
+
+    pub(super) fn vector(&mut self) -> Result<Vec3, FormatError> {
+        Ok(Vec3::new(f64::from(self.f32()?), f64::from(self.f32()?), f64::from(self.f32()?)))
+    }
+
+    /// A text that ends with a zero; one byte is one character.
+    pub(super) fn text(&mut self) -> Result<String, FormatError> {
+        let Some(length) = self.rest.iter().position(|&b| b == 0) else {
+            return Err(self.error("has a name without an end").hint("the whole file: copy or export it again"));
+        };
+        let printable = |b: &u8| if b.is_ascii_control() { '_' } else { char::from(*b) };
+        let text = self.rest[..length].iter().map(printable).collect();
+        self.skip(length + 1)?;
+        Ok(text)
+    }
+}

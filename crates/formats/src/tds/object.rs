@@ -1,0 +1,74 @@
+//! Objects: vertices, faces and local axes.
+
+use std::path::Path;
+
+use elbowroom_spatial::Vec3;
+
+use super::chunk::{Chunk, Cursor};
+use crate::FormatError;
+use crate::transform::Affine;
+
+/// A mesh as it stands in the file.
+pub(super) struct Object {
+    pub(super) name: String,
+    /// In world coordinates, or in the object's frame: see [`super::place`].
+    pub(super) vertices: Vec<Vec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The object's frame in the world, which may scale and mirror; `None` where the file has none.
+    pub(super) axes: Option<Affine>,
+}
+
+/// An object, or nothing where the chunk is a camera or a light.
+pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, FormatError> {
+    let mut cursor = chunk.cursor(file);
+    let name = cursor.text()?;
+    for part in cursor.children() {
+        let part = part?;
+        if part.id == 0x4100 {
+            return mesh(name, &part, file).map(Some);
+        }
+    }
+    Ok(None)
+}
+
+fn mesh(name: String, chunk: &Chunk<'_>, file: &Path) -> Result<Object, FormatError> {
+    let mut object = Object { name, vertices: Vec::new(), triangles: Vec::new(), axes: None };
+    for part in chunk.children(file) {
+        let part = part?;
+        let mut cursor = part.cursor(file);
+        match part.id {
+            0x4110 => object.vertices = vertices(&mut cursor)?,
+            0x4120 => object.triangles = triangles(&mut cursor)?,
+            0x4160 => object.axes = Some(axes(&mut cursor)?),
+            _ => {}
+        }
+    }
+    let count = object.vertices.len();
+    if let Some(bad) = object.triangles.iter().flatten().find(|&&i| i as usize >= count) {
+        let what = format!("a face of `{}` has the corner {bad}, but there are {count} vertices", object.name);
+        return Err(FormatError::new(file, None, what).hint("the model exported again, or the object left out"));
+    }
+    Ok(object)
+}
+
+fn vertices(cursor: &mut Cursor<'_, '_>) -> Result<Vec<Vec3>, FormatError> {
+    let count = usize::from(cursor.u16()?);
+    let count = cursor.count(count, 12, "vertices")?;
+    (0..count).map(|_| cursor.vector()).collect()
+}
+
+fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, FormatError> {
+    let count = usize::from(cursor.u16()?);
+    let count = cursor.count(count, 8, "faces")?;
+    let mut corner = || cursor.u16().map(u32::from);
+    let mut face = || Ok([corner()?, corner()?, corner()?, corner()?]);
+    // The fourth number says which edges are drawn.
+    (0..count).map(|_| face().map(|[a, b, c, _]| [a, b, c])).collect()
+}
+
+/// Three axes and the origin, as columns.
+fn axes(cursor: &mut Cursor<'_, '_>) -> Result<Affine, FormatError> {
+    let (x, y, z, origin) = (cursor.vector()?, cursor.vector()?, cursor.vector()?, cursor.vector()?);
+    let row = |i: usize| [x, y, z, origin].map(|v| v.to_array()[i]);
+    Ok(Affine([row(0), row(1), row(2)]))
+}

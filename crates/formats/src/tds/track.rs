@@ -1,0 +1,76 @@
+//! Tracks of the keyframer: values at frames.
+
+use std::f64::consts::FRAC_PI_2;
+
+use elbowroom_spatial::{Rotation, Vec3};
+
+use super::chunk::Cursor;
+use crate::FormatError;
+
+/// Frames per second of 3D Studio; the file does not say.
+pub(super) const FRAMES_PER_SECOND: f64 = 30.0;
+
+/// A rotation of more quarter turns than this between two keys is not followed.
+const MOST_QUARTERS: f64 = 8.0;
+
+/// Values at frames, in order of the frames.
+pub(super) type Track<T> = Vec<(f64, T)>;
+
+/// Reads keys: frame, flags, as many spline parameters as flags are set, and the value.
+fn keys<'a, 'f, T>(
+    cursor: &mut Cursor<'a, 'f>,
+    bytes_each: usize,
+    mut value: impl FnMut(&mut Cursor<'a, 'f>) -> Result<T, FormatError>,
+) -> Result<Track<T>, FormatError> {
+    // Flags and two reserved numbers.
+    cursor.skip(10)?;
+    let count = cursor.u32()? as usize;
+    let count = cursor.count(count, 6 + bytes_each, "keys")?;
+    let mut track = Vec::with_capacity(count);
+    for _ in 0..count {
+        let (frame, flags) = (cursor.u32()?, cursor.u16()?);
+        // Tension, continuity, bias, ease to, ease from.
+        cursor.skip(4 * (flags & 0x1f).count_ones() as usize)?;
+        track.push((f64::from(frame), value(cursor)?));
+    }
+    Ok(track)
+}
+
+pub(super) fn vectors(cursor: &mut Cursor<'_, '_>) -> Result<Track<Vec3>, FormatError> {
+    let mut track = keys(cursor, 12, Cursor::vector)?;
+    track.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(track)
+}
+
+pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, FormatError> {
+    keys(cursor, 4, |c| c.f32().map(f64::from))
+}
+
+/// Rotations in the parent's frame. A key is an angle (against the right hand) and an axis, and all but the first turn
+/// on from the key before; large turns get keys in between, so that neighbours are less than half a turn apart.
+pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, FormatError> {
+    let keys = keys(cursor, 16, |c| Ok((f64::from(c.f32()?), c.vector()?)))?;
+    let mut track: Track<Rotation> = Vec::with_capacity(keys.len());
+    for (frame, (angle, axis)) in keys {
+        let axis = axis.try_normalize().unwrap_or(Vec3::Z);
+        let (before, from) = track.last().copied().map_or((frame, Rotation::IDENTITY), |(f, r)| (f, r));
+        let parts = (angle.abs() / FRAC_PI_2).ceil().max(1.0);
+        let parts = if track.is_empty() || parts > MOST_QUARTERS { 1.0 } else { parts };
+        for part in 1..=parts as usize {
+            let share = part as f64 / parts;
+            let turned = Rotation::from_axis_angle(axis, -angle * share) * from;
+            track.push((before + (frame - before) * share, turned.renormalized()));
+        }
+    }
+    Ok(track)
+}
+
+/// The value at a frame, blended between neighbours; `None` for an empty track.
+pub(super) fn sample<T: Copy>(track: &Track<T>, frame: f64, blend: impl Fn(T, T, f64) -> T) -> Option<T> {
+    let after = track.partition_point(|(f, _)| *f < frame);
+    match (after.checked_sub(1).and_then(|i| track.get(i)), track.get(after)) {
+        (Some((f0, a)), Some((f1, b))) => Some(blend(*a, *b, (frame - f0) / (f1 - f0))),
+        (Some((_, v)), None) | (None, Some((_, v))) => Some(*v),
+        (None, None) => None,
+    }
+}
