@@ -63,7 +63,7 @@ proptest! {
         for ((x, (low, high)), g) in x.iter().zip(&p.bounds).zip(&g) {
             prop_assert!(x >= low && x <= high);
             // Karush, Kuhn, Tucker: the slope leads out of the bounds, or is none.
-            let slope = if *x <= *low { g.min(0.0) } else if *x >= *high { g.max(0.0) } else { *g };
+            let slope = if low == high { 0.0 } else if *x <= *low { g.min(0.0) } else if *x >= *high { g.max(0.0) } else { *g };
             prop_assert!(slope.abs() <= 2e-10 * scale, "slope {slope} at {x} in [{low}, {high}]");
         }
     }
