@@ -18,6 +18,9 @@ const NO_OVERRIDE: f64 = 1e-6;
 const NONE_S: f64 = 1e-9;
 /// Slower than this share of its speed the robot counts as standing.
 const STANDS: f64 = 5e-3;
+/// A correction of less than this size is not told as evading, nor one that was longer ago, s.
+const EVADING: f64 = 0.02;
+const EVADING_S: f64 = 0.1;
 /// An obstacle slower than this stands, m/s.
 const OBSTACLE_STANDS_M_S: f64 = 0.01;
 
@@ -155,11 +158,14 @@ pub struct Avoider<'s> {
     qdd: Vec<f64>,
     wanted: Vec<f64>,
     next: Vec<f64>,
+    intent: Vec<f64>,
     braked: Vec<f64>,
     /// A planned way, the next waypoint last.
     way: Vec<Vec<f64>>,
     levers: Levers,
     standing_s: f64,
+    /// Since the rules last asked for something, s.
+    evaded_s: f64,
     following: bool,
 }
 
@@ -199,9 +205,11 @@ impl<'s> Avoider<'s> {
             qdd: vec![0.0; n],
             wanted: vec![0.0; n],
             next: vec![0.0; n],
+            intent: vec![0.0; n],
             braked: vec![0.0; n],
             way: Vec::new(),
             standing_s: 0.0,
+            evaded_s: f64::INFINITY,
             following: true,
         })
     }
@@ -219,6 +227,11 @@ impl<'s> Avoider<'s> {
     /// The commanded joint accelerations, rad/s² or m/s².
     pub fn qdd(&self) -> &[f64] {
         &self.qdd
+    }
+
+    /// The joint velocities that it would have at override 1, rad/s or m/s: for a monitor that knows directions.
+    pub fn intent(&self) -> &[f64] {
+        &self.intent
     }
 
     /// The rules it reacts by.
@@ -287,8 +300,14 @@ impl<'s> Avoider<'s> {
     fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) -> (Reaction, bool) {
         self.want(dt, reference, allowed);
         if allowed == 0.0 {
-            brake(&self.limits, &self.qd, dt, &mut self.next);
-            return (Reaction::default(), false);
+            self.intent.fill(0.0);
+            // A path that is followed brings itself to a stop.
+            if self.following {
+                self.along_path(dt, reference);
+            } else {
+                brake(&self.limits, &self.qd, dt, &mut self.next);
+            }
+            return (Reaction::default(), self.following);
         }
         self.calm.hold(&mut self.bounds);
         for (now, soon) in self.bounds.now.iter_mut().zip(&self.bounds.soon) {
@@ -300,13 +319,20 @@ impl<'s> Avoider<'s> {
         let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
         let reaction =
             self.reflex.react(chain, state, &self.wanted, &self.bounds, threats, hold_path, &mut self.next);
+        self.intent.copy_from_slice(&self.next);
         self.next.iter_mut().for_each(|v| *v *= allowed);
         let exactly = self.following && self.way.is_empty() && !reaction.asked;
         if exactly {
-            let path = self.next.iter_mut().zip(reference.q).zip(&self.q);
-            path.for_each(|((v, to), from)| *v = (to - from) / dt);
+            self.along_path(dt, reference);
         }
         (reaction, exactly)
+    }
+
+    /// Fills `next` with what leads to where the path wants to be.
+    fn along_path(&mut self, dt: f64, reference: &Reference<'_>) {
+        for ((v, to), from) in self.next.iter_mut().zip(reference.q).zip(&self.q) {
+            *v = (to - from) / dt;
+        }
     }
 
     /// Fills `wanted`: along the path and back to it, at override 1.
@@ -408,6 +434,7 @@ impl<'s> Avoider<'s> {
         let stands = fastest < STANDS && wants && allowed > 0.0;
         self.standing_s = if stands { self.standing_s + dt } else { 0.0 };
         let loose_moves = self.senses.threats.iter().any(|t| t.velocity().length() > OBSTACLE_STANDS_M_S);
+        self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
         advice.stuck = self.standing_s >= self.settings.patience_s && !loose_moves;
         advice.rate = self.rate(reference, advice.astray_s);
         advice.doing = if allowed == 0.0 {
@@ -418,7 +445,7 @@ impl<'s> Avoider<'s> {
             Doing::Rounding
         } else if self.following {
             Doing::Following
-        } else if advice.reaction.size > 0.0 {
+        } else if self.evaded_s < EVADING_S {
             Doing::Evading
         } else {
             Doing::Returning
