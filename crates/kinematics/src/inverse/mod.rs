@@ -40,6 +40,7 @@
 
 mod arm;
 mod damped;
+mod goal;
 mod linear;
 mod sequence;
 mod solver;
