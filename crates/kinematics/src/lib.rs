@@ -36,6 +36,7 @@ mod forward;
 pub mod inverse;
 mod jacobian;
 mod joint;
+pub mod point;
 mod state;
 
 pub use chain::Chain;

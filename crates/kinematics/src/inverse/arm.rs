@@ -81,13 +81,18 @@ impl Arm {
                 pending = Pose::IDENTITY;
             }
         }
-        arm.tip_in_last = pending * tip_offset;
-        arm.reach = arm.reach_bound();
+        arm.set_tip(pending * tip_offset);
         for (i, variable) in arm.variables.iter_mut().enumerate() {
             let whole = |s: &Segment| s.variable != i || (!s.slides && s.multiplier.fract() == 0.0);
             variable.wraps = variable.turns && arm.segments.iter().all(whole);
         }
         arm
+    }
+
+    /// Ends the arm at another frame of its last link.
+    pub fn set_tip(&mut self, tip_in_last: Pose) {
+        self.tip_in_last = tip_in_last;
+        self.reach = self.reach_bound();
     }
 
     fn variable(&mut self, chain: &Chain, q_index: usize) -> usize {

@@ -32,9 +32,14 @@ impl<const R: usize> Scratch<R> {
         }
     }
 
-    /// The tip in the root; its axes are kept for [`Descent`].
+    /// The tip in the root; the axes on the way are kept.
     pub fn tip_in_root(&mut self, arm: &Arm, x: &[f64]) -> Pose {
         arm.tip_in_root(x, &mut self.axes)
+    }
+
+    /// The axes of the last [`Scratch::tip_in_root`], one per segment.
+    pub fn axes(&self) -> &[AxisInRoot] {
+        &self.axes
     }
 }
 
