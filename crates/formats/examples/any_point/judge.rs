@@ -8,6 +8,9 @@ use elbowroom_spatial::Vec3;
 
 use crate::surface::{Random, Surface};
 
+/// What counts as reached, m and rad.
+const TOLERANCE: f64 = 1e-6;
+
 /// Where a point should go, and from where.
 pub struct Question {
     pub link: LinkId,
@@ -51,7 +54,6 @@ pub struct Line {
     times_us: Vec<f64>,
     worst_m: f64,
     worst_rad: f64,
-    /// Largest excess over a joint limit in any answer and in any nearest place, rad or m.
     outside: f64,
 }
 
@@ -76,6 +78,19 @@ impl Line {
             self.worst_rad,
             self.outside,
         )
+    }
+
+    pub fn asked(&self) -> usize {
+        self.asked
+    }
+
+    pub fn reached(&self) -> usize {
+        self.reached
+    }
+
+    /// Largest excess over a joint limit in any answer and in any nearest place, rad or m; negative where all are inside.
+    pub fn outside(&self) -> f64 {
+        self.outside
     }
 
     pub fn add(&mut self, other: Self) {
@@ -121,7 +136,7 @@ pub fn measure(chain: &Chain, questions: &[Question]) -> Line {
         });
         line.worst_m = line.worst_m.max(distance);
         line.worst_rad = line.worst_rad.max(angle);
-        line.reached += usize::from(distance <= 1e-8 && angle <= 1e-8);
+        line.reached += usize::from(distance <= TOLERANCE && angle <= TOLERANCE);
         line.restarted += usize::from(reached.restarts > 0);
     }
     line

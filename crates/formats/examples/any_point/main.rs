@@ -9,6 +9,7 @@
 //! the Python of `ELBOWROOM_PYTHON` (which needs `pin` and `numpy`). Data as in the tests, `ELBOWROOM_DATA`.
 #![allow(clippy::print_stdout)]
 
+#[allow(dead_code)]
 mod judge;
 mod pinocchio;
 mod surface;

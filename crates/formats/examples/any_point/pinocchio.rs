@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use elbowroom_kinematics::Chain;
+use elbowroom_spatial::Vec3;
 
 use crate::judge::Question;
 
@@ -44,8 +45,9 @@ fn ask(python: &str, urdf: &Path, chain: &Chain, questions: &[Question]) -> std:
 fn lines(questions: &[Question]) -> String {
     let mut text = String::new();
     for q in questions {
-        let wanted = q.target.normal_in_root.map_or([0.0; 3], |n| n.to_array());
-        let vectors = [q.point_in_link.to_array(), q.normal_in_link.to_array(), q.target.point_in_root.to_array(), wanted];
+        let wanted = q.target.normal_in_root.map_or([0.0; 3], Vec3::to_array);
+        let vectors =
+            [q.point_in_link.to_array(), q.normal_in_link.to_array(), q.target.point_in_root.to_array(), wanted];
         for v in vectors.iter().flatten().chain(&q.start) {
             let _ = write!(text, "{v:?} ");
         }

@@ -10,6 +10,10 @@ use super::arm::{Arm, AxisInRoot};
 use super::goal::Goal;
 use super::linear::solve_spd;
 
+/// Least damping. Columns are of the order of 1: this is far above the rounding of their products, so that a direction
+/// that changes nothing is not solved for, and far below what slows convergence down.
+const FLOOR: f64 = 1e-13;
+
 /// Memory for descents on goals of `R` equations.
 #[derive(Debug, Clone)]
 pub struct Scratch<const R: usize> {
@@ -77,7 +81,7 @@ impl<const R: usize, G: Goal<R>> Descent<'_, R, G> {
             let mut improved = false;
             self.linearize(&tip);
             for _ in 0..6 {
-                if !self.step(x, &e, damping * cost + 1e-15) {
+                if !self.step(x, &e, damping * cost + FLOOR) {
                     damping *= 10.0;
                     continue;
                 }

@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_turn_towards_a_normal_has_its_angle_and_its_direction() {
-        for (i, angle) in [0.0, 1e-13, 1e-9, 0.3, 1.5, 3.0, 3.14].into_iter().enumerate() {
+        for (i, angle) in [0.0, 1e-13, 1e-9, 0.3, 1.5, 3.0, 3.1].into_iter().enumerate() {
             let normal = Vec3::new(0.48, -0.6, 0.64);
             let axis = Rotation::from_axis_angle(normal, i as f64) * normal.any_perpendicular();
             let wanted = Rotation::from_axis_angle(axis, angle) * normal;

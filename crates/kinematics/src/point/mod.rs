@@ -62,6 +62,9 @@ pub struct SurfacePoint {
 }
 
 /// How hard to try.
+///
+/// A descent goes on to 1e-9 m and 1e-9 rad where it can; the tolerances say what is accepted where it cannot: to turn a
+/// normal that lies along an axis but for the rounding of its mesh takes joint motions without measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Largest accepted distance from the target, m.
@@ -76,7 +79,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { position_tolerance_m: 1e-9, angle_tolerance_rad: 1e-9, starts: 100, iterations: 60 }
+        Self { position_tolerance_m: 1e-6, angle_tolerance_rad: 1e-6, starts: 100, iterations: 60 }
     }
 }
 
@@ -105,7 +108,7 @@ pub enum PointError {
     },
     /// The target was not met from any start; it may be out of reach, outside the limits, or just not found.
     #[error(
-        "the point was not brought to the target from {starts} starts: the nearest is {position_error_m:.6} m and {angle_error_rad:.6} rad away; nearer targets, wider joint limits or more starts may help"
+        "the point was not brought to the target from {starts} starts: the nearest is {position_error_m:.2e} m and {angle_error_rad:.2e} rad away; nearer targets, wider joint limits or more starts may help"
     )]
     NotReached {
         /// Distance that remains, m.

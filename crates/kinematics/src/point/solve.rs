@@ -17,6 +17,9 @@ const STARTS_OF_TWO_JOINTS: usize = 48;
 /// Starts for the nearest place to a target that is too far for every configuration.
 const STARTS_BEYOND_REACH: usize = 8;
 
+/// What a descent goes on to (m, rad): convergence is quadratic, so this is one step more than a millionth.
+const AIM: f64 = 1e-9;
+
 /// The equations of a target.
 #[derive(Clone, Copy)]
 enum Wanted {
@@ -92,7 +95,7 @@ impl PointChain {
         if !target.point_in_root.is_finite() {
             return Err(PointError::BadInput("the target point is not finite"));
         }
-        let tolerance_m = self.options.position_tolerance_m;
+        let tolerance_m = self.options.position_tolerance_m.min(AIM);
         let position = PositionGoal { target: target.point_in_root, tolerance_m, scale: self.scale };
         let Some(normal) = target.normal_in_root else { return Ok(Wanted::Position(position)) };
         let wanted_in_root = normal.try_normalize().ok_or(PointError::BadInput(
@@ -100,7 +103,7 @@ impl PointChain {
         ))?;
         // The arm's tip frame is turned as the link is.
         let normal_in_tip = self.normal_in_link().ok_or(PointError::BadInput(NO_NORMAL))?;
-        let tolerance_rad = self.options.angle_tolerance_rad;
+        let tolerance_rad = self.options.angle_tolerance_rad.min(AIM);
         Ok(Wanted::Surface(SurfaceGoal { position, normal_in_tip, wanted_in_root, tolerance_rad }))
     }
 
