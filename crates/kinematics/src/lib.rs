@@ -3,6 +3,12 @@
 //! A [`Chain`] is constant: a tree of links and joints, checked once. A [`ChainState`] is mutable and belongs to one
 //! thread: joint values in, poses and motions of all links out. Nothing allocates after both have been built.
 //!
+//! | question | where |
+//! | --- | --- |
+//! | which joint values bring a tip to a pose | [`inverse`] |
+//! | how any point of a surface moves, and which joint values bring it somewhere | [`point`] |
+//! | what is the Denavit-Hartenberg table of a chain, and the chain of a table | [`dh`] |
+//!
 //! ```
 //! use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 //! use elbowroom_spatial::{Pose, Vec3};
@@ -36,6 +42,7 @@ mod forward;
 pub mod inverse;
 mod jacobian;
 mod joint;
+pub mod point;
 mod state;
 
 pub use chain::Chain;

@@ -7,6 +7,7 @@ use std::alloc::System;
 use common::Random;
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::inverse::{Method, Options, Solver};
+use elbowroom_kinematics::point::{Options as PointOptions, PointChain, SurfacePoint};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits};
 use elbowroom_spatial::{Pose, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -45,8 +46,24 @@ fn main() {
         let (tip, mut columns, mut q) = (chain.tip(), [[0.0; 6]; 6], vec![0.0; 6]);
         let mut random = Random(5);
         let mut refined = 0;
+        let mut point = PointChain::new(&chain, tip, Vec3::X, Some(Vec3::X), PointOptions::default()).unwrap();
+        let (mut three, mut five, mut reached) = ([[0.0; 3]; 6], [[0.0; 5]; 6], 0);
         let region = Region::new(ALLOCATOR);
-        for _ in 0..1000 {
+        for round in 0..1000 {
+            random.state(&chain, &mut q);
+            point.set_point(random.vector(), Some(Vec3::new(1.0, 2.0, 3.0))).unwrap();
+            let mut there = point.place(&q);
+            if round % 2 == 0 {
+                there.normal_in_root = None;
+            }
+            point.jacobian(&q, &mut three);
+            point.jacobian_with_normal(&q, &mut five).unwrap();
+            random.state(&chain, &mut q);
+            reached += usize::from(point.solve(&there, &mut q).is_ok());
+            // Out of reach: all starts are used up.
+            let far = SurfacePoint { point_in_root: there.point_in_root + Vec3::Z * 9.0, ..there };
+            assert!(point.solve(&far, &mut q).is_err());
+            let _ = point.refine(&there, &mut q, 5);
             random.state(&chain, &mut state.q);
             random.state(&chain, &mut state.qd);
             chain.forward(&mut state);
@@ -61,7 +78,7 @@ fn main() {
         }
         let used = region.change();
         assert_eq!((used.allocations, used.reallocations, used.deallocations), (0, 0, 0));
-        assert!(refined > 990, "{refined}");
+        assert!(refined > 990 && reached > 990, "{refined} {reached}");
         // The guard itself works.
         let region = Region::new(ALLOCATOR);
         assert_eq!(std::hint::black_box(vec![1_u8; 100]).len(), 100);

@@ -5,10 +5,11 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use common::awkward::{awkward_chain, awkward_offset, awkward_rotation};
 use common::{Random, robots};
 use elbowroom_kinematics::dh::{ClassicalRow, Row, Table};
-use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
-use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
+use elbowroom_spatial::Pose;
 
 /// S4.3, written out as 4×4 matrices: the oracle.
 fn product(rows: &[Row], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
@@ -56,58 +57,6 @@ fn worst(chain: &Chain, table: &Table, tip: LinkId, random: &mut Random, states:
         }
     }
     worst
-}
-
-/// Rotations that make axes parallel, opposite, perpendicular, nearly so, or anything; gimbal lock included.
-fn awkward_rotation(random: &mut Random) -> Rotation {
-    let tiny = [0.0, 1e-15, 1e-12, 1e-10, 1e-8, 3.7e-6, 1e-4, 2e-3][random.below(8)];
-    let quarter = |random: &mut Random| FRAC_PI_2 * random.below(4) as f64;
-    match random.below(6) {
-        0 => Rotation::IDENTITY,
-        1 => Rotation::from_rpy(quarter(random), quarter(random), quarter(random)),
-        2 => Rotation::from_rpy(quarter(random) + tiny, quarter(random) - tiny, quarter(random) + tiny),
-        3 => Rotation::from_rpy(tiny, -tiny, random.range(-PI, PI)),
-        4 => Rotation::from_rpy(random.range(-PI, PI), [FRAC_PI_2, -FRAC_PI_2][random.below(2)], random.range(-PI, PI)),
-        _ => random.pose().rotation,
-    }
-}
-
-fn awkward_offset(random: &mut Random) -> Vec3 {
-    let v = random.vector();
-    match random.below(5) {
-        0 => Vec3::ZERO,
-        1 => Vec3::new(0.0, 0.0, v.z),
-        2 => Vec3::new(v.x, 0.0, 0.0),
-        3 => Vec3::new(v.x * 1e-13, v.y * 1e-9, v.z),
-        _ => v,
-    }
-}
-
-fn awkward_chain(random: &mut Random) -> Chain {
-    let n = random.below(8);
-    let axes = [Vec3::Z, -Vec3::Z, Vec3::X, Vec3::Y, random.vector()];
-    let mut joints: Vec<Joint> = (0..n)
-        .map(|i| Joint {
-            name: format!("j{i}"),
-            kind: [
-                JointKind::Revolute,
-                JointKind::Revolute,
-                JointKind::Prismatic,
-                JointKind::Continuous,
-                JointKind::Fixed,
-            ][random.below(5)],
-            parent: LinkId(i),
-            child: LinkId(i + 1),
-            origin: Pose::new(awkward_rotation(random), awkward_offset(random)),
-            axis: axes[random.below(5)],
-            limits: Limits::symmetric(PI),
-            mimic: None,
-        })
-        .collect();
-    if n > 1 && joints[0].kind != JointKind::Fixed {
-        joints[n - 1].mimic = Some(Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.3 });
-    }
-    Chain::new("awkward", (0..=n).map(|i| format!("l{i}")).collect(), joints).unwrap()
 }
 
 #[test]

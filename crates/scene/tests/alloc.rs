@@ -8,7 +8,7 @@ use std::alloc::System;
 use common::{Random, scene_of};
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::impact::Steady;
-use elbowroom_scene::{Checker, Level, Move, Options, SceneState, Selection, SweepOptions};
+use elbowroom_scene::{Checker, Level, LevelOfDetail, Move, Options, SceneMotion, SceneState, Selection, SweepOptions};
 use elbowroom_spatial::Vec3;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -20,6 +20,7 @@ fn main() {
     let mut r = Random(51);
     let mut states = [SceneState::new(&scene), SceneState::new(&scene)];
     states[1].attach(&scene, 5, 0, LinkId(3), &[]).unwrap();
+    let motion = SceneMotion::new(&scene);
     for level in [Level::Auto, Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::L3] {
         for state in &mut states {
             let mut checker = Checker::new(&scene, Options { level, ..Options::default() });
@@ -38,6 +39,7 @@ fn main() {
                 found += usize::from(checker.between(one, other).distance(state).is_some());
                 checker.contacts(state, |_| found += 1);
                 checker.near(state, 0.2, |_| found += 1);
+                checker.approaching(state, &motion, &LevelOfDetail::default(), 1.0, |_| found += 1);
                 checker.between(one, other).near(state, 0.2, |_| found += 1);
             }
             let used = region.change();

@@ -20,6 +20,15 @@ pub struct Segment {
     pub offset: f64,
 }
 
+impl Segment {
+    /// Velocity of the point `tip` (m per unit of the variable) and angular velocity, in the root.
+    #[inline]
+    pub fn twist(&self, at: &AxisInRoot, tip: Vec3) -> (Vec3, Vec3) {
+        let axis = at.axis * self.multiplier;
+        if self.slides { (axis, Vec3::ZERO) } else { (axis.cross(tip - at.origin), axis) }
+    }
+}
+
 /// An independent joint that moves the tip.
 #[derive(Debug, Clone)]
 pub struct Variable {
@@ -72,13 +81,18 @@ impl Arm {
                 pending = Pose::IDENTITY;
             }
         }
-        arm.tip_in_last = pending * tip_offset;
-        arm.reach = arm.reach_bound();
+        arm.set_tip(pending * tip_offset);
         for (i, variable) in arm.variables.iter_mut().enumerate() {
             let whole = |s: &Segment| s.variable != i || (!s.slides && s.multiplier.fract() == 0.0);
             variable.wraps = variable.turns && arm.segments.iter().all(whole);
         }
         arm
+    }
+
+    /// Ends the arm at another frame of its last link.
+    pub fn set_tip(&mut self, tip_in_last: Pose) {
+        self.tip_in_last = tip_in_last;
+        self.reach = self.reach_bound();
     }
 
     fn variable(&mut self, chain: &Chain, q_index: usize) -> usize {
@@ -132,21 +146,6 @@ impl Arm {
             *out = AxisInRoot { origin: at.translation, axis };
         }
         at * self.tip_in_last
-    }
-
-    /// Geometric Jacobian at the tip: per variable linear, then angular.
-    pub fn columns(&self, tip: Vec3, axes: &[AxisInRoot], columns: &mut [[f64; 6]]) {
-        columns.fill([0.0; 6]);
-        for (segment, at) in self.segments.iter().zip(axes) {
-            let axis = at.axis * segment.multiplier;
-            let (linear, angular) =
-                if segment.slides { (axis, Vec3::ZERO) } else { (axis.cross(tip - at.origin), axis) };
-            let column = &mut columns[segment.variable];
-            for i in 0..3 {
-                column[i] += linear[i];
-                column[i + 3] += angular[i];
-            }
-        }
     }
 }
 

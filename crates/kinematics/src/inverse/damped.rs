@@ -1,91 +1,74 @@
 //! Damped least squares with joint limits.
 //!
-//! Levenberg-Marquardt on the pose error; damping proportional to the squared error (Sugihara 2011,
+//! Levenberg-Marquardt on the error of a [`Goal`]; damping proportional to the squared error (Sugihara 2011,
 //! "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method"), so that it vanishes at a solution and
 //! convergence there is quadratic. Joints that press against a bound are taken out of the step.
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::Task;
-use super::arm::{Arm, AxisInRoot, turn_between};
+use super::arm::{Arm, AxisInRoot};
+use super::goal::Goal;
 use super::linear::solve_spd;
 
-/// Below this (m, rad) nothing but rounding is left to gain.
+/// Least damping. Columns are of the order of 1: this is far above the rounding of their products, so that a direction
+/// that changes nothing is not solved for, and far below what slows convergence down.
 const FLOOR: f64 = 1e-13;
 
-/// What remains between the tip and its target.
-#[derive(Debug, Clone, Copy)]
-pub struct Remainder {
-    pub linear: Vec3,
-    pub angular: Vec3,
-}
-
-impl Remainder {
-    /// Distance from the target.
-    pub fn position_m(&self) -> f64 {
-        self.linear.length()
-    }
-    pub fn angle_rad(&self) -> f64 {
-        self.angular.length()
-    }
-}
-
-/// Memory for one descent.
+/// Memory for descents on goals of `R` equations.
 #[derive(Debug, Clone)]
-pub struct Scratch {
+pub struct Scratch<const R: usize> {
     axes: Vec<AxisInRoot>,
-    columns: Vec<[f64; 6]>,
+    trial_axes: Vec<AxisInRoot>,
+    columns: Vec<[f64; R]>,
     trial: Vec<f64>,
     held: Vec<bool>,
 }
 
-impl Scratch {
+impl<const R: usize> Scratch<R> {
     pub fn new(arm: &Arm) -> Self {
+        let axes = vec![AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; arm.segments.len()];
         Self {
-            axes: vec![AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; arm.segments.len()],
-            columns: vec![[0.0; 6]; arm.variables.len()],
+            trial_axes: axes.clone(),
+            axes,
+            columns: vec![[0.0; R]; arm.variables.len()],
             trial: vec![0.0; arm.variables.len()],
             held: vec![false; arm.variables.len()],
         }
     }
+
+    /// The tip in the root; the axes on the way are kept.
+    pub fn tip_in_root(&mut self, arm: &Arm, x: &[f64]) -> Pose {
+        arm.tip_in_root(x, &mut self.axes)
+    }
+
+    /// The axes of the last [`Scratch::tip_in_root`], one per segment.
+    pub fn axes(&self) -> &[AxisInRoot] {
+        &self.axes
+    }
 }
 
 /// One search from one starting point.
-pub struct Descent<'a> {
+pub struct Descent<'a, const R: usize, G> {
     pub arm: &'a Arm,
-    pub task: Task,
+    pub goal: &'a G,
     /// Metres that weigh as much as a radian.
     pub scale: f64,
     /// Whether joint limits are kept.
     pub bounded: bool,
-    pub scratch: &'a mut Scratch,
+    pub scratch: &'a mut Scratch<R>,
 }
 
-impl Descent<'_> {
-    pub fn remainder(&mut self, target: &Pose, x: &[f64]) -> Remainder {
-        let tip = self.arm.tip_in_root(x, &mut self.scratch.axes);
-        Remainder { linear: target.translation - tip.translation, angular: turn_between(tip.rotation, target.rotation) }
-    }
-
-    fn residual(&self, r: &Remainder) -> [f64; 6] {
-        let l = r.linear / self.scale;
-        let a = if self.task == Task::Position { Vec3::ZERO } else { r.angular };
-        [l.x, l.y, l.z, a.x, a.y, a.z]
-    }
-
-    fn at_floor(&self, r: &Remainder) -> bool {
-        r.position_m() <= FLOOR && (self.task == Task::Position || r.angle_rad() <= FLOOR)
-    }
-
-    /// Walks `x` downhill for at most `iterations` steps and returns what remains at the best point, which `x` then is.
-    pub fn run(&mut self, target: &Pose, x: &mut [f64], iterations: usize) -> Remainder {
+impl<const R: usize, G: Goal<R>> Descent<'_, R, G> {
+    /// Walks `x` downhill for at most `iterations` steps and returns the tip in the root at the best point, which `x` then
+    /// is.
+    pub fn run(&mut self, x: &mut [f64], iterations: usize) -> Pose {
         self.clamp(x);
-        let mut best = self.remainder(target, x);
-        let mut e = self.residual(&best);
+        let mut tip = self.scratch.tip_in_root(self.arm, x);
+        let mut e = self.goal.error(&tip);
         let mut cost = squared(&e);
         let (mut damping, mut milestone) = (1e-1, (0, cost));
         for iteration in 0..iterations {
-            if self.at_floor(&best) || !cost.is_finite() {
+            if self.goal.met(&e) || !cost.is_finite() {
                 break;
             }
             if iteration >= milestone.0 + 10 {
@@ -96,23 +79,21 @@ impl Descent<'_> {
                 milestone = (iteration, cost);
             }
             let mut improved = false;
-            self.linearize(x);
+            self.linearize(&tip);
             for _ in 0..6 {
-                if !self.step(x, &e, damping * cost + 1e-15) {
+                if !self.step(x, &e, damping * cost + FLOOR) {
                     damping *= 10.0;
                     continue;
                 }
-                let trial = std::mem::take(&mut self.scratch.trial);
-                let remainder = self.remainder(target, &trial);
-                let trial_e = self.residual(&remainder);
+                let Scratch { trial, trial_axes, axes, .. } = &mut *self.scratch;
+                let trial_tip = self.arm.tip_in_root(trial, trial_axes);
+                let trial_e = self.goal.error(&trial_tip);
                 let trial_cost = squared(&trial_e);
                 improved = trial_cost < cost;
                 if improved {
-                    x.copy_from_slice(&trial);
-                    (best, e, cost) = (remainder, trial_e, trial_cost);
-                }
-                self.scratch.trial = trial;
-                if improved {
+                    x.copy_from_slice(trial);
+                    std::mem::swap(axes, trial_axes);
+                    (tip, e, cost) = (trial_tip, trial_e, trial_cost);
                     damping = (damping * 0.25).max(1e-9);
                     break;
                 }
@@ -122,7 +103,7 @@ impl Descent<'_> {
                 break;
             }
         }
-        best
+        tip
     }
 
     fn clamp(&self, x: &mut [f64]) {
@@ -134,28 +115,29 @@ impl Descent<'_> {
         }
     }
 
-    /// Fills the weighted Jacobian at `x` and holds the joints that cannot move at all.
-    fn linearize(&mut self, x: &[f64]) {
-        let tip = self.arm.tip_in_root(x, &mut self.scratch.axes);
-        self.arm.columns(tip.translation, &self.scratch.axes, &mut self.scratch.columns);
-        for (i, column) in self.scratch.columns.iter_mut().enumerate() {
-            for (row, value) in column.iter_mut().enumerate() {
-                if row < 3 {
-                    *value /= self.scale;
-                } else if self.task == Task::Position {
-                    *value = 0.0;
-                }
+    /// Fills the columns at the point whose axes are at hand, and holds the joints that cannot move at all.
+    fn linearize(&mut self, tip: &Pose) {
+        let Scratch { axes, columns, held, .. } = &mut *self.scratch;
+        let place = self.goal.place(tip);
+        columns.fill([0.0; R]);
+        for (segment, at) in self.arm.segments.iter().zip(axes) {
+            let (linear, angular) = segment.twist(at, tip.translation);
+            let column = &mut columns[segment.variable];
+            for (sum, v) in column.iter_mut().zip(self.goal.column(&place, linear, angular)) {
+                *sum += v;
             }
-            let variable = &self.arm.variables[i];
-            self.scratch.held[i] = self.bounded && variable.lower >= variable.upper;
+        }
+        for (held, variable) in held.iter_mut().zip(&self.arm.variables) {
+            *held = self.bounded && variable.lower >= variable.upper;
         }
     }
 
     /// A step into `trial`, without the joints that would leave their range by it; false where there is none.
-    fn step(&mut self, x: &[f64], e: &[f64; 6], lambda: f64) -> bool {
+    fn step(&mut self, x: &[f64], e: &[f64; R], lambda: f64) -> bool {
         // Every round but the last takes a joint out, so there are no more rounds than joints.
         for _ in 0..=x.len() {
-            if !self.solve_for_step(e, lambda) {
+            let solved = if x.len() < R { self.solve_few_joints(e, lambda) } else { self.solve_for_step(e, lambda) };
+            if !solved {
                 return false;
             }
             if !self.hold_what_presses(x) {
@@ -165,11 +147,11 @@ impl Descent<'_> {
         self.apply_step(x)
     }
 
-    /// `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not held.
-    fn solve_for_step(&mut self, e: &[f64; 6], lambda: f64) -> bool {
-        let mut a = [[0.0; 6]; 6];
-        for column in self.free_columns() {
-            for i in 0..6 {
+    /// `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not held: a system of as many equations as the goal has.
+    fn solve_for_step(&mut self, e: &[f64; R], lambda: f64) -> bool {
+        let mut a = [[0.0; R]; R];
+        for (column, _) in self.scratch.columns.iter().zip(&self.scratch.held).filter(|(_, held)| !**held) {
+            for i in 0..R {
                 for j in 0..=i {
                     a[i][j] += column[i] * column[j];
                 }
@@ -178,11 +160,32 @@ impl Descent<'_> {
         for (i, row) in a.iter_mut().enumerate() {
             row[i] += lambda;
         }
-        let Some(y) = solve_spd(a, *e) else { return false };
+        let Some(y) = solve_spd(a, *e, R) else { return false };
         let Scratch { columns, trial, held, .. } = &mut *self.scratch;
         for ((delta, column), held) in trial.iter_mut().zip(columns).zip(held) {
-            *delta = if *held { 0.0 } else { column.iter().zip(y).map(|(c, y)| c * y).sum() };
+            *delta = if *held { 0.0 } else { dot(column, &y) };
         }
+        true
+    }
+
+    /// `Δx = (Jᵀ·J + λ·1)⁻¹·Jᵀ·e`, the same step by a system of as many equations as there are joints, fewer than `R`:
+    /// the other one would be singular but for λ.
+    fn solve_few_joints(&mut self, e: &[f64; R], lambda: f64) -> bool {
+        let Scratch { columns, trial, held, .. } = &mut *self.scratch;
+        let (mut a, mut b) = ([[0.0; R]; R], [0.0; R]);
+        for (i, column) in columns.iter().enumerate() {
+            if !held[i] {
+                b[i] = dot(column, e);
+                for j in (0..i).filter(|&j| !held[j]) {
+                    a[i][j] = dot(column, &columns[j]);
+                }
+                a[i][i] = dot(column, column);
+            }
+            a[i][i] += lambda;
+        }
+        let joints = trial.len();
+        let Some(y) = solve_spd(a, b, joints) else { return false };
+        trial.copy_from_slice(&y[..joints]);
         true
     }
 
@@ -219,10 +222,6 @@ impl Descent<'_> {
         true
     }
 
-    fn free_columns(&self) -> impl Iterator<Item = &[f64; 6]> {
-        self.scratch.columns.iter().zip(&self.scratch.held).filter(|(_, held)| !**held).map(|(column, _)| column)
-    }
-
     /// Past the end of a range of a full turn or more lies its other end.
     fn bring_within(&self, i: usize, value: f64) -> f64 {
         let v = &self.arm.variables[i];
@@ -237,6 +236,10 @@ impl Descent<'_> {
     }
 }
 
-fn squared(e: &[f64; 6]) -> f64 {
-    e.iter().map(|v| v * v).sum()
+fn squared<const R: usize>(e: &[f64; R]) -> f64 {
+    dot(e, e)
+}
+
+fn dot<const R: usize>(a: &[f64; R], b: &[f64; R]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,8 +1,13 @@
-//! Six equations, symmetric and positive definite.
+//! A few equations, symmetric and positive definite.
 
-/// Solves `a·x = b` by Cholesky decomposition; `None` where a pivot is not positive.
-pub fn solve_spd(mut a: [[f64; 6]; 6], mut b: [f64; 6]) -> Option<[f64; 6]> {
-    for j in 0..6 {
+/// Solves the leading `n` equations of `a·x = b` by Cholesky decomposition; `None` where a pivot is not positive. Reads
+/// the lower triangle alone; what lies beyond `n` is returned as it came.
+///
+/// # Panics
+/// Where `n` is larger than `N`.
+#[inline]
+pub fn solve_spd<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], n: usize) -> Option<[f64; N]> {
+    for j in 0..n {
         for k in 0..j {
             a[j][j] -= a[j][k] * a[j][k];
         }
@@ -10,21 +15,21 @@ pub fn solve_spd(mut a: [[f64; 6]; 6], mut b: [f64; 6]) -> Option<[f64; 6]> {
             return None;
         }
         a[j][j] = a[j][j].sqrt();
-        for i in j + 1..6 {
+        for i in j + 1..n {
             for k in 0..j {
                 a[i][j] -= a[i][k] * a[j][k];
             }
             a[i][j] /= a[j][j];
         }
     }
-    for i in 0..6 {
+    for i in 0..n {
         for k in 0..i {
             b[i] -= a[i][k] * b[k];
         }
         b[i] /= a[i][i];
     }
-    for i in (0..6).rev() {
-        for k in i + 1..6 {
+    for i in (0..n).rev() {
+        for k in i + 1..n {
             b[i] -= a[k][i] * b[k];
         }
         b[i] /= a[i][i];
@@ -47,13 +52,19 @@ mod tests {
             a[i][i] += 0.1;
         }
         let b: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| a[i][j] * x[j]).sum());
-        let got = solve_spd(a, b).unwrap();
+        let got = solve_spd(a, b, 6).unwrap();
         for i in 0..6 {
             assert!((got[i] - x[i]).abs() < 1e-12);
         }
+        let b: [f64; 6] = std::array::from_fn(|i| (0..3).map(|j| a[i][j] * x[j]).sum());
+        let got = solve_spd(a, b, 3).unwrap();
+        for i in 0..6 {
+            let expected = if i < 3 { x[i] } else { b[i] };
+            assert!((got[i] - expected).abs() < 1e-12);
+        }
         a[3][3] = -1.0;
-        assert_eq!(solve_spd(a, b), None);
+        assert_eq!(solve_spd(a, b, 6), None);
         a[3][3] = f64::NAN;
-        assert_eq!(solve_spd(a, b), None);
+        assert_eq!(solve_spd(a, b, 6), None);
     }
 }

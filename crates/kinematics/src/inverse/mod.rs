@@ -38,10 +38,11 @@
 //! # Ok::<(), elbowroom_kinematics::ChainError>(())
 //! ```
 
-mod arm;
-mod damped;
+pub(crate) mod arm;
+pub(crate) mod damped;
+pub(crate) mod goal;
 mod linear;
-mod sequence;
+pub(crate) mod sequence;
 mod solver;
 mod wrist;
 

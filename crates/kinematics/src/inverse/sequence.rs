@@ -5,11 +5,20 @@ use std::f64::consts::PI;
 /// Additive recurrence on the generalized golden ratio (Roberts 2018, "The unreasonable effectiveness of
 /// quasirandom sequences"): component `axis` of point `index` in `dimensions` dimensions, in `[0, 1)`.
 pub fn quasirandom(index: usize, axis: usize, dimensions: usize) -> f64 {
+    element(index, axis_step(axis, dimensions))
+}
+
+/// How far the component goes with every index: to be kept where many points are wanted.
+pub fn axis_step(axis: usize, dimensions: usize) -> f64 {
     let mut phi: f64 = 2.0;
     for _ in 0..30 {
         phi = (1.0 + phi).powf(1.0 / (dimensions as f64 + 1.0));
     }
-    let step = phi.powf(-(axis as f64 + 1.0));
+    phi.powf(-(axis as f64 + 1.0))
+}
+
+/// [`quasirandom`] by the axis' step.
+pub fn element(index: usize, step: f64) -> f64 {
     (0.5 + step * (index + 1) as f64).fract()
 }
 

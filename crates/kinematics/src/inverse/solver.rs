@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use elbowroom_spatial::Pose;
 
 use super::arm::Arm;
-use super::damped::{Descent, Remainder, Scratch};
+use super::damped::{Descent, Scratch};
+use super::goal::{PoseGoal, Remainder};
 use super::sequence::{quasirandom, window};
 use super::wrist::Wrist;
 use super::{IkError, Method, Options, Solution, Task};
@@ -27,7 +28,7 @@ pub struct Solver {
     options: Options,
     dof: usize,
     scale: f64,
-    scratch: Scratch,
+    scratch: Scratch<6>,
     x: Vec<f64>,
 }
 
@@ -133,7 +134,7 @@ impl Solver {
         for (value, variable) in x.iter_mut().zip(&self.arm.variables) {
             *value = q[variable.q_index];
         }
-        let remainder = self.descent(true).run(target_in_root, &mut x, REFINE_STEPS);
+        let remainder = self.descend(target_in_root, &mut x, true, REFINE_STEPS);
         for (value, variable) in x.iter().zip(&self.arm.variables) {
             q[variable.q_index] = *value;
         }
@@ -163,9 +164,16 @@ impl Solver {
         self.options.restarts.clamp(1, most)
     }
 
-    fn descent(&mut self, bounded: bool) -> Descent<'_> {
-        let (task, scale) = (self.options.task, self.scale);
-        Descent { arm: &self.arm, task, scale, bounded, scratch: &mut self.scratch }
+    /// From `x` downhill; what remains at the best point, which `x` then is.
+    fn descend(&mut self, target: &Pose, x: &mut [f64], bounded: bool, iterations: usize) -> Remainder {
+        let goal = PoseGoal { target: *target, task: self.options.task, scale: self.scale };
+        let scratch = &mut self.scratch;
+        let tip = Descent { arm: &self.arm, goal: &goal, scale: self.scale, bounded, scratch }.run(x, iterations);
+        Remainder::between(&tip, target)
+    }
+
+    fn remainder(&mut self, target: &Pose, x: &[f64]) -> Remainder {
+        Remainder::between(&self.scratch.tip_in_root(&self.arm, x), target)
     }
 
     fn met(&self, r: &Remainder) -> bool {
@@ -207,7 +215,7 @@ impl Solver {
         within.sort_by(|a, b| squared_distance(a, start).total_cmp(&squared_distance(b, start)));
         let mut found: Vec<Found> = Vec::with_capacity(most.min(within.len()));
         for mut x in within {
-            let remainder = self.descent(true).run(target, &mut x, REFINE_STEPS);
+            let remainder = self.descend(target, &mut x, true, REFINE_STEPS);
             if self.met(&remainder) && found.iter().all(|known| self.differ(&known.x, &x)) {
                 found.push(Found { x: x.to_vec(), remainder });
             }
@@ -244,21 +252,21 @@ impl Solver {
     ) -> (Option<Found>, Remainder) {
         let mut x = if index == 0 { start.to_vec() } else { self.spread(index) };
         let iterations = self.options.iterations;
-        let remainder = self.descent(bounded).run(target, &mut x, iterations);
+        let remainder = self.descend(target, &mut x, bounded, iterations);
         if !self.met(&remainder) {
             return (None, remainder);
         }
         // Met, but perhaps slowly (at a bound, or where axes line up): the last digits are cheap.
-        self.descent(bounded).run(target, &mut x, iterations);
+        self.descend(target, &mut x, bounded, iterations);
         let mut unwound = x.clone();
         if self.unwind(&mut unwound, start).is_none() || !bounded {
             // Draws in what the turns left outside by rounding.
-            let remainder = self.descent(bounded).run(target, &mut unwound, REFINE_STEPS);
+            let remainder = self.descend(target, &mut unwound, bounded, REFINE_STEPS);
             if self.met(&remainder) {
                 return (Some(Found { x: unwound, remainder }), remainder);
             }
         }
-        let remainder = self.descent(bounded).remainder(target, &x);
+        let remainder = self.remainder(target, &x);
         (Some(Found { x, remainder }), remainder)
     }
 
@@ -278,7 +286,7 @@ impl Solver {
         start: &[f64],
         outside: Option<Outside>,
     ) -> Result<Solution, IkError> {
-        let mut closest = self.descent(true).remainder(target, start);
+        let mut closest = self.remainder(target, start);
         if self.beyond_reach(target) {
             return Err(unreachable(&closest));
         }

@@ -1,6 +1,7 @@
 //! A URDF reader just good enough for the tests of this room (the product's own lives in another one).
 #![allow(dead_code, missing_docs, clippy::missing_panics_doc, clippy::print_stdout)]
 
+pub mod awkward;
 pub mod measure;
 
 use std::collections::HashMap;

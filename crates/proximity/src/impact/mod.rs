@@ -37,7 +37,7 @@ use crate::mesh::Scratch;
 
 pub use path::Path;
 pub use steady::Steady;
-pub use warning::{TimeToCollision, time_to_collision};
+pub use warning::{TimeToCollision, earliest, time_to_collision};
 
 /// How closely to look.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -44,12 +44,33 @@ pub fn time_to_collision(
     if !(known && near.lower_bound > 0.0) {
         return TimeToCollision { estimate_s: 0.0, earliest_s: 0.0 };
     }
-    let (body_a, body_b) = (Body::new(a.0, &path_a), Body::new(b.0, &path_b));
-    let bounds = Bounds { a: &body_a, b: &body_b, a_in_world: *a.1, b_in_world: *b.1, t: 0.0 };
-    let slab = slab::between(a.0, a.1, b.0, b.1, near);
-    let along = slab.map_or(0.0, |(normal, thickness)| bounds.time_for_slab(thickness, normal));
-    let free = bounds.time_for(near.lower_bound).max(along).min(1.0);
+    let free = earliest(near, (a.0, &path_a), (b.0, &path_b));
     TimeToCollision { estimate_s: estimate(near, a, b), earliest_s: free * horizon_s }
+}
+
+/// The part of two motions, in `[0, 1]`, in which the distance certainly does not shrink to 0: the proven half of
+/// [`time_to_collision`]. The shapes may be larger than those that `near` was measured of.
+///
+/// ```
+/// use elbowroom_proximity::impact::{Steady, earliest};
+/// use elbowroom_proximity::{Shape, Sphere, separation};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+/// let (here, there) = (Pose::IDENTITY, Pose::from_translation(Vec3::X));
+/// let near = separation(&ball, &here, &ball, &there); // 0.8 m apart
+/// let (still, coming) = (Steady::linear(here, Vec3::ZERO), Steady::linear(there, Vec3::X * -1.6));
+/// assert!((earliest(&near, (&ball, &still), (&ball, &coming)) - 0.5).abs() < 1e-9);
+/// ```
+pub fn earliest(near: &Separation, a: (&Shape, &Steady), b: (&Shape, &Steady)) -> f64 {
+    if !(a.1.is_finite() && b.1.is_finite() && near.lower_bound > 0.0) {
+        return 0.0;
+    }
+    let (body_a, body_b) = (Body::new(a.0, a.1), Body::new(b.0, b.1));
+    let (a_in_world, b_in_world) = (a.1.start, b.1.start);
+    let bounds = Bounds { a: &body_a, b: &body_b, a_in_world, b_in_world, t: 0.0 };
+    let slab = slab::between(a.0, &a_in_world, b.0, &b_in_world, near);
+    let along = slab.map_or(0.0, |(normal, thickness)| bounds.time_for_slab(thickness, normal));
+    bounds.time_for(near.lower_bound).max(along).min(1.0)
 }
 
 fn estimate(near: &Separation, a: (&Shape, &Pose, &Motion), b: (&Shape, &Pose, &Motion)) -> f64 {

@@ -1,6 +1,8 @@
 //! Questions about a state of a scene.
 
 mod answer;
+mod approach;
+mod between;
 mod collision;
 mod first;
 mod list;
@@ -9,11 +11,15 @@ mod near;
 mod nearest;
 
 pub use answer::{CollisionPoint, Contact, Distance};
+pub use between::Between;
 
 use elbowroom_proximity::contact::Detail;
 
 use crate::sweep::Sweeper;
-use crate::{Counts, Impact, Level, Member, Move, Scene, SceneError, SceneState, Selection, SweepOptions};
+use crate::{
+    Approach, Counts, Impact, Level, LevelOfDetail, Member, Move, Scene, SceneError, SceneMotion, SceneState,
+    Selection, SweepOptions,
+};
 pub(crate) use list::{Pair, PairList};
 use narrow::Narrow;
 
@@ -221,6 +227,46 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All).near(state, margin_m, found);
     }
 
+    /// Tells the pairs that are near or that may soon meet as everything moves now, each with its time to collision, in
+    /// the order of the hierarchy: progressive level of detail (S4). Far pairs are looked at by one box each, approaching ones
+    /// deeper in the trees of boxes of their meshes, near and fast ones exactly; `policy` says which. `horizon_s` is how
+    /// far ahead [`Approach::earliest_s`] is proven.
+    ///
+    /// Guaranteed, whatever the policy: what is nearer than `exact_m`, or is not proven to be apart for `exact_s`, is
+    /// measured exactly, contact included; what is told coarsely is farther, and a pair that is not told is farther than
+    /// `within_m` and does not meet within `exact_s`. A speed or a distance that is not a number is near and soon. Solids
+    /// are looked at, whatever [`Options::level`] says.
+    ///
+    /// ```
+    /// use elbowroom_scene::{Approach, Checker, LevelOfDetail, Options, SceneMotion, SceneState, example};
+    /// let scene = example::two_arms();
+    /// let mut state = SceneState::new(&scene);
+    /// state.set_q(&scene, 0, &[0.0, 0.9, 0.3])?;
+    /// let mut motion = SceneMotion::new(&scene);
+    /// motion.set_qd(&scene, &state, 0, &[0.0, 0.5, 0.0])?; // goes down to the part
+    /// let mut checker = Checker::new(&scene, Options::default());
+    /// let mut soonest = None;
+    /// checker.approaching(&state, &motion, &LevelOfDetail::default(), 2.0, |p| {
+    ///     if soonest.is_none_or(|s: Approach| p.estimate_s < s.estimate_s) {
+    ///         soonest = Some(p);
+    ///     }
+    /// });
+    /// let soonest = soonest.expect("it comes near the part");
+    /// assert_eq!([soonest.a, soonest.b].map(|m| scene.name(m)), ["left/forearm", "part"]);
+    /// assert!(soonest.earliest_s > 0.0 && soonest.earliest_s <= soonest.estimate_s);
+    /// # Ok::<(), elbowroom_scene::SceneError>(())
+    /// ```
+    pub fn approaching(
+        &mut self,
+        state: &SceneState,
+        motion: &SceneMotion,
+        policy: &LevelOfDetail,
+        horizon_s: f64,
+        found: impl FnMut(Approach),
+    ) {
+        self.between(Selection::All, Selection::All).approaching(state, motion, policy, horizon_s, found);
+    }
+
     /// The first time that a pair is nearer than its margin while things move, or `None` where nothing is during all of
     /// the motion: proven, not sampled, so that no thin plate is jumped over. What is not in `moves` stands where `start`
     /// has it. Pairs that are none by rule (neighbours, SRDF, by hand) never count; a link that no joint moves counts
@@ -295,111 +341,4 @@ impl<'s> Checker<'s> {
         let all = self.lists.first().map_or(&[][..], |l| &l.pairs);
         all.iter().map(|p| (models[p.a as usize].member, models[p.b as usize].member, p.weight))
     }
-}
-
-/// Questions about some pairs of the scene; see [`Checker::between`].
-#[derive(Debug)]
-pub struct Between<'c, 's> {
-    checker: &'c mut Checker<'s>,
-    list: usize,
-}
-
-impl<'s> Between<'_, 's> {
-    /// Core and an up-to-date list.
-    fn fresh(&mut self, state: &SceneState) -> (&mut Core<'s>, &mut PairList) {
-        let Checker { core, lists, .. } = &mut *self.checker;
-        let list = &mut lists[self.list];
-        if list.arrangement != Some(state.arrangement) {
-            list.arrange(core.scene, state);
-            core.candidates.clear();
-            core.candidates.reserve(list.pairs.len());
-        }
-        (core, list)
-    }
-
-    /// Number of pairs, those out of reach included.
-    pub fn len(&mut self, state: &SceneState) -> usize {
-        self.fresh(state).1.pairs.len()
-    }
-
-    /// True where there is no pair.
-    pub fn is_empty(&mut self, state: &SceneState) -> bool {
-        self.len(state) == 0
-    }
-
-    /// As [`Checker::collides`].
-    pub fn collides(&mut self, state: &SceneState) -> Option<Contact> {
-        self.within(state, 0.0)
-    }
-
-    /// As [`Checker::contacts`].
-    pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(Contact)) {
-        let (core, list) = self.fresh(state);
-        core.all(list, state, found);
-    }
-
-    /// As [`Checker::within`].
-    pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
-        let (core, list) = self.fresh(state);
-        core.first(list, state, tolerance(tolerance_m))
-    }
-
-    /// As [`Checker::collision`].
-    pub fn collision(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
-        let (core, list) = self.fresh(state);
-        core.collision(list, state, detail)
-    }
-
-    /// As [`Checker::near`].
-    pub fn near(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(Distance)) {
-        let (core, list) = self.fresh(state);
-        core.near(list, state, tolerance(margin_m), found);
-    }
-
-    /// As [`Checker::sweep`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn sweep(
-        &mut self,
-        start: &SceneState,
-        moves: &[Move],
-        options: &SweepOptions,
-    ) -> Result<Option<Impact>, SceneError> {
-        let (core, list, sweeper) = self.sweeping(start);
-        sweeper.sweep(core, list, start, moves, options)
-    }
-
-    /// As [`Checker::sweep_path`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn sweep_path<Q: AsRef<[f64]>>(
-        &mut self,
-        start: &SceneState,
-        robot: usize,
-        waypoints: &[Q],
-        options: &SweepOptions,
-    ) -> Result<Option<(usize, Impact)>, SceneError> {
-        let (core, list, sweeper) = self.sweeping(start);
-        sweeper.sweep_path(core, list, start, robot, waypoints, options)
-    }
-
-    fn sweeping(&mut self, start: &SceneState) -> (&mut Core<'s>, &mut PairList, &mut Sweeper) {
-        self.fresh(start);
-        let Checker { core, lists, sweeper } = &mut *self.checker;
-        let sweeper = sweeper.get_or_insert_with(|| Box::new(Sweeper::new(core.scene, core.fine())));
-        (core, &mut lists[self.list], sweeper)
-    }
-
-    /// As [`Checker::distance`].
-    pub fn distance(&mut self, state: &SceneState) -> Option<Distance> {
-        let (core, list) = self.fresh(state);
-        core.nearest(list, state)
-    }
-}
-
-/// What is no number of metres is all of them.
-fn tolerance(metres: f64) -> f64 {
-    if metres.is_nan() { f64::INFINITY } else { metres.max(0.0) }
 }

@@ -1,9 +1,9 @@
 //! Two members against each other.
 
 use elbowroom_proximity::contact::{ContactPoint, Detail, contact_at};
-use elbowroom_proximity::mesh::{Hint, Scratch};
+use elbowroom_proximity::mesh::{Hint, Scratch, bound_at, bound_of};
 use elbowroom_proximity::{Separation, Shape, separation_within};
-use elbowroom_spatial::{Obb, Pose};
+use elbowroom_spatial::{Obb, Pose, Vec3};
 
 use crate::model::{Model, Solid};
 use crate::world_box::{WorldBox, round_up};
@@ -30,7 +30,7 @@ impl<'s> Placed<'s> {
         Self { model: &scene.models[model], in_world: state.in_world[model] }
     }
 
-    fn obb(&self) -> Option<Obb> {
+    pub fn obb(&self) -> Option<Obb> {
         self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
     }
 }
@@ -145,6 +145,24 @@ impl Narrow {
             }
         }
         best
+    }
+
+    /// Metres that two members certainly have between them by the boxes of their meshes down to a depth, and points of the
+    /// boxes that are nearest; a little more than `limit` where it is certainly above it. `None` where there are no such boxes.
+    pub fn bound_at(&mut self, a: &Placed, b: &Placed, depth: u8, limit: f64) -> Option<(f64, [Vec3; 2])> {
+        let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
+        let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
+        let beyond = (limit + 1e-9 * (1.0 + limit), [in_a.translation, in_b.translation]);
+        let coarse = match (&x.shape, &y.shape) {
+            (Shape::Mesh(m), Shape::Mesh(n)) => bound_at(m, &in_a, n, &in_b, depth, limit, &mut self.scratch),
+            (Shape::Mesh(m), other) => Some(bound_of(m, &in_a, other, &in_b, depth)?),
+            (other, Shape::Mesh(m)) => {
+                let coarse = bound_of(m, &in_b, other, &in_a, depth)?;
+                return Some((coarse.lower_bound, [coarse.on_b, coarse.on_a]));
+            }
+            _ => return None,
+        };
+        Some(coarse.map_or(beyond, |c| (c.lower_bound, [c.on_a, c.on_b])))
     }
 
     /// Where the exact models meet, or are no farther apart than `limit` metres, and which of their solids: the first pair

@@ -1,0 +1,61 @@
+//! Random points of a link's surface.
+
+use elbowroom_proximity::tessellate::tessellate;
+use elbowroom_scene::Body;
+use elbowroom_spatial::Vec3;
+
+/// A small reproducible generator (`SplitMix64`).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, lower: f64, upper: f64) -> f64 {
+        lower + (upper - lower) * self.unit()
+    }
+}
+
+/// The triangles of a link, in its frame, drawn by their area.
+pub struct Surface {
+    triangles: Vec<[Vec3; 3]>,
+    /// Area up to and with each triangle, m².
+    area_up_to: Vec<f64>,
+}
+
+impl Surface {
+    pub fn of(bodies: &[Body]) -> Self {
+        let (mut triangles, mut area_up_to, mut area) = (Vec::new(), Vec::new(), 0.0);
+        for body in bodies {
+            let (vertices, corners) = tessellate(&body.shape, 1e-3);
+            for corners in corners {
+                let t = corners.map(|i| body.in_link.transform_point(vertices[i as usize]));
+                let twice = (t[1] - t[0]).cross(t[2] - t[0]).length();
+                if twice > 0.0 {
+                    area += 0.5 * twice;
+                    triangles.push(t);
+                    area_up_to.push(area);
+                }
+            }
+        }
+        Self { triangles, area_up_to }
+    }
+
+    /// A point, even over the surface, and the normal there; `None` where the link has no solids.
+    pub fn draw(&self, random: &mut Random) -> Option<(Vec3, Vec3)> {
+        let at = random.unit() * self.area_up_to.last()?;
+        let index = self.area_up_to.partition_point(|&a| a < at).min(self.triangles.len() - 1);
+        let [a, b, c] = self.triangles[index];
+        let (mut u, mut v) = (random.unit(), random.unit());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        Some((a + (b - a) * u + (c - a) * v, normal))
+    }
+}
