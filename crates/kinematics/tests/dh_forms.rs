@@ -176,7 +176,7 @@ fn chains(usual: usize) -> usize {
 fn awkward_chains_in_all_forms() {
     let mut random = Random(2026);
     let (mut largest, mut auxiliary, mut with_b) = ([0.0_f64; 4], 0, 0);
-    let count = chains(4000);
+    let count = chains(3000);
     for _ in 0..count {
         let chain = awkward_chain(&mut random);
         let tip = LinkId(random.below(chain.links().len()));
@@ -207,7 +207,7 @@ fn awkward_chains_in_all_forms() {
 #[test]
 fn tables_to_chains_to_tables() {
     let mut random = Random(5);
-    for _ in 0..chains(2000) {
+    for _ in 0..chains(1500) {
         let n = 1 + random.below(7);
         let angle = |random: &mut Random| [0.0, FRAC_PI_2, -FRAC_PI_2, PI, random.range(-PI, PI)][random.below(5)];
         let length = |random: &mut Random| random.range(-1.0, 1.0) * random.below(2) as f64;
@@ -330,9 +330,11 @@ fn kr150() -> Chain {
 fn the_kr150_has_the_shape_of_the_papers_table() {
     let mut models = vec![("dimensions", kr150())];
     models.extend(common::robot("kuka_kr150_2").map(|chain| ("kuka_kr150_2", chain)));
+    let mut shown = Vec::new();
     for (name, chain) in models {
         let direct = DirectTable::extract(&chain, chain.link("link_6").unwrap());
         println!("{name}, residual {:.1e}\n{direct}\n", direct.table.residual);
+        shown.push(direct.to_string());
         let expected = ["base_link", "joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6"];
         assert_eq!(direct.frames[..7], expected);
         // The link's own frame is turned against its axis by what one row cannot say.
@@ -355,6 +357,7 @@ fn the_kr150_has_the_shape_of_the_papers_table() {
         // Seven frames of the paper's equations, too.
         assert_eq!(Frames::extract(&chain, chain.link("link_6").unwrap()).frames.len(), 7);
     }
+    assert!(shown.iter().all(|s| *s == shown[0]), "the same robot, the same table, whatever the file's rounding");
 }
 
 /// Craig's table of the PUMA 560 (1986, figure 3.21) by its lengths: α 0, −90, 0, −90, 90, −90.

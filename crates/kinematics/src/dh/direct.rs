@@ -1,5 +1,6 @@
 //! One row per given frame, as in the paper.
 
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -107,8 +108,9 @@ impl Rows {
 fn one_row_turn(frame: &Pose, axis: Vec3) -> Rotation {
     let onto = z_onto(axis);
     let [x, y, _] = (frame.rotation * onto).rows()[2];
-    // x·cos φ + y·sin φ = 0, by the smaller of both turns.
+    // x·cos φ + y·sin φ = 0, by the smaller of both turns; of two quarter turns the positive one, whatever the rounding.
     let angle = if x.abs() < 1e-12 { 0.0 } else { (-x / y).atan() };
+    let angle = if angle < 1e-9 - FRAC_PI_2 { angle + PI } else { angle };
     onto.turned_about(2, angle)
 }
 

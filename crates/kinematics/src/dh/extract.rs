@@ -44,7 +44,8 @@ impl Table {
 
 /// A turn that takes z onto the axis; none at all where it is z already.
 pub fn z_onto(axis: Vec3) -> Rotation {
-    if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis) }
+    // Adding 0 takes the sign off zeros: it would choose another turn about the axis.
+    if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis + Vec3::ZERO) }
 }
 
 pub fn with_joint(mut row: Row, joint: Option<(String, JointKind)>) -> Row {
