@@ -8,6 +8,7 @@
 //! | which joint values bring a tip to a pose | [`inverse`] |
 //! | how any point of a surface moves, and which joint values bring it somewhere | [`point`] |
 //! | what is the Denavit-Hartenberg table of a chain, and the chain of a table | [`dh`] |
+//! | the same as frames with a centre and a rotation about a vector | [`frames`] |
 //!
 //! ```
 //! use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
@@ -39,6 +40,7 @@ mod chain;
 pub mod dh;
 mod error;
 mod forward;
+pub mod frames;
 pub mod inverse;
 mod jacobian;
 mod joint;

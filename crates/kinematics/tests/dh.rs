@@ -60,10 +60,11 @@ fn worst(chain: &Chain, table: &Table, tip: LinkId, random: &mut Random, states:
 }
 
 #[test]
-fn twenty_thousand_awkward_chains() {
+fn awkward_chains() {
     let mut random = Random(42);
     let (mut largest, mut with_b, mut auxiliary) = (0.0_f64, 0, 0);
-    for _ in 0..20_000 {
+    let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
+    for _ in 0..if long { 100_000 } else { 20_000 } {
         let chain = awkward_chain(&mut random);
         let table = Table::extract(&chain, chain.tip());
         let residual = worst(&chain, &table, chain.tip(), &mut random, 3);

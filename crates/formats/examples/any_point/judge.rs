@@ -58,22 +58,23 @@ pub struct Line {
 }
 
 impl Line {
-    pub const HEAD: &str = "robot          link                 task             n  reached %  restarted %  median µs  p99 µs   max µs  worst m  worst rad  beyond limits";
+    pub const HEAD: &str = "robot          link                 task             n  reached %  restarted %  median µs  p99 µs  mean µs  worst m  worst rad  beyond limits";
 
     pub fn text(&self, robot: &str, link: &str, with_normal: bool) -> String {
         let mut times = self.times_us.clone();
         times.sort_by(f64::total_cmp);
         let at = |part: usize| times.get(times.len() * part / 1000).or(times.last()).copied().unwrap_or(f64::NAN);
+        let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
         let percent = |n: usize| 100.0 * n as f64 / self.asked.max(1) as f64;
         format!(
-            "{robot:<14} {link:<20} {:<9} {:>8} {:>10.3} {:>12.2} {:>10.2} {:>7.1} {:>8.1} {:>8.1e} {:>10.1e} {:>14.1e}",
+            "{robot:<14} {link:<20} {:<9} {:>8} {:>10.3} {:>12.2} {:>10.2} {:>7.1} {:>8.2} {:>8.1e} {:>10.1e} {:>14.1e}",
             if with_normal { "+ normal" } else { "position" },
             self.asked,
             percent(self.reached),
             percent(self.restarted),
             at(500),
             at(990),
-            at(1000),
+            mean,
             self.worst_m,
             self.worst_rad,
             self.outside,

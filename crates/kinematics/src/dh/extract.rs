@@ -37,17 +37,18 @@ impl Table {
         }
         push_last(&mut rows, joint, &(pending * tool_in_tip));
         let mut table = Self { rows, residual: 0.0 };
-        table.residual = residual(&table, chain, tip, tool_in_tip);
+        table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
         table
     }
 }
 
 /// A turn that takes z onto the axis; none at all where it is z already.
-fn z_onto(axis: Vec3) -> Rotation {
-    if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis) }
+pub fn z_onto(axis: Vec3) -> Rotation {
+    // Adding 0 takes the sign off zeros: it would choose another turn about the axis.
+    if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis + Vec3::ZERO) }
 }
 
-fn with_joint(mut row: Row, joint: Option<(String, JointKind)>) -> Row {
+pub fn with_joint(mut row: Row, joint: Option<(String, JointKind)>) -> Row {
     if let Some((name, kind)) = joint {
         row.joint = Some(name);
         row.kind = kind;
@@ -79,14 +80,18 @@ fn push_last(rows: &mut Vec<Row>, joint: Option<(String, JointKind)>, t: &Pose) 
     rows.push(along_z(&rest));
 }
 
-fn residual(table: &Table, chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> f64 {
+/// A joint's value by its name.
+pub type Values<'a> = &'a dyn Fn(&str) -> f64;
+
+/// Largest difference between what `product` makes of joint values and forward kinematics; NaN where there is one.
+pub fn residual(chain: &Chain, tip: LinkId, tool_in_tip: Pose, product: impl Fn(Values<'_>) -> Pose) -> f64 {
     let mut state = ChainState::new(chain);
     let mut worst: f64 = 0.0;
     for index in 0..STATES {
         spread_state(chain, index, &mut state.q);
         chain.forward(&mut state);
         let value = |name: &str| chain.joint(name).map_or(f64::NAN, |id| chain.joint_value(id, &state.q));
-        let difference = largest_difference(&table.tip_in_root(value), &(state.link_in_root(tip) * tool_in_tip));
+        let difference = largest_difference(&product(&value), &(state.link_in_root(tip) * tool_in_tip));
         // `max` would drop a NaN.
         worst = if difference.is_nan() { f64::NAN } else { worst.max(difference) };
     }

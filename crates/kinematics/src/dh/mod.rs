@@ -1,5 +1,12 @@
 //! Denavit-Hartenberg tables: extracted from any chain in generalized form, and chains built from tables.
 //!
+//! | table | row | the joint acts in | |
+//! | --- | --- | --- | --- |
+//! | classical ([`ClassicalRow`], [`Chain::from_dh`](crate::Chain::from_dh)) | `Rz(θ)·Tz(d)·Tx(a)·Rx(α)` | z of the frame before | what data sheets print; input |
+//! | generalized ([`Table::extract`], [`Table::to_chain`]) | `Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` | z of the frame before | along common normals: classical (b = 0) wherever that can be |
+//! | direct ([`DirectTable`]) | the same | z of the frame before | one row per frame of the model, as in the paper's table 1 |
+//! | modified ([`ModifiedTable`]) | `Rx(α)·Tx(a)·Rz(θ)·Tz(d)` | z of the frame after | Craig's convention |
+//!
 //! A generalized row is `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` (S4.3). The joint of a row acts about or along the z axis of
 //! the frame *before* the row: its value is added to θ (turning) or d (sliding).
 //!
@@ -27,11 +34,15 @@
 //! ```
 
 mod build;
+mod direct;
 mod extract;
+mod modified;
 mod split;
 
 pub use build::ClassicalRow;
+pub use direct::DirectTable;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+pub use modified::{ModifiedRow, ModifiedTable};
 
 use crate::JointKind;
 

@@ -1,0 +1,140 @@
+//! One row per given frame, as in the paper.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
+
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::extract::{residual, with_joint, z_onto};
+use super::split::{along_z, exact_row, row_and_rest};
+use super::{Row, Table};
+use crate::{Chain, JointKind, LinkId};
+
+/// A generalized table that follows the frames of the model (S4.3, S4.4), where [`Table::extract`] follows the axes.
+///
+/// Every frame on the way keeps its origin: that of the root link, of each joint and of each link on a fixed joint; at the
+/// end that of the tip. A frame whose z axis is its joint's axis, and a frame without joint, keeps its orientation, too; any
+/// other is turned so that its joint acts about or along z, as the convention wants it, and about that so that entry (3,1)
+/// of its row is 0. Each frame is one row with a, b, d, α and θ; only where a kept frame has (3,1) ≠ 0 an auxiliary
+/// frame comes before it, marked by `*`. A model of a base and six joints has seven rows, as the paper's table 1, and behind
+/// them what the last joint carries: the tip, or the point that is to be steered.
+///
+/// ```
+/// use elbowroom_kinematics::dh::DirectTable;
+/// use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+/// use elbowroom_spatial::{Pose, Vec3};
+///
+/// let joint = |i: usize, at: Vec3, axis: Vec3| Joint {
+///     name: format!("joint_{i}"), kind: JointKind::Revolute, parent: LinkId(i - 1), child: LinkId(i),
+///     origin: Pose::from_translation(at), axis, limits: Limits::symmetric(3.0), mimic: None,
+/// };
+/// let joints = vec![joint(1, Vec3::Z * 0.75, Vec3::Z), joint(2, Vec3::new(0.35, 0.1, 0.2), Vec3::Y)];
+/// let chain = Chain::new("arm", ["base", "column", "arm"].map(String::from).to_vec(), joints)?;
+/// let direct = DirectTable::extract_to(&chain, chain.tip(), Pose::from_translation(Vec3::X * 1.25));
+/// assert_eq!(direct.frames, ["base", "joint_1", "joint_2", "arm"]);
+/// assert!(direct.table.residual < 1e-12);
+/// println!("{direct}"); // frame, joint, a, b, d, α, θ
+/// # Ok::<(), elbowroom_kinematics::ChainError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectTable {
+    /// The frame that each row leads to: a link where it has no joint, else the joint that acts in it (from the next row
+    /// on). Auxiliary frames bear the name of the frame that they help, with a `*`.
+    pub frames: Vec<String>,
+    /// The rows, and how well their product is the chain.
+    pub table: Table,
+}
+
+impl DirectTable {
+    /// The frames from the root link to the link `tip`. Works for every chain.
+    pub fn extract(chain: &Chain, tip: LinkId) -> Self {
+        Self::extract_to(chain, tip, Pose::IDENTITY)
+    }
+
+    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface that is to be
+    /// steered (S4.6).
+    pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
+        let mut rows = Rows { frames: vec![chain.links()[chain.root().0].clone()], list: vec![nothing()], joint: None };
+        let mut pending = Pose::IDENTITY; // from the frame of the last row
+        for id in chain.path(tip) {
+            let next = &chain.joints()[id.0];
+            let frame = pending * next.origin;
+            if next.kind == JointKind::Fixed {
+                rows.push(&chain.links()[next.child.0], &frame);
+                pending = Pose::IDENTITY;
+                continue;
+            }
+            let turn = if next.axis == Vec3::Z { Rotation::IDENTITY } else { one_row_turn(&frame, next.axis) };
+            let turn = Pose::new(turn, Vec3::ZERO);
+            rows.push(&next.name, &(frame * turn));
+            rows.joint = Some((next.name.clone(), next.kind));
+            // The joint moves what follows its frame; turning back puts the link's own frame behind it.
+            pending = turn.inverse();
+        }
+        let end = pending * tool_in_tip;
+        if rows.joint.is_some() || end != Pose::IDENTITY {
+            rows.push(&chain.links()[tip.0], &end);
+        }
+        let mut table = Table { rows: rows.list, residual: 0.0 };
+        table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
+        Self { frames: rows.frames, table }
+    }
+}
+
+/// The table under construction.
+struct Rows {
+    frames: Vec<String>,
+    list: Vec<Row>,
+    /// Acts in the last frame, that is in the next row.
+    joint: Option<(String, JointKind)>,
+}
+
+impl Rows {
+    fn push(&mut self, name: &str, t: &Pose) {
+        let joint = self.joint.take();
+        if let Some(row) = exact_row(t) {
+            self.list.push(with_joint(row, joint));
+        } else {
+            let (row, rest) = row_and_rest(t);
+            self.frames.push(format!("{name}*"));
+            self.list.push(with_joint(row, joint));
+            self.list.push(along_z(&rest));
+        }
+        self.frames.push(name.to_owned());
+    }
+}
+
+/// The turn of a frame that takes its z onto the axis and entry (3,1) of its row to 0.
+fn one_row_turn(frame: &Pose, axis: Vec3) -> Rotation {
+    let onto = z_onto(axis);
+    let [x, y, _] = (frame.rotation * onto).rows()[2];
+    // x·cos φ + y·sin φ = 0, by the smaller of both turns; of two quarter turns the positive one, whatever the rounding.
+    let angle = if x.abs() < 1e-12 { 0.0 } else { (-x / y).atan() };
+    let angle = if angle < 1e-9 - FRAC_PI_2 { angle + PI } else { angle };
+    onto.turned_about(2, angle)
+}
+
+fn nothing() -> Row {
+    Row { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 }
+}
+
+/// The paper's columns: lengths in m, angles in rad.
+impl fmt::Display for DirectTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let widest = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(5);
+        let frame = widest(&mut self.frames.iter().map(|n| n.chars().count()));
+        let joint = widest(&mut self.table.rows.iter().map(|r| r.joint.as_ref().map_or(0, |n| n.chars().count())));
+        let head = ["a", "b", "d", "alpha", "theta"].map(|h| format!("{h:>9}")).join("");
+        write!(f, "{:<frame$}  {:<joint$}{head}", "frame", "q of")?;
+        for (name, row) in self.frames.iter().zip(&self.table.rows) {
+            let cells = [row.a, row.b, row.d, row.alpha, row.theta].map(|v| format!("{:>9.3}", round(v))).join("");
+            write!(f, "\n{name:<frame$}  {:<joint$}{cells}", row.joint.as_deref().unwrap_or(""))?;
+        }
+        Ok(())
+    }
+}
+
+/// To the last digit shown; adding 0 takes the sign off a zero.
+fn round(v: f64) -> f64 {
+    (v * 1e3).round() / 1e3 + 0.0
+}

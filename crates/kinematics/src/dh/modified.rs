@@ -1,0 +1,175 @@
+//! The modified convention (Craig).
+
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::extract::residual;
+use super::{Row, Table};
+use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
+
+/// One modified row (Craig, "Introduction to Robotics", 1986): `T = Rx(α)·Tx(a)·Rz(θ)·Tz(d)`. The joint of a row acts
+/// about or along the z axis of the frame *after* the row: its value is added to θ (turning) or d (sliding).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModifiedRow {
+    /// The joint whose value is added to θ (turning) or d (sliding); `None` in fixed and auxiliary rows.
+    /// A mimic joint bears its own name: its value is `multiplier · q(source) + offset`.
+    pub joint: Option<String>,
+    /// The joint's kind; [`JointKind::Fixed`] where there is none.
+    pub kind: JointKind,
+    /// Turn about the x axis of the frame before, rad.
+    pub alpha: f64,
+    /// Along the x axis of the frame before, m.
+    pub a: f64,
+    /// Turn about the new z axis at joint value 0, rad.
+    pub theta: f64,
+    /// Along the new z axis, m.
+    pub d: f64,
+}
+
+impl ModifiedRow {
+    /// The frame after the row in the frame before it, at the joint value `q` (rad or m; ignored without joint).
+    pub fn transform(&self, q: f64) -> Pose {
+        let (theta, d) = match self.kind {
+            JointKind::Fixed => (self.theta, self.d),
+            JointKind::Revolute | JointKind::Continuous => (self.theta + q, self.d),
+            JointKind::Prismatic => (self.theta, self.d + q),
+        };
+        let about_x = Rotation::from_axis_angle(Vec3::X, self.alpha);
+        let translation = Vec3::X * self.a + about_x * (Vec3::Z * d);
+        Pose::new(about_x * Rotation::from_axis_angle(Vec3::Z, theta), translation)
+    }
+
+    fn is_nothing(&self) -> bool {
+        self.joint.is_none() && self.alpha == 0.0 && self.a == 0.0 && self.theta == 0.0 && self.d == 0.0
+    }
+}
+
+/// The modified rows from the root to a tip.
+///
+/// Made of the generalized table by other brackets around the same factors: `Tx(a)·Rx(α)` of a row and `Rz(θ)·Tz(d)` of the
+/// next are one modified row, for turn about and slide along x commute. So the first row of a robot whose first axis is
+/// z of the root has α = a = 0, and behind the last joint a row without joint leads to the tip. Where a generalized row has
+/// b (axes less than a thousandth of a radian from parallel, or the tip), it becomes two auxiliary rows without joint:
+/// `Ty(b) = Rz(π/2)·Tx(b)·Rz(−π/2)`.
+///
+/// ```
+/// use elbowroom_kinematics::dh::{ClassicalRow, ModifiedTable};
+/// use elbowroom_kinematics::{Chain, JointKind, Limits};
+///
+/// let row = |joint: &str, a: f64| ClassicalRow {
+///     joint: joint.into(), kind: JointKind::Revolute, a, alpha: 0.0, d: 0.0, theta: 0.0, limits: Limits::symmetric(3.0),
+/// };
+/// let planar = Chain::from_dh("planar", &[row("shoulder", 0.4), row("elbow", 0.3)])?;
+/// let table = ModifiedTable::extract(&planar, planar.tip());
+/// let a: Vec<f64> = table.rows.iter().map(|r| r.a).collect();
+/// assert_eq!(a, [0.0, 0.4, 0.3]); // shoulder, elbow, and the way to the tip
+/// assert_eq!(table.rows[2].joint, None);
+/// # Ok::<(), elbowroom_kinematics::ChainError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModifiedTable {
+    /// In order from the root.
+    pub rows: Vec<ModifiedRow>,
+    /// As [`Table::residual`].
+    pub residual: f64,
+}
+
+impl ModifiedTable {
+    /// The modified table of `tip` in the root link, with its residual. Works for every chain.
+    pub fn extract(chain: &Chain, tip: LinkId) -> Self {
+        Self::extract_to(chain, tip, Pose::IDENTITY)
+    }
+
+    /// As [`ModifiedTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
+    pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
+        let mut table = Self::from(&Table::extract_to(chain, tip, tool_in_tip));
+        table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
+        table
+    }
+
+    /// The product of the rows: the tip in the root. `value` gives each joint's value by its name, rad or m.
+    pub fn tip_in_root(&self, mut value: impl FnMut(&str) -> f64) -> Pose {
+        self.rows.iter().fold(Pose::IDENTITY, |at, row| {
+            let q = row.joint.as_deref().map_or(0.0, &mut value);
+            at * row.transform(q)
+        })
+    }
+
+    /// The serial chain of the table, without limits. Its links are `base` and, for row i (from 1), `link_i`: the row's
+    /// frame. Rows without joint become fixed joints `fixed_i`; mimic joints become free ones.
+    ///
+    /// # Errors
+    /// [`ChainError`] as in [`Chain::new`].
+    pub fn to_chain(&self, name: impl Into<String>) -> Result<Chain, ChainError> {
+        let mut links = vec!["base".to_owned()];
+        let mut joints = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            links.push(format!("link_{}", i + 1));
+            joints.push(Joint {
+                name: row.joint.clone().unwrap_or_else(|| format!("fixed_{}", i + 1)),
+                kind: row.kind,
+                parent: LinkId(i),
+                child: LinkId(i + 1),
+                // Turn about and slide along z commute with the joint.
+                origin: ModifiedRow { kind: JointKind::Fixed, ..row.clone() }.transform(0.0),
+                axis: Vec3::Z,
+                limits: Limits::UNLIMITED,
+                mimic: None,
+            });
+        }
+        Chain::new(name, links, joints)
+    }
+}
+
+/// The same product; the residual is taken over.
+impl From<&Table> for ModifiedTable {
+    fn from(table: &Table) -> Self {
+        let mut rows = Vec::new();
+        let mut push = |row: ModifiedRow| {
+            if !row.is_nothing() {
+                rows.push(row);
+            }
+        };
+        let fixed = ModifiedRow { joint: None, kind: JointKind::Fixed, alpha: 0.0, a: 0.0, theta: 0.0, d: 0.0 };
+        let (mut alpha, mut a, mut b) = (0.0, 0.0, 0.0);
+        for row in &table.rows {
+            sideways(&mut a, b, &mut push);
+            let (joint, kind) = (row.joint.clone(), row.kind);
+            push(ModifiedRow { joint, kind, alpha, a, theta: row.theta, d: row.d });
+            (alpha, a, b) = (row.alpha, row.a, row.b);
+        }
+        sideways(&mut a, b, &mut push);
+        push(ModifiedRow { alpha, a, ..fixed });
+        Self { rows, residual: table.residual }
+    }
+}
+
+/// `Tx(a)·Ty(b)` as auxiliary rows, before a row that takes only α; leaves `a` to that row where there is no b.
+fn sideways(a: &mut f64, b: f64, push: &mut impl FnMut(ModifiedRow)) {
+    if b == 0.0 {
+        return;
+    }
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let aside = |a, theta| ModifiedRow { joint: None, kind: JointKind::Fixed, alpha: 0.0, a, theta, d: 0.0 };
+    push(aside(*a, quarter));
+    push(aside(b, -quarter));
+    *a = 0.0;
+}
+
+/// The same product, all b = 0; the residual is taken over. Where the first row has α or a, a row without joint comes first.
+impl From<&ModifiedTable> for Table {
+    fn from(table: &ModifiedTable) -> Self {
+        let fixed = Row { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 };
+        let mut rows: Vec<Row> = Vec::new();
+        for row in &table.rows {
+            match rows.last_mut() {
+                Some(last) => (last.alpha, last.a) = (row.alpha, row.a),
+                None if row.alpha != 0.0 || row.a != 0.0 => {
+                    rows.push(Row { alpha: row.alpha, a: row.a, ..fixed.clone() });
+                }
+                None => {}
+            }
+            rows.push(Row { joint: row.joint.clone(), kind: row.kind, theta: row.theta, d: row.d, ..fixed.clone() });
+        }
+        Self { rows, residual: table.residual }
+    }
+}
