@@ -126,7 +126,7 @@ pub struct Advice {
     pub doing: Doing,
     /// Of the single look.
     pub reaction: Reaction,
-    /// Least distance to anything in the way, m; infinite where nothing is near.
+    /// Least distance to what moves or is not known, m; infinite where none of it is near.
     pub nearest_m: f64,
     /// The object or robot link that asked for the correction.
     pub governed_by: Option<usize>,
@@ -426,7 +426,8 @@ impl<'s> Avoider<'s> {
     fn advice(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mut advice: Advice) -> Advice {
         advice.astray_s = astray(reference.q, &self.q, &self.limits);
         self.following = self.way.is_empty() && advice.astray_s <= NONE_S;
-        advice.nearest_m = self.senses.threats.first().map_or(f64::INFINITY, |t| t.distance_m);
+        let loose = self.senses.threats.iter().find(|t| matches!(t.other, Other::Loose { .. }));
+        advice.nearest_m = loose.map_or(f64::INFINITY, |t| t.distance_m);
         let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
         advice.governed_by = governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
         let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);

@@ -1,6 +1,7 @@
 //! What a run leaves behind: read by the report and the CSV writers.
 
 use elbowroom_avoidance::Doing;
+use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_monitor::{Guards, Reason};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -60,6 +61,8 @@ pub struct AvoidanceTrack {
     pub step_ns: TickTimes,
     /// Ways that were planned where it did not get on, each with the time it took, s; `None` where none was found.
     pub plans: Vec<(f64, Option<f64>)>,
+    /// Its rules: one surface per output.
+    pub surfaces: Vec<Surface>,
 }
 
 /// Avoidance at one tick.

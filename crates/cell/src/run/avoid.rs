@@ -1,5 +1,6 @@
 //! Avoidance in a run: each robot that evades goes along its path as far as what comes lets it.
 
+use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{Advice, Around, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
@@ -17,6 +18,8 @@ const PLANNING: std::time::Duration = std::time::Duration::from_secs(2);
 const CLEARANCE_M: f64 = 0.02;
 /// … and asked for again after this time, s.
 const AGAIN_S: f64 = 0.5;
+/// Values of each input in a picture of the rules.
+const SURFACE: usize = 33;
 
 /// One robot that evades.
 #[derive(Debug)]
@@ -49,7 +52,7 @@ impl<'s> Evasive<'s> {
             advice: Advice { rate: 1.0, nearest_m: f64::INFINITY, ..Advice::default() },
             not_before_s: 0.0,
             step_ns: Vec::new(),
-            track: AvoidanceTrack::default(),
+            track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
         })
     }
 
@@ -146,6 +149,10 @@ impl<'s> Evasive<'s> {
             clock.skip_move();
         }
     }
+}
+
+fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
+    (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE)).collect()
 }
 
 fn event(doing: Doing) -> &'static str {
