@@ -10,14 +10,19 @@ use crate::calm::Calm;
 use crate::joint::{self, JointLimit};
 use crate::levers::Levers;
 use crate::sense::Senses;
-use crate::{Around, Other, Reaction, Reflex, ReflexSettings, Rules, VelocityBounds};
+use crate::{Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, VelocityBounds};
 
 /// Below this override nothing is commanded but a stop.
 const NO_OVERRIDE: f64 = 1e-6;
 /// A deviation of so many seconds at full joint speed is none.
 const NONE_S: f64 = 1e-9;
+/// Less than this share of the wanted motion is no headway; nor is the last of it, in seconds of joint motion.
+const HEADWAY: f64 = 0.15;
+const NEARLY_S: f64 = 2e-3;
 /// Slower than this share of its speed the robot counts as standing.
 const STANDS: f64 = 5e-3;
+/// Near something the pull back to the path falls with the distance, in this time, s: a steeper one would tug at evasion.
+const SOFT_S: f64 = 0.15;
 /// A correction of less than this size is not told as evading, nor one that was longer ago, s.
 const EVADING: f64 = 0.02;
 const EVADING_S: f64 = 0.1;
@@ -164,6 +169,8 @@ pub struct Avoider<'s> {
     way: Vec<Vec<f64>>,
     levers: Levers,
     standing_s: f64,
+    /// Share of the wanted velocity that was left.
+    headway: f64,
     /// Since the rules last asked for something, s.
     evaded_s: f64,
     following: bool,
@@ -181,7 +188,7 @@ impl<'s> Avoider<'s> {
         limits: &[JointLimit],
         rules: Rules,
         settings: AvoiderSettings,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self, AvoidanceError> {
         let count = scene.robots().len();
         let chain = &scene.robots().get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?.robot.chain;
         let mut senses = Senses::new(scene, robot);
@@ -209,6 +216,7 @@ impl<'s> Avoider<'s> {
             braked: vec![0.0; n],
             way: Vec::new(),
             standing_s: 0.0,
+            headway: 1.0,
             evaded_s: f64::INFINITY,
             following: true,
         })
@@ -248,15 +256,16 @@ impl<'s> Avoider<'s> {
     /// `speed_override` (0 to 1) what a monitor allows, which scales all motion last.
     ///
     /// # Errors
-    /// Poses or joint values of what is around that are not finite or do not exist. Nothing has moved then, and the caller
-    /// should stop the robot.
+    /// Poses, motions or joint values that are not finite or not there, a tick without time. Nothing has moved then, and the
+    /// caller should stop the robot.
     pub fn tick(
         &mut self,
         dt: f64,
         reference: &Reference<'_>,
         around: &Around<'_>,
         speed_override: f64,
-    ) -> Result<Advice, SceneError> {
+    ) -> Result<Advice, AvoidanceError> {
+        self.check_call(dt, reference)?;
         let begin = Instant::now();
         self.senses.place(&self.q, around)?;
         self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach());
@@ -290,6 +299,18 @@ impl<'s> Avoider<'s> {
         Ok(())
     }
 
+    fn check_call(&self, dt: f64, reference: &Reference<'_>) -> Result<(), AvoidanceError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(AvoidanceError::Period(dt));
+        }
+        let joints = self.q.len();
+        let sound = |v: &[f64]| v.len() == joints && v.iter().all(|v| v.is_finite());
+        if sound(reference.q) && sound(reference.qd) {
+            return Ok(());
+        }
+        Err(AvoidanceError::Reference { given: reference.q.len().min(reference.qd.len()), joints })
+    }
+
     /// How near what is known must be to matter: what a stop from twice the evasion speed takes.
     fn fixed_reach(&self) -> f64 {
         let s = &self.settings.reflex;
@@ -314,11 +335,24 @@ impl<'s> Avoider<'s> {
             // All but limits is scaled last.
             *now = now.map(|v| (v / allowed).clamp(soon[0], soon[1]));
         }
-        let hold_path = reference.path == PathKind::Continuous && self.way.is_empty();
+        let manner = match reference.path {
+            _ if !self.way.is_empty() => Manner::Holding,
+            PathKind::Continuous => Manner::Holding,
+            PathKind::PointToPoint if !self.following => Manner::Back,
+            // Where it stands, things may stand near.
+            PathKind::PointToPoint if reference.qd.iter().all(|v| *v == 0.0) => Manner::Holding,
+            PathKind::PointToPoint => Manner::Underway,
+        };
         let Senses { scene, robot, chains, threats, .. } = &self.senses;
         let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
         let reaction =
-            self.reflex.react(chain, state, &self.wanted, &self.bounds, threats, hold_path, &mut self.next);
+            self.reflex.react(chain, state, &self.wanted, &self.bounds, threats, manner, &mut self.next);
+        self.headway = headway(&self.next, &self.wanted, &self.limits);
+        if self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0 {
+            // Trapped: to stand is better than to creep.
+            brake(&self.limits, &self.qd, dt, &mut self.next);
+            return (reaction, false);
+        }
         self.intent.copy_from_slice(&self.next);
         self.next.iter_mut().for_each(|v| *v *= allowed);
         let exactly = self.following && self.way.is_empty() && !reaction.asked;
@@ -362,7 +396,8 @@ impl<'s> Avoider<'s> {
             }
             return;
         }
-        let speed = slowing(left_s, rise_s).min(share);
+        let soft = if self.evaded_s < EVADING_S { left_s / SOFT_S } else { f64::INFINITY };
+        let speed = slowing(left_s, rise_s).min(share).min(soft);
         let rate = if left_s > 0.0 { (speed / left_s).min(1.0 / dt) } else { 0.0 };
         for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
             *v = (to - from) * rate;
@@ -431,16 +466,15 @@ impl<'s> Avoider<'s> {
         let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
         advice.governed_by = governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
         let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);
-        let wants = !self.following || reference.qd.iter().any(|v| *v != 0.0);
-        let stands = fastest < STANDS && wants && allowed > 0.0;
-        self.standing_s = if stands { self.standing_s + dt } else { 0.0 };
-        let loose_moves = self.senses.threats.iter().any(|t| t.velocity().length() > OBSTACLE_STANDS_M_S);
+        let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
+        let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
+        self.standing_s = if held { self.standing_s + dt } else { 0.0 };
         self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
-        advice.stuck = self.standing_s >= self.settings.patience_s && !loose_moves;
+        advice.stuck = self.stuck();
         advice.rate = self.rate(reference, advice.astray_s);
         advice.doing = if allowed == 0.0 {
             Doing::Halted
-        } else if stands && self.standing_s > 0.1 {
+        } else if held && fastest < STANDS && self.standing_s > 0.1 {
             Doing::Waiting
         } else if !self.way.is_empty() {
             Doing::Rounding
@@ -452,6 +486,12 @@ impl<'s> Avoider<'s> {
             Doing::Returning
         };
         advice
+    }
+
+    /// No headway for long, and what is in the way does not move.
+    fn stuck(&self) -> bool {
+        let moves = |t: &crate::Threat| t.velocity().length() > OBSTACLE_STANDS_M_S;
+        self.standing_s >= self.settings.patience_s && !self.senses.threats.iter().any(moves)
     }
 
     /// How fast the path may go on.
@@ -506,6 +546,14 @@ fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
 /// Seconds of joint motion at full speed between two configurations.
 fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
     to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
+}
+
+/// How much of the wanted velocity a velocity has in its direction, in the norm of the joints' speeds; 1 where nothing is
+/// wanted.
+fn headway(velocity: &[f64], wanted: &[f64], limits: &[JointLimit]) -> f64 {
+    let along = |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
+    let whole = along(wanted);
+    if whole > 0.0 { along(velocity) / whole } else { 1.0 }
 }
 
 /// Share of the speed from which the rest of the way is enough to stop.

@@ -12,6 +12,7 @@
 
 mod avoider;
 mod calm;
+mod error;
 pub mod fuzzy;
 mod joint;
 mod least;
@@ -23,9 +24,10 @@ mod side;
 mod threat;
 
 pub use avoider::{Advice, Avoider, AvoiderSettings, Doing, PathKind, Reference, TickTimes};
+pub use error::AvoidanceError;
 pub use joint::JointLimit;
 pub use least::{LeastSquares, Wish};
-pub use reflex::{Reaction, Reflex, ReflexSettings, VelocityBounds};
+pub use reflex::{Manner, Reaction, Reflex, ReflexSettings, VelocityBounds};
 pub use rules::{Correction, DEFAULT_RULES, Rules};
 pub use sense::{Around, Neighbour, Seen};
 pub use threat::{Other, Threat};

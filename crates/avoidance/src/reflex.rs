@@ -47,6 +47,18 @@ impl Default for ReflexSettings {
     }
 }
 
+/// What the wanted velocity is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Manner {
+    /// A path that may be left: what it approaches comes as fast as the two together.
+    Underway,
+    /// The pull back to a path: how hard it pulls says nothing about what comes.
+    Back,
+    /// A path to be kept, or one that was planned around what stands: fled from is only what comes by itself. For the
+    /// rest slowing down is the answer, and the caller's.
+    Holding,
+}
+
 /// Bounds of the joint velocities, rad/s or m/s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityBounds {
@@ -115,8 +127,7 @@ impl Reflex {
     }
 
     /// Turns the `wanted` joint velocity into one that evades, in `out`. `state` holds the poses of the links at this moment;
-    /// of more than 24 threats the first 24 count, so they should come nearest first. With `hold_path`, what
-    /// does not come by itself is not fled from: slowing down is the caller's answer to it.
+    /// of more than 24 threats the first 24 count, so they should come nearest first.
     pub fn react(
         &mut self,
         chain: &Chain,
@@ -124,7 +135,7 @@ impl Reflex {
         wanted: &[f64],
         bounds: &VelocityBounds,
         threats: &[Threat],
-        hold_path: bool,
+        manner: Manner,
         out: &mut [f64],
     ) -> Reaction {
         self.sides.next();
@@ -139,7 +150,7 @@ impl Reflex {
         for (number, threat) in threats.iter().enumerate().take(MOST_THREATS) {
             self.measure(chain, state, threat);
             self.keep_clear(threat);
-            let size = self.evade(threat, wanted, bounds, hold_path);
+            let size = self.evade(threat, wanted, bounds, manner);
             if size > reaction.size {
                 (reaction.size, reaction.governing) = (size, Some(number));
             }
@@ -180,20 +191,22 @@ impl Reflex {
     }
 
     /// Adds what the rules ask for and returns the size.
-    fn evade(&mut self, threat: &Threat, wanted: &[f64], bounds: &VelocityBounds, hold_path: bool) -> f64 {
+    fn evade(&mut self, threat: &Threat, wanted: &[f64], bounds: &VelocityBounds, manner: Manner) -> f64 {
         let Other::Loose { velocity, centre, radius_m, key } = threat.other else { return 0.0 };
         let along_task = self.point.iter().zip(wanted).zip(&self.speeds).map(|((p, w), s)| *p * (w / s));
-        let task = if hold_path { Vec3::ZERO } else { along_task.fold(Vec3::ZERO, |sum, v| sum + v) };
-        let relative = velocity - task;
+        let task = along_task.fold(Vec3::ZERO, |sum, v| sum + v);
+        let relative = if manner == Manner::Underway { velocity - task } else { velocity };
         let mut correction = self.rules.correction(threat.distance_m, threat.away.dot(relative));
-        if hold_path {
+        if manner == Manner::Holding {
             correction.size *= (threat.away.dot(velocity) / COMES_M_S).clamp(0.0, 1.0);
         }
         if correction.size <= 0.0 {
             return 0.0;
         }
         let mut direction = threat.away;
-        if let Some(along) = relative.try_normalize().filter(|_| relative.length() > STILL_M_S) {
+        // Its own way is steadier than the one that it has as seen from an arm that moves.
+        let way = if velocity.length() > STILL_M_S { velocity } else { relative };
+        if let Some(along) = way.try_normalize().filter(|_| way.length() > STILL_M_S) {
             let offset = threat.on_link - centre;
             let miss = offset - along * offset.dot(along);
             let clear_m = radius_m + self.settings.clearance_m;

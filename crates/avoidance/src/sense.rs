@@ -1,11 +1,11 @@
 //! What is near, from the exact scene.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_scene::{Checker, Distance, Member, Scene, SceneError, SceneState, Selection};
+use elbowroom_scene::{Checker, Distance, Member, Scene, SceneState, Selection};
 use elbowroom_spatial::{Motion, Pose, Vec3};
 
 use crate::reflex::MOST_THREATS;
-use crate::{Other, Threat};
+use crate::{AvoidanceError, Other, Threat};
 
 /// An object that moves, or that nobody planned for, as seen at this moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl<'s> Senses<'s> {
     }
 
     /// Puts everything where it is.
-    pub fn place(&mut self, q: &[f64], around: &Around<'_>) -> Result<(), SceneError> {
+    pub fn place(&mut self, q: &[f64], around: &Around<'_>) -> Result<(), AvoidanceError> {
         self.state.set_q(self.scene, self.robot, q)?;
         self.chains[self.robot].q.copy_from_slice(q);
         self.scene.robots()[self.robot].robot.chain.forward(&mut self.chains[self.robot]);
@@ -95,7 +95,7 @@ impl<'s> Senses<'s> {
         for seen in around.objects {
             self.state.place(self.scene, seen.object, seen.in_world)?;
             if !seen.motion.is_finite() {
-                return Err(SceneError::PoseNotFinite(format!("motion of `{}`", self.scene.objects()[seen.object].name)));
+                return Err(AvoidanceError::Motion { object: self.scene.objects()[seen.object].name.clone() });
             }
             self.loose[seen.object] = Some(seen.motion);
         }

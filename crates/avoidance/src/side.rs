@@ -52,6 +52,12 @@ impl Sides {
     /// The best direction, length 1, perpendicular to the way. `fastest` and `effort` tell of a direction how fast the
     /// point can go there (m/s) and how much joint motion a metre takes (in seconds of a joint at full speed).
     pub fn choose(&mut self, coming: &Coming, fastest: impl Fn(Vec3) -> f64, effort: impl Fn(Vec3) -> f64) -> Vec3 {
+        let across = |v: Vec3| (v - coming.along * v.dot(coming.along)).try_normalize();
+        // All links leave the way on the same side: that of the one that asks first, the nearest.
+        let chosen = self.taken.iter().find(|(k, _, seen)| *k == coming.key && *seen == self.look);
+        if let Some(side) = chosen.and_then(|(_, side, _)| across(*side)) {
+            return side;
+        }
         let cost = |side: Vec3| {
             let way = (coming.clear_m - coming.miss.dot(side)).max(0.0);
             way / fastest(side).max(1e-3) + MOTION * way * effort(side)
@@ -67,7 +73,6 @@ impl Sides {
             }
         }
         let memory = self.taken.iter_mut().find(|(k, ..)| *k == coming.key);
-        let across = |v: Vec3| (v - coming.along * v.dot(coming.along)).try_normalize();
         if let Some((_, side, seen)) = memory {
             let kept = across(*side).map(|s| (cost(s), s));
             if let Some(kept) = kept.filter(|k| k.0 <= best.0 * (1.0 + LOYALTY) + LOYALTY_S) {

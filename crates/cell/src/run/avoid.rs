@@ -1,11 +1,11 @@
 //! Avoidance in a run: each robot that evades goes along its path as far as what comes lets it.
 
 use elbowroom_avoidance::fuzzy::Surface;
-use elbowroom_avoidance::{Advice, Around, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen};
+use elbowroom_avoidance::{Advice, Around, AvoidanceError, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RouteOptions;
-use elbowroom_scene::{Scene, SceneError};
+use elbowroom_scene::Scene;
 use elbowroom_spatial::Motion;
 
 use super::tick_times;
@@ -42,7 +42,7 @@ impl<'s> Evasive<'s> {
     }
 
     fn new(cell: &Cell, scene: &'s Scene, robot: usize, spec: &'s AvoidanceSpec, clock: &Clock) -> Result<Self, FormatError> {
-        let refused = |e: SceneError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
+        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
         let (q, limits) = (&clock.point().q, limits(cell, robot));
         let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
         Ok(Self {
