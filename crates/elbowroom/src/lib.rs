@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`spatial`] | poses, motions, boxes, units |
 //! | [`proximity`] | shapes and the questions between two of them |
-//! | [`kinematics`] | chains of joints: forward, inverse, Jacobian, Denavit-Hartenberg |
+//! | [`kinematics`] | chains of joints: forward, inverse, Jacobian, Denavit-Hartenberg, any point of a surface as the end of a chain |
 //! | [`scene`] | robots and objects together |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
 //! | [`monitor`] | interference regions, checked every control tick |

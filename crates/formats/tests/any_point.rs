@@ -1,5 +1,6 @@
 //! Random points of real robots' surfaces are brought to where they can be; few of them here, 10⁵ for each robot with
 //! `ELBOWROOM_LONG=1`. The example of the same name prints the table.
+#![allow(clippy::print_stdout)]
 
 #[path = "../examples/any_point/judge.rs"]
 #[allow(dead_code)]
