@@ -36,8 +36,18 @@ fn with_nothing_near_the_command_is_the_path() {
     assert!(stage.hits.is_empty());
 }
 
-/// A ball through where the arm stands: it hits an arm that does not move, from wherever it comes.
+/// A ball through where the arm stands, from anywhere but across the shoulder, which cannot get out of the way.
 fn thrown(random: &mut Random) -> Ball {
+    loop {
+        let ball = any_ball(random);
+        let flat = at(ball.velocity.x, ball.velocity.y, 0.0).try_normalize().unwrap();
+        if ball.from.cross(flat).z.abs() > 0.25 {
+            return ball;
+        }
+    }
+}
+
+fn any_ball(random: &mut Random) -> Ball {
     let angle = random.range(-2.5, 2.5);
     let speed = random.range(0.1, 0.8);
     let velocity = at(angle.cos(), angle.sin(), random.range(-0.3, 0.3)) * speed;
