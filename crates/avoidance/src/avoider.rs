@@ -10,7 +10,7 @@ use crate::calm::Calm;
 use crate::joint::{self, JointLimit};
 use crate::levers::Levers;
 use crate::sense::Senses;
-use crate::{Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, VelocityBounds};
+use crate::{Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, Task, VelocityBounds};
 
 /// Below this override nothing is commanded but a stop.
 const NO_OVERRIDE: f64 = 1e-6;
@@ -345,8 +345,8 @@ impl<'s> Avoider<'s> {
         };
         let Senses { scene, robot, chains, threats, .. } = &self.senses;
         let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
-        let reaction =
-            self.reflex.react(chain, state, &self.wanted, &self.bounds, threats, manner, &mut self.next);
+        let task = Task { wanted: &self.wanted, bounds: &self.bounds, manner };
+        let reaction = self.reflex.react(chain, state, &task, threats, &mut self.next);
         self.headway = headway(&self.next, &self.wanted, &self.limits);
         if self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0 {
             // Trapped: to stand is better than to creep.
@@ -430,7 +430,8 @@ impl<'s> Avoider<'s> {
                 continue;
             }
             let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
-            let path = seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, dt)));
+            let path =
+                seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, dt)));
             let mut pair = checker.between((*a).into(), (*b).into());
             let answer = match &path {
                 Some((object, path)) => {
@@ -464,7 +465,8 @@ impl<'s> Avoider<'s> {
         let loose = self.senses.threats.iter().find(|t| matches!(t.other, Other::Loose { .. }));
         advice.nearest_m = loose.map_or(f64::INFINITY, |t| t.distance_m);
         let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
-        advice.governed_by = governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
+        advice.governed_by =
+            governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
         let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);
         let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
         let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
@@ -528,7 +530,8 @@ impl<'s> Avoider<'s> {
             let along = |c: &[f64; 6]| c[0] * threat.away.x + c[1] * threat.away.y + c[2] * threat.away.z;
             let closing: f64 = -columns.iter().zip(reference.qd).map(|(c, v)| along(c) * v).sum::<f64>();
             if closing > 0.0 {
-                let may = 0.5 * (threat.distance_m - s.clearance_m) / s.closing_s - threat.away.dot(threat.velocity()).max(0.0);
+                let may = 0.5 * (threat.distance_m - s.clearance_m) / s.closing_s
+                    - threat.away.dot(threat.velocity()).max(0.0);
                 rate = rate.min((may / closing).max(0.0));
             }
         }
@@ -551,7 +554,8 @@ fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
 /// How much of the wanted velocity a velocity has in its direction, in the norm of the joints' speeds; 1 where nothing is
 /// wanted.
 fn headway(velocity: &[f64], wanted: &[f64], limits: &[JointLimit]) -> f64 {
-    let along = |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
+    let along =
+        |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
     let whole = along(wanted);
     if whole > 0.0 { along(velocity) / whole } else { 1.0 }
 }

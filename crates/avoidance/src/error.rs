@@ -18,7 +18,9 @@ pub enum AvoidanceError {
     #[error("a tick of {0} s: give the time to the next command, above 0 s")]
     Period(f64),
     /// The path asks for what cannot be.
-    #[error("the path gives {given} values for {joints} joints, or one that is not finite: give q and qd, one number per joint")]
+    #[error(
+        "the path gives {given} values for {joints} joints, or one that is not finite: give q and qd, one number per joint"
+    )]
     Reference {
         /// Numbers given, the smaller of q and qd.
         given: usize,

@@ -27,7 +27,13 @@ impl JointLimit {
         joints
             .map(|l| {
                 let speed = l.velocity.filter(|v| v.is_finite() && *v > 0.0).unwrap_or(fallback_speed);
-                Self { lower: l.lower, upper: l.upper, speed, acceleration: speed / rise_s, stop: speed / stop_s.min(rise_s) }
+                Self {
+                    lower: l.lower,
+                    upper: l.upper,
+                    speed,
+                    acceleration: speed / rise_s,
+                    stop: speed / stop_s.min(rise_s),
+                }
             })
             .collect()
     }

@@ -27,7 +27,7 @@ pub use avoider::{Advice, Avoider, AvoiderSettings, Doing, PathKind, Reference, 
 pub use error::AvoidanceError;
 pub use joint::JointLimit;
 pub use least::{LeastSquares, Wish};
-pub use reflex::{Manner, Reaction, Reflex, ReflexSettings, VelocityBounds};
+pub use reflex::{Manner, Reaction, Reflex, ReflexSettings, Task, VelocityBounds};
 pub use rules::{Correction, DEFAULT_RULES, Rules};
 pub use sense::{Around, Neighbour, Seen};
 pub use threat::{Other, Threat};

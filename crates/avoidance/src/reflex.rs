@@ -68,6 +68,17 @@ pub struct VelocityBounds {
     pub soon: Vec<[f64; 2]>,
 }
 
+/// What the robot would do if nothing were near.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// Joint velocities, rad/s or m/s.
+    pub wanted: &'a [f64],
+    /// What the joints can do.
+    pub bounds: &'a VelocityBounds,
+    /// What it is for.
+    pub manner: Manner,
+}
+
 /// What an evasion was about.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Reaction {
@@ -126,18 +137,17 @@ impl Reflex {
         &self.settings
     }
 
-    /// Turns the `wanted` joint velocity into one that evades, in `out`. `state` holds the poses of the links at this moment;
+    /// Turns the wanted joint velocity into one that evades, in `out`. `state` holds the poses of the links at this moment;
     /// of more than 24 threats the first 24 count, so they should come nearest first.
     pub fn react(
         &mut self,
         chain: &Chain,
         state: &ChainState,
-        wanted: &[f64],
-        bounds: &VelocityBounds,
+        task: &Task<'_>,
         threats: &[Threat],
-        manner: Manner,
         out: &mut [f64],
     ) -> Reaction {
+        let Task { wanted, bounds, .. } = *task;
         self.sides.next();
         self.least.clear();
         for (j, speed) in self.speeds.iter().enumerate() {
@@ -150,7 +160,7 @@ impl Reflex {
         for (number, threat) in threats.iter().enumerate().take(MOST_THREATS) {
             self.measure(chain, state, threat);
             self.keep_clear(threat);
-            let size = self.evade(threat, wanted, bounds, manner);
+            let size = self.evade(threat, task);
             if size > reaction.size {
                 (reaction.size, reaction.governing) = (size, Some(number));
             }
@@ -191,11 +201,12 @@ impl Reflex {
     }
 
     /// Adds what the rules ask for and returns the size.
-    fn evade(&mut self, threat: &Threat, wanted: &[f64], bounds: &VelocityBounds, manner: Manner) -> f64 {
+    fn evade(&mut self, threat: &Threat, task: &Task<'_>) -> f64 {
+        let Task { wanted, bounds, manner } = *task;
         let Other::Loose { velocity, centre, radius_m, key } = threat.other else { return 0.0 };
         let along_task = self.point.iter().zip(wanted).zip(&self.speeds).map(|((p, w), s)| *p * (w / s));
-        let task = along_task.fold(Vec3::ZERO, |sum, v| sum + v);
-        let relative = if manner == Manner::Underway { velocity - task } else { velocity };
+        let own = along_task.fold(Vec3::ZERO, |sum, v| sum + v);
+        let relative = if manner == Manner::Underway { velocity - own } else { velocity };
         let mut correction = self.rules.correction(threat.distance_m, threat.away.dot(relative));
         if manner == Manner::Holding {
             correction.size *= (threat.away.dot(velocity) / COMES_M_S).clamp(0.0, 1.0);

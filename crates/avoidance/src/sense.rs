@@ -106,7 +106,16 @@ impl<'s> Senses<'s> {
     pub fn look(&mut self, around: &Around<'_>, reach_m: f64, fixed_reach_m: f64) {
         let Self { scene, robot, checker, state, chains, radii, loose, found, .. } = self;
         let base = scene.robots()[*robot].base_in_world;
-        let view = View { scene, robot: *robot, root_in_world: base, world_in_root: base.inverse(), chains, radii, loose, state };
+        let view = View {
+            scene,
+            robot: *robot,
+            root_in_world: base,
+            world_in_root: base.inverse(),
+            chains,
+            radii,
+            loose,
+            state,
+        };
         found.clear();
         let own = Selection::Robot(*robot);
         let objects = around.objects.iter().map(|s| Selection::Object(s.object));
@@ -171,7 +180,14 @@ impl View<'_> {
     }
 
     /// On contact the nearest points say nothing: away from the middle of the other.
-    fn away(&self, on_link: Vec3, on_other: Vec3, metres: f64, link: elbowroom_kinematics::LinkId, other: Member) -> Option<Vec3> {
+    fn away(
+        &self,
+        on_link: Vec3,
+        on_other: Vec3,
+        metres: f64,
+        link: elbowroom_kinematics::LinkId,
+        other: Member,
+    ) -> Option<Vec3> {
         let apart = on_link - on_other;
         if metres > TOUCHING_M && apart.length() > TOUCHING_M {
             return apart.try_normalize();

@@ -112,7 +112,8 @@ fn mistakes_are_named_with_their_line() {
     let falling = DEFAULT_RULES.replace("near = [0.06, 0.16, 0.24, 0.40]", "near = [0.06, 0.16, 0.14, 0.40]");
     let e = wrong(&falling);
     assert!(e.what.contains("`near`") && e.line == Some(8), "{e}");
-    let unknown = DEFAULT_RULES.replace("if proximity is far and speed is stop", "if proximity is remote and speed is stop");
+    let unknown =
+        DEFAULT_RULES.replace("if proximity is far and speed is stop", "if proximity is remote and speed is stop");
     let e = wrong(&unknown);
     assert!(e.what.contains("remote") && e.write_instead.contains("far") && e.line.is_some(), "{e}");
     let hole = DEFAULT_RULES.replace("far = [0.50, 0.75, 1, 1]", "far = [0.80, 0.9, 1, 1]");

@@ -16,11 +16,7 @@ fn problem() -> impl Strategy<Value = Problem> {
         let weight = prop_oneof![Just(0.0), Just(1.0), Just(100.0), Just(1e6)];
         let wish = (prop::collection::vec(coefficient, n), -2.0..2.0_f64, weight, any::<bool>());
         let bound = (-1.5..1.0_f64, 0.0..2.0_f64).prop_map(|(low, width)| (low, low + width));
-        (
-            prop::collection::vec(-2.0..2.0_f64, n),
-            prop::collection::vec(bound, n),
-            prop::collection::vec(wish, 0..20),
-        )
+        (prop::collection::vec(-2.0..2.0_f64, n), prop::collection::vec(bound, n), prop::collection::vec(wish, 0..20))
             .prop_map(|(wanted, bounds, wishes)| Problem { wanted, bounds, wishes })
     })
 }

@@ -9,6 +9,7 @@ mod map;
 mod output;
 mod plan;
 mod query;
+mod rules;
 mod run;
 mod teach;
 
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Some(Command::Inspect(args)) => inspect::inspect(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
+        Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),

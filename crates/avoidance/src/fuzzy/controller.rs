@@ -94,7 +94,10 @@ impl Controller {
         for (output, samples) in outputs.iter().zip(&samples) {
             if let Some(i) = samples.degrees.iter().position(|d| d.iter().all(|d| *d <= 0.0)) {
                 let what = format!("the set `{}` of the output `{}` is too narrow", output.sets[i].0, output.name);
-                return Err(FuzzyError::new(what, "corners farther apart than a hundredth of all that the output's sets span"));
+                return Err(FuzzyError::new(
+                    what,
+                    "corners farther apart than a hundredth of all that the output's sets span",
+                ));
             }
         }
         let controller = Self { inputs, outputs, rules, samples };
@@ -214,7 +217,10 @@ fn ticks(variable: &Variable) -> Vec<f64> {
 fn check_variables(role: &str, list: &[Variable]) -> Result<(), FuzzyError> {
     // The check of the cover looks at every combination: four inputs of a few sets are some 100,000.
     if list.is_empty() || list.len() > 4 {
-        return Err(FuzzyError::new(format!("there are {} {role}s", list.len()), format!("1 to 4 tables [{role}.NAME]")));
+        return Err(FuzzyError::new(
+            format!("there are {} {role}s", list.len()),
+            format!("1 to 4 tables [{role}.NAME]"),
+        ));
     }
     for (i, v) in list.iter().enumerate() {
         let [low, high] = v.range;

@@ -1,5 +1,7 @@
 //! Controllers as TOML.
 
+use std::fmt::Write;
+
 use toml::de::{DeTable, DeValue};
 
 use super::{Controller, FuzzyError, Rule, Set, Variable};
@@ -28,8 +30,11 @@ impl Controller {
         let lines = Lines(text);
         let table = DeTable::parse(text).map_err(|e| {
             let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
-            FuzzyError::new(what, "tables as [input.NAME], sets as name = [a, b, c, d], rules in [rules] list = [\"…\"]")
-                .at(e.span().map(|s| lines.at(s.start)))
+            FuzzyError::new(
+                what,
+                "tables as [input.NAME], sets as name = [a, b, c, d], rules in [rules] list = [\"…\"]",
+            )
+            .at(e.span().map(|s| lines.at(s.start)))
         })?;
         let (mut inputs, mut outputs, mut rules) = (Vec::new(), Vec::new(), None);
         for (key, value) in table.get_ref() {
@@ -39,14 +44,18 @@ impl Controller {
                 ("output", DeValue::Table(t)) => outputs = variables(t, &lines)?,
                 ("rules", DeValue::Table(t)) => rules = Some(sentences(t, &lines, line)?),
                 (other, _) => {
-                    return Err(FuzzyError::new(format!("`{other}` is unknown here"), "[input.NAME], [output.NAME] or [rules]")
-                        .at(line));
+                    return Err(FuzzyError::new(
+                        format!("`{other}` is unknown here"),
+                        "[input.NAME], [output.NAME] or [rules]",
+                    )
+                    .at(line));
                 }
             }
         }
-        let rules = rules.unwrap_or_default().into_iter().map(|(line, sentence)| {
-            Rule::parse(&sentence, &inputs, &outputs).map_err(|what| split(&what).at(line))
-        });
+        let rules = rules
+            .unwrap_or_default()
+            .into_iter()
+            .map(|(line, sentence)| Rule::parse(&sentence, &inputs, &outputs).map_err(|what| split(&what).at(line)));
         let rules = rules.collect::<Result<_, _>>()?;
         Self::new(inputs, outputs, rules)
     }
@@ -56,17 +65,17 @@ impl Controller {
         let mut text = String::new();
         for (role, list) in [("input", &self.inputs()), ("output", &self.outputs())] {
             for v in *list {
-                text += &format!("[{role}.{}]\nrange = [{}, {}]\n", v.name, v.range[0], v.range[1]);
+                _ = write!(text, "[{role}.{}]\nrange = [{}, {}]\n", v.name, v.range[0], v.range[1]);
                 for (name, set) in &v.sets {
                     let [a, b, c, d] = set.corners();
-                    text += &format!("{name} = [{a}, {b}, {c}, {d}]\n");
+                    _ = writeln!(text, "{name} = [{a}, {b}, {c}, {d}]");
                 }
                 text.push('\n');
             }
         }
         text += "[rules]\nlist = [\n";
         for rule in self.rules() {
-            text += &format!("  \"{}\",\n", rule.to_sentence(self.inputs(), self.outputs()));
+            _ = writeln!(text, "  \"{}\",", rule.to_sentence(self.inputs(), self.outputs()));
         }
         text + "]\n"
     }
@@ -74,7 +83,8 @@ impl Controller {
 
 /// "what: write that" in its two parts.
 fn split(message: &str) -> FuzzyError {
-    let (what, hint) = message.split_once(": write ").unwrap_or((message, "a rule as: if INPUT is SET then OUTPUT is SET"));
+    let (what, hint) =
+        message.split_once(": write ").unwrap_or((message, "a rule as: if INPUT is SET then OUTPUT is SET"));
     FuzzyError::new(what, hint)
 }
 
@@ -93,7 +103,9 @@ fn variables(table: &DeTable<'_>, lines: &Lines<'_>) -> Result<Vec<Variable>, Fu
     for (key, value) in entries {
         let line = lines.at(key.span().start);
         let DeValue::Table(t) = value.get_ref() else {
-            return Err(FuzzyError::new(format!("`{}` is no table", key.get_ref()), "[input.NAME] or [output.NAME]").at(line));
+            return Err(
+                FuzzyError::new(format!("`{}` is no table", key.get_ref()), "[input.NAME] or [output.NAME]").at(line)
+            );
         };
         list.push(variable(key.get_ref(), t, lines, line)?);
     }
@@ -118,7 +130,9 @@ fn variable(name: &str, table: &DeTable<'_>, lines: &Lines<'_>, line: usize) -> 
         let corners = numbers.as_deref().and_then(|n| <[f64; 4]>::try_from(n).ok());
         let Some(set) = corners.and_then(Set::new) else {
             let what = format!("the set `{}` is not four numbers that do not fall", key.get_ref());
-            return Err(FuzzyError::new(what, format!("{} = [a, b, c, d] with a <= b <= c <= d", key.get_ref())).at(line));
+            return Err(
+                FuzzyError::new(what, format!("{} = [a, b, c, d] with a <= b <= c <= d", key.get_ref())).at(line)
+            );
         };
         sets.push((key.get_ref().to_string(), set));
     }

@@ -6,6 +6,7 @@
 
 mod controller;
 mod file;
+mod picture;
 mod rule;
 mod set;
 mod surface;

@@ -22,7 +22,9 @@ impl Rule {
         let words: Vec<&str> = sentence.split_whitespace().collect();
         let then = words.iter().position(|w| *w == "then");
         let (Some(&"if"), Some(then)) = (words.first(), then) else {
-            return Err("a rule has the form: if INPUT is SET and INPUT is SET then OUTPUT is SET and OUTPUT is SET".into());
+            return Err(
+                "a rule has the form: if INPUT is SET and INPUT is SET then OUTPUT is SET and OUTPUT is SET".into()
+            );
         };
         let conditions = clauses(&words[1..then], inputs, "input")?;
         let conclusions = clauses(&words[then + 1..], outputs, "output")?;

@@ -62,10 +62,14 @@ impl Surface {
     /// A table: first input across, second downwards.
     pub fn to_csv(&self) -> String {
         let mut text = format!("{}\\{}", self.y_name, self.x_name);
-        self.x.iter().for_each(|x| _ = write!(text, ",{x}"));
+        for x in &self.x {
+            _ = write!(text, ",{x}");
+        }
         for (y, row) in self.y.iter().zip(&self.z) {
             _ = write!(text, "\n{y}");
-            row.iter().for_each(|z| _ = write!(text, ",{z}"));
+            for z in row {
+                _ = write!(text, ",{z}");
+            }
         }
         text + "\n"
     }

@@ -17,7 +17,11 @@ pub fn scene() -> Scene {
     let mut builder = Scene::builder();
     builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
     let table = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.15, 0.5, 0.05) });
-    builder.object(Object { name: "table".into(), shape: table, in_world: Pose::from_translation(Vec3::new(0.6, 0.0, 0.0)) });
+    builder.object(Object {
+        name: "table".into(),
+        shape: table,
+        in_world: Pose::from_translation(Vec3::new(0.6, 0.0, 0.0)),
+    });
     for name in ["ball", "other"] {
         let shape = Shape::Sphere(Sphere { radius: BALL });
         let in_world = Pose::from_translation(Vec3::new(9.0, 9.0, 9.0));
@@ -115,7 +119,8 @@ impl<'s> Stage<'s> {
             return false;
         }
         let options = |clearance_m| RouteOptions { clearance_m, ..RouteOptions::default() };
-        let planned = self.avoider.plan_to(goal, &options(0.06)).is_ok() || self.avoider.plan_to(goal, &options(0.0)).is_ok();
+        let planned =
+            self.avoider.plan_to(goal, &options(0.06)).is_ok() || self.avoider.plan_to(goal, &options(0.0)).is_ok();
         self.planned += usize::from(planned);
         planned
     }
@@ -126,7 +131,11 @@ impl<'s> Stage<'s> {
         let paths: Vec<Steady> = seen.iter().map(|s| Steady::from_motion(s.in_world, &s.motion, DT)).collect();
         let mut moves = vec![Move::Robot { robot: 0, to: &to }];
         moves.extend(seen.iter().zip(&paths).map(|(s, path)| Move::Object { object: s.object, path }));
-        let hit = self.judge.between(Selection::Robot(0), Selection::All).sweep(&self.state, &moves, &SweepOptions::default());
+        let hit = self.judge.between(Selection::Robot(0), Selection::All).sweep(
+            &self.state,
+            &moves,
+            &SweepOptions::default(),
+        );
         if hit.unwrap().is_some() {
             self.hits.push(self.t);
         }

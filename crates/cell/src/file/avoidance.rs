@@ -42,7 +42,11 @@ fn spec(t: &Table<'_>, cell: &Cell) -> Result<AvoidanceSpec> {
     let rules = t.get("rules").map_or_else(|| Ok(Rules::default()), |v| rules(&v))?;
     let reach = rules.reach_m();
     if settings.reflex.clearance_m >= reach {
-        let what = format!("`{}`: the clearance is not less than the {} that the rules look ahead", t.name, units.show_length(reach));
+        let what = format!(
+            "`{}`: the clearance is not less than the {} that the rules look ahead",
+            t.name,
+            units.show_length(reach)
+        );
         return Err(t.error(what).hint("clearance = 50, or rules with a wider range of proximity"));
     }
     let objects = match t.get("objects") {

@@ -27,8 +27,20 @@ type Result<T> = std::result::Result<T, FormatError>;
 const MOST_BYTES: u64 = 64 << 20;
 
 const KEYS: &[&str] = &[
-    "version", "name", "units", "tick_ms", "max_s", "checksum", "robot", "object", "region", "encoder", "monitor",
-    "map", "avoidance", "program",
+    "version",
+    "name",
+    "units",
+    "tick_ms",
+    "max_s",
+    "checksum",
+    "robot",
+    "object",
+    "region",
+    "encoder",
+    "monitor",
+    "map",
+    "avoidance",
+    "program",
 ];
 
 /// A cell file, parsed but not yet resolved: every key and value with its line.

@@ -168,8 +168,10 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
 /// What avoidance did, in words.
 fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let a = AvoidanceSummary::new(track, tick_s);
-    let nearest = a.min_distance_m.map_or_else(|| "nothing near".into(), |m| format!("nearest {}", millimetres(Some(m))));
-    let plans = if a.plans > 0 { format!(", {} of {} ways around found", a.plans_found, a.plans) } else { String::new() };
+    let nearest =
+        a.min_distance_m.map_or_else(|| "nothing near".into(), |m| format!("nearest {}", millimetres(Some(m))));
+    let plans =
+        if a.plans > 0 { format!(", {} of {} ways around found", a.plans_found, a.plans) } else { String::new() };
     let [evading, astray, waiting] = [a.evading_s, a.astray_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {astray:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")

@@ -1,7 +1,9 @@
 //! Avoidance in a run: each robot that evades goes along its path as far as what comes lets it.
 
 use elbowroom_avoidance::fuzzy::Surface;
-use elbowroom_avoidance::{Advice, Around, AvoidanceError, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen};
+use elbowroom_avoidance::{
+    Advice, Around, AvoidanceError, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen,
+};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RouteOptions;
@@ -41,7 +43,13 @@ impl<'s> Evasive<'s> {
             .collect()
     }
 
-    fn new(cell: &Cell, scene: &'s Scene, robot: usize, spec: &'s AvoidanceSpec, clock: &Clock) -> Result<Self, FormatError> {
+    fn new(
+        cell: &Cell,
+        scene: &'s Scene,
+        robot: usize,
+        spec: &'s AvoidanceSpec,
+        clock: &Clock,
+    ) -> Result<Self, FormatError> {
         let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
         let (q, limits) = (&clock.point().q, limits(cell, robot));
         let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;

@@ -84,12 +84,14 @@ fn surface(s: &fuzzy::Surface, name: &str, run: usize) -> Figure {
             .show_scale(false),
     );
     let title = |text: &str| axis("").title(Title::with_text(plain(text)));
-    plot.set_layout(layout().scene(
-        LayoutScene::new()
-            .x_axis(title(&format!("{} (m)", s.x_name)))
-            .y_axis(title(&format!("{} (m/s)", s.y_name)))
-            .z_axis(title(&s.z_name).range(s.z_range.to_vec())),
-    ));
+    plot.set_layout(
+        layout().scene(
+            LayoutScene::new()
+                .x_axis(title(&format!("{} (m)", s.x_name)))
+                .y_axis(title(&format!("{} (m/s)", s.y_name)))
+                .z_axis(title(&s.z_name).range(s.z_range.to_vec())),
+        ),
+    );
     Figure {
         title: format!("Rules of {name}: {}", s.z_name),
         note: "The control surface: what the rules ask for, by how near something is and how fast it comes.".into(),
