@@ -43,7 +43,7 @@ cargo xtask COMMAND
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the pair matrix beside the SRDF
   contacts [--data DIR] [--states N] [--only NAME]
         the collision point beside Coal: robots of DIR just within a contact with themselves, a box and a mesh, N states each
-        (default 100; 2400 with ELBOWROOM_LONG=1): point, triangles, normals, the link nearest to the base
+        (default 100; 2500 with ELBOWROOM_LONG=1): point, triangles, normals, the link nearest to the base
   paths [--pairs N] [--robot-pairs N] [--points N] [--data DIR] [--only NAME] [--json]
         planned paths beside Coal: N random starts and goals in each of three cells of the joint-space map (default 1000) and for
         each of six robots of DIR among boxes (default 40); every path and every timed motion at N points (default 10000)

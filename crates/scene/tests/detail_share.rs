@@ -53,16 +53,16 @@ impl<'s> Way<'s> {
         self.spent += started.elapsed();
     }
 
-    fn row(&self, name: &str, motions: usize) {
+    fn row(&self, name: &str, motions: usize) -> String {
         let Counts { mesh_boxes, mesh_triangles, pairs_tested, .. } = self.checker.counts();
         let per = |n: u64| n as f64 / motions as f64;
-        println!(
+        format!(
             "{name:<12} {:>9.1} {:>12.1} {:>14.1} {:>9.2} µs",
             per(pairs_tested.l3),
             per(mesh_boxes),
             per(mesh_triangles),
             self.spent.as_secs_f64() * 1e6 / motions as f64
-        );
+        )
     }
 }
 
@@ -115,8 +115,7 @@ fn the_same_answers_with_and_without_detail_for_less_work() {
     }
     println!("{motions} motions, {told} pairs told, {contacts} in contact; by boxes: {coarse:?}, exactly: {soon}");
     println!("per motion   solids      box tests  triangle pairs      time");
-    without.row("exact", motions);
-    with.row("progressive", motions);
+    println!("{}\n{}", without.row("exact", motions), with.row("progressive", motions));
     let (a, b) = (with.checker.counts(), without.checker.counts());
     let saved = |a: u64, b: u64| 100.0 * (1.0 - a as f64 / b as f64);
     println!(

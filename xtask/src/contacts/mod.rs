@@ -28,7 +28,7 @@ struct Options {
 impl Options {
     fn parse(words: &[&str]) -> Result<Self, String> {
         let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-        let mut options = Self { data: None, states: if long { 2_400 } else { 100 }, only: None };
+        let mut options = Self { data: None, states: if long { 2_500 } else { 100 }, only: None };
         let mut words = words.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().copied().ok_or(format!("`contacts {word}` needs a value"));
@@ -90,7 +90,9 @@ fn judge_all(
          off its triangle, a normal to the wrong side\n"
     );
     print!("{:<24}", "robot");
-    TOLD.iter().chain(&WRONG).for_each(|word| print!(" {word:>9}"));
+    for word in TOLD.iter().chain(&WRONG) {
+        print!(" {word:>9}");
+    }
     println!(" {:>9}", "µs");
     let mut wrong = 0;
     for files in robots {
@@ -106,7 +108,9 @@ fn judge_all(
             print!(" {:>9}", tally.get(*word).copied().unwrap_or(0));
         }
         println!(" {us:>9.1}");
-        why.iter().for_each(|line| println!("    {line}"));
+        for line in why {
+            println!("    {line}");
+        }
         wrong += WRONG.iter().filter_map(|word| tally.get(*word)).sum::<usize>();
     }
     Ok(wrong)
