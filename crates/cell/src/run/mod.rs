@@ -397,6 +397,8 @@ impl<'a> Run<'a> {
         let mut robots = self.tracks;
         for (track, clock) in robots.iter_mut().zip(&self.clocks) {
             track.finished = clock.finished();
+            // Those of one tick come in the order of the pairs.
+            track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         }
         Recording {
             cell: self.cell.name.clone(),
