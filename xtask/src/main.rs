@@ -1,6 +1,7 @@
 //! Checks, generated files and benches of the workspace: `cargo xtask help` lists them.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
+mod contacts;
 mod figures;
 mod judge;
 mod layers;
@@ -40,6 +41,9 @@ cargo xtask COMMAND
   judge [--data DIR] [--states N] [--only NAME] [--json]
         every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the pair matrix beside the SRDF
+  contacts [--data DIR] [--states N] [--only NAME]
+        the collision point beside Coal: robots of DIR just within a contact with themselves, a box and a mesh, N states each
+        (default 100; 2500 with ELBOWROOM_LONG=1): point, triangles, normals, the link nearest to the base
   paths [--pairs N] [--robot-pairs N] [--points N] [--data DIR] [--only NAME] [--json]
         planned paths beside Coal: N random starts and goals in each of three cells of the joint-space map (default 1000) and for
         each of six robots of DIR among boxes (default 40); every path and every timed motion at N points (default 10000)
@@ -104,6 +108,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["judge", rest @ ..] => judge::run(&root, rest),
+        ["contacts", rest @ ..] => contacts::run(&root, rest),
         ["paths", rest @ ..] => paths::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),

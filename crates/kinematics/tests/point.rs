@@ -293,3 +293,26 @@ fn a_near_start_gives_a_near_answer() {
     }
     assert!(worst < 0.5, "{worst}");
 }
+
+#[test]
+fn absurd_numbers_neither_hang_nor_pass() {
+    let chain = six(Limits::symmetric(2.0));
+    for length in [1e-300, 1e20, 1e200, f64::MAX] {
+        let mut q = [0.1; 6];
+        let mut far = PointChain::new(&chain, LinkId(6), Vec3::X * length, Some(Vec3::X), Options::default()).unwrap();
+        let mut near = PointChain::new(&chain, LinkId(6), Vec3::X, Some(Vec3::X), Options::default()).unwrap();
+        let wanted = SurfacePoint { point_in_root: Vec3::X * -length, normal_in_root: Some(Vec3::X * length) };
+        for end in [&mut far, &mut near] {
+            for target in [wanted, at(Vec3::X * length)] {
+                if let Ok(reached) = end.solve(&target, &mut q) {
+                    let place = end.place(&q).point_in_root;
+                    assert!(reached.position_error_m <= 1e-6 && place.distance(target.point_in_root) <= 1e-6);
+                }
+                assert!(q.iter().all(|v| v.abs() <= 2.0), "{length} {q:?}");
+            }
+        }
+    }
+    let none = Options { starts: 0, ..Options::default() };
+    let mut end = PointChain::new(&chain, LinkId(6), Vec3::X, None, none).unwrap();
+    assert!(matches!(end.solve(&at(Vec3::X), &mut [0.0; 6]), Err(PointError::BadInput(_))));
+}

@@ -58,4 +58,15 @@ pub struct Counts {
     pub pairs_tested: PerLevel,
     /// Pairs not looked at because the pair matrix knows that they cannot meet.
     pub pairs_skipped: u64,
+    /// Tests of one box of a mesh against sixteen of another, in pairs of meshes.
+    pub mesh_boxes: u64,
+    /// Pairs of triangles that boxes and f32 did not decide, in pairs of meshes.
+    pub mesh_triangles: u64,
+}
+
+impl Counts {
+    pub(crate) fn meshes(&mut self, visits: elbowroom_proximity::mesh::Visits) {
+        self.mesh_boxes += u64::from(visits.boxes);
+        self.mesh_triangles += u64::from(visits.triangles);
+    }
 }

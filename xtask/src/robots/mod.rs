@@ -1,7 +1,9 @@
 //! Example robots of our own: figures in, URDF, SRDF and meshes out. One file per robot.
 
 mod kr125;
+mod kr150;
 mod ns16;
+mod parts;
 mod rx60b;
 mod srdf;
 pub mod tools;
@@ -89,7 +91,7 @@ pub type File = (String, Vec<u8>);
 
 /// Every robot we generate.
 pub fn all() -> Vec<Robot> {
-    vec![ns16::robot(), rx60b::robot(), kr125::robot()]
+    vec![ns16::robot(), rx60b::robot(), kr125::robot(), kr150::robot()]
 }
 
 impl Robot {

@@ -2,9 +2,10 @@
 
 use elbowroom_spatial::Vec3;
 
+use super::parts::{bolt, bolts, motor, skin};
 use super::{Joint, Link, Robot, Turn};
 use crate::solid::outline::{Outline, circle, rounded_rectangle, tapered_slot};
-use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, loft, ring, upright};
+use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, ring, upright};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const ABOUT: &str = "
@@ -115,26 +116,6 @@ fn column() -> Mesh {
     mesh.add(&along_y([0.3, 0.0, 0.349]), &bolts(0.128, 12, 0.134, 0.006));
     mesh.add(&along_y([0.3, 0.128, shoulder[2]]), &motor(0.080, 0.185));
     mesh.add(&upright([-0.105, 0.0, 0.050]), &motor(0.082, 0.285));
-    mesh
-}
-
-/// Motor of a length, standing on z = 0: mounting flange, finned body, end cap.
-fn motor(radius: f64, length: f64) -> Mesh {
-    let mut mesh = Mesh::new();
-    let body = [
-        [radius * 1.14, 0.0],
-        [radius * 1.14, 0.012],
-        [radius * 1.08, 0.017],
-        [radius * 0.94, 0.020],
-        [radius * 0.94, length * 0.62],
-        [radius, length * 0.64],
-        [radius, length * 0.90],
-        [radius * 0.93, length * 0.965],
-        [radius * 0.80, length],
-    ];
-    mesh.add(&upright([0.0; 3]), &lathe(&body, 26));
-    let plug = extrude(&rounded_rectangle(radius * 0.7, radius * 0.6, radius * 0.12, 2), 0.0, radius * 0.30, 0.004);
-    mesh.add(&along_minus_x([-radius * 0.85, 0.0, length * 0.77]), &plug);
     mesh
 }
 
@@ -269,28 +250,4 @@ fn flange() -> Mesh {
     mesh.add(&along_x([0.0; 3]), &ring(&disc, 40));
     mesh.add(&along_x([0.0; 3]), &bolts(0.0357, 8, 0.0055, 0.0033));
     mesh
-}
-
-/// A hexagon head standing on z = 0.
-fn bolt(radius: f64, height: f64) -> Mesh {
-    lathe(&[[radius, 0.0], [radius, height * 0.85], [radius * 0.88, height]], 6)
-}
-
-/// Bolt heads on a circle about z, sunk a little into the plane at `z`.
-fn bolts(circle_radius: f64, count: usize, z: f64, radius: f64) -> Mesh {
-    let mut mesh = Mesh::new();
-    let sunk = radius * 0.5;
-    for [x, y] in circle(circle_radius, count) {
-        mesh.add(&upright([x, y, z - sunk]), &bolt(radius, sunk + radius * 0.9));
-    }
-    mesh
-}
-
-/// A loft of rounded rectangles `(centre, size, corner radius)`; `plane` puts the flat section into space.
-fn skin(rows: &[(Vec3, [f64; 2], f64)], plane: impl Fn([f64; 2]) -> Vec3) -> Mesh {
-    let section = |&(center, [width, height], radius): &(Vec3, [f64; 2], f64)| {
-        let outline = rounded_rectangle(width, height, radius, 4);
-        outline.into_iter().map(|flat| center + plane(flat)).collect()
-    };
-    loft(&rows.iter().map(section).collect::<Vec<_>>())
 }

@@ -429,6 +429,8 @@ impl<'a> Run<'a> {
         let mut robots = std::mem::take(&mut self.tracks);
         for (i, track) in robots.iter_mut().enumerate() {
             track.finished = self.finished(i);
+            // Those of one tick come in the order of the pairs.
+            track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         }
         for (track, evasive) in robots.iter_mut().zip(self.evasive) {
             track.avoidance = evasive.map(Evasive::finish);

@@ -5,7 +5,9 @@
 //! point and its outward normal are ([`PointChain::place`]), how they answer to each joint ([`PointChain::jacobian`],
 //! [`PointChain::jacobian_with_normal`]), and which joint values bring the point to a target, with the normal in a given
 //! direction if wanted ([`PointChain::solve`], [`PointChain::refine`]). Nothing allocates but [`PointChain::new`]; to go
-//! on with another point of the same link there is [`PointChain::set_point`].
+//! on with another point of the same link there is [`PointChain::set_point`]. The Denavit-Hartenberg table of the new chain
+//! is [`Table::extract_to`](crate::dh::Table::extract_to) (or [`DirectTable::extract_to`](crate::dh::DirectTable::extract_to))
+//! with the point as the translation of its last frame.
 //!
 //! | target | equations | what to expect |
 //! | --- | --- | --- |

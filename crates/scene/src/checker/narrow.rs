@@ -96,10 +96,19 @@ impl Narrow {
 
     fn solids_touch(&mut self, x: &Solid, a_in_world: &Pose, y: &Solid, b_in_world: &Pose, limit: f64) -> bool {
         let (in_a, in_b) = (*a_in_world * x.in_member, *b_in_world * y.in_member);
-        if limit > 0.0 {
+        let touch = if limit > 0.0 {
             self.scratch.within(&x.shape, &in_a, &y.shape, &in_b, limit)
         } else {
             self.scratch.collides(&x.shape, &in_a, &y.shape, &in_b)
+        };
+        self.count_meshes(x, y);
+        touch
+    }
+
+    /// Counts the work of the last question, which was about these.
+    fn count_meshes(&mut self, x: &Solid, y: &Solid) {
+        if let (Shape::Mesh(_), Shape::Mesh(_)) = (&x.shape, &y.shape) {
+            self.counts.meshes(self.scratch.visits());
         }
     }
 
@@ -116,13 +125,16 @@ impl Narrow {
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
         if let ([x], [y]) = (of_a, of_b) {
             let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
-            return self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut hint.2);
+            let found = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut hint.2);
+            self.count_meshes(x, y);
+            return found;
         }
         // The two that were nearest last time give a limit to the others.
         let (first, mut best, mut limit) = ((hint.0 as usize, hint.1 as usize), None, limit);
         if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
             let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
             best = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut hint.2);
+            self.count_meshes(x, y);
             limit = best.map_or(limit, |s: Separation| s.distance);
         }
         self.fill_bounds(of_b, &b.in_world);
@@ -134,9 +146,9 @@ impl Narrow {
                 }
                 let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
                 let mut fresh = Hint::default();
-                let Some(s) = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut fresh) else {
-                    continue;
-                };
+                let found = self.scratch.separation(&x.shape, &in_a, &y.shape, &in_b, limit, &mut fresh);
+                self.count_meshes(x, y);
+                let Some(s) = found else { continue };
                 best = Some(nearer(best, s));
                 if best == Some(s) {
                     *hint = (i as u32, j as u32, fresh);
@@ -162,6 +174,7 @@ impl Narrow {
             }
             _ => return None,
         };
+        self.count_meshes(x, y);
         Some(coarse.map_or(beyond, |c| (c.lower_bound, [c.on_a, c.on_b])))
     }
 
@@ -187,6 +200,7 @@ impl Narrow {
                 }
                 let (in_a, in_b) = (a.in_world * x.in_member, b.in_world * y.in_member);
                 let found = contact_at(&x.shape, &in_a, &y.shape, &in_b, detail, limit, &mut self.scratch);
+                self.count_meshes(x, y);
                 match found {
                     Some(c) if c.touching => return Some(((i, j), c)),
                     Some(c) => near = near.or(Some(((i, j), c))),
