@@ -425,7 +425,7 @@ impl<'s> Avoider<'s> {
         let own = Move::Robot { robot: *robot, to: &self.wanted };
         let mut first: Option<f64> = None;
         for (threat, (a, b)) in threats.iter().zip(members.iter()) {
-            let theirs = if let Other::Loose { velocity, .. } = threat.other { velocity.length() * 2.0 } else { 0.0 };
+            let theirs = 2.0 * threat.velocity().length();
             if threat.distance_m > self.levers.closing(threat, velocity, dt) + theirs * dt {
                 continue;
             }

@@ -16,6 +16,8 @@ pub struct Seen {
     pub in_world: Pose,
     /// How it moves; [`Motion::REST`] where it stands.
     pub motion: Motion,
+    /// True where the path was made with it in mind: it is kept clear of and not fled from.
+    pub known: bool,
 }
 
 /// Another robot of the scene, as it reports itself.
@@ -53,7 +55,7 @@ pub struct Senses<'s> {
     /// Radius of a ball around each object's origin.
     radii: Vec<f64>,
     /// Per object: how it moves, where it is seen.
-    loose: Vec<Option<Motion>>,
+    loose: Vec<Option<(Motion, bool)>>,
     pub threats: Vec<Threat>,
     /// Who they are, in the same order.
     pub members: Vec<(Member, Member)>,
@@ -97,7 +99,7 @@ impl<'s> Senses<'s> {
             if !seen.motion.is_finite() {
                 return Err(AvoidanceError::Motion { object: self.scene.objects()[seen.object].name.clone() });
             }
-            self.loose[seen.object] = Some(seen.motion);
+            self.loose[seen.object] = Some((seen.motion, seen.known));
         }
         Ok(())
     }
@@ -126,7 +128,7 @@ impl<'s> Senses<'s> {
             });
         }
         checker.between(own, Selection::All).near(state, fixed_reach_m, |d| {
-            let told = |t: &Threat| matches!(t.other, Other::Loose { .. });
+            let told = |t: &Threat| matches!(t.other, Other::Loose { .. } | Other::Moving { .. });
             found.extend(view.threat(&d).filter(|t| !told(t)).map(|t| (t, d.a, d.b)));
         });
         found.sort_unstable_by(|a, b| a.0.distance_m.total_cmp(&b.0.distance_m));
@@ -148,7 +150,7 @@ struct View<'a> {
     world_in_root: Pose,
     chains: &'a [ChainState],
     radii: &'a [f64],
-    loose: &'a [Option<Motion>],
+    loose: &'a [Option<(Motion, bool)>],
     state: &'a SceneState,
 }
 
@@ -200,9 +202,12 @@ impl View<'_> {
     fn loose(&self, other: Member, on_other: Vec3) -> Other {
         match other {
             Member::Object(o) => {
-                let Some(motion) = self.loose[o] else { return Other::Fixed };
+                let Some((motion, known)) = self.loose[o] else { return Other::Fixed };
                 let Some(pose) = self.state.pose(self.scene, other) else { return Other::Fixed };
                 let velocity = motion.velocity_at(on_other - pose.translation);
+                if known {
+                    return Other::Moving { velocity: self.world_in_root.rotation * velocity };
+                }
                 self.as_loose(velocity, pose.translation, self.radii[o], o)
             }
             Member::Link { robot, link } => {

@@ -28,7 +28,12 @@ pub enum Other {
     Own(LinkId),
     /// Something known that stands where the planner knew it: kept clear of, not fled from.
     Fixed,
-    /// Something that moves, or that nobody planned for.
+    /// Something known that moves as it is known to: kept clear of, not fled from.
+    Moving {
+        /// Velocity of its nearest point, m/s.
+        velocity: Vec3,
+    },
+    /// Something that comes, or that nobody planned for.
     Loose {
         /// Velocity of its nearest point, m/s.
         velocity: Vec3,
@@ -44,6 +49,9 @@ pub enum Other {
 impl Threat {
     /// Velocity of the other's nearest point, m/s; own links are not asked here.
     pub(crate) fn velocity(&self) -> Vec3 {
-        if let Other::Loose { velocity, .. } = self.other { velocity } else { Vec3::ZERO }
+        match self.other {
+            Other::Loose { velocity, .. } | Other::Moving { velocity } => velocity,
+            Other::Own(_) | Other::Fixed => Vec3::ZERO,
+        }
     }
 }

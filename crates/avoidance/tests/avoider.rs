@@ -192,12 +192,13 @@ fn nonsense_is_refused_and_moves_nothing() {
     let reference = Reference { q: &LEAN, qd: &[0.0; 3], path: PathKind::PointToPoint };
     let nan = Pose::from_translation(at(f64::NAN, 0.0, 0.0));
     let bad = [
-        Seen { object: 1, in_world: nan, motion: Motion::REST },
-        Seen { object: 9, in_world: Pose::IDENTITY, motion: Motion::REST },
+        Seen { object: 1, in_world: nan, motion: Motion::REST, known: false },
+        Seen { object: 9, in_world: Pose::IDENTITY, motion: Motion::REST, known: false },
         Seen {
             object: 1,
             in_world: Pose::from_translation(at(3.0, 0.0, 0.0)),
             motion: Motion { velocity: at(f64::NAN, 0.0, 0.0), ..Motion::REST },
+            known: false,
         },
     ];
     for seen in bad {
@@ -211,7 +212,7 @@ fn nonsense_is_refused_and_moves_nothing() {
     }
     assert_eq!(avoider.q(), LEAN);
     // An arm within the ball does not know a way out, and does not jump.
-    let inside = Seen { object: 1, in_world: Pose::from_translation(at(0.6, 0.0, 0.6)), motion: Motion::REST };
+    let inside = Seen { object: 1, in_world: Pose::from_translation(at(0.6, 0.0, 0.6)), motion: Motion::REST, known: false };
     for _ in 0..100 {
         avoider.tick(DT, &reference, &Around { objects: &[inside], robots: &[] }, 1.0).unwrap();
         assert!(avoider.q().iter().all(|v| v.is_finite()));

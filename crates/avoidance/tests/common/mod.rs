@@ -51,7 +51,7 @@ impl Ball {
     pub fn seen(&self, t: f64) -> Seen {
         let at = self.from + self.velocity * t.min(self.stops_s);
         let velocity = if t < self.stops_s { self.velocity } else { Vec3::ZERO };
-        Seen { object: self.object, in_world: Pose::from_translation(at), motion: Motion { velocity, ..Motion::REST } }
+        Seen { object: self.object, in_world: Pose::from_translation(at), motion: Motion { velocity, ..Motion::REST }, known: false }
     }
 }
 

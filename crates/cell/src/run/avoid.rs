@@ -122,11 +122,21 @@ impl<'s> Evasive<'s> {
     }
 
     fn step(&mut self, cell: &Cell, clock: &Clock, states: &[ChainState], t_s: f64, allowed: f64) {
-        let seen = |&object: &usize| match cell.movers.iter().find(|m| m.object == object) {
-            Some(m) => Seen { object, in_world: m.pose(t_s), motion: m.motion(t_s) },
-            None => Seen { object, in_world: cell.objects[object].in_world, motion: Motion::REST },
-        };
-        let objects: Vec<Seen> = self.spec.objects.iter().map(seen).collect();
+        let fled = |object: usize| self.spec.objects.contains(&object);
+        let moving = cell.movers.iter().map(|m| Seen {
+            object: m.object,
+            in_world: m.pose(t_s),
+            motion: m.motion(t_s),
+            known: !fled(m.object),
+        });
+        let stands = |o: &&usize| !cell.movers.iter().any(|m| m.object == **o);
+        let standing = self.spec.objects.iter().filter(stands).map(|&object| Seen {
+            object,
+            in_world: cell.objects[object].in_world,
+            motion: Motion::REST,
+            known: false,
+        });
+        let objects: Vec<Seen> = moving.chain(standing).collect();
         let others = states.iter().enumerate().filter(|(i, _)| *i != self.robot);
         let robots: Vec<Neighbour<'_>> = others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd }).collect();
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
