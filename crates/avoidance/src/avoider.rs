@@ -104,6 +104,30 @@ impl Doing {
     }
 }
 
+/// What there is to do if nothing comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    /// On the path.
+    Path,
+    /// Along a proven way.
+    Way,
+    /// Off the path: stand, until there is a proven way.
+    Stop,
+    /// Off the path, and something is near: pulled back to it.
+    Back,
+}
+
+fn manner(mode: Mode, reference: &Reference<'_>) -> Manner {
+    match (mode, reference.path) {
+        (Mode::Way, _) => Manner::Proven,
+        (Mode::Back | Mode::Stop, _) => Manner::Back,
+        (Mode::Path, PathKind::Continuous) => Manner::Holding,
+        // Where it stands, things may stand near.
+        (Mode::Path, PathKind::PointToPoint) if reference.qd.iter().all(|v| *v == 0.0) => Manner::Holding,
+        (Mode::Path, PathKind::PointToPoint) => Manner::Underway,
+    }
+}
+
 /// How long the stages of a tick took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TickTimes {
@@ -139,9 +163,9 @@ pub struct Advice {
     pub astray_s: f64,
     /// The sweep found that the command would have hit something; it was replaced by braking.
     pub braked: bool,
-    /// No headway for the time of patience, and what is in the way stands: a planned way is needed
-    /// ([`Avoider::plan_to`]).
-    pub stuck: bool,
+    /// A proven way is wanted ([`Avoider::plan_to`]): off its path the robot stands and nothing comes, or it has not got on
+    /// for the time of patience because of what stands in its way.
+    pub wants_way: bool,
     /// How long it took.
     pub times: TickTimes,
 }
@@ -169,6 +193,10 @@ pub struct Avoider<'s> {
     way: Vec<Vec<f64>>,
     levers: Levers,
     standing_s: f64,
+    /// Off the path and nothing comes for so long, s.
+    lost_s: f64,
+    /// Speed along the way, as a share of the fastest.
+    way_share: f64,
     /// Share of the wanted velocity that was left.
     headway: f64,
     /// Since the rules last asked for something, s.
@@ -216,6 +244,8 @@ impl<'s> Avoider<'s> {
             braked: vec![0.0; n],
             way: Vec::new(),
             standing_s: 0.0,
+            lost_s: 0.0,
+            way_share: 0.0,
             headway: 1.0,
             evaded_s: f64::INFINITY,
             following: true,
@@ -282,8 +312,8 @@ impl<'s> Avoider<'s> {
         Ok(self.advice(dt, reference, allowed, Advice { reaction, braked, times, ..Advice::default() }))
     }
 
-    /// Plans a way from where the robot stands to `goal`, around everything as it stands now, and goes it from the next tick
-    /// on. Takes as long as planning takes: a controller does it beside its loop.
+    /// Plans a way from where the robot stands to `goal`, around everything as it stands now, proven free, and goes it from the
+    /// next tick on, until something comes. Takes as long as planning takes: a controller does it beside its loop.
     ///
     /// # Errors
     /// As [`Connect::plan`].
@@ -295,6 +325,8 @@ impl<'s> Avoider<'s> {
         // The first waypoint is where the robot stands.
         self.way.pop();
         self.standing_s = 0.0;
+        self.lost_s = 0.0;
+        self.way_share = 0.0;
         self.following = false;
         Ok(())
     }
@@ -319,47 +351,54 @@ impl<'s> Avoider<'s> {
 
     /// Fills `next` with the velocity to command; true where it is exactly the path's.
     fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) -> (Reaction, bool) {
-        self.want(dt, reference, allowed);
+        let mode = self.mode(reference);
+        self.want(dt, reference, allowed, mode);
         if allowed == 0.0 {
             self.intent.fill(0.0);
             // A path that is followed brings itself to a stop.
-            if self.following {
-                self.along_path(dt, reference);
-            } else {
-                brake(&self.limits, &self.qd, dt, &mut self.next);
+            match mode {
+                Mode::Path => self.along_path(dt, reference),
+                _ => brake(&self.limits, &self.qd, dt, &mut self.next),
             }
-            return (Reaction::default(), self.following);
+            return (Reaction::default(), mode == Mode::Path);
         }
         self.calm.hold(&mut self.bounds);
         for (now, soon) in self.bounds.now.iter_mut().zip(&self.bounds.soon) {
             // All but limits is scaled last.
             *now = now.map(|v| (v / allowed).clamp(soon[0], soon[1]));
         }
-        let manner = match reference.path {
-            _ if !self.way.is_empty() => Manner::Holding,
-            PathKind::Continuous => Manner::Holding,
-            PathKind::PointToPoint if !self.following => Manner::Back,
-            // Where it stands, things may stand near.
-            PathKind::PointToPoint if reference.qd.iter().all(|v| *v == 0.0) => Manner::Holding,
-            PathKind::PointToPoint => Manner::Underway,
-        };
         let Senses { scene, robot, chains, threats, .. } = &self.senses;
         let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
-        let task = Task { wanted: &self.wanted, bounds: &self.bounds, manner };
+        let task = Task { wanted: &self.wanted, bounds: &self.bounds, manner: manner(mode, reference) };
         let reaction = self.reflex.react(chain, state, &task, threats, &mut self.next);
         self.headway = headway(&self.next, &self.wanted, &self.limits);
-        if self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0 {
-            // Trapped: to stand is better than to creep.
-            brake(&self.limits, &self.qd, dt, &mut self.next);
-            return (reaction, false);
-        }
         self.intent.copy_from_slice(&self.next);
         self.next.iter_mut().for_each(|v| *v *= allowed);
-        let exactly = self.following && self.way.is_empty() && !reaction.asked;
-        if exactly {
-            self.along_path(dt, reference);
+        let held = self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0;
+        match mode {
+            _ if reaction.asked && !held => self.way.clear(),
+            Mode::Path if !held => self.along_path(dt, reference),
+            Mode::Way => self.next.iter_mut().zip(&self.wanted).for_each(|(v, w)| *v = w * allowed),
+            Mode::Stop => brake(&self.limits, &self.qd, dt, &mut self.next),
+            // Trapped: to stand is better than to creep.
+            _ if held => brake(&self.limits, &self.qd, dt, &mut self.next),
+            _ => {}
         }
-        (reaction, exactly)
+        (reaction, mode == Mode::Path && !reaction.asked && !held)
+    }
+
+    /// What there is to do if nothing comes.
+    fn mode(&self, reference: &Reference<'_>) -> Mode {
+        if !self.way.is_empty() {
+            return Mode::Way;
+        }
+        let evades = self.evaded_s < EVADING_S;
+        match reference.path {
+            _ if self.following => Mode::Path,
+            // A way back that is proven is worth a short wait.
+            _ if !evades && self.lost_s < self.settings.patience_s => Mode::Stop,
+            _ => Mode::Back,
+        }
     }
 
     /// Fills `next` with what leads to where the path wants to be.
@@ -369,35 +408,57 @@ impl<'s> Avoider<'s> {
         }
     }
 
-    /// Fills `wanted`: along the path and back to it, at override 1.
-    fn want(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) {
-        let share = self.settings.return_share;
-        let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
+    /// Fills `wanted`: along the path, along a way, or back to the path, at override 1.
+    fn want(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) {
         let scale = allowed.max(NO_OVERRIDE);
-        while let Some(waypoint) = self.way.last() {
-            let left_s = astray(waypoint, &self.q, &self.limits);
-            let last = self.way.len() == 1;
-            if left_s <= if last { NONE_S } else { 2.0 * share * dt } {
-                self.way.pop();
-                continue;
+        match mode {
+            Mode::Path => {
+                for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+                    *v = (to - from) / (dt * scale);
+                }
             }
-            let speed = if last { slowing(left_s, rise_s).min(share) } else { share };
-            let rate = (speed / left_s).min(1.0 / dt);
-            for ((v, to), from) in self.wanted.iter_mut().zip(waypoint).zip(&self.q) {
-                *v = (to - from) * rate;
-            }
-            return;
+            Mode::Stop => self.wanted.fill(0.0),
+            Mode::Way => self.along_way(dt, allowed),
+            Mode::Back => self.pull(dt, reference),
         }
+    }
+
+    /// Straight to the next waypoint, all joints together, with ramps between the stops.
+    fn along_way(&mut self, dt: f64, allowed: f64) {
+        let slowest = |f: fn(&JointLimit) -> f64| self.limits.iter().map(f).fold(0.0, f64::max);
+        let (rise_s, stop_s) = (slowest(|l| l.speed / l.acceleration), slowest(|l| l.speed / l.stop));
+        while let Some(left_s) = self.way.last().map(|w| astray(w, &self.q, &self.limits)) {
+            if left_s > NONE_S {
+                let target = slowing(left_s, rise_s).min(self.settings.return_share * allowed).min(left_s / dt);
+                self.way_share = target.clamp((self.way_share - dt / stop_s).max(0.0), self.way_share + dt / rise_s);
+                // The last step ends at the waypoint, not beyond.
+                let rate = (self.way_share / left_s).min(1.0 / dt) / allowed.max(NO_OVERRIDE);
+                let Some(waypoint) = self.way.last() else { break };
+                // From rest: not before the joints may turn back.
+                let starts = self.qd.iter().all(|v| *v == 0.0);
+                let towards = waypoint.iter().zip(&self.q).map(|(to, from)| to - from);
+                if starts && !self.calm.allows(towards) {
+                    self.way_share = 0.0;
+                    self.wanted.fill(0.0);
+                    return;
+                }
+                for ((v, to), from) in self.wanted.iter_mut().zip(waypoint).zip(&self.q) {
+                    *v = (to - from) * rate;
+                }
+                return;
+            }
+            self.way.pop();
+            self.way_share = 0.0;
+        }
+        self.wanted.fill(0.0);
+    }
+
+    /// Back to the path, as straight as what is near lets it.
+    fn pull(&mut self, dt: f64, reference: &Reference<'_>) {
         let left_s = astray(reference.q, &self.q, &self.limits);
-        if self.following {
-            // The path's own velocity: what it asks for in this tick.
-            for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
-                *v = (to - from) / (dt * scale);
-            }
-            return;
-        }
+        let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
         let soft = if self.evaded_s < EVADING_S { left_s / SOFT_S } else { f64::INFINITY };
-        let speed = slowing(left_s, rise_s).min(share).min(soft);
+        let speed = slowing(left_s, rise_s).min(self.settings.return_share).min(soft);
         let rate = if left_s > 0.0 { (speed / left_s).min(1.0 / dt) } else { 0.0 };
         for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
             *v = (to - from) * rate;
@@ -472,7 +533,15 @@ impl<'s> Avoider<'s> {
         let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
         self.standing_s = if held { self.standing_s + dt } else { 0.0 };
         self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
-        advice.stuck = self.stuck();
+        let lost = !self.following && self.way.is_empty() && self.evaded_s >= EVADING_S && allowed > 0.0;
+        self.lost_s = if lost && fastest < STANDS {
+            self.lost_s + dt
+        } else if lost {
+            self.lost_s
+        } else {
+            0.0
+        };
+        advice.wants_way = self.way.is_empty() && (self.lost_s > 0.0 && fastest < STANDS || self.stuck());
         advice.rate = self.rate(reference, advice.astray_s);
         advice.doing = if allowed == 0.0 {
             Doing::Halted

@@ -33,6 +33,12 @@ impl Calm {
         }
     }
 
+    /// True where a motion from rest turns no joint back that turned back just now.
+    pub fn allows(&self, velocity: impl Iterator<Item = f64>) -> bool {
+        let mut joints = velocity.zip(&self.sign).zip(&self.since_s);
+        joints.all(|((v, sign), since)| v * sign >= 0.0 || *since >= self.quiet_s)
+    }
+
     /// What was commanded.
     pub fn note(&mut self, qd: &[f64], speeds: impl Iterator<Item = f64>, dt: f64) {
         for (j, (v, speed)) in qd.iter().zip(speeds).enumerate() {

@@ -34,16 +34,16 @@ pub struct ReflexSettings {
     pub speed_m_s: f64,
     /// Distance that is kept to what moves or is not known, m.
     pub clearance_m: f64,
-    /// Distance that is kept to what was planned for, m.
+    /// Distance below which the robot, off its path, comes no nearer to what was planned for, m.
     pub fixed_clearance_m: f64,
     /// Time constant in which a gap may close, s: no shorter than a stop takes.
     pub closing_s: f64,
 }
 
 impl Default for ReflexSettings {
-    /// 1 m/s; 50 mm and 1 mm; 0.2 s.
+    /// 1 m/s; 50 mm and 20 mm; 0.2 s.
     fn default() -> Self {
-        Self { speed_m_s: 1.0, clearance_m: 0.05, fixed_clearance_m: 0.001, closing_s: 0.2 }
+        Self { speed_m_s: 1.0, clearance_m: 0.05, fixed_clearance_m: 0.02, closing_s: 0.2 }
     }
 }
 
@@ -54,9 +54,11 @@ pub enum Manner {
     Underway,
     /// The pull back to a path: how hard it pulls says nothing about what comes.
     Back,
-    /// A path to be kept, or one that was planned around what stands: fled from is only what comes by itself. For the
-    /// rest slowing down is the answer, and the caller's.
+    /// A path to be kept: fled from is only what comes by itself. For the rest slowing down is the answer, and the
+    /// caller's.
     Holding,
+    /// A way that was proven with all that stands where it stands: only what moves counts.
+    Proven,
 }
 
 /// Bounds of the joint velocities, rad/s or m/s.
@@ -88,7 +90,7 @@ pub struct Reaction {
     pub governing: Option<usize>,
     /// How much of what keeps clear could not be kept, m/s: above 0 something comes faster than the robot can leave.
     pub overrun_m_s: f64,
-    /// Whether the wanted velocity does not meet all that was asked for.
+    /// Whether the wanted velocity does not meet all that is asked for what moves or is not known.
     pub asked: bool,
 }
 
@@ -158,14 +160,21 @@ impl Reflex {
         }
         let mut reaction = Reaction::default();
         for (number, threat) in threats.iter().enumerate().take(MOST_THREATS) {
+            if task.manner == Manner::Proven && threat.velocity().length() <= STILL_M_S {
+                continue;
+            }
             self.measure(chain, state, threat);
+            let first = self.least.wishes().len();
             self.keep_clear(threat);
             let size = self.evade(threat, task);
+            if matches!(threat.other, Other::Loose { .. } | Other::Moving { .. }) {
+                let missed = |w: &crate::Wish| !(w.weight == 0.0 || w.miss(&self.scaled) == 0.0);
+                reaction.asked |= self.least.wishes()[first..].iter().any(missed);
+            }
             if size > reaction.size {
                 (reaction.size, reaction.governing) = (size, Some(number));
             }
         }
-        reaction.asked = self.least.wishes().iter().any(|w| !(w.weight == 0.0 || w.miss(&self.scaled) == 0.0));
         if !self.least.solve(&mut self.scaled) {
             // Nothing that can be trusted: stand.
             out.fill(0.0);
@@ -195,7 +204,10 @@ impl Reflex {
     fn keep_clear(&mut self, threat: &Threat) {
         let s = &self.settings;
         let least_m = if matches!(threat.other, Other::Loose { .. }) { s.clearance_m } else { s.fixed_clearance_m };
-        let closing = (threat.distance_m - least_m) / s.closing_s;
+        let room = threat.distance_m - least_m;
+        // What does not come is not backed away from: there may be no room on the other side.
+        let comes = matches!(threat.other, Other::Loose { .. });
+        let closing = if comes { room } else { room.max(0.0) } / s.closing_s;
         let b = (threat.away.dot(threat.velocity()) - closing) / s.speed_m_s;
         Self::add(&mut self.least, &self.point, threat.away, b, KEEP, s.speed_m_s);
     }

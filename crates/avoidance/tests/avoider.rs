@@ -212,7 +212,8 @@ fn nonsense_is_refused_and_moves_nothing() {
     }
     assert_eq!(avoider.q(), LEAN);
     // An arm within the ball does not know a way out, and does not jump.
-    let inside = Seen { object: 1, in_world: Pose::from_translation(at(0.6, 0.0, 0.6)), motion: Motion::REST, known: false };
+    let inside =
+        Seen { object: 1, in_world: Pose::from_translation(at(0.6, 0.0, 0.6)), motion: Motion::REST, known: false };
     for _ in 0..100 {
         avoider.tick(DT, &reference, &Around { objects: &[inside], robots: &[] }, 1.0).unwrap();
         assert!(avoider.q().iter().all(|v| v.is_finite()));

@@ -138,6 +138,9 @@ impl Tally {
         self.hit_on += usize::from(hit_on);
         if let Some(first) = with.collisions.first() {
             println!("run {number}: {} hits {} at {:.3} s, {} without avoidance", first.a, first.b, first.t_s, hit_off);
+            if std::env::var_os("EVADE_SHOW").is_some() {
+                show(with, first.t_s);
+            }
         }
         if !with.finished {
             println!("run {number}: not finished after {:.1} s", on.duration_s);
@@ -165,11 +168,15 @@ impl Tally {
         let (lower, upper) = (chain.lower(), chain.upper());
         for j in 0..robot.limits.len() {
             let (mut sign, mut turned) = (0.0, f64::NEG_INFINITY);
-            for w in track.samples.windows(2) {
+            let astray = track.avoidance.iter().flat_map(|a| &a.samples).map(|a| a.astray_s > 0.0);
+            for (w, astray) in track.samples.windows(2).zip(astray.skip(1)) {
                 let v = (w[1].q[j] - w[0].q[j]) / tick_s;
                 self.over[0] = self.over[0].max(v.abs() / robot.limits[j].velocity - 1.0);
                 self.over[1] = self.over[1].max(w[1].q[j] - upper[j]).max(lower[j] - w[1].q[j]);
-                if v.abs() > STANDS * robot.limits[j].velocity {
+                // The program itself may turn as it likes.
+                if !astray {
+                    (sign, turned) = (0.0, f64::NEG_INFINITY);
+                } else if v.abs() > STANDS * robot.limits[j].velocity {
                     if sign * v < 0.0 {
                         self.quietest_s = self.quietest_s.min(w[1].t_s - turned);
                         turned = w[1].t_s;
@@ -209,6 +216,26 @@ impl Tally {
             at(&mut self.step_us, 1.0)
         );
     }
+}
+
+/// What the robot did in the second before.
+fn show(track: &RobotTrack, until_s: f64) {
+    let Some(evaded) = &track.avoidance else { return };
+    let last = |t: f64| t > until_s - 1.5 && t < until_s + 0.1;
+    let both = track.samples.iter().zip(&evaded.samples).filter(|(s, _)| last(s.t_s));
+    for (sample, a) in both.step_by(10) {
+        println!(
+            "  {:.3} {:9} nearest {:.3} size {:.2} astray {:.3} rate {:.2} q {:.3?}",
+            sample.t_s,
+            a.doing.word(),
+            a.nearest_m,
+            a.size,
+            a.astray_s,
+            a.rate,
+            sample.q
+        );
+    }
+    println!("  ways {:?}", evaded.plans);
 }
 
 /// Sum of all joints' motion.

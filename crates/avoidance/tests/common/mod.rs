@@ -51,7 +51,12 @@ impl Ball {
     pub fn seen(&self, t: f64) -> Seen {
         let at = self.from + self.velocity * t.min(self.stops_s);
         let velocity = if t < self.stops_s { self.velocity } else { Vec3::ZERO };
-        Seen { object: self.object, in_world: Pose::from_translation(at), motion: Motion { velocity, ..Motion::REST }, known: false }
+        Seen {
+            object: self.object,
+            in_world: Pose::from_translation(at),
+            motion: Motion { velocity, ..Motion::REST },
+            known: false,
+        }
     }
 }
 
@@ -115,7 +120,7 @@ impl<'s> Stage<'s> {
 
     /// Another way to `goal` where the arm does not get on.
     pub fn plan(&mut self, goal: &[f64]) -> bool {
-        if !self.advice.stuck {
+        if !self.advice.wants_way {
             return false;
         }
         let options = |clearance_m| RouteOptions { clearance_m, ..RouteOptions::default() };

@@ -17,7 +17,7 @@ use crate::{AvoidanceSample, AvoidanceSpec, AvoidanceTrack, Cell};
 /// Ways are planned for so long at most, …
 const PLANNING: std::time::Duration = std::time::Duration::from_secs(2);
 /// … staying so far away where there is room for it, m, …
-const CLEARANCE_M: f64 = 0.02;
+const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
 /// … and asked for again after this time, s.
 const AGAIN_S: f64 = 0.5;
 /// Values of each input in a picture of the rules.
@@ -109,7 +109,7 @@ impl<'s> Evasive<'s> {
         allowed: f64,
     ) -> Option<&'static str> {
         let before = self.advice.doing;
-        if self.spec.replan && self.advice.stuck && t_s >= self.not_before_s {
+        if self.spec.replan && self.advice.wants_way && t_s >= self.not_before_s {
             self.plan(clock, t_s);
         }
         // What a program waits for happens at its place: away from it time does not run.
@@ -158,7 +158,7 @@ impl<'s> Evasive<'s> {
         let end = clock.end_of_joint_move();
         let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
         let begin = std::time::Instant::now();
-        let found = [CLEARANCE_M, 0.0].into_iter().any(|clearance_m| {
+        let found = CLEARANCES_M.into_iter().any(|clearance_m| {
             let options = RouteOptions { time_limit: PLANNING, clearance_m, ..RouteOptions::default() };
             self.avoider.plan_to(&goal, &options).is_ok()
         });
