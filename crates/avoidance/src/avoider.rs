@@ -429,13 +429,13 @@ impl<'s> Avoider<'s> {
         let (rise_s, stop_s) = (slowest(|l| l.speed / l.acceleration), slowest(|l| l.speed / l.stop));
         while let Some(left_s) = self.way.last().map(|w| astray(w, &self.q, &self.limits)) {
             if left_s > NONE_S {
+                let starts = self.way_share == 0.0;
                 let target = slowing(left_s, rise_s).min(self.settings.return_share * allowed).min(left_s / dt);
                 self.way_share = target.clamp((self.way_share - dt / stop_s).max(0.0), self.way_share + dt / rise_s);
                 // The last step ends at the waypoint, not beyond.
                 let rate = (self.way_share / left_s).min(1.0 / dt) / allowed.max(NO_OVERRIDE);
                 let Some(waypoint) = self.way.last() else { break };
                 // From rest: not before the joints may turn back.
-                let starts = self.qd.iter().all(|v| *v == 0.0);
                 let towards = waypoint.iter().zip(&self.q).map(|(to, from)| to - from);
                 if starts && !self.calm.allows(towards) {
                     self.way_share = 0.0;
