@@ -32,6 +32,7 @@
 pub mod dae;
 mod error;
 pub mod gltf;
+pub mod joints;
 pub mod mesh;
 pub mod nodetree;
 pub mod obj;

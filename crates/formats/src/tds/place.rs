@@ -8,10 +8,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::Scene;
 use super::keyframer::{FileNode, Kind};
 use super::object::Object;
-use super::track::{FRAMES_PER_SECOND, sample};
+use super::track::FRAMES_PER_SECOND;
 use crate::error::Warnings;
 use crate::mesh::{MOST_ELEMENTS, MeshData};
-use crate::nodetree::{Key, Node, NodeTree, rigid};
+use crate::nodetree::{Key, Node, NodeTree, rigid, sample};
 use crate::transform::Affine;
 use crate::{FormatError, Warning, source};
 

@@ -64,13 +64,3 @@ pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, 
     }
     Ok(track)
 }
-
-/// The value at a frame, blended between neighbours; `None` for an empty track.
-pub(super) fn sample<T: Copy>(track: &Track<T>, frame: f64, blend: impl Fn(T, T, f64) -> T) -> Option<T> {
-    let after = track.partition_point(|(f, _)| *f < frame);
-    match (after.checked_sub(1).and_then(|i| track.get(i)), track.get(after)) {
-        (Some((f0, a)), Some((f1, b))) => Some(blend(*a, *b, (frame - f0) / (f1 - f0))),
-        (Some((_, v)), None) | (None, Some((_, v))) => Some(*v),
-        (None, None) => None,
-    }
-}
