@@ -33,7 +33,7 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::{FormatError, source};
 
-pub(crate) use write::quoted;
+pub(crate) use write::key;
 pub use write::to_toml;
 
 /// What the user says of one node.

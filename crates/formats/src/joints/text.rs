@@ -14,6 +14,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 
 const KEYS: &str = "axis, in, at, kind, min, max, speed, acceleration, name, mimic";
 const AXIS: &str = "axis = \"z\"   (x, y, z, -x, -y, -z, or a vector: [0, 0, 1])";
+const EXAMPLE: &str = "--joint \"link_2: axis=y, min=-150, max=20, speed=110\"   (metres and degrees)";
 const UNITS: &str = "units = { length = \"mm\", angle = \"deg\" }   (m or mm, rad or deg)";
 
 /// A value, and where it stands.
@@ -164,8 +165,8 @@ fn check(spec: &JointSpec) -> Result<()> {
 struct Lines(Vec<usize>);
 
 impl Lines {
-    fn at(&self, offset: usize) -> Option<usize> {
-        Some(self.0.partition_point(|&start| start <= offset).max(1))
+    fn at(&self, offset: usize) -> usize {
+        self.0.partition_point(|&start| start <= offset).max(1)
     }
 }
 
@@ -173,19 +174,19 @@ pub(super) fn file(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
     let newlines = content.bytes().enumerate().filter(|b| b.1 == b'\n').map(|b| b.0 + 1);
     let lines = Lines(std::iter::once(0).chain(newlines).collect());
     let table = DeTable::parse(content).map_err(|e| {
-        let line = e.span().and_then(|span| lines.at(span.start));
+        let line = e.span().map(|span| lines.at(span.start));
         let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
         FormatError::new(file, line, what).hint("key = value, with texts in \"double quotes\"; [joint.NODE] above them")
     })?;
     let table = table.get_ref();
     let units = units(table, &lines, file)?;
     let mut specs = Vec::new();
-    for (key, value) in table.iter() {
+    for (key, value) in table {
         let line = lines.at(key.span().start);
         match (key.get_ref().as_ref(), value.get_ref()) {
             ("units" | "version", _) => {}
             ("joint", DeValue::Table(joints)) => {
-                for (node, value) in joints.iter() {
+                for (node, value) in joints {
                     let line = lines.at(node.span().start);
                     let DeValue::Table(entries) = value.get_ref() else {
                         let what = format!("`joint.{}` is not a table", node.get_ref());
@@ -221,15 +222,15 @@ fn units(table: &DeTable<'_>, lines: &Lines, file: &Path) -> Result<(LengthUnit,
 fn joint(
     node: &str,
     entries: &DeTable<'_>,
-    (file, line): (&Path, Option<usize>),
+    (file, line): (&Path, usize),
     lines: &Lines,
     units: (LengthUnit, AngleUnit),
 ) -> Result<JointSpec> {
-    let mut spec = empty(node, file, line, units);
-    for (key, value) in entries.iter() {
+    let mut spec = empty(node, file, Some(line), units);
+    for (key, value) in entries {
         let data = data(value.get_ref());
         let line = lines.at(key.span().start);
-        set(&mut spec, &Value { key: key.get_ref(), file, line, data })?;
+        set(&mut spec, &Value { key: key.get_ref(), file, line: Some(line), data })?;
     }
     check(&spec)?;
     Ok(spec)
@@ -257,7 +258,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
 
 fn mimic(entries: &DeTable<'_>) -> Option<Data> {
     let (mut joint, mut multiplier, mut offset) = (None, 1.0, 0.0);
-    for (key, value) in entries.iter() {
+    for (key, value) in entries {
         match (key.get_ref().as_ref(), value.get_ref()) {
             ("joint", DeValue::String(text)) => joint = Some(text.to_string()),
             ("multiplier", value) => multiplier = number(value)?,
@@ -270,7 +271,6 @@ fn mimic(entries: &DeTable<'_>) -> Option<Data> {
 
 pub(super) fn option(option: &str) -> Result<JointSpec> {
     let file = Path::new("--joint");
-    const EXAMPLE: &str = "--joint \"link_2: axis=y, min=-150, max=20, speed=110\"   (metres and degrees)";
     let wrong = |what: String| FormatError::new(file, None, what).hint(EXAMPLE);
     let Some((node, rest)) = option.rsplit_once(':') else {
         return Err(wrong(format!("`{option}` names no node before a colon")));

@@ -30,7 +30,7 @@ pub fn to_toml(chain: &Chain) -> String {
         };
         let [x, y, z] = joint.axis.to_array();
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "\n[joint.{}]", quoted(&chain.links()[joint.child.0]));
+        let _ = writeln!(text, "\n[joint.{}]", key(&chain.links()[joint.child.0]));
         let _ = writeln!(text, "name = {}\nkind = \"{kind}\"\naxis = [{x:?}, {y:?}, {z:?}]", quoted(&joint.name));
         let mut line = |key: &str, value: Option<f64>| {
             if let Some(value) = value.filter(|v| v.is_finite()) {
@@ -50,8 +50,14 @@ pub fn to_toml(chain: &Chain) -> String {
     text
 }
 
+/// A name as a TOML key.
+pub(crate) fn key(name: &str) -> String {
+    let bare = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
+    if bare { name.to_owned() } else { quoted(name) }
+}
+
 /// A name as a TOML text.
-pub(crate) fn quoted(name: &str) -> String {
+fn quoted(name: &str) -> String {
     let mut text = String::from("\"");
     for c in name.chars() {
         match c {

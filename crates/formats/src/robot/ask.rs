@@ -6,7 +6,7 @@ use std::path::Path;
 use super::from_tree::{SAME, apart};
 use super::motion::show;
 use crate::Warning;
-use crate::joints::quoted;
+use crate::joints::key;
 use crate::nodetree::NodeTree;
 use elbowroom_spatial::Pose;
 
@@ -38,7 +38,7 @@ pub(super) fn what_moves(tree: &NodeTree, names: &[String], file: &Path, beside:
             skeleton,
             "    [joint.{}]   # on {parent}, origin at {origin} m\n    axis = \"?\"   # x y z -x -y -z or [x, y, z], in the \
              node's frame\n    min = -180\n    max = 180\n    speed = 90",
-            quoted(&names[i])
+            key(&names[i])
         );
     }
     if candidates.len() > MOST {

@@ -115,7 +115,7 @@ impl<'a> Builder<'a> {
         let close = |n: &&String| n.eq_ignore_ascii_case(&spec.node);
         let hint = self.names.iter().find(close).map_or_else(
             || format!("one of {}", ask::listed(self.names.iter().map(String::as_str))),
-            |close| format!("[joint.{}]", crate::joints::quoted(close)),
+            |close| format!("[joint.{}]", crate::joints::key(close)),
         );
         Err(spec.error(what).hint(hint))
     }

@@ -54,17 +54,15 @@ pub(super) fn motion(node: &Node, size: f64) -> Motion {
 
 fn turning(poses: &[(f64, Pose)], turns: &[Vec3], widest: Vec3, size: f64) -> Motion {
     let axis = direction(turns, widest, STILL_RAD);
-    for (w, poses) in turns.iter().zip(poses.windows(2)) {
-        if (*w - axis * w.dot(axis)).length() > SAME_RAD * widest.length() + STILL_RAD {
-            let other = w.try_normalize().unwrap_or(Vec3::Z);
-            return Motion::Unclear(format!(
-                "turns about {} at first, but about {} between {:.2} s and {:.2} s",
-                show(axis),
-                show(other),
-                poses[0].0,
-                poses[1].0
-            ));
-        }
+    let strays = |w: &Vec3, axis: Vec3| (*w - axis * w.dot(axis)).length() > SAME_RAD * widest.length() + STILL_RAD;
+    if turns.iter().any(|w| strays(w, axis)) {
+        let steps = || turns.iter().zip(poses.windows(2)).filter(|(w, _)| w.length() > STILL_RAD);
+        let unit = |w: &Vec3| clean(w.try_normalize().unwrap_or(Vec3::Z));
+        let first = steps().next().map_or(axis, |(w, _)| unit(w));
+        let other = steps().find(|(w, _)| strays(w, first)).map_or_else(String::new, |(w, p)| {
+            format!(", but about {} between {:.2} s and {:.2} s", show(unit(w)), p[0].0, p[1].0)
+        });
+        return Motion::Unclear(format!("turns about {} at first{other}", show(first)));
     }
     let mut angle = 0.0;
     let angles: Vec<f64> = std::iter::once(0.0)

@@ -165,7 +165,8 @@ impl Frames {
         shown: &[Option<usize>],
         (file, warnings): (&Path, &mut Warnings),
     ) -> Self {
-        let own = |i: usize| shown[i].and_then(|o| objects[o].axes);
+        // Assimp writes the rows of the rotation where the format has its columns.
+        let own = |i: usize| shown[i].and_then(|o| objects[o].axes).map(|axes| axes.transposed());
         let mut nearest: Vec<Option<(usize, Affine)>> = (0..nodes.len()).map(|i| own(i).map(|a| (0, a))).collect();
         for &i in order.iter().rev() {
             if let (Some(parent), Some((far, axes))) = (parents[i], nearest[i]) {
