@@ -217,6 +217,75 @@ fn several_tops_get_a_root_and_equal_names_numbers() {
     assert_eq!(loaded.robot.chain.root(), LinkId(2));
 }
 
+/// A glTF of a base and a link that turns about its y axis in three keys; `edit` changes the JSON.
+fn animated(edit: impl Fn(String) -> String, values: &[f32]) -> Result<LoadedRobot, String> {
+    use base64::Engine as _;
+    let corners = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.2, 0.0];
+    let numbers = corners.iter().chain(&[0.0, 1.0, 2.0]).chain(values);
+    let bytes: Vec<u8> = numbers.flat_map(|x: &f32| x.to_le_bytes()).collect();
+    let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+    let (length, count) = (bytes.len(), values.len() / 4);
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],
+"nodes":[{{"name":"base","mesh":0,"children":[1]}},{{"name":"link","mesh":0,"translation":[0,0,0.5],"scale":[2,2,2]}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+"buffers":[{{"byteLength":{length},"uri":"data:application/octet-stream;base64,{data}"}}],
+"bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":12}},{{"buffer":0,"byteOffset":48,"byteLength":{}}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+{{"bufferView":1,"componentType":5126,"count":3,"type":"SCALAR","min":[0],"max":[2]}},
+{{"bufferView":2,"componentType":5126,"count":{count},"type":"VEC4"}}],
+"animations":[{{"channels":[{{"sampler":0,"target":{{"node":1,"path":"rotation"}}}}],"samplers":[{{"input":1,"output":2}}]}}]}}"#,
+        length - 48
+    );
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("arm.gltf");
+    std::fs::write(&file, edit(json)).unwrap();
+    robot::load(&file, &LoadOptions::default()).map_err(|e| e.to_string())
+}
+
+/// A turn about y as a quaternion.
+fn about_y(degrees: f32) -> [f32; 4] {
+    let (sine, cosine) = (0.5 * degrees.to_radians()).sin_cos();
+    [0.0, sine, 0.0, cosine]
+}
+
+#[test]
+fn animations_of_gltf_are_joints() {
+    let keys = [about_y(0.0), about_y(70.0), about_y(-20.0)].concat();
+    let check = |loaded: LoadedRobot| {
+        let joint = &loaded.robot.chain.joints()[0];
+        assert_eq!(joint.kind, JointKind::Revolute, "{:?}", loaded.warnings);
+        assert!(joint.axis.distance(Vec3::Y) < 1e-5);
+        assert!((joint.limits.upper.to_degrees() - 70.0).abs() < 1e-3, "{:?}", joint.limits);
+        assert!((joint.limits.lower.to_degrees() + 20.0).abs() < 1e-3, "{:?}", joint.limits);
+        assert!(joint.origin.translation.distance(Vec3::Z * 0.5) < 1e-7);
+        let link = loaded.robot.chain.link("link").unwrap();
+        let Shape::Mesh(mesh) = &loaded.robot.bodies[link.0][0].shape else { panic!("no mesh") };
+        assert!(mesh.vertices()[1].distance(Vec3::X * 0.4) < 1e-7, "the scale is in the mesh");
+    };
+    check(animated(|j| j, &keys).unwrap());
+    // A spline has tangents around each value.
+    let zero = [0.0; 4];
+    let spline = [0.0, 70.0, -20.0].map(|d| [zero, about_y(d), zero].concat()).concat();
+    let cubic = |j: String| j.replace("\"output\":2", "\"output\":2,\"interpolation\":\"CUBICSPLINE\"");
+    check(animated(cubic, &spline).unwrap());
+    for (values, said) in [
+        (keys[..8].to_vec(), "fewer values than times"),
+        ([about_y(0.0), zero, zero].concat(), "a rotation that is none"),
+        ([about_y(0.0), [f32::NAN; 4], zero].concat(), "a number that is none"),
+    ] {
+        let error = animated(|j| j, &values).unwrap_err();
+        assert!(error.contains(said) && error.contains("animation 0, channel 0"), "{error}");
+    }
+    let error = animated(|j| j.replace("VEC4", "VEC3"), &keys).unwrap_err();
+    assert!(error.contains("values of 3 numbers instead of 4"), "{error}");
+    let error = animated(|j| j.replace("\"sampler\":0", "\"sampler\":7"), &keys).unwrap_err();
+    assert!(error.contains("not valid"), "{error}");
+    let error = animated(|j| j.replace("{\"node\":1", "{\"node\":7"), &keys).unwrap_err();
+    assert!(error.contains("moves node 7, which does not exist"), "{error}");
+    assert!(animated(|j| j.replace("\"rotation\"", "\"roll\""), &keys).is_ok());
+}
+
 /// Xorshift in -1..1.
 struct Random(u64);
 

@@ -5,15 +5,17 @@ use std::collections::HashMap;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use gltf::Document;
 use gltf::animation::{Channel, Interpolation, Property};
+use gltf::json::validation::Checked;
 use gltf::scene::Transform;
 
 use super::{Reader, Scene};
+use crate::mesh::MOST_ELEMENTS;
 use crate::nodetree::{Key, Node, NodeTree, rigid, sample};
 use crate::transform::Affine;
 use crate::{FormatError, Warning};
 
 pub(super) fn build(document: &Document, scene: &mut Scene<'_>, tree: &mut NodeTree) -> Result<(), FormatError> {
-    let motions = motions(document, &scene.reader)?;
+    let motions = motions(document, &scene.reader, &mut scene.elements)?;
     if document.animations().len() > 1 {
         let what = "has several animations: of each node the first that moves it counts";
         scene.warnings.push(Warning::new(scene.reader.file, None, what));
@@ -67,20 +69,37 @@ impl Motion {
     }
 }
 
-fn motions(document: &Document, reader: &Reader<'_>) -> Result<HashMap<usize, Motion>, FormatError> {
+fn motions(
+    document: &Document,
+    reader: &Reader<'_>,
+    elements: &mut usize,
+) -> Result<HashMap<usize, Motion>, FormatError> {
     let mut motions: HashMap<usize, Motion> = HashMap::new();
     for animation in document.animations() {
         for channel in animation.channels() {
             let place = format!("animation {}, channel {}", animation.index(), channel.index());
-            let node = channel.target().node().index();
-            let property = channel.target().property();
-            if !matches!(property, Property::Translation | Property::Rotation) {
-                continue;
+            // The library checks samplers, but not what a channel aims at.
+            let target = &document.as_json().animations[animation.index()].channels[channel.index()].target;
+            let node = target.node.value();
+            if node >= document.nodes().len() {
+                let what = format!("moves node {node}, which does not exist");
+                return Err(reader.error(&place, &what).hint("the number of a node, counted from 0"));
             }
+            let property = match target.path {
+                Checked::Valid(property @ (Property::Translation | Property::Rotation)) => property,
+                _ => continue,
+            };
             let motion =
                 motions.entry(node).or_insert_with(|| Motion { animation: animation.index(), ..Motion::default() });
             if motion.animation != animation.index() {
                 continue;
+            }
+            let sampler = channel.sampler();
+            // Many channels may share one accessor.
+            *elements = elements.saturating_add(sampler.input().count()).saturating_add(sampler.output().count());
+            if *elements > MOST_ELEMENTS {
+                let what = format!("is one too many: the file unfolds into more than {MOST_ELEMENTS} numbers");
+                return Err(reader.error(&place, &what).hint("an animation with fewer keys, or none"));
             }
             if property == Property::Translation {
                 motion.positions = keys(&channel, reader, 3, &place, |v| Some(Vec3::new(v[0], v[1], v[2])))?;
