@@ -22,8 +22,8 @@ const CHORD_M: f64 = 1e-3;
 struct Painted {
     corners: [Vec3; 3],
     color: [f64; 3],
-    /// Seen through whatever stands before it.
-    in_front: bool,
+    /// Seen through whatever stands before it on a lower layer.
+    layer: u8,
 }
 
 impl Inspection {
@@ -78,7 +78,7 @@ impl Inspection {
                 let (vertices, triangles) = tessellate(&body.shape, CHORD_M);
                 let place = in_world * body.in_link;
                 let corners = |t: [u32; 3]| t.map(|v| place.transform_point(vertices[v as usize]));
-                all.extend(triangles.into_iter().map(|t| Painted { corners: corners(t), color, in_front: false }));
+                all.extend(triangles.into_iter().map(|t| Painted { corners: corners(t), color, layer: 0 }));
             }
         }
         self.paint_axes(&mut all);
@@ -91,13 +91,14 @@ impl Inspection {
         let state = self.state(robot);
         let size = Aabb::from_points(all.iter().flat_map(|p| p.corners).filter(|p| p.is_finite())).extent();
         let size = if size.max_element() > 0.0 { size.max_element() } else { 1.0 };
-        for joint in robot.chain.joints().iter().filter(|j| j.kind.moves()) {
+        for (i, joint) in robot.chain.joints().iter().filter(|j| j.kind.moves()).enumerate() {
             let place = state.link_in_root(joint.child) * Pose::new(Rotation::from_z(joint.axis), Vec3::ZERO);
-            // Black first, so that the colour is edged with it.
-            for (color, radius, shorter) in [([0.05; 3], 0.008, 0.0), (color(joint.child.0), 0.005, 0.003)] {
-                let solids = arrow(size * 0.3, size * radius, size * shorter);
-                let triangles = solids.into_iter().map(|t| t.map(|v| place.transform_point(v)));
-                all.extend(triangles.map(|corners| Painted { corners, color, in_front: true }));
+            // Lengths differ, so that both of two axes on one line are seen. Black below, so that the colour is edged.
+            let length = size * (0.2 + 0.035 * (i % 3) as f64);
+            for (layer, color, edge) in [(1, [0.05; 3], 0.0), (2, color(joint.child.0), size * 0.0015)] {
+                let triangles = arrow(length, size * 0.0045, edge).into_iter();
+                let triangles = triangles.map(|t| t.map(|v| place.transform_point(v)));
+                all.extend(triangles.map(|corners| Painted { corners, color, layer }));
             }
         }
     }
@@ -141,21 +142,20 @@ fn bodies(robot: &Robot, link: usize) -> &[Body] {
     if robot.visuals[link].is_empty() { &robot.bodies[link] } else { &robot.visuals[link] }
 }
 
-/// An arrow along z through the origin, from -`length` to `length`, all its surfaces pulled in by `shorter`.
-fn arrow(length: f64, radius: f64, shorter: f64) -> Vec<[Vec3; 3]> {
+/// An arrow along z through the origin, from -`length` to `length`, all its surfaces pulled in by `edge`.
+fn arrow(length: f64, radius: f64, edge: f64) -> Vec<[Vec3; 3]> {
     const SEGMENTS: usize = 12;
     let ring = |r: f64, z: f64| -> Vec<Vec3> {
         let turn = |i: usize| std::f64::consts::TAU * i as f64 / SEGMENTS as f64;
         (0..SEGMENTS).map(|i| Vec3::new(r * turn(i).cos(), r * turn(i).sin(), z)).collect()
     };
-    let head = 5.0 * (radius + shorter) - shorter;
-    let neck = length - 3.0 * head;
+    let (head, neck) = (4.0 * radius, length - 12.0 * radius);
     let rings = [
-        ring(0.0, shorter - length),
-        ring(radius, shorter - length),
-        ring(radius, neck + shorter),
-        ring(head, neck + shorter),
-        ring(0.0, length - 2.0 * shorter),
+        ring(0.0, edge - length),
+        ring(radius - edge, edge - length),
+        ring(radius - edge, neck + edge),
+        ring(head - 1.4 * edge, neck + edge),
+        ring(0.0, length - 3.0 * edge),
     ];
     let mut triangles = Vec::new();
     for pair in rings.windows(2) {
@@ -179,8 +179,8 @@ fn color(i: usize) -> [f64; 3] {
 fn draw(painted: &[Painted], turn: f64, tilt: f64) -> Vec<u8> {
     let turned =
         Rotation::from_axis_angle(Vec3::Y, tilt.to_radians()) * Rotation::from_axis_angle(Vec3::Z, turn.to_radians());
-    let seen: Vec<([Vec3; 3], [f64; 3], bool)> =
-        painted.iter().map(|p| (p.corners.map(|c| turned * c), p.color, p.in_front)).collect();
+    let seen: Vec<([Vec3; 3], [f64; 3], u8)> =
+        painted.iter().map(|p| (p.corners.map(|c| turned * c), p.color, p.layer)).collect();
     let around = Aabb::from_points(seen.iter().flat_map(|s| s.0).filter(|p| p.is_finite()));
     let nearer = 2.0 * around.extent().x + 1.0;
     let (width, height) = (WIDTH * FINE, HEIGHT * FINE);
@@ -189,7 +189,7 @@ fn draw(painted: &[Painted], turn: f64, tilt: f64) -> Vec<u8> {
     let middle = around.center();
     let mut depths = vec![f64::NEG_INFINITY; width * height];
     let mut colors = vec![[245.0_f64; 3]; width * height];
-    for (corners, color, in_front) in &seen {
+    for (corners, color, layer) in &seen {
         // To pixels: x to the right, y down, z towards the eye.
         let at = corners.map(|c| {
             let c = c - middle;
@@ -199,7 +199,7 @@ fn draw(painted: &[Painted], turn: f64, tilt: f64) -> Vec<u8> {
         // Both sides are lit, for a surface may be inside out.
         let light = 0.35 + 0.45 * normal.dot(Vec3::new(0.8, -0.3, 0.52)).abs() + 0.2 * normal.x.abs();
         fill(at, (width, height), |pixel, depth| {
-            let depth = if *in_front { depth + nearer } else { depth };
+            let depth = depth + nearer * f64::from(*layer);
             if depth > depths[pixel] {
                 depths[pixel] = depth;
                 colors[pixel] = color.map(|c| 255.0 * (c * light).min(1.0));
