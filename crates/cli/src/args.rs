@@ -118,7 +118,7 @@ pub(crate) struct JointArgs {
     /// beside it
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) joints: Option<PathBuf>,
-    /// One node that moves, in metres and degrees, as "link_2: axis=y, min=-150, max=20, speed=110"; may be repeated
+    /// One node that moves, in metres and degrees, as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated
     #[arg(long, value_name = "NODE: axis=…")]
     pub(crate) joint: Vec<String>,
 }

@@ -88,7 +88,7 @@ impl Inspection {
     /// An arrow along the axis of every joint that moves.
     fn paint_axes(&self, all: &mut Vec<Painted>) {
         let Some(robot) = &self.robot else { return };
-        let state = self.state(robot);
+        let state = at_rest(robot);
         let size = Aabb::from_points(all.iter().flat_map(|p| p.corners).filter(|p| p.is_finite())).extent();
         let size = if size.max_element() > 0.0 { size.max_element() } else { 1.0 };
         for (i, joint) in robot.chain.joints().iter().filter(|j| j.kind.moves()).enumerate() {
@@ -120,21 +120,21 @@ impl Inspection {
         chain.joints().iter().zip(&self.joints).filter(|(j, _)| j.kind.moves()).map(of).collect()
     }
 
-    /// Every joint at zero, or at the limit nearest to it.
-    fn state(&self, robot: &Robot) -> ChainState {
-        let mut state = ChainState::new(&robot.chain);
-        let bounds = robot.chain.lower().into_iter().zip(robot.chain.upper());
-        state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
-        robot.chain.forward(&mut state);
-        state
-    }
-
     /// Bodies with the pose of their frame.
     fn shown(&self) -> Vec<(&[Body], Pose)> {
         let Some(robot) = &self.robot else { return self.solids.iter().map(|s| (&s.1[..], Pose::IDENTITY)).collect() };
-        let state = self.state(robot);
+        let state = at_rest(robot);
         (0..robot.bodies.len()).map(|l| (bodies(robot, l), state.link_in_root(LinkId(l)))).collect()
     }
+}
+
+/// Every joint at zero, or at the limit nearest to it.
+fn at_rest(robot: &Robot) -> ChainState {
+    let mut state = ChainState::new(&robot.chain);
+    let bounds = robot.chain.lower().into_iter().zip(robot.chain.upper());
+    state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
+    robot.chain.forward(&mut state);
+    state
 }
 
 /// What is looked at, or where there is nothing, what collides.

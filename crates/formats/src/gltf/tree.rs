@@ -85,9 +85,8 @@ fn motions(
                 let what = format!("moves node {node}, which does not exist");
                 return Err(reader.error(&place, &what).hint("the number of a node, counted from 0"));
             }
-            let property = match target.path {
-                Checked::Valid(property @ (Property::Translation | Property::Rotation)) => property,
-                _ => continue,
+            let Checked::Valid(property @ (Property::Translation | Property::Rotation)) = target.path else {
+                continue;
             };
             let motion =
                 motions.entry(node).or_insert_with(|| Motion { animation: animation.index(), ..Motion::default() });
