@@ -8,10 +8,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::Scene;
 use super::keyframer::{FileNode, Kind};
 use super::object::Object;
-use super::track::{FRAMES_PER_SECOND, sample};
+use super::track::FRAMES_PER_SECOND;
 use crate::error::Warnings;
 use crate::mesh::{MOST_ELEMENTS, MeshData};
-use crate::nodetree::{Key, Node, NodeTree, rigid};
+use crate::nodetree::{Key, Node, NodeTree, rigid, sample};
 use crate::transform::Affine;
 use crate::{FormatError, Warning, source};
 
@@ -165,7 +165,8 @@ impl Frames {
         shown: &[Option<usize>],
         (file, warnings): (&Path, &mut Warnings),
     ) -> Self {
-        let own = |i: usize| shown[i].and_then(|o| objects[o].axes);
+        // Assimp writes the rows of the rotation where the format has its columns.
+        let own = |i: usize| shown[i].and_then(|o| objects[o].axes).map(|axes| axes.transposed());
         let mut nearest: Vec<Option<(usize, Affine)>> = (0..nodes.len()).map(|i| own(i).map(|a| (0, a))).collect();
         for &i in order.iter().rev() {
             if let (Some(parent), Some((far, axes))) = (parents[i], nearest[i]) {
