@@ -26,12 +26,19 @@ pub(super) fn tree(scene: Scene, file: &Path, warnings: &mut Warnings) -> Result
     } else {
         Frames::of_tracks(&nodes, &parents, &order)
     };
+    // What hangs on a camera has its keys in a frame that looks about, which is not followed.
+    let mut looks_about = vec![false; nodes.len()];
+    for &i in &order {
+        looks_about[i] = nodes[i].kind != Kind::Object || parents[i].is_some_and(|p| looks_about[p]);
+    }
     let mut placer = Placer { objects: &objects, file, elements: 0, tree: NodeTree::new(source::stem(file)) };
     let mut index_of = HashMap::new();
     for &i in &order {
         let parent = parents[i].and_then(|p| index_of.get(&p).copied());
         let mut node = Node::new(nodes[i].shown_name(), parent, frames.in_parent(i, parents[i]));
-        node.track = frames.track(&nodes[i], parents[i]);
+        if !looks_about[i] {
+            node.track = frames.track(&nodes[i], parents[i]);
+        }
         if let Some(object) = shown[i] {
             let to_frame =
                 Affine::from(&frames.rigid[i].inverse()).after(&frames.of_vertices(i, &nodes[i], &objects[object]));
@@ -223,7 +230,7 @@ impl Frames {
 
     /// The keys of position and rotation together; empty where there is no more than one.
     fn track(&self, node: &FileNode, parent: Option<usize>) -> Vec<Key> {
-        if self.local || node.kind != Kind::Object || node.position.len().max(node.rotation.len()) < 2 {
+        if self.local || node.position.len().max(node.rotation.len()) < 2 {
             return Vec::new();
         }
         let mut frames: Vec<f64> = node.position.iter().map(|k| k.0).chain(node.rotation.iter().map(|k| k.0)).collect();
@@ -276,7 +283,7 @@ fn looking(i: usize, nodes: &[FileNode], parents: &[Option<usize>]) -> Rotation 
     let right = Vec3::Z.cross(back).try_normalize().unwrap_or(Vec3::X);
     let roll = nodes[i].roll.first().map_or(0.0, |k| k.1.to_radians());
     let level = Rotation::from_columns(right, back.cross(right), back).unwrap_or(Rotation::IDENTITY);
-    level * Rotation::from_axis_angle(Vec3::Z, -roll)
+    level * Rotation::from_axis_angle(Vec3::Z, roll)
 }
 
 struct Placer<'a> {
