@@ -12,7 +12,7 @@ use crate::{Body, Member, Object, Robot};
 ///
 /// From one look to the next every joint goes at a constant rate, and an object along its path. A pair that was found
 /// `d` apart is not looked at again before its members can have moved by `d`; where they have, the time between the
-/// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm, and lasts longer than a
+/// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm and lasts longer than a
 /// thousandth of that time, is found.
 #[derive(Debug)]
 pub struct FirstContacts<'a> {
