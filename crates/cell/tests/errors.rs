@@ -258,12 +258,45 @@ fn missing_tables_and_doubled_names_are_told() {
     assert!(e.what.contains("does not exist"), "{e}");
 }
 
+/// A box on a post that nothing moves, as 3DS.
+fn still_model() -> Vec<u8> {
+    use elbowroom_formats::nodetree::{Node, NodeTree};
+    use elbowroom_formats::{MeshData, tds};
+    use elbowroom_spatial::{Pose, Vec3};
+    let mut tree = NodeTree::new("arm");
+    let post = tree.push(Node::new("post", None, Pose::IDENTITY));
+    let mut arm = Node::new("arm", Some(post), Pose::from_translation(Vec3::Z));
+    let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    arm.meshes.push(MeshData { name: "arm".into(), vertices, triangles });
+    tree.push(arm);
+    tds::write(&tree, "arm.3ds".as_ref()).unwrap()
+}
+
 #[test]
-fn three_d_models_say_when_they_come_and_what_to_do_now() {
+fn a_3d_model_that_nothing_moves_prints_a_file_of_joints_to_fill_in_and_works_with_it() {
     let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("arm.glb"), b"glTF").unwrap();
-    let e = Cell::parse(dir.path().join("cell.toml"), &format!("{HEAD}[robot.r]\nmodel = \"arm.glb\"\n")).unwrap_err();
-    assert!(e.what.contains("later version") && e.write_instead.unwrap().contains("dh"));
+    std::fs::write(dir.path().join("arm.3ds"), still_model()).unwrap();
+    let parse = |more: &str| {
+        Cell::parse(dir.path().join("cell.toml"), &format!("{HEAD}[robot.r]\nmodel = \"arm.3ds\"\n{more}"))
+    };
+    let e = parse("").unwrap_err();
+    assert!(e.what.contains("without a joint that moves"), "{e}");
+    assert!(e.write_instead.as_ref().unwrap().contains("[joint.arm]   # on post, origin at [0, 0, 1] m"), "{e}");
+    let joints =
+        "units = { length = \"mm\", angle = \"deg\" }\n[joint.arm]\naxis = \"z\"\nmin = -90\nmax = 90\nspeed = 45\n";
+    std::fs::write(dir.path().join("other.toml"), joints).unwrap();
+    let cell = parse("joints = \"other.toml\"\nunit = \"mm\"\n").unwrap();
+    let chain = &cell.robots[0].robot.chain;
+    assert_eq!((chain.dof(), chain.joints()[0].origin.translation.z), (1, 0.001));
+    std::fs::write(dir.path().join("arm.joints.toml"), joints).unwrap();
+    assert_eq!(parse("").unwrap().robots[0].robot.chain.dof(), 1);
+    let e = parse("joints = \"nowhere.toml\"\n").unwrap_err();
+    assert!(e.what.contains("does not exist"), "{e}");
+    let e = parse("unit = \"ell\"\n").unwrap_err();
+    assert!(e.to_string().contains("mm"), "{e}");
+    let e = Cell::parse("t.toml", &format!("{HEAD}[robot.r]\ndh = [{{ a = 1 }}]\nunit = \"mm\"\n")).unwrap_err();
+    assert!(e.what.contains("goes with `model`"), "{e}");
 }
 
 #[test]

@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Say what is in a robot or mesh file
     Inspect(InspectArgs),
+    /// Write a robot as a URDF with STL meshes, or as 3DS
+    Convert(ConvertArgs),
     /// Turn a cell's objects into blocked cells of a robot's joint space
     Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another
@@ -108,13 +110,15 @@ pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
     #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
     pub(crate) cell: Option<PathBuf>,
-    /// One robot alone, its root link being the world
-    #[arg(long, value_name = "FILE")]
+    /// One robot alone, its root link being the world: a URDF, or a 3DS, GLB or glTF model
+    #[arg(long, value_name = "FILE", visible_alias = "model")]
     pub(crate) urdf: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) joints: JointArgs,
     /// The SRDF that belongs to the URDF: the pairs that it disables are not looked at
     #[arg(long, value_name = "FILE", conflicts_with = "cell")]
     pub(crate) srdf: Option<PathBuf>,
-    /// Unit of the URDF's meshes whose format states none
+    /// Unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
     /// What to ask: collision, distance, or tolerance=METRES
@@ -129,6 +133,57 @@ pub(crate) struct QueryArgs {
     /// Print one JSON document instead of CSV
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What moves in a 3DS, GLB or glTF model.
+#[derive(Debug, Args)]
+pub(crate) struct JointArgs {
+    /// The file that says which nodes of a 3DS, GLB or glTF model move (docs/models.md); default: MODEL.joints.toml
+    /// beside it
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) joints: Option<PathBuf>,
+    /// One node that moves, in metres and degrees, as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated
+    #[arg(long, value_name = "NODE: axis=…")]
+    pub(crate) joint: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom convert arm.3ds --out arm                     arm/arm.urdf and arm/meshes/*.stl
+  elbowroom convert arm.urdf --out arm --to 3ds           arm/arm.3ds and arm/arm.joints.toml
+  elbowroom convert arm.glb --out arm --joint \"link_1: axis=z, min=-170, max=170, speed=100\"
+  elbowroom convert cell.toml --robot ns16 --out ns16     the robot of a cell, with its tool and load
+
+Exit status: 0 where the files are written.")]
+pub(crate) struct ConvertArgs {
+    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it (docs/models.md)
+    pub(crate) model: PathBuf,
+    /// The folder to write to
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// What to write; both as urdf,3ds
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "urdf")]
+    pub(crate) to: Vec<Written>,
+    /// The robot of a cell file; may be left out where there is one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// An SRDF that belongs to the model
+    #[arg(long, value_name = "FILE")]
+    pub(crate) srdf: Option<PathBuf>,
+    /// Unit of a 3DS model, or of a URDF's meshes whose format states none
+    #[arg(long, value_enum)]
+    pub(crate) unit: Option<Unit>,
+    #[command(flatten)]
+    pub(crate) joints: JointArgs,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Written {
+    /// NAME.urdf, meshes/*.stl, and NAME.srdf where pairs are disabled
+    Urdf,
+    /// NAME.3ds, and NAME.joints.toml with what a 3DS file cannot say
+    #[value(name = "3ds")]
+    Tds,
 }
 
 #[derive(Debug, Args)]
@@ -166,14 +221,16 @@ pub(crate) struct MapArgs {
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {
-    /// URDF, STL, OBJ, DAE, glTF, GLB, PLY or OFF
+    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF)
     pub(crate) model: PathBuf,
     /// The SRDF that belongs to the URDF
     #[arg(long, value_name = "FILE")]
     pub(crate) srdf: Option<PathBuf>,
-    /// Unit of meshes whose format states none
+    /// Unit of a 3DS model, or of meshes whose format states none
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
+    #[command(flatten)]
+    pub(crate) joints: JointArgs,
     /// The link at which the Denavit-Hartenberg table ends
     #[arg(long, value_name = "LINK")]
     pub(crate) tip: Option<String>,
@@ -183,7 +240,7 @@ pub(crate) struct InspectArgs {
     /// Leave out what takes time: resolution levels, the pair matrix, visual meshes
     #[arg(long, conflicts_with = "models")]
     pub(crate) brief: bool,
-    /// Also write a picture of the model: a PNG, or a page with four views
+    /// Also write a picture of the model with the axes of its joints: a PNG, or a page with four views
     #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
     pub(crate) picture: Option<PathBuf>,
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link's frame) to this folder

@@ -18,6 +18,8 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
     let options = InspectOptions {
         srdf: args.srdf.clone(),
         unit: args.unit.map(LengthUnit::from),
+        joints: args.joints.joints.clone(),
+        joint: args.joints.joint.clone(),
         tip: args.tip.clone(),
         brief: args.brief || args.states.is_some(),
     };

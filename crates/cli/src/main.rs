@@ -3,6 +3,7 @@
 //! Exit status: 0 done and free of trouble; 1 the answer is bad news; 2 the input or the call is wrong.
 
 mod args;
+mod convert;
 mod example;
 mod inspect;
 mod map;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Query(args)) => query::query(&args),
         Some(Command::Inspect(args)) => inspect::inspect(&args),
+        Some(Command::Convert(args)) => convert::convert(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Rules(args)) => rules::rules(&args),

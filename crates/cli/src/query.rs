@@ -42,14 +42,26 @@ pub(crate) fn query(args: &QueryArgs) -> Result<Verdict, Failure> {
 fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
     if let Some(urdf) = &args.urdf {
         let unit = args.unit.map(LengthUnit::from);
-        let options = LoadOptions { srdf: args.srdf.clone(), load_visuals: false, unit };
+        let options = LoadOptions {
+            srdf: args.srdf.clone(),
+            load_visuals: false,
+            unit,
+            joints: args.joints.joints.clone(),
+            joint: args.joints.joint.clone(),
+        };
         let loaded = robot::load(urdf, &options)?;
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return Ok(Subject::of_robot(urdf, loaded.robot));
     }
     // clap asks for one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
+    if args.joints.joints.is_some() || !args.joints.joint.is_empty() {
+        let what =
+            "--joints and --joint go with --urdf MODEL\n  write: joints = \"FILE\" beside `model` in the cell file";
+        return Err(Failure::Wrong(what.to_owned()));
+    }
+    let is_model = |e: &str| path.extension().is_some_and(|x| x.eq_ignore_ascii_case(e));
+    if ["urdf", "3ds", "glb", "gltf"].into_iter().any(is_model) {
         let path = path.display();
         return Err(Failure::Wrong(format!("{path}: is a robot, not a cell file\n  write: --urdf {path}")));
     }

@@ -107,8 +107,17 @@ fn garbage_is_refused_with_the_file_named() {
     let dir = with_cell("");
     let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
     let noise: Vec<u8> = (0..20_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-    let models =
-        ["noise.stl", "noise.urdf", "noise.dae", "noise.obj", "noise.glb", "noise.gltf", "noise.ply", "noise.off"];
+    let models = [
+        "noise.stl",
+        "noise.urdf",
+        "noise.dae",
+        "noise.obj",
+        "noise.glb",
+        "noise.gltf",
+        "noise.3ds",
+        "noise.ply",
+        "noise.off",
+    ];
     models.iter().chain(&["noise.toml", "noise.csv", "noise"]).for_each(|name| write(name, &noise));
     write("empty.urdf", b"");
     write("empty.stl", b"");
@@ -155,7 +164,7 @@ fn files_gone_wrong_in_the_wild_end_with_a_report_or_a_refusal() {
         println!("skipped: no data at {}", folders[0].display());
         return;
     }
-    let endings = ["urdf", "xml", "stl", "obj", "dae", "gltf", "glb", "ply", "off"];
+    let endings = ["urdf", "xml", "stl", "obj", "dae", "gltf", "glb", "3ds", "ply", "off"];
     let mut seen = 0;
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {

@@ -6,7 +6,7 @@
 //! | [`proximity`] | shapes and the questions between two of them |
 //! | [`kinematics`] | chains of joints: forward, inverse, Jacobian, Denavit-Hartenberg, any point of a surface as the end of a chain |
 //! | [`scene`] | robots and objects together |
-//! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF |
+//! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS |
 //! | [`monitor`] | interference regions, checked every control tick |
 //! | [`cspace`] | obstacles as blocked cells of joint space |
 //! | [`planner`] | ways around, on the joint-space map or in the exact scene |

@@ -1,11 +1,11 @@
-//! Time of the list of near pairs of a robot among four boxes and a mesh, along smooth motions and at random states:
+//! Time of the lists of near and of approaching pairs of a robot among four boxes and a mesh, along smooth motions and at random states:
 //! `cargo run --release -p elbowroom-formats --example near_times -- ROBOT.urdf [MARGIN_M]`.
 
 use std::time::Instant;
 
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_proximity::{Cuboid, Shape};
-use elbowroom_scene::{Checker, Object, Options, Robot, Scene, SceneState, Selection};
+use elbowroom_scene::{Checker, LevelOfDetail, Object, Options, Robot, Scene, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
 
 fn main() {
@@ -20,23 +20,36 @@ fn main() {
     {
         for (states, path) in [("smooth", smooth(&scene, &mut r)), ("random", random(&scene, &mut r))] {
             let mut checker = Checker::new(&scene, Options::default());
-            let (mut times, mut told, mut state) = (Vec::new(), 0_u32, SceneState::new(&scene));
-            for q in &path {
+            let (mut near, mut coming, mut told, mut state) = (Vec::new(), Vec::new(), 0_u32, SceneState::new(&scene));
+            let (mut motion, policy) =
+                (SceneMotion::new(&scene), LevelOfDetail { within_m: margin, ..Default::default() });
+            for (q, next) in path.iter().zip(path.iter().skip(1)) {
                 state.set_q(&scene, 0, q).expect("a state");
-                let started = Instant::now();
-                checker.between(one, other).near(&state, margin, |_| told += 1);
-                times.push(started.elapsed().as_secs_f64() * 1e6);
+                let mut ask = checker.between(one, other);
+                near.push(timed(|| ask.near(&state, margin, |_| told += 1)));
+                // A hundred steps in two seconds, no joint faster than 2 rad/s.
+                let qd: Vec<f64> = q.iter().zip(next).map(|(a, b)| ((b - a) * 50.0).clamp(-2.0, 2.0)).collect();
+                motion.set_qd(&scene, &state, 0, &qd).expect("velocities");
+                coming.push(timed(|| ask.approaching(&state, &motion, &policy, 1.0, |_| {})));
             }
-            times.sort_by(f64::total_cmp);
-            let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
-            let told = f64::from(told) / path.len() as f64;
-            eprintln!(
-                "{selected:>12}, {states}: {told:4.1} pairs told, {:7.1} µs median, {:7.1} µs 99 %",
-                at(0.5),
-                at(0.99)
-            );
+            let told = f64::from(told) / near.len() as f64;
+            for (name, times) in [("near", &mut near), ("approaching", &mut coming)] {
+                times.sort_by(f64::total_cmp);
+                let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+                let (median, most) = (at(0.5), at(0.99));
+                eprintln!(
+                    "{selected:>12}, {states}, {name:<11}: {told:4.1} told, {median:7.1} µs median, {most:7.1} µs 99 %"
+                );
+            }
         }
     }
+}
+
+/// Microseconds.
+fn timed(question: impl FnOnce()) -> f64 {
+    let started = Instant::now();
+    question();
+    started.elapsed().as_secs_f64() * 1e6
 }
 
 /// The robot with four boxes and one of its own links as a mesh around it.

@@ -1,4 +1,4 @@
-//! glTF 2.0, as JSON or GLB: the triangles of the scene, moved by its nodes.
+//! glTF 2.0, as JSON or GLB: the triangles of the scene, moved by its nodes; or the tree of its nodes.
 //!
 //! One entry per node with a mesh, its primitives together. Numbers are metres and the file's frame is kept: glTF
 //! says +y is up, and nothing is turned. The crate `gltf` reads and validates the JSON; the numbers are fetched by
@@ -7,6 +7,7 @@
 
 mod accessor;
 mod buffers;
+mod tree;
 
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use gltf::scene::Transform;
 use gltf::{Document, Node};
 
 use crate::mesh::{LoadedMeshes, MOST_ELEMENTS, MeshData};
+use crate::nodetree::NodeTree;
 use crate::ply::strip;
 use crate::transform::Affine;
 use crate::{FormatError, Warning, source};
@@ -29,15 +31,47 @@ const MOST_VISITS: usize = 100_000;
 /// JSON or chunks that are damaged, references to nothing, buffers that are missing or too short, extensions that
 /// compress the geometry, nodes in a circle.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+    let mut meshes = Vec::new();
+    let warnings = with_scene(bytes, file, |_, scene| {
+        for visit in std::mem::take(&mut scene.visits) {
+            if let Some(mut mesh) = visit.mesh {
+                visit.to_scene.apply(&mut mesh);
+                meshes.push(mesh);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(LoadedMeshes { meshes, warnings })
+}
+
+/// Parses a glTF or GLB file as a tree: every node of the scene with its frame, its mesh in this frame, and the
+/// translation and rotation channels of the first animation that moves it. Scale, shear and mirror go into the meshes.
+///
+/// # Errors
+/// As [`parse`], and animations whose numbers are not there.
+pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
+    let mut tree = NodeTree::new(source::stem(file));
+    tree.warnings = with_scene(bytes, file, |document, scene| tree::build(document, scene, &mut tree))?;
+    tree.check_finite(file)?;
+    Ok(tree)
+}
+
+/// Reads the document, walks its scene, hands both over, and answers with the warnings.
+fn with_scene(
+    bytes: &[u8],
+    file: &Path,
+    then: impl FnOnce(&Document, &mut Scene<'_>) -> Result<(), FormatError>,
+) -> Result<Vec<Warning>, FormatError> {
     source::check_content(bytes, file)?;
     let (json, binary) = buffers::split(bytes, file)?;
     let document = document(&json, file)?;
     refuse_compression(&document, file)?;
     let buffers = buffers::load(&document, binary, file)?;
     let reader = Reader { buffers: &buffers, file };
-    let mut scene = Scene { reader, meshes: Vec::new(), warnings: Vec::new(), elements: 0 };
+    let mut scene = Scene { reader, visits: Vec::new(), warnings: Vec::new(), elements: 0 };
     scene.walk(roots(&document))?;
-    Ok(LoadedMeshes { meshes: scene.meshes, warnings: scene.warnings })
+    then(&document, &mut scene)?;
+    Ok(scene.warnings)
 }
 
 fn document(json: &[u8], file: &Path) -> Result<Document, FormatError> {
@@ -96,47 +130,59 @@ fn roots(document: &Document) -> Vec<Node<'_>> {
 
 struct Scene<'a> {
     reader: Reader<'a>,
-    meshes: Vec<MeshData>,
+    visits: Vec<Visit>,
     warnings: Vec<Warning>,
     elements: usize,
+}
+
+/// A node as the walk comes by.
+struct Visit {
+    /// Its index in the file.
+    index: usize,
+    /// Index of the visit to its parent.
+    parent: Option<usize>,
+    name: String,
+    /// Its frame in the scene, with scale, shear and mirror.
+    to_scene: Affine,
+    /// In its own frame; `None` where there are no triangles.
+    mesh: Option<MeshData>,
 }
 
 impl Scene<'_> {
     fn walk(&mut self, roots: Vec<Node<'_>>) -> Result<(), FormatError> {
         let file = self.reader.file;
-        let mut waiting: Vec<_> = roots.into_iter().map(|n| (n, Affine::IDENTITY, 0)).rev().collect();
-        let mut visits = 0;
-        while let Some((node, parent, depth)) = waiting.pop() {
-            visits += 1;
-            if depth > DEEPEST || visits > MOST_VISITS {
+        let mut waiting: Vec<_> = roots.into_iter().map(|n| (n, Affine::IDENTITY, None, 0)).rev().collect();
+        while let Some((node, parent_to_scene, parent, depth)) = waiting.pop() {
+            if depth > DEEPEST || self.visits.len() >= MOST_VISITS {
                 let what = format!("node {}: nodes contain each other too deeply, or in a circle", node.index());
                 return Err(FormatError::new(file, None, what).hint("nodes as a tree"));
             }
-            let to_scene = parent.after(&local(&node.transform()));
+            let to_scene = parent_to_scene.after(&local(&node.transform()));
+            let mut name = node.name().map(str::to_owned);
+            let mut whole = None;
             if let Some(mesh) = node.mesh() {
-                let name = node.name().or(mesh.name()).map_or_else(|| source::stem(file), str::to_owned);
-                self.object(name, &mesh, &to_scene)?;
+                name = name.or_else(|| Some(mesh.name().map_or_else(|| source::stem(file), str::to_owned)));
+                whole = self.object(name.clone().unwrap_or_default(), &mesh)?;
                 if node.skin().is_some() && self.warnings.is_empty() {
                     self.warnings.push(Warning::new(file, None, "skinned meshes are read in their rest shape"));
                 }
             }
+            let name = name.unwrap_or_else(|| format!("node_{}", node.index()));
+            let here = self.visits.len();
+            self.visits.push(Visit { index: node.index(), parent, name, to_scene, mesh: whole });
             let first = waiting.len();
-            waiting.extend(node.children().map(|c| (c, to_scene, depth + 1)));
+            waiting.extend(node.children().map(|c| (c, to_scene, Some(here), depth + 1)));
             waiting[first..].reverse();
         }
         Ok(())
     }
 
-    fn object(&mut self, name: String, mesh: &gltf::Mesh<'_>, to_scene: &Affine) -> Result<(), FormatError> {
+    fn object(&mut self, name: String, mesh: &gltf::Mesh<'_>) -> Result<Option<MeshData>, FormatError> {
         let mut whole = MeshData { name, ..MeshData::default() };
         for primitive in mesh.primitives() {
             self.primitive(mesh, &primitive, &mut whole)?;
         }
-        if !whole.triangles.is_empty() {
-            to_scene.apply(&mut whole);
-            self.meshes.push(whole);
-        }
-        Ok(())
+        Ok((!whole.triangles.is_empty()).then_some(whole))
     }
 
     fn primitive(

@@ -2,7 +2,8 @@
 //!
 //! | file | module | notes |
 //! | --- | --- | --- |
-//! | URDF, SRDF | [`robot`], [`urdf`], [`srdf`] | lines in every message; `package://` looked for beside the file and upward |
+//! | URDF, SRDF | [`robot`], [`urdf`], [`srdf`] | lines in every message; `package://` looked for beside the file and upward; written too |
+//! | 3DS, glTF as robots | [`robot`], [`nodetree`], [`joints`] | joints from tracks or from a file |
 //! | STL | [`stl`] | binary and ASCII; written as binary |
 //! | OBJ | [`obj`] | polygons, objects, groups |
 //! | COLLADA | [`dae`] | units, up axis, nested and instanced nodes |
@@ -32,6 +33,7 @@
 pub mod dae;
 mod error;
 pub mod gltf;
+pub mod joints;
 pub mod mesh;
 pub mod nodetree;
 pub mod obj;

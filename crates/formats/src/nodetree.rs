@@ -39,7 +39,7 @@ pub struct Node {
     pub in_parent: Pose,
     /// Objects in its frame (m), any scale of the file applied.
     pub meshes: Vec<MeshData>,
-    /// How it moves, in order of time; empty where it does not. The first key is the frame at rest.
+    /// How it moves, in order of time; empty where it does not. In a 3DS file the first key is the frame at rest.
     pub track: Vec<Key>,
 }
 
@@ -145,4 +145,14 @@ pub(crate) fn rigid(map: &Affine) -> Pose {
     let column = |c: usize| Vec3::new(map.0[0][c], map.0[1][c], map.0[2][c]);
     let x = if map.is_mirror() { -column(0) } else { column(0) };
     Pose::new(Rotation::from_x_and_xy(x, column(1)).unwrap_or(Rotation::IDENTITY), column(3))
+}
+
+/// The value at a time, blended between neighbours; `None` without keys. Keys stand in order of time.
+pub(crate) fn sample<T: Copy>(keys: &[(f64, T)], time: f64, blend: impl Fn(T, T, f64) -> T) -> Option<T> {
+    let after = keys.partition_point(|(t, _)| *t < time);
+    match (after.checked_sub(1).and_then(|i| keys.get(i)), keys.get(after)) {
+        (Some((t0, a)), Some((t1, b))) => Some(blend(*a, *b, (time - t0) / (t1 - t0))),
+        (Some((_, v)), None) | (None, Some((_, v))) => Some(*v),
+        (None, None) => None,
+    }
 }

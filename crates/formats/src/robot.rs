@@ -1,7 +1,11 @@
-//! A whole robot: URDF, its meshes, and the SRDF that goes with it.
+//! A whole robot: a URDF with its meshes, or a 3DS or glTF model; and the SRDF that goes with it.
 
+mod ask;
+mod from_tree;
 mod meshes;
+mod motion;
 mod to_tree;
+mod to_urdf;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,12 +18,16 @@ use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::error::Warnings;
-use crate::mesh;
+use crate::joints;
+use crate::mesh::{self, Format};
+use crate::nodetree::NodeTree;
 use crate::urdf::{Geometry, Model, Solid};
-use crate::{FormatError, Warning, source, srdf, urdf};
+use crate::{FormatError, Warning, gltf, source, srdf, tds, urdf};
 use meshes::Meshes;
 
+pub use from_tree::MOST_LINKS;
 pub use to_tree::to_tree;
+pub use to_urdf::{UrdfExport, to_urdf, write_urdf};
 
 /// How to load a robot.
 #[derive(Debug, Clone, Default)]
@@ -28,9 +36,14 @@ pub struct LoadOptions {
     pub srdf: Option<PathBuf>,
     /// Whether to load what is only looked at.
     pub load_visuals: bool,
-    /// The unit of meshes whose format states none (STL, OBJ, PLY, OFF); the default is metres. The numbers of the
-    /// URDF itself are always metres.
+    /// The unit of a 3DS model, or of meshes whose format states none (STL, OBJ, PLY, OFF, 3DS); the default is metres.
+    /// The numbers of a URDF itself are always metres.
     pub unit: Option<LengthUnit>,
+    /// The file of joints of a 3DS or glTF model; the default is [`joints::beside`] it, where that exists.
+    pub joints: Option<PathBuf>,
+    /// More joints of such a model, as [`joints::parse_option`] reads them. For a node that the file names, too, these
+    /// count.
+    pub joint: Vec<String>,
 }
 
 /// A robot, and what its user should know.
@@ -42,14 +55,19 @@ pub struct LoadedRobot {
     pub warnings: Vec<Warning>,
 }
 
-/// Loads a URDF with its collision meshes, and as asked with its visual meshes and an SRDF.
+/// Loads a robot: a URDF with its collision meshes, or a 3DS or glTF model, told apart by content first and extension
+/// second; as asked with the visual meshes of a URDF, and an SRDF.
 ///
 /// Each object of a mesh file becomes one body. A mesh file is read once however many links use it. The unit of a
 /// COLLADA mesh is applied and its up axis is not, as in rviz and `MoveIt`.
 ///
+/// Of a 3DS or glTF model every node becomes a link. Joints are where its tracks turn or slide a node, and where
+/// [`LoadOptions::joints`] or [`LoadOptions::joint`] say so; all other nodes are fixed. Where nothing moves, a warning says
+/// what is ambiguous.
+///
 /// # Errors
-/// Whatever is wrong with the URDF or the SRDF, and every collision mesh that is missing or cannot be read; visual
-/// meshes only warn.
+/// Whatever is wrong with the model, its joints or the SRDF, and every collision mesh that is missing or cannot be read;
+/// visual meshes only warn.
 ///
 /// ```
 /// use elbowroom_formats::robot::{self, LoadOptions};
@@ -67,8 +85,80 @@ pub struct LoadedRobot {
 /// assert_eq!(loaded.robot.bodies[1].len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatError> {
-    let model = urdf::parse(&source::read(urdf_path)?, urdf_path)?;
+pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatError> {
+    let bytes = source::read(path)?;
+    let (mut robot, mut warnings) = match tree_format(&bytes, path) {
+        Some(format) => load_tree(&bytes, format, path, options)?,
+        None => load_urdf(&bytes, path, options)?,
+    };
+    if let Some(srdf_path) = &options.srdf {
+        disable_pairs(&mut robot, srdf_path, &mut warnings)?;
+    }
+    Ok(LoadedRobot { robot, warnings: warnings.finish(path) })
+}
+
+/// Whether [`load`] takes a file for a 3DS or glTF model, and for which.
+pub fn tree_format(bytes: &[u8], file: &Path) -> Option<Format> {
+    let head = bytes[..bytes.len().min(64)].trim_ascii_start();
+    if head.starts_with(b"<") {
+        return None;
+    }
+    mesh::detect(bytes, file).ok().filter(|f| matches!(f, Format::Tds | Format::Gltf))
+}
+
+/// The nodes of a 3DS or glTF model, in metres.
+///
+/// # Errors
+/// What the readers refuse.
+pub fn parse_tree(
+    bytes: &[u8],
+    format: Format,
+    file: &Path,
+    unit: Option<LengthUnit>,
+) -> Result<NodeTree, FormatError> {
+    let mut tree = if format == Format::Tds { tds::parse(bytes, file)? } else { gltf::parse_tree(bytes, file)? };
+    let Some(unit) = unit else { return Ok(tree) };
+    if format.states_its_unit() {
+        let what = format!("states its own unit; the unit {} asked for is not applied", unit.symbol());
+        tree.warnings.push(Warning::new(file, None, what));
+    } else {
+        tree.scale(unit.to_metres(1.0));
+    }
+    tree.check_finite(file)?;
+    Ok(tree)
+}
+
+fn load_tree(
+    bytes: &[u8],
+    format: Format,
+    path: &Path,
+    options: &LoadOptions,
+) -> Result<(Robot, Warnings), FormatError> {
+    let mut tree = parse_tree(bytes, format, path, options.unit)?;
+    let mut warnings = Warnings::default();
+    warnings.extend(std::mem::take(&mut tree.warnings));
+    let beside = joints::beside(path);
+    let mut specs = match &options.joints {
+        Some(file) => joints::load(file)?,
+        None if beside.is_file() => joints::load(&beside)?,
+        None => Vec::new(),
+    };
+    let more: Vec<_> = options.joint.iter().map(|text| joints::parse_option(text)).collect::<Result<_, _>>()?;
+    specs.retain(|s| !more.iter().any(|m| m.node == s.node));
+    specs.extend(more);
+    if let Some(w) = mesh::units_suspicion(tree.aabb().extent()).filter(|_| !format.states_its_unit()) {
+        warnings.push(Warning { file: path.to_owned(), ..w });
+    }
+    let robot = from_tree::robot(tree, &specs, (path, &beside), &mut warnings)?;
+    Ok((robot, warnings))
+}
+
+fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(Robot, Warnings), FormatError> {
+    if options.joints.is_some() || !options.joint.is_empty() {
+        return Err(FormatError::new(urdf_path, None, "is a URDF, which has its own joints")
+            .hint("leave the joints out, or name a 3DS or glTF model"));
+    }
+    let model = urdf::parse(bytes, urdf_path)?;
     let mut robot = Robot::new(chain(&model, urdf_path)?);
     let base = urdf_path.parent().unwrap_or(Path::new(""));
     let wanted = model.links.iter().flat_map(|l| l.collisions.iter().chain(shown(l, options)));
@@ -91,11 +181,7 @@ pub fn load(urdf_path: &Path, options: &LoadOptions) -> Result<LoadedRobot, Form
         }
     }
     loader.doubt_units(&model);
-    let mut warnings = loader.warnings;
-    if let Some(srdf_path) = &options.srdf {
-        disable_pairs(&mut robot, srdf_path, &mut warnings)?;
-    }
-    Ok(LoadedRobot { robot, warnings: warnings.finish(urdf_path) })
+    Ok((robot, loader.warnings))
 }
 
 fn shown<'a>(link: &'a urdf::Link, options: &LoadOptions) -> &'a [Solid] {

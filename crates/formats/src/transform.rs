@@ -43,6 +43,11 @@ impl Affine {
         row(0).dot(row(1).cross(row(2))) < 0.0
     }
 
+    /// The same origin, rows and columns of the rest exchanged.
+    pub(crate) fn transposed(&self) -> Self {
+        Self::rotation([0, 1, 2].map(|c| self.column(c).to_array())).moved(self.column(3))
+    }
+
     fn column(&self, c: usize) -> Vec3 {
         Vec3::from(self.0.map(|row| row[c]))
     }

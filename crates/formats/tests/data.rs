@@ -112,7 +112,7 @@ fn robots_are_complete() {
         let name = directory.file_name().to_string_lossy().into_owned();
         let path = directory.path().join(format!("{name}.urdf"));
         let srdf = Some(directory.path().join(format!("{name}.srdf"))).filter(|p| p.exists());
-        let options = LoadOptions { load_visuals: true, srdf, unit: None };
+        let options = LoadOptions { load_visuals: true, srdf, ..LoadOptions::default() };
         let loaded = robot::load(&path, &options).unwrap_or_else(|e| panic!("{e}"));
         let triangles = |bodies: &[Vec<elbowroom_scene::Body>]| -> usize {
             bodies.iter().flatten().map(|b| if let Shape::Mesh(m) = &b.shape { m.triangles().len() } else { 0 }).sum()

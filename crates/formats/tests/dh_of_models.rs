@@ -1,10 +1,13 @@
-//! Denavit-Hartenberg tables of every robot of the data, out of its model: their product is the model's forward
-//! kinematics (S4.3).
+//! Denavit-Hartenberg tables of every robot of the data, out of URDF, 3DS and glTF models: their product is the model's
+//! forward kinematics (S4.3). The 3DS and glTF models have no tracks; a file of joints, made of the URDF, names theirs.
 #![allow(clippy::print_stdout)]
 
 mod common;
 
-use elbowroom_formats::robot;
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::joints;
+use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_kinematics::dh::{DirectTable, ModifiedTable, Table};
 use elbowroom_kinematics::frames::Frames;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
@@ -78,4 +81,68 @@ fn every_urdf_has_its_tables() {
         }
     }
     assert!(robots >= 35, "{robots}");
+}
+
+#[test]
+fn derived_3ds_and_glb_models_have_the_tables_of_their_urdf() {
+    let Some(data) = common::data() else { return };
+    for name in ["comau_ns16arc", "staubli_rx160"] {
+        let urdf = chain_of(&data.join(format!("urdf/{name}/{name}.urdf")), None);
+        let side = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(side.path(), joints::to_toml(&urdf)).unwrap();
+        for kind in ["3ds", "glb"] {
+            let path = data.join(format!("mesh/derived_{name}/{name}.{kind}"));
+            let chain = chain_of(&path, Some(side.path().to_owned()));
+            assert_eq!(chain.dof(), 6, "{}", path.display());
+            check(&format!("{name}.{kind}"), &chain);
+            same_robot(&urdf, &chain);
+        }
+    }
+}
+
+fn chain_of(path: &Path, joints: Option<PathBuf>) -> Chain {
+    robot::load(path, &LoadOptions { joints, ..LoadOptions::default() }).unwrap().robot.chain
+}
+
+/// The link of the last joint by the model's table is where the URDF has it, to the single precision of the files.
+fn same_robot(urdf: &Chain, model: &Chain) {
+    let last = urdf.joints()[urdf.active_joints()[5].0].child;
+    let name = &urdf.links()[last.0];
+    let table = Table::extract(model, model.link(name).unwrap());
+    let mut state = ChainState::new(urdf);
+    for index in 0..STATES {
+        state.q.copy_from_slice(&spread(urdf, index));
+        urdf.forward(&mut state);
+        // Joints in the order of the way, whatever they are called.
+        let way: Vec<&str> = table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
+        let value = |joint: &str| state.q[way.iter().position(|w| *w == joint).unwrap()];
+        assert!(difference(&table.tip_in_root(value), &state.link_in_root(last)) < 1e-5);
+    }
+}
+
+/// The KR150 of the examples, a 3DS file, as it is and written and read again: seven local frames, base and six joints, are seven
+/// rows of the shape of the paper's table 1 (S4.4).
+#[test]
+fn the_kr150_of_the_examples_has_the_papers_shape() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/models/kr150/kr150.3ds");
+    let loaded = robot::load(&path, &LoadOptions::default()).unwrap().robot;
+    let dir = tempfile::tempdir().unwrap();
+    let tds = dir.path().join("kr150.3ds");
+    std::fs::write(&tds, elbowroom_formats::tds::write(&robot::to_tree(&loaded), &tds).unwrap()).unwrap();
+    std::fs::write(joints::beside(&tds), joints::to_toml(&loaded.chain)).unwrap();
+    for (kind, chain) in [("as it is", loaded.chain.clone()), ("written again", chain_of(&tds, None))] {
+        let last = loaded.chain.joints()[loaded.chain.active_joints()[5].0].child;
+        let tip = chain.link(&loaded.chain.links()[last.0]).unwrap();
+        let direct = DirectTable::extract(&chain, tip);
+        println!("{kind}, residual {:.1e}\n{direct}\n", direct.table.residual);
+        assert!(direct.table.residual < 1e-9);
+        let joints: Vec<&str> = direct.table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
+        assert_eq!(joints.len(), 6);
+        assert_eq!(direct.frames[1..7], joints, "base, then a row for every joint");
+        // The lengths of robots.md, wherever they are found.
+        for length in [0.75, 0.35, 1.25, 0.055, 1.1] {
+            let found = direct.table.rows.iter().flat_map(|r| [r.a, r.b, r.d]);
+            assert!(found.into_iter().any(|v| (v.abs() - length).abs() < 1e-6), "{length} is not in the table");
+        }
+    }
 }

@@ -201,7 +201,8 @@ fn robots_scale_share_and_mirror_their_meshes() {
     write("r.urdf", urdf.as_bytes());
     write("r.srdf", b"<robot name=\"r\">\n<disable_collisions link1=\"a\" link2=\"ghost\"/></robot>");
     let path = directory.path().join("r.urdf");
-    let options = LoadOptions { load_visuals: true, srdf: Some(directory.path().join("r.srdf")), unit: None };
+    let options =
+        LoadOptions { load_visuals: true, srdf: Some(directory.path().join("r.srdf")), ..LoadOptions::default() };
     let loaded = robot::load(&path, &options).unwrap();
     let meshes: Vec<_> = loaded.robot.bodies[0]
         .iter()

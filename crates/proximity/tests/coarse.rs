@@ -23,7 +23,7 @@ fn boxes_are_never_farther_than_surfaces_and_get_better_with_depth() {
     let mut r = Rng(11);
     let mut scratch = Scratch::new();
     let (mut cleared, mut sum, mut exact_sum) = ([0; 6], [0.0; 6], 0.0);
-    for _ in 0..200 {
+    for _ in 0..80 {
         let (a, b) = (lump(&mut r, 0.0002), lump(&mut r, 0.002));
         let (p, q) = (r.pose(0.2), r.pose(1.0));
         let exact = distance(&a, &p, &b, &q, &mut scratch);
@@ -81,7 +81,7 @@ fn boxes_of_a_mesh_are_never_farther_from_a_simple_shape() {
     let mut r = Rng(13);
     let mut sum = [0.0; 4];
     let mut exact_sum = 0.0;
-    for k in 0..400 {
+    for k in 0..200 {
         let a = lump(&mut r, 0.0005);
         let (b, p, q) = (r.shape(CONVEX[k % 5]), r.pose(0.3), r.pose(2.0));
         let exact = separation(&Shape::Mesh(Arc::new(a.clone())), &p, &b, &q).distance;

@@ -179,7 +179,8 @@ fn round_things_are_met_at_the_deepest_point_of_the_mesh() {
 fn simple_shapes_are_met_as_far_apart_as_they_overlap() {
     let mut r = Rng(4);
     let mut met = 0;
-    for _ in 0..3000 {
+    // The way out of two cylinders once took six seconds for one of these.
+    for _ in 0..2000 {
         let (x, y) = (CONVEX[r.below(4)], if r.below(6) == 0 { "plane" } else { CONVEX[r.below(5)] });
         let (a, b, p, q) = (r.shape(x), r.shape(y), r.pose(0.6), r.pose(0.6));
         let found = ask(&a, &p, &b, &q);
@@ -199,7 +200,7 @@ fn simple_shapes_are_met_as_far_apart_as_they_overlap() {
             assert!((normal.length() - 1.0).abs() < 1e-12 && above > 5e-6, "{x} {y} {above} {c:?}");
         }
     }
-    assert!(met > 500, "{met}");
+    assert!(met > 300, "{met}");
 }
 
 #[test]
@@ -287,7 +288,7 @@ fn at_every_level_what_is_told_free_is() {
     let mut scratch = Scratch::new();
     let levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(2), Detail::Boxes(9), Detail::Exact];
     let (mut told, kinds) = ([0; 5], ["sphere", "capsule", "cylinder", "box", "hull", "plane"]);
-    for k in 0..400 {
+    for k in 0..200 {
         let a = lump(&mut r, 0.003);
         let b = if k % 2 == 0 { lump(&mut r, 0.003) } else { r.shape(kinds[k / 2 % 6]) };
         let (p, q, limit) = (r.pose(0.3), r.pose(0.8), if k % 3 == 0 { 0.05 } else { 0.0 });
@@ -305,4 +306,30 @@ fn at_every_level_what_is_told_free_is() {
         }
     }
     assert!(told[0] > told[1] && told[1] > told[2] && told[2] >= told[3] && told[3] >= told[4], "{told:?}");
+}
+
+#[test]
+fn every_instruction_set_tells_the_same_point_of_two_meshes() {
+    use fearless_simd::Level;
+    let mut levels = vec![Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(levels[0].as_sse2().map(Level::Sse2));
+        levels.extend(levels[0].as_sse4_2().map(Level::Sse4_2));
+        levels.extend(levels[0].as_avx2().map(Level::Avx2));
+    }
+    let mut r = Rng(9);
+    let mut met = 0;
+    for _ in 0..60 {
+        let (a, b) = (lump(&mut r, 0.01), lump(&mut r, 0.01));
+        let (p, q) = (r.pose(0.2), r.pose(0.4));
+        let found = levels.iter().map(|level| {
+            let mut scratch = Scratch::with_level(*level);
+            contact_point(&a, &p, &b, &q, 0.1, &mut scratch)
+        });
+        let found: Vec<_> = found.collect();
+        met += usize::from(found[0].is_some_and(|c| c.touching));
+        assert!(found.windows(2).all(|w| w[0] == w[1]), "{found:?}");
+    }
+    assert!(met > 20, "{met}");
 }

@@ -86,8 +86,9 @@ pub struct Approach {
     pub closing_m_s: f64,
     /// Metres over that speed, seconds: right if these points meet and go on as they do. Infinite where they part.
     pub estimate_s: f64,
-    /// Proven: no contact (margin included) sooner, seconds, so long as velocities and angular velocities stay what they
-    /// are. At most the horizon asked for.
+    /// Proven: no contact (margin included) sooner, seconds, so long as the velocities of both frames' origins and their
+    /// angular velocities stay what they are. Joints at constant rates bend a link's way: [`sweep`](crate::Checker::sweep)
+    /// proves that. At most the horizon asked for.
     pub earliest_s: f64,
     /// How closely the pair was looked at.
     pub detail: Detail,

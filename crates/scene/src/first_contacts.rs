@@ -12,7 +12,7 @@ use crate::{Body, Member, Object, Robot};
 ///
 /// From one look to the next every joint goes at a constant rate, and an object along its path. A pair that was found
 /// `d` apart is not looked at again before its members can have moved by `d`; where they have, the time between the
-/// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm, and lasts longer than a
+/// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm and lasts longer than a
 /// thousandth of that time, is found.
 #[derive(Debug)]
 pub struct FirstContacts<'a> {
@@ -78,9 +78,9 @@ struct Lever {
 
 /// Beyond this (m) a lower bound is good enough.
 const NEAR: f64 = 0.05;
-/// Nearer than this (m) the search between two looks goes on by that much.
+/// The search between two looks leaves out contacts that go no deeper than this, m,
 const FINEST: f64 = 1e-5;
-/// It always goes on by this share of the time, so that it ends whatever the speeds.
+/// and those that last no longer than this share of the time, so that it ends whatever the speeds.
 const SHORTEST: f64 = 1e-3;
 
 impl<'a> FirstContacts<'a> {
@@ -189,22 +189,30 @@ impl Between<'_, '_> {
         let now = |l: &Lever| self.world.states[l.robot].q[l.joint];
         let before = |l: &Lever| self.last[l.robot][l.joint];
         let way: f64 = travel + pair.levers.iter().map(|l| l.reach * (now(l) - before(l)).abs()).sum::<f64>();
-        // Seen from now, backwards: too far apart to have touched. Without a bound only instants are looked at.
-        if gap.is_some_and(|gap| gap * 0.999 > way) || !way.is_finite() {
+        // Without a bound only instants are looked at.
+        if !way.is_finite() {
             return gap.is_none().then_some(1.0);
         }
-        let mut room = pair.clear - pair.moved(before) - (pair.travel - travel);
-        let mut at = 0.0;
-        loop {
-            at += (room.max(FINEST) / way).max(SHORTEST);
-            // False for NaN.
-            if !(at < 1.0) {
-                return gap.is_none().then_some(1.0);
-            }
-            match self.gap(pair, at) {
-                None => return Some(at),
-                Some(gap) => room = gap * 0.999,
-            }
+        let room = pair.clear - pair.moved(before) - (pair.travel - travel);
+        self.search(pair, way, (0.0, room), (1.0, gap))
+    }
+
+    /// The first contact between two fractions of the time with the gaps there; in all of it the gap changes by `way` m
+    /// at most.
+    fn search(&self, pair: &Watched, way: f64, from: (f64, f64), to: (f64, Option<f64>)) -> Option<f64> {
+        // From either end the gap lasts for a while: contact can only be in between.
+        let first = from.0 + from.1.max(0.0) / way;
+        let last = to.0 - to.1.unwrap_or(0.0) * 0.999 / way;
+        // True for NaN, too: where nothing moved.
+        if !(last - first > (2.0 * FINEST / way).max(SHORTEST)) {
+            return to.1.is_none().then_some(to.0);
+        }
+        let middle = 0.5 * (first + last);
+        match self.gap(pair, middle) {
+            None => self.search(pair, way, from, (middle, None)),
+            Some(gap) => self
+                .search(pair, way, from, (middle, Some(gap)))
+                .or_else(|| self.search(pair, way, (middle, gap * 0.999), to)),
         }
     }
 

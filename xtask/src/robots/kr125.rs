@@ -1,6 +1,6 @@
 //! An arm with the dimensions of the KUKA KR125, the robot of the paper on joint-space models; solids of our own.
 
-use super::{Joint, Link, Primitive, PrimitiveKind, Robot, Turn};
+use super::{Form, Joint, Link, Primitive, PrimitiveKind, Robot, Turn};
 use std::f64::consts::FRAC_PI_2;
 
 const ABOUT: &str = "
@@ -28,6 +28,7 @@ pub fn robot() -> Robot {
     Robot {
         name: "kr125",
         about: ABOUT,
+        form: Form::Urdf,
         links: vec![
             solid("base_link", base(), CAST),
             solid("link_1", column(), PAINT),

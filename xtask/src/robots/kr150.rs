@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use elbowroom_spatial::Vec3;
 
 use super::parts::{bolt, skin};
-use super::{Joint, Link, Robot, Turn};
+use super::{Form, Joint, Link, Robot, Turn};
 use crate::solid::outline::{Outline, rounded_rectangle, tapered_slot};
 use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, ring, upright};
 
@@ -40,6 +40,7 @@ pub fn robot() -> Robot {
     Robot {
         name: "kr150",
         about: ABOUT,
+        form: Form::Tds,
         links: vec![
             solid("base_link", base(), CAST),
             solid("link_1", carousel(), PAINT),

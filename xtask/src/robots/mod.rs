@@ -1,4 +1,4 @@
-//! Example robots of our own: figures in, URDF, SRDF and meshes out. One file per robot.
+//! Example robots of our own: figures in, URDF or 3DS, SRDF and meshes out. One file per robot.
 
 mod kr125;
 mod kr150;
@@ -7,6 +7,7 @@ mod parts;
 mod rx60b;
 mod srdf;
 pub mod tools;
+mod tree;
 mod urdf;
 
 use crate::solid::{Mesh, binary_stl};
@@ -17,12 +18,23 @@ pub struct Robot {
     pub name: &'static str,
     /// Written at the head of the URDF.
     pub about: &'static str,
+    /// In what form it is written.
+    pub form: Form,
     /// In order from the root.
     pub links: Vec<Link>,
     /// In order from the root.
     pub joints: Vec<Joint>,
     /// Pairs that are never tested, beyond neighbours: link, link, reason.
     pub disabled: Vec<(&'static str, &'static str, &'static str)>,
+}
+
+/// In what form a robot is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// URDF, and a mesh per link.
+    Urdf,
+    /// One 3DS file, and the joints' names and speeds beside it. Solids are meshes.
+    Tds,
 }
 
 /// One rigid body.
@@ -95,17 +107,19 @@ pub fn all() -> Vec<Robot> {
 }
 
 impl Robot {
-    /// URDF, SRDF and one STL per solid link; an error where a solid does not close.
+    /// The model and its SRDF; an error where a solid does not close.
     pub fn files(&self) -> Result<Vec<File>, String> {
         let name = self.name;
-        let mut files = vec![
-            (format!("{name}/{name}.urdf"), urdf::text(self).into_bytes()),
-            (format!("{name}/{name}.srdf"), srdf::text(self).into_bytes()),
-        ];
-        for link in &self.links {
-            if let Some(solid) = &link.solid {
-                solid.check().map_err(|e| format!("{name}, {}: {e}", link.name))?;
-                files.push((format!("{name}/meshes/{}.stl", link.name), binary_stl(solid)));
+        let solids = || self.links.iter().filter_map(|l| Some((l.name, l.solid.as_ref()?)));
+        for (link, solid) in solids() {
+            solid.check().map_err(|e| format!("{name}, {link}: {e}"))?;
+        }
+        let mut files = vec![(format!("{name}/{name}.srdf"), srdf::text(self).into_bytes())];
+        match self.form {
+            Form::Tds => files.extend(tree::files(self)?),
+            Form::Urdf => {
+                files.push((format!("{name}/{name}.urdf"), urdf::text(self).into_bytes()));
+                files.extend(solids().map(|(link, solid)| (format!("{name}/meshes/{link}.stl"), binary_stl(solid))));
             }
         }
         Ok(files)

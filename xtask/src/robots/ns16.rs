@@ -3,7 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 use super::parts::{bolt, bolts, motor, skin};
-use super::{Joint, Link, Robot, Turn};
+use super::{Form, Joint, Link, Robot, Turn};
 use crate::solid::outline::{Outline, circle, rounded_rectangle, tapered_slot};
 use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, ring, upright};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -28,6 +28,7 @@ pub fn robot() -> Robot {
     Robot {
         name: "ns16",
         about: ABOUT,
+        form: Form::Urdf,
         links: vec![
             solid("base_link", base(), CAST),
             solid("link_1", column(), PAINT),

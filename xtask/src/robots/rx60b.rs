@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use elbowroom_spatial::Vec3;
 
-use super::{Joint, Link, Robot, Turn};
+use super::{Form, Joint, Link, Robot, Turn};
 use crate::solid::outline::{circle, rounded_rectangle, tapered_slot};
 use crate::solid::{Mesh, along_minus_x, along_minus_y, along_y, extrude, lathe, loft, ring, upright};
 
@@ -29,6 +29,7 @@ pub fn robot() -> Robot {
     Robot {
         name: "rx60b",
         about: ABOUT,
+        form: Form::Urdf,
         links: vec![
             solid("base_link", base(), CAST),
             solid("link_1", shoulder(), PAINT),

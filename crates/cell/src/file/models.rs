@@ -8,7 +8,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_scene::Robot;
 use elbowroom_spatial::units::LengthUnit;
 
-use super::read::Value;
+use super::read::{Table, Value};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -37,25 +37,20 @@ fn folder(file: &Path) -> String {
     }
 }
 
-fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
-}
-
-pub(super) fn robot(v: &Value<'_>, srdf: Option<&Value<'_>>, warnings: &mut Vec<Warning>) -> Result<Robot> {
-    let path = path(v)?;
-    if let kind @ ("3ds" | "glb" | "gltf") = extension(&path).as_str() {
-        let what = format!("names a .{kind} file: kinematics from {kind} models come with a later version");
-        return Err(v.error(what).hint("a .urdf file, or the arm's Denavit-Hartenberg table as dh = [ … ]"));
-    }
-    let srdf = srdf.map(self::path).transpose()?;
-    let options = LoadOptions { srdf, ..LoadOptions::default() };
-    let loaded = robot_file::load(&path, &options)?;
-    warnings.extend(loaded.warnings);
+/// The robot of `model`, with what the cell file says of its SRDF, joints and unit.
+pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<Robot> {
+    let file = path(v)?;
+    let unit = t.get("unit").map(|u| super::words::mesh_unit(&u)).transpose()?;
+    let of = |key: &str| t.get(key).map(|v| path(&v)).transpose();
+    let options = LoadOptions { srdf: of("srdf")?, joints: of("joints")?, unit, ..LoadOptions::default() };
+    let loaded = robot_file::load(&file, &options)?;
     if loaded.robot.chain.dof() == 0 {
-        return Err(v
-            .error("names a model without a joint that moves")
-            .hint("a model of a robot; solid things go under [object.NAME]"));
+        let why = loaded.warnings.into_iter().find(|w| w.what.starts_with("no joint moves"));
+        let hint = why.and_then(|w| w.write_instead);
+        let hint = hint.unwrap_or_else(|| "a model of a robot; solid things go under [object.NAME]".to_owned());
+        return Err(v.error("names a model without a joint that moves").hint(hint));
     }
+    warnings.extend(loaded.warnings);
     Ok(loaded.robot)
 }
 

@@ -17,6 +17,8 @@ type Result<T> = std::result::Result<T, FormatError>;
 const KEYS: &[&str] = &[
     "model",
     "srdf",
+    "joints",
+    "unit",
     "dh",
     "links",
     "foot",
@@ -81,11 +83,11 @@ fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Rob
             if let Some(v) = t.get("links").or_else(|| t.get("foot")) {
                 return Err(v.error("goes with `dh`; a model brings its own solids").hint("leave it out"));
             }
-            models::robot(&file, t.get("srdf").as_ref(), warnings)
+            models::robot(&file, t, warnings)
         }
         (None, Some(dh)) => {
-            if let Some(srdf) = t.get("srdf") {
-                return Err(srdf.error("goes with `model`, not with `dh`").hint("leave it out"));
+            if let Some(v) = ["srdf", "joints", "unit"].iter().find_map(|key| t.get(key)) {
+                return Err(v.error("goes with `model`, not with `dh`").hint("leave it out"));
             }
             dh_robot(t, &dh, units)
         }

@@ -145,7 +145,7 @@ impl Units {
     }
 }
 
-fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {
+pub(super) fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {
     v.word(&[
         ("m", LengthUnit::Metre),
         ("mm", LengthUnit::Millimetre),

@@ -38,6 +38,10 @@ pub struct InspectOptions {
     pub srdf: Option<PathBuf>,
     /// The unit of formats that state none.
     pub unit: Option<LengthUnit>,
+    /// The file of joints of a 3DS or glTF model; default: the one beside it.
+    pub joints: Option<PathBuf>,
+    /// More joints of such a model, as on the command line.
+    pub joint: Vec<String>,
     /// The link that the DH table ends at; default: the leaf with the most independent joints above it.
     pub tip: Option<String>,
     /// Leave out what takes time: resolution levels, pairs, and what is only looked at.
@@ -101,7 +105,7 @@ pub struct Inspection {
 }
 
 impl Inspection {
-    /// Looks at a URDF or a mesh file, by content.
+    /// Looks at a URDF, a 3DS or glTF model, or a mesh file, by content.
     ///
     /// # Errors
     /// [`FormatError`] where the file, or a collision mesh it names, cannot be read; or there is no link `tip`.
@@ -110,7 +114,13 @@ impl Inspection {
     }
 
     fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
-        let load = robot::LoadOptions { srdf: options.srdf.clone(), load_visuals: !options.brief, unit: options.unit };
+        let load = robot::LoadOptions {
+            srdf: options.srdf.clone(),
+            load_visuals: !options.brief,
+            unit: options.unit,
+            joints: options.joints.clone(),
+            joint: options.joint.clone(),
+        };
         let loaded = robot::load(path, &load)?;
         let chain = &loaded.robot.chain;
         let tip = tip(chain, path, options.tip.as_deref())?;
@@ -140,7 +150,7 @@ impl Inspection {
     fn of_mesh(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
         if options.tip.is_some() || options.srdf.is_some() {
             return Err(FormatError::new(path, None, "is a mesh: it has no links for --tip or --srdf")
-                .hint("a URDF, or leave these options out"));
+                .hint("a URDF or a 3DS or glTF model, or leave these options out"));
         }
         let loaded = mesh::load(path, options.unit)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -233,15 +243,22 @@ impl Inspection {
     }
 }
 
-/// Everything but URDF: a robot description is XML whose root is `robot`, or claims to be by its name.
+/// Everything but URDF, 3DS and glTF: a robot description is XML whose root is `robot`, or claims to be by its name.
 fn is_mesh(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     if matches!(extension.as_deref(), Some("urdf" | "xacro" | "xml")) {
         return false;
     }
-    let head = std::fs::read(path).unwrap_or_default();
-    let head = String::from_utf8_lossy(&head[..head.len().min(4096)]).into_owned();
-    !(head.contains("<robot ") || head.contains("<robot>"))
+    let bytes = std::fs::read(path).unwrap_or_default();
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned();
+    !(head.contains("<robot ") || head.contains("<robot>") || is_robot_tree(&bytes, path))
+}
+
+/// Not a whole scene, which no robot is.
+fn is_robot_tree(bytes: &[u8], path: &Path) -> bool {
+    robot::tree_format(bytes, path).is_some_and(|format| {
+        robot::parse_tree(bytes, format, path, None).is_ok_and(|t| t.nodes.len() <= robot::MOST_LINKS)
+    })
 }
 
 fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, FormatError> {

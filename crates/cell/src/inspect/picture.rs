@@ -22,11 +22,14 @@ const CHORD_M: f64 = 1e-3;
 struct Painted {
     corners: [Vec3; 3],
     color: [f64; 3],
+    /// Seen through whatever stands before it on a lower layer.
+    layer: u8,
 }
 
 impl Inspection {
     /// Writes a PNG of the model from the front left and above, every joint at zero or at the limit nearest to it, each
-    /// link in a colour of its own.
+    /// link in a colour of its own. The axis of a joint is drawn through everything, in the colour of the link that it
+    /// moves and edged with black; the arrow points in its positive sense.
     ///
     /// # Errors
     /// Whatever the writer says.
@@ -55,6 +58,14 @@ impl Inspection {
                 WIDTH / 2
             )?;
         }
+        for (joint, color) in self.axes() {
+            let [r, g, b] = color.map(|c| (255.0 * c) as u8);
+            writeln!(
+                out,
+                "<p style=\"margin:2px\"><span style=\"color:rgb({r},{g},{b})\">&#9632;</span> {}</p>",
+                escape(&joint)
+            )?;
+        }
         writeln!(out, "<pre>{}</pre>", escape(&self.to_string()))?;
         out.flush()
     }
@@ -67,26 +78,94 @@ impl Inspection {
                 let (vertices, triangles) = tessellate(&body.shape, CHORD_M);
                 let place = in_world * body.in_link;
                 let corners = |t: [u32; 3]| t.map(|v| place.transform_point(vertices[v as usize]));
-                all.extend(triangles.into_iter().map(|t| Painted { corners: corners(t), color }));
+                all.extend(triangles.into_iter().map(|t| Painted { corners: corners(t), color, layer: 0 }));
             }
         }
+        self.paint_axes(&mut all);
         all
+    }
+
+    /// An arrow along the axis of every joint that moves.
+    fn paint_axes(&self, all: &mut Vec<Painted>) {
+        let Some(robot) = &self.robot else { return };
+        let state = at_rest(robot);
+        let size = Aabb::from_points(all.iter().flat_map(|p| p.corners).filter(|p| p.is_finite())).extent();
+        let size = if size.max_element() > 0.0 { size.max_element() } else { 1.0 };
+        for (i, joint) in robot.chain.joints().iter().filter(|j| j.kind.moves()).enumerate() {
+            let place = state.link_in_root(joint.child) * Pose::new(Rotation::from_z(joint.axis), Vec3::ZERO);
+            // Lengths differ, so that both of two axes on one line are seen. Black below, so that the colour is edged.
+            let length = size * (0.2 + 0.035 * (i % 3) as f64);
+            for (layer, color, edge) in [(1, [0.05; 3], 0.0), (2, color(joint.child.0), size * 0.0015)] {
+                let triangles = arrow(length, size * 0.0045, edge).into_iter();
+                let triangles = triangles.map(|t| t.map(|v| place.transform_point(v)));
+                all.extend(triangles.map(|corners| Painted { corners, color, layer }));
+            }
+        }
+    }
+
+    /// What the axes say, and the colours that they have.
+    fn axes(&self) -> Vec<(String, [f64; 3])> {
+        let Some(robot) = &self.robot else { return Vec::new() };
+        let chain = &robot.chain;
+        let of = |(joint, row): (&elbowroom_kinematics::Joint, &super::JointRow)| {
+            let [x, y, z] = joint.axis.to_array();
+            let text = format!(
+                "{} ({}) moves {} along or about [{x:.4}, {y:.4}, {z:.4}] of its frame",
+                joint.name,
+                row.kind,
+                chain.links()[joint.child.0]
+            );
+            (text, color(joint.child.0))
+        };
+        chain.joints().iter().zip(&self.joints).filter(|(j, _)| j.kind.moves()).map(of).collect()
     }
 
     /// Bodies with the pose of their frame.
     fn shown(&self) -> Vec<(&[Body], Pose)> {
         let Some(robot) = &self.robot else { return self.solids.iter().map(|s| (&s.1[..], Pose::IDENTITY)).collect() };
-        let mut state = ChainState::new(&robot.chain);
-        let bounds = robot.chain.lower().into_iter().zip(robot.chain.upper());
-        state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
-        robot.chain.forward(&mut state);
+        let state = at_rest(robot);
         (0..robot.bodies.len()).map(|l| (bodies(robot, l), state.link_in_root(LinkId(l)))).collect()
     }
+}
+
+/// Every joint at zero, or at the limit nearest to it.
+fn at_rest(robot: &Robot) -> ChainState {
+    let mut state = ChainState::new(&robot.chain);
+    let bounds = robot.chain.lower().into_iter().zip(robot.chain.upper());
+    state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
+    robot.chain.forward(&mut state);
+    state
 }
 
 /// What is looked at, or where there is nothing, what collides.
 fn bodies(robot: &Robot, link: usize) -> &[Body] {
     if robot.visuals[link].is_empty() { &robot.bodies[link] } else { &robot.visuals[link] }
+}
+
+/// An arrow along z through the origin, from -`length` to `length`, all its surfaces pulled in by `edge`.
+fn arrow(length: f64, radius: f64, edge: f64) -> Vec<[Vec3; 3]> {
+    const SEGMENTS: usize = 12;
+    let ring = |r: f64, z: f64| -> Vec<Vec3> {
+        let turn = |i: usize| std::f64::consts::TAU * i as f64 / SEGMENTS as f64;
+        (0..SEGMENTS).map(|i| Vec3::new(r * turn(i).cos(), r * turn(i).sin(), z)).collect()
+    };
+    let (head, neck) = (4.0 * radius, length - 12.0 * radius);
+    let rings = [
+        ring(0.0, edge - length),
+        ring(radius - edge, edge - length),
+        ring(radius - edge, neck + edge),
+        ring(head - 1.4 * edge, neck + edge),
+        ring(0.0, length - 3.0 * edge),
+    ];
+    let mut triangles = Vec::new();
+    for pair in rings.windows(2) {
+        for i in 0..SEGMENTS {
+            let j = (i + 1) % SEGMENTS;
+            triangles.push([pair[0][i], pair[0][j], pair[1][i]]);
+            triangles.push([pair[1][i], pair[0][j], pair[1][j]]);
+        }
+    }
+    triangles
 }
 
 /// Hues a golden angle apart: neighbours differ.
@@ -100,15 +179,17 @@ fn color(i: usize) -> [f64; 3] {
 fn draw(painted: &[Painted], turn: f64, tilt: f64) -> Vec<u8> {
     let turned =
         Rotation::from_axis_angle(Vec3::Y, tilt.to_radians()) * Rotation::from_axis_angle(Vec3::Z, turn.to_radians());
-    let seen: Vec<([Vec3; 3], [f64; 3])> = painted.iter().map(|p| (p.corners.map(|c| turned * c), p.color)).collect();
+    let seen: Vec<([Vec3; 3], [f64; 3], u8)> =
+        painted.iter().map(|p| (p.corners.map(|c| turned * c), p.color, p.layer)).collect();
     let around = Aabb::from_points(seen.iter().flat_map(|s| s.0).filter(|p| p.is_finite()));
+    let nearer = 2.0 * around.extent().x + 1.0;
     let (width, height) = (WIDTH * FINE, HEIGHT * FINE);
     let extent = around.extent();
     let scale = 0.92 * (width as f64 / extent.y.max(1e-9)).min(height as f64 / extent.z.max(1e-9));
     let middle = around.center();
     let mut depths = vec![f64::NEG_INFINITY; width * height];
     let mut colors = vec![[245.0_f64; 3]; width * height];
-    for (corners, color) in &seen {
+    for (corners, color, layer) in &seen {
         // To pixels: x to the right, y down, z towards the eye.
         let at = corners.map(|c| {
             let c = c - middle;
@@ -118,6 +199,7 @@ fn draw(painted: &[Painted], turn: f64, tilt: f64) -> Vec<u8> {
         // Both sides are lit, for a surface may be inside out.
         let light = 0.35 + 0.45 * normal.dot(Vec3::new(0.8, -0.3, 0.52)).abs() + 0.2 * normal.x.abs();
         fill(at, (width, height), |pixel, depth| {
+            let depth = depth + nearer * f64::from(*layer);
             if depth > depths[pixel] {
                 depths[pixel] = depth;
                 colors[pixel] = color.map(|c| 255.0 * (c * light).min(1.0));

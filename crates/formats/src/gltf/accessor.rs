@@ -63,6 +63,25 @@ impl Reader<'_> {
         Ok(numbers.into_iter().map(|i| i as u32).collect())
     }
 
+    /// Vectors as they are, or of integers normalized, of as many numbers each as `width`.
+    pub(super) fn vectors(
+        &self,
+        accessor: &gltf::Accessor<'_>,
+        width: usize,
+        place: &str,
+    ) -> Result<Vec<f64>, FormatError> {
+        if accessor.dimensions().multiplicity() != width {
+            let what = format!("has values of {} numbers instead of {width}", accessor.dimensions().multiplicity());
+            return Err(self.error(place, &what).hint("the animation exported again, or left out"));
+        }
+        let factor = if accessor.normalized() { normalization(accessor.data_type()) } else { 1.0 };
+        let rows: Vec<f64> = self.rows(accessor, place, width)?.into_iter().map(|n| n * factor).collect();
+        if rows.iter().any(|n| !n.is_finite()) {
+            return Err(self.error(place, "has a number that is none").hint("finite numbers; export again"));
+        }
+        Ok(rows)
+    }
+
     /// `count × width` numbers, sparse replacements applied.
     fn rows(&self, accessor: &gltf::Accessor<'_>, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
         let (count, kind) = (accessor.count(), accessor.data_type());

@@ -17,12 +17,12 @@ const STEP_RAD: f64 = FRAC_PI_3;
 /// Stands for an endless slide (m).
 const ENDLESS_M: f64 = 1.0;
 
-/// The links as nodes at zero joint values, their solids as meshes, and each joint as a track: from zero to its lower
-/// limit, to its upper limit and back, one key per second. A joint that turns endlessly makes one whole turn.
+/// The links as nodes at zero joint values, their solids as meshes, and each joint as a track: from zero to its upper
+/// limit, to its lower limit and back, one key per second. A joint that turns endlessly makes one whole turn.
 ///
-/// So the file says where the axes are and how far joints go, and
-/// [`load`](super::load) reads the same robot from it. What a tree cannot say is lost: speeds, efforts, mimics, and
-/// the exact surface of spheres, cylinders and capsules (0.1 mm).
+/// So the file says where the axes are and how far joints go, and [`load`](super::load) reads the robot from it. What
+/// a tree cannot say is lost: names, speeds and mimics of joints (but see [`joints::to_toml`](crate::joints::to_toml)),
+/// a joint's sense where it only goes below zero, and the exact surface of spheres, cylinders and capsules (0.1 mm).
 ///
 /// ```
 /// use elbowroom_formats::{robot, tds};
@@ -78,7 +78,7 @@ fn track(chain: &Chain, id: JointId, joint: &Joint) -> Vec<Key> {
         JointKind::Continuous => vec![0.0, TAU],
         JointKind::Revolute | JointKind::Prismatic => {
             let end = |x: f64| if x.is_finite() { x } else { ENDLESS_M.copysign(x) };
-            vec![0.0, end(joint.limits.lower), end(joint.limits.upper), 0.0]
+            vec![0.0, end(joint.limits.upper), end(joint.limits.lower), 0.0]
         }
     };
     let mut values = vec![0.0];

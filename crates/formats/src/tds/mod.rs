@@ -15,8 +15,9 @@
 //! Vertices stand in the file in world coordinates, as the object stood when it was saved; `4160` is the object's frame
 //! at that moment. So a vertex in the node's frame is `T(-pivot) · M⁻¹ · v`, and the node's frame in its parent's is
 //! `T(position) · R · S` of the first keys. Scale goes into the meshes, so that every frame of the tree is rigid and has
-//! its origin at the pivot. A file without any track at all, as assimp writes it, has vertices in the object's frame
-//! instead, placed by `4160`; nodes without a place of their own then stand where the nearest object below them does.
+//! its origin at the pivot. A file without any track at all is taken as assimp writes it: vertices in the object's frame
+//! instead, placed by a `4160` with rows for columns; nodes without a place of their own then stand where the nearest
+//! object below them does.
 //!
 //! There is no unit in a 3DS file: numbers are taken as metres.
 

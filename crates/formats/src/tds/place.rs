@@ -8,10 +8,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::Scene;
 use super::keyframer::{FileNode, Kind};
 use super::object::Object;
-use super::track::{FRAMES_PER_SECOND, sample};
+use super::track::FRAMES_PER_SECOND;
 use crate::error::Warnings;
 use crate::mesh::{MOST_ELEMENTS, MeshData};
-use crate::nodetree::{Key, Node, NodeTree, rigid};
+use crate::nodetree::{Key, Node, NodeTree, rigid, sample};
 use crate::transform::Affine;
 use crate::{FormatError, Warning, source};
 
@@ -26,12 +26,19 @@ pub(super) fn tree(scene: Scene, file: &Path, warnings: &mut Warnings) -> Result
     } else {
         Frames::of_tracks(&nodes, &parents, &order)
     };
+    // What hangs on a camera has its keys in a frame that looks about, which is not followed.
+    let mut looks_about = vec![false; nodes.len()];
+    for &i in &order {
+        looks_about[i] = nodes[i].kind != Kind::Object || parents[i].is_some_and(|p| looks_about[p]);
+    }
     let mut placer = Placer { objects: &objects, file, elements: 0, tree: NodeTree::new(source::stem(file)) };
     let mut index_of = HashMap::new();
     for &i in &order {
         let parent = parents[i].and_then(|p| index_of.get(&p).copied());
         let mut node = Node::new(nodes[i].shown_name(), parent, frames.in_parent(i, parents[i]));
-        node.track = frames.track(&nodes[i], parents[i]);
+        if !looks_about[i] {
+            node.track = frames.track(&nodes[i], parents[i]);
+        }
         if let Some(object) = shown[i] {
             let to_frame =
                 Affine::from(&frames.rigid[i].inverse()).after(&frames.of_vertices(i, &nodes[i], &objects[object]));
@@ -165,7 +172,8 @@ impl Frames {
         shown: &[Option<usize>],
         (file, warnings): (&Path, &mut Warnings),
     ) -> Self {
-        let own = |i: usize| shown[i].and_then(|o| objects[o].axes);
+        // Assimp writes the rows of the rotation where the format has its columns.
+        let own = |i: usize| shown[i].and_then(|o| objects[o].axes).map(|axes| axes.transposed());
         let mut nearest: Vec<Option<(usize, Affine)>> = (0..nodes.len()).map(|i| own(i).map(|a| (0, a))).collect();
         for &i in order.iter().rev() {
             if let (Some(parent), Some((far, axes))) = (parents[i], nearest[i]) {
@@ -222,7 +230,7 @@ impl Frames {
 
     /// The keys of position and rotation together; empty where there is no more than one.
     fn track(&self, node: &FileNode, parent: Option<usize>) -> Vec<Key> {
-        if self.local || node.kind != Kind::Object || node.position.len().max(node.rotation.len()) < 2 {
+        if self.local || node.position.len().max(node.rotation.len()) < 2 {
             return Vec::new();
         }
         let mut frames: Vec<f64> = node.position.iter().map(|k| k.0).chain(node.rotation.iter().map(|k| k.0)).collect();
@@ -275,7 +283,7 @@ fn looking(i: usize, nodes: &[FileNode], parents: &[Option<usize>]) -> Rotation 
     let right = Vec3::Z.cross(back).try_normalize().unwrap_or(Vec3::X);
     let roll = nodes[i].roll.first().map_or(0.0, |k| k.1.to_radians());
     let level = Rotation::from_columns(right, back.cross(right), back).unwrap_or(Rotation::IDENTITY);
-    level * Rotation::from_axis_angle(Vec3::Z, -roll)
+    level * Rotation::from_axis_angle(Vec3::Z, roll)
 }
 
 struct Placer<'a> {

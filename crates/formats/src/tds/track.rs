@@ -1,6 +1,6 @@
 //! Tracks of the keyframer: values at frames.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::PI;
 
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -10,8 +10,10 @@ use crate::FormatError;
 /// Frames per second of 3D Studio; the file does not say.
 pub(super) const FRAMES_PER_SECOND: f64 = 30.0;
 
-/// A rotation of more quarter turns than this between two keys is not followed.
-const MOST_QUARTERS: f64 = 8.0;
+/// A rotation farther than this (rad) between two keys gets keys in between: beyond half a turn its sense is lost.
+const FAR: f64 = 0.9 * PI;
+/// A rotation that would get more keys than this is not followed.
+const MOST_KEYS: f64 = 8.0;
 
 /// Values at frames, in order of the frames.
 pub(super) type Track<T> = Vec<(f64, T)>;
@@ -54,8 +56,8 @@ pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, 
     for (frame, (angle, axis)) in keys {
         let axis = axis.try_normalize().unwrap_or(Vec3::Z);
         let (before, from) = track.last().copied().map_or((frame, Rotation::IDENTITY), |(f, r)| (f, r));
-        let parts = (angle.abs() / FRAC_PI_2).ceil().max(1.0);
-        let parts = if track.is_empty() || parts > MOST_QUARTERS { 1.0 } else { parts };
+        let parts = (angle.abs() / FAR).ceil().max(1.0);
+        let parts = if track.is_empty() || parts > MOST_KEYS { 1.0 } else { parts };
         for part in 1..=parts as usize {
             let share = part as f64 / parts;
             let turned = Rotation::from_axis_angle(axis, -angle * share) * from;
@@ -63,14 +65,4 @@ pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, 
         }
     }
     Ok(track)
-}
-
-/// The value at a frame, blended between neighbours; `None` for an empty track.
-pub(super) fn sample<T: Copy>(track: &Track<T>, frame: f64, blend: impl Fn(T, T, f64) -> T) -> Option<T> {
-    let after = track.partition_point(|(f, _)| *f < frame);
-    match (after.checked_sub(1).and_then(|i| track.get(i)), track.get(after)) {
-        (Some((f0, a)), Some((f1, b))) => Some(blend(*a, *b, (frame - f0) / (f1 - f0))),
-        (Some((_, v)), None) | (None, Some((_, v))) => Some(*v),
-        (None, None) => None,
-    }
 }

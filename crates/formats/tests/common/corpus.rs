@@ -26,7 +26,11 @@ pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
         "stl" => stl::parse(bytes, &file).map(size),
         "obj" => obj::parse(bytes, &file).map(size),
         "dae" => dae::parse(bytes, &file, UpAxis::ToZ).map(size),
-        "gltf" => gltf::parse(bytes, &file).map(size),
+        "gltf" => {
+            let tree = gltf::parse_tree(bytes, &file).map(|t| tree_size(&t));
+            let meshes = gltf::parse(bytes, &file).map(size);
+            tree.and_then(|tree| Ok(tree.max(meshes?)))
+        }
         "ply" => ply::parse(bytes, &file).map(size),
         "off" => off::parse(bytes, &file).map(size),
         "3ds" => tds::parse(bytes, &file).map(|t| tree_size(&t)),
@@ -127,7 +131,10 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
 {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
 {"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0],
-"sparse":{"count":3,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":0}}}]}"#;
+"sparse":{"count":3,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":0}}},
+{"bufferView":0,"componentType":5126,"count":2,"byteOffset":8,"type":"SCALAR"}],
+"animations":[{"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}],
+"samplers":[{"input":3,"output":0,"interpolation":"LINEAR"}]}]}"#;
 const URDF: &str = r#"<?xml version="1.0"?><robot name="r" xmlns:drake="http://drake.mit.edu">
 <link name="a"><collision name="c"><origin xyz="0 0 1" rpy="0 1.5 0"/><geometry><box size="1 2 3"/></geometry></collision>
 <visual><geometry><mesh filename="package://p/a.stl" scale="1 1 -1"/></geometry></visual></link>

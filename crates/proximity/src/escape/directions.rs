@@ -23,6 +23,9 @@ const ON_SPHERE: usize = 96;
 /// How many of them are refined.
 const STARTS: usize = 4;
 
+/// Steps downhill at most.
+const MOST_STEPS: usize = 200;
+
 /// The least overlap so far.
 struct Best<F> {
     overlap: F,
@@ -77,7 +80,10 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
     /// Downhill from `d` by steps in a shrinking star.
     fn descend(&mut self, mut d: Vec3) {
         let (mut depth, mut step, mut phase) = (self.offer(d), 0.1, 0.0);
-        while step > 1e-8 {
+        for _ in 0..MOST_STEPS {
+            if step <= 1e-8 {
+                break;
+            }
             let (x, y) = (d.any_perpendicular(), d.cross(d.any_perpendicular()));
             let mut next = (depth, d);
             for k in 0..6 {
@@ -86,7 +92,8 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
                 let there = self.offer(turned);
                 next = if there < next.0 { (there, turned) } else { next };
             }
-            step *= if next.0 < depth { 1.2 } else { 0.5 };
+            // What rounding gains is no reason for larger steps: it would go on for seconds.
+            step *= if next.0 < depth - 1e-14 * depth.abs() { 1.2 } else { 0.5 };
             phase += 0.4;
             (depth, d) = next;
         }

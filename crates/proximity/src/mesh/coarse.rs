@@ -106,15 +106,9 @@ impl Coarse {
 }
 
 /// The pair of boxes that looks nearest; no farther than `radius`, units of A.
-fn descend(
-    a: &Tree,
-    b: &Tree,
-    pairing: &Pairing,
-    depth: u8,
-    radius: f64,
-    Scratch { stack, visits, .. }: &mut Scratch,
-) -> Option<Entry> {
-    let level = super::scratch::detected_level();
+fn descend(a: &Tree, b: &Tree, pairing: &Pairing, depth: u8, radius: f64, scratch: &mut Scratch) -> Option<Entry> {
+    let level = scratch.level();
+    let Scratch { stack, visits, .. } = scratch;
     let mut limit = Limit::new(radius, pairing);
     limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
     let root = Entry::root(a, b);

@@ -48,26 +48,38 @@ impl<'s> Core<'s> {
         mut found: impl FnMut(Approach),
     ) {
         let scene = self.scene;
-        let of = |placed: Placed<'s>| {
-            let motion = motion.of(scene, state, placed.model.member).unwrap_or(Motion::REST);
-            Moving { placed, motion }
-        };
-        // No two members come nearer in the time in which what meets is told.
-        let speeds = (0..scene.models.len()).map(|model| lasting_speed(&of(Placed::new(scene, state, model))));
-        let fastest = speeds.fold(0.0, |most: f64, v| if v > most || v.is_nan() { v } else { most });
-        let reach = or_everything(policy.within_m).max(or_everything(2.0 * fastest * policy.exact_s));
-        let terms = Terms { policy, horizon_s: horizon_s.max(policy.exact_s), reach };
-        self.collect(list, state, reach, false);
+        // Every member's motion once, though it is in many pairs.
+        let mut moving = std::mem::take(&mut self.moving);
+        moving.clear();
+        moving.extend(scene.models.iter().enumerate().map(|(i, m)| {
+            let motion = motion.of(scene, state, m.member).unwrap_or(Motion::REST);
+            (motion, lasting_speed(&Moving { placed: Placed::new(scene, state, i), motion }))
+        }));
+        let fastest = moving.iter().fold(0.0, |most: f64, m| if m.1 > most || m.1.is_nan() { m.1 } else { most });
+        let within = or_everything(policy.within_m);
+        let soon = |speed: f64| within.max(or_everything(speed * policy.exact_s));
+        self.collect(list, state, soon(2.0 * fastest), false);
         self.sort();
         for i in 0..self.candidates.len() {
             let Candidate { index, .. } = self.candidates[i];
             let pair = &mut list.pairs[index as usize];
-            let sides = self.sides(pair, state).map(of);
+            let [(motion_a, speed_a), (motion_b, speed_b)] = [pair.a, pair.b].map(|m| moving[m as usize]);
+            // Neither near nor, at these speeds, soon.
+            let reach = soon(speed_a + speed_b);
+            let apart = f64::from(state.boxes[pair.a as usize].gap(&state.boxes[pair.b as usize]));
+            if apart - pair.margin > reach {
+                self.cleared(Level::L2);
+                continue;
+            }
+            let terms = Terms { policy, horizon_s: horizon_s.max(policy.exact_s), reach };
+            let [a, b] = self.sides(pair, state);
+            let sides = [Moving { placed: a, motion: motion_a }, Moving { placed: b, motion: motion_b }];
             let proven = (self.known(pair, state) - pair.margin).max(0.0);
             if let Some(f) = self.approach(pair, &sides, proven, &terms) {
                 found(tell(&sides, &f, horizon_s));
             }
         }
+        self.moving = moving;
         self.narrow.counts.answered.add(self.deepest, 1);
     }
 
@@ -116,10 +128,14 @@ impl<'s> Core<'s> {
     fn out(&mut self, found: &Found, level: Level, terms: &Terms) -> bool {
         let out = found.lower > or_everything(terms.policy.within_m) && found.earliest_s >= terms.policy.exact_s;
         if out {
-            self.narrow.counts.pairs_cleared.add(level, 1);
-            self.deepen(level);
+            self.cleared(level);
         }
         out
+    }
+
+    fn cleared(&mut self, level: Level) {
+        self.narrow.counts.pairs_cleared.add(level, 1);
+        self.deepen(level);
     }
 }
 

@@ -14,6 +14,7 @@ pub use answer::{CollisionPoint, Contact, Distance};
 pub use between::Between;
 
 use elbowroom_proximity::contact::Detail;
+use elbowroom_spatial::Motion;
 
 use crate::sweep::Sweeper;
 use crate::{
@@ -81,6 +82,8 @@ pub(crate) struct Core<'s> {
     pub options: Options,
     pub narrow: Narrow,
     candidates: Vec<Candidate>,
+    /// Per model: how it moves, and a speed (m/s) that none of its points exceeds. Memory of one question.
+    moving: Vec<(Motion, f64)>,
     /// The nearest pair is no farther, metres.
     guessed: f64,
     /// The finest level that the present answer has needed.
@@ -102,7 +105,8 @@ impl<'s> Checker<'s> {
         let narrow = Narrow::new(scene);
         // Models that are made when first asked for are asked for now.
         scene.models.iter().for_each(|m| _ = m.at(options.level));
-        let core = Core { scene, options, narrow, candidates: Vec::new(), guessed: f64::INFINITY, deepest: Level::L1 };
+        let (candidates, moving) = (Vec::new(), Vec::with_capacity(scene.models.len()));
+        let core = Core { scene, options, narrow, candidates, moving, guessed: f64::INFINITY, deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new(), sweeper: None };
         checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
         checker

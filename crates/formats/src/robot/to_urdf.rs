@@ -1,0 +1,232 @@
+//! A robot as a URDF with STL meshes.
+
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+
+use elbowroom_kinematics::{Chain, Joint, JointKind};
+use elbowroom_proximity::{Shape, tessellate::tessellate};
+use elbowroom_scene::{Body, Robot};
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::mesh::MeshData;
+use crate::{FormatError, stl};
+
+/// Stands for an endless slide (m): a URDF needs an end.
+const ENDLESS_M: f64 = 1e6;
+
+/// A URDF and what it names.
+#[derive(Debug, Clone, Default)]
+pub struct UrdfExport {
+    /// The text of the URDF.
+    pub urdf: String,
+    /// The text of an SRDF with the disabled pairs; `None` where there are none.
+    pub srdf: Option<String>,
+    /// Mesh files, by their names relative to the URDF.
+    pub meshes: Vec<(String, MeshData)>,
+}
+
+/// Writes a robot as a URDF: links, joints, limits, mimics, and solids as exact primitives or as meshes of triangles, for
+/// collision and to look at. A capsule becomes a cylinder and two spheres, which every URDF reader knows. `name` is the
+/// robot's.
+///
+/// ```
+/// use elbowroom_formats::robot;
+/// use elbowroom_kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
+/// use elbowroom_scene::Robot;
+/// let row = ClassicalRow {
+///     joint: "turn".into(), kind: JointKind::Revolute, a: 0.3, alpha: 0.0, d: 0.5, theta: 0.0,
+///     limits: Limits::symmetric(2.5),
+/// };
+/// let export = robot::to_urdf(&Robot::new(Chain::from_dh("one", &[row])?), "one");
+/// let model = elbowroom_formats::urdf::parse(export.urdf.as_bytes(), "one.urdf".as_ref())?;
+/// assert_eq!(model.joints[0].limits.upper, 2.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn to_urdf(robot: &Robot, name: &str) -> UrdfExport {
+    let mut export = UrdfExport { srdf: srdf(robot, name), ..UrdfExport::default() };
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    let _ = urdf(robot, name, &mut out, &mut export.meshes);
+    export.urdf = out;
+    export
+}
+
+/// Writes a robot as `DIR/NAME.urdf` with its meshes in `DIR/meshes`, and `DIR/NAME.srdf` where pairs are disabled; the
+/// answer is the files, the URDF first.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>, FormatError> {
+    let export = to_urdf(robot, name);
+    let cannot = |path: &Path| {
+        let path = path.to_owned();
+        move |e: std::io::Error| {
+            FormatError::new(&path, None, format!("cannot be written: {e}")).hint("a folder that you may write to")
+        }
+    };
+    std::fs::create_dir_all(dir.join("meshes")).map_err(cannot(dir))?;
+    let mut files = vec![dir.join(format!("{name}.urdf"))];
+    std::fs::write(&files[0], &export.urdf).map_err(cannot(&files[0]))?;
+    if let Some(srdf) = &export.srdf {
+        let path = dir.join(format!("{name}.srdf"));
+        std::fs::write(&path, srdf).map_err(cannot(&path))?;
+        files.push(path);
+    }
+    for (file, mesh) in &export.meshes {
+        let path = dir.join(file);
+        let mut bytes = Vec::with_capacity(84 + 50 * mesh.triangles.len());
+        stl::write_binary(&mut bytes, std::slice::from_ref(mesh)).map_err(cannot(&path))?;
+        std::fs::write(&path, bytes).map_err(cannot(&path))?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, MeshData)>) -> fmt::Result {
+    let chain = &robot.chain;
+    writeln!(out, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(name))?;
+    for (i, link) in chain.links().iter().enumerate() {
+        let collisions = solids(link, "", i, &robot.bodies[i], meshes);
+        let visuals = match &robot.visuals[i][..] {
+            [] => collisions.clone(),
+            visuals => solids(link, "visual_", i, visuals, meshes),
+        };
+        if collisions.is_empty() && visuals.is_empty() {
+            writeln!(out, "  <link name=\"{}\"/>", escaped(link))?;
+            continue;
+        }
+        writeln!(out, "  <link name=\"{}\">", escaped(link))?;
+        for (element, solids) in [("visual", &visuals), ("collision", &collisions)] {
+            for Solid { name, in_link, geometry } in solids {
+                writeln!(
+                    out,
+                    "    <{element} name=\"{}\">{}<geometry>{geometry}</geometry></{element}>",
+                    escaped(name),
+                    origin(in_link)
+                )?;
+            }
+        }
+        writeln!(out, "  </link>")?;
+    }
+    for joint in chain.joints() {
+        joint_element(chain, joint, out)?;
+    }
+    writeln!(out, "</robot>")
+}
+
+/// One `<collision>` or `<visual>`.
+#[derive(Clone)]
+struct Solid {
+    name: String,
+    in_link: Pose,
+    geometry: String,
+}
+
+fn solids(link: &str, prefix: &str, index: usize, bodies: &[Body], meshes: &mut Vec<(String, MeshData)>) -> Vec<Solid> {
+    let mut solids = Vec::new();
+    for (b, body) in bodies.iter().enumerate() {
+        let mut solid =
+            |in_link: Pose, geometry: String| solids.push(Solid { name: body.name.clone(), in_link, geometry });
+        match &body.shape {
+            Shape::Cuboid(c) => {
+                let [x, y, z] = (c.half_extents * 2.0).to_array();
+                solid(body.in_link, format!("<box size=\"{x:?} {y:?} {z:?}\"/>"));
+            }
+            Shape::Sphere(s) => solid(body.in_link, sphere(s.radius)),
+            Shape::Cylinder(c) => solid(body.in_link, cylinder(c.radius, c.half_length)),
+            Shape::Capsule(c) => {
+                solid(body.in_link, cylinder(c.radius, c.half_length));
+                for z in [c.half_length, -c.half_length] {
+                    solid(body.in_link * Pose::from_translation(Vec3::Z * z), sphere(c.radius));
+                }
+            }
+            // No link of a robot is endless; a patch would be a lie.
+            Shape::HalfSpace(_) => {}
+            Shape::Hull(_) | Shape::Mesh(_) => {
+                let (vertices, triangles) = tessellate(&body.shape, 0.0);
+                let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+                let link: String = link.chars().map(plain).take(80).collect();
+                let file = format!(
+                    "meshes/{index:02}_{prefix}{link}{}.stl",
+                    if b == 0 { String::new() } else { format!("_{}", b + 1) }
+                );
+                solid(body.in_link, format!("<mesh filename=\"{file}\"/>"));
+                meshes.push((file, MeshData { name: body.name.clone(), vertices, triangles }));
+            }
+        }
+    }
+    solids
+}
+
+fn sphere(radius: f64) -> String {
+    format!("<sphere radius=\"{radius:?}\"/>")
+}
+
+fn cylinder(radius: f64, half_length: f64) -> String {
+    format!("<cylinder radius=\"{radius:?}\" length=\"{:?}\"/>", 2.0 * half_length)
+}
+
+fn joint_element(chain: &Chain, joint: &Joint, out: &mut String) -> fmt::Result {
+    let kind = match joint.kind {
+        JointKind::Fixed => "fixed",
+        JointKind::Revolute => "revolute",
+        JointKind::Continuous => "continuous",
+        JointKind::Prismatic => "prismatic",
+    };
+    let link = |id: elbowroom_kinematics::LinkId| escaped(&chain.links()[id.0]);
+    writeln!(out, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name))?;
+    writeln!(out, "    <parent link=\"{}\"/><child link=\"{}\"/>", link(joint.parent), link(joint.child))?;
+    writeln!(out, "    {}", origin(&joint.origin))?;
+    if joint.kind.moves() {
+        let [x, y, z] = joint.axis.to_array();
+        writeln!(out, "    <axis xyz=\"{x:?} {y:?} {z:?}\"/>")?;
+        let limits = &joint.limits;
+        write!(out, "    <limit")?;
+        if joint.kind != JointKind::Continuous {
+            let end = |x: f64| x.clamp(-ENDLESS_M, ENDLESS_M);
+            write!(out, " lower=\"{:?}\" upper=\"{:?}\"", end(limits.lower), end(limits.upper))?;
+        }
+        // 0 means unknown: readers want the attributes.
+        let (effort, velocity) = (limits.effort.unwrap_or(0.0), limits.velocity.unwrap_or(0.0));
+        write!(out, " effort=\"{effort:?}\" velocity=\"{velocity:?}\"")?;
+        if let Some(acceleration) = limits.acceleration {
+            write!(out, " acceleration=\"{acceleration:?}\"")?;
+        }
+        writeln!(out, "/>")?;
+        if let Some(mimic) = joint.mimic {
+            let name = escaped(&chain.joints()[mimic.joint.0].name);
+            let (multiplier, offset) = (mimic.multiplier, mimic.offset);
+            writeln!(out, "    <mimic joint=\"{name}\" multiplier=\"{multiplier:?}\" offset=\"{offset:?}\"/>")?;
+        }
+    }
+    writeln!(out, "  </joint>")
+}
+
+fn origin(pose: &Pose) -> String {
+    let ([x, y, z], [roll, pitch, yaw]) = (pose.translation.to_array(), pose.rotation.to_rpy());
+    format!("<origin xyz=\"{x:?} {y:?} {z:?}\" rpy=\"{roll:?} {pitch:?} {yaw:?}\"/>")
+}
+
+fn srdf(robot: &Robot, name: &str) -> Option<String> {
+    if robot.disabled_pairs.is_empty() {
+        return None;
+    }
+    let links = robot.chain.links();
+    let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name));
+    for (a, b, reason) in &robot.disabled_pairs {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            out,
+            "  <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"{}\"/>",
+            escaped(&links[a.0]),
+            escaped(&links[b.0]),
+            escaped(reason)
+        );
+    }
+    out.push_str("</robot>\n");
+    Some(out)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
