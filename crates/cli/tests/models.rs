@@ -68,6 +68,25 @@ fn a_model_that_nothing_moves_is_inspected_and_asks_and_options_move_it() {
 }
 
 #[test]
+fn a_cell_runs_with_the_3ds_model_as_with_the_urdf() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    elbowroom(here, &["convert", &ns16(), "--out", "out", "--to", "3ds"]).expect(0);
+    let run = |model: &str| {
+        let cell = format!(
+            "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.arm]\nmodel = \"{model}\"\n\
+             start = [0, 0, 30, 0, 20, 0]\n[program.arm]\n\
+             steps = [{{ move = \"joint\", to = [40, 10, 30, 0, 20, 0], speed = 50 }}]\n"
+        );
+        std::fs::write(here.join("cell.toml"), cell).unwrap();
+        elbowroom(here, &["run", "cell.toml", "--json"]).expect(0).json()
+    };
+    let (tds, urdf) = (run("out/ns16.3ds"), run(&ns16()));
+    assert_eq!(tds["robots"][0]["finished"], true);
+    assert_eq!((&tds["duration_s"], &tds["ticks"]), (&urdf["duration_s"], &urdf["ticks"]));
+}
+
+#[test]
 fn pictures_show_axes_and_the_page_names_them() {
     let dir = tempfile::tempdir().unwrap();
     elbowroom(dir.path(), &["inspect", &ns16(), "--brief", "--picture", "a.html"]).expect(0);
