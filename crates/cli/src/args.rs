@@ -74,6 +74,7 @@ pub(crate) struct RulesArgs {
   elbowroom run cell.toml --out out           and trace.csv, events.csv, report.html in out/
   elbowroom run cell.toml --out out --compare the report shows the run without the monitor beside it
   elbowroom run cell.toml --json | jq .regions")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag that is typed
 pub(crate) struct RunArgs {
     /// The cell file (docs/cell-file.md has every key)
     pub(crate) cell: PathBuf,

@@ -79,23 +79,17 @@ fn read(path: &Path) -> Result<Rules, Failure> {
 
 fn table(rules: &Rules) -> String {
     let count = rules.controller().rules().len();
-    let mut text =
-        format!("{count} rules. Size of the correction (%) and its direction (deg; 0: straight away, 90: aside)\n\n");
-    text += "  speed     distance (m)\n   (m/s) ";
-    DISTANCES_M.iter().for_each(|d| text += &format!("{d:>9.2}"));
-    text.push('\n');
-    for speed in SPEEDS_M_S {
-        text += &format!("{speed:8.2} ");
-        for distance in DISTANCES_M {
-            let c = rules.correction(distance, speed);
-            let cell = if c.size > 0.0 {
-                format!("{:.0}/{:.0}", 100.0 * c.size, c.direction_rad.to_degrees())
-            } else {
-                "-".into()
-            };
-            text += &format!("{cell:>9}");
-        }
-        text.push('\n');
-    }
-    text
+    let head = format!("{count} rules. Size of the correction (%) / its direction (deg; 0: straight away, 90: aside)");
+    let distances: String = DISTANCES_M.iter().map(|d| format!("{d:>9.2}")).collect();
+    let row = |speed: &f64| {
+        let cells: String = DISTANCES_M.iter().map(|d| format!("{:>9}", cell(rules, *d, *speed))).collect();
+        format!("{speed:8.2} {cells}\n")
+    };
+    let rows: String = SPEEDS_M_S.iter().map(row).collect();
+    format!("{head}\n\n  speed     distance (m)\n   (m/s) {distances}\n{rows}")
+}
+
+fn cell(rules: &Rules, distance_m: f64, speed_m_s: f64) -> String {
+    let c = rules.correction(distance_m, speed_m_s);
+    if c.size > 0.0 { format!("{:.0}/{:.0}", 100.0 * c.size, c.direction_rad.to_degrees()) } else { "-".into() }
 }
