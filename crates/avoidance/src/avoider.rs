@@ -10,7 +10,9 @@ use crate::calm::Calm;
 use crate::joint::{self, JointLimit};
 use crate::levers::Levers;
 use crate::sense::Senses;
-use crate::{Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, Task, VelocityBounds};
+use crate::{
+    Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, Task, Threat, VelocityBounds,
+};
 
 /// Below this override nothing is commanded but a stop.
 const NO_OVERRIDE: f64 = 1e-6;
@@ -161,7 +163,7 @@ pub struct Advice {
     pub governed_by: Option<usize>,
     /// Off the path by so many seconds of joint motion at full speed.
     pub astray_s: f64,
-    /// The sweep found that the command would have hit something; it was replaced by braking.
+    /// A sweep found that the command, or a stop after it, would have hit something; it was replaced by braking.
     pub braked: bool,
     /// A proven way is wanted ([`Avoider::plan_to`]): off its path the robot stands and nothing comes, or it has not got on
     /// for the time of patience because of what stands in its way.
@@ -302,11 +304,24 @@ impl<'s> Avoider<'s> {
         let sensed = Instant::now();
         let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
         joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
-        let (reaction, exactly) = self.correct(dt, reference, allowed);
+        let mode = self.mode(reference);
+        let (reaction, mut exactly) = self.correct(dt, reference, allowed, mode);
         let corrected = Instant::now();
-        let braked = self.check(dt, around);
+        let mut braked = false;
+        let proven = exactly || (mode == Mode::Way && !self.way.is_empty());
+        if !proven && !self.can_stop(dt, around) {
+            braked = true;
+            if mode == Mode::Path {
+                // The path is known to be free, and is slowed down on.
+                self.along_path(dt, reference);
+                exactly = true;
+            } else {
+                brake(&self.limits, &self.qd, dt, &mut self.next);
+            }
+        } else if !exactly {
+            braked = self.check(dt, around);
+        }
         let checked = Instant::now();
-        let exactly = exactly && !braked;
         self.command(dt, exactly.then_some(reference.q));
         let times = TickTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
         Ok(self.advice(dt, reference, allowed, Advice { reaction, braked, times, ..Advice::default() }))
@@ -350,8 +365,7 @@ impl<'s> Avoider<'s> {
     }
 
     /// Fills `next` with the velocity to command; true where it is exactly the path's.
-    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64) -> (Reaction, bool) {
-        let mode = self.mode(reference);
+    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) -> (Reaction, bool) {
         self.want(dt, reference, allowed, mode);
         if allowed == 0.0 {
             self.intent.fill(0.0);
@@ -467,9 +481,10 @@ impl<'s> Avoider<'s> {
 
     /// No collision falls between two commands: replaces `next` by braking where that is hit later.
     fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
-        let Some(hit) = self.hit(dt, around, false) else { return false };
+        let loose = |t: &Threat| matches!(t.other, Other::Loose { .. });
+        let Some(hit) = self.hit(dt, dt, around, false, loose) else { return false };
         brake(&self.limits, &self.qd, dt, &mut self.braked);
-        let braked_hit = self.hit(dt, around, true).unwrap_or(f64::INFINITY);
+        let braked_hit = self.hit(dt, dt, around, true, loose).unwrap_or(f64::INFINITY);
         if braked_hit > hit {
             self.next.copy_from_slice(&self.braked);
             return true;
@@ -477,22 +492,40 @@ impl<'s> Avoider<'s> {
         false
     }
 
-    /// When the command (or the braking) first hits something, as a share of the tick. Only pairs that can close in this
-    /// time are swept.
-    fn hit(&mut self, dt: f64, around: &Around<'_>, braking: bool) -> Option<f64> {
+    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command
+    /// does, there is always a stop that does: that of the command before.
+    fn can_stop(&mut self, dt: f64, around: &Around<'_>) -> bool {
+        let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
+        // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
+        let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
+        self.hit(dt, ahead_s, around, false, |t| !matches!(t.other, Other::Loose { .. }) && apart(t)).is_none()
+    }
+
+    /// When the command (or the braking), held for `ahead_s` seconds, first hits any of the chosen threats, as a share of that
+    /// time. Only pairs that can close in it are swept.
+    fn hit(
+        &mut self,
+        dt: f64,
+        ahead_s: f64,
+        around: &Around<'_>,
+        braking: bool,
+        chosen: impl Fn(&Threat) -> bool,
+    ) -> Option<f64> {
         let velocity = if braking { &self.braked } else { &self.next };
-        self.wanted.iter_mut().zip(&self.q).zip(velocity).for_each(|((to, q), v)| *to = q + v * dt);
+        for (j, (to, q)) in self.wanted.iter_mut().zip(&self.q).enumerate() {
+            *to = (q + velocity[j] * ahead_s).clamp(self.limits[j].lower, self.limits[j].upper);
+        }
         let Senses { robot, checker, state, threats, members, .. } = &mut self.senses;
         let own = Move::Robot { robot: *robot, to: &self.wanted };
         let mut first: Option<f64> = None;
-        for (threat, (a, b)) in threats.iter().zip(members.iter()) {
+        for (threat, (a, b)) in threats.iter().zip(members.iter()).filter(|(t, _)| chosen(t)) {
             let theirs = 2.0 * threat.velocity().length();
-            if threat.distance_m > self.levers.closing(threat, velocity, dt) + theirs * dt {
+            if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
                 continue;
             }
             let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
             let path =
-                seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, dt)));
+                seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, ahead_s)));
             let mut pair = checker.between((*a).into(), (*b).into());
             let answer = match &path {
                 Some((object, path)) => {
@@ -542,7 +575,7 @@ impl<'s> Avoider<'s> {
             0.0
         };
         advice.wants_way = self.way.is_empty() && (self.lost_s > 0.0 && fastest < STANDS || self.stuck());
-        advice.rate = self.rate(reference, advice.astray_s);
+        advice.rate = if advice.braked && self.following { 0.0 } else { self.rate(reference, advice.astray_s) };
         advice.doing = if allowed == 0.0 {
             Doing::Halted
         } else if held && fastest < STANDS && self.standing_s > 0.1 {
@@ -561,7 +594,7 @@ impl<'s> Avoider<'s> {
 
     /// No headway for long, and what is in the way does not move.
     fn stuck(&self) -> bool {
-        let moves = |t: &crate::Threat| t.velocity().length() > OBSTACLE_STANDS_M_S;
+        let moves = |t: &Threat| t.velocity().length() > OBSTACLE_STANDS_M_S;
         self.standing_s >= self.settings.patience_s && !self.senses.threats.iter().any(moves)
     }
 
@@ -608,11 +641,16 @@ impl<'s> Avoider<'s> {
     }
 }
 
-/// Slower by as much as a stop allows.
+/// Seconds that a stop takes from these velocities.
+fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
+    qd.iter().zip(limits).map(|(v, l)| v.abs() / l.stop).fold(0.0, f64::max)
+}
+
+/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free.
 fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
-    for ((out, v), limit) in out.iter_mut().zip(qd).zip(limits) {
-        *out = v.signum() * (v.abs() - limit.stop * dt).max(0.0);
-    }
+    let stop_s = stop_s(limits, qd);
+    let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
+    out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
 }
 
 /// Seconds of joint motion at full speed between two configurations.

@@ -17,7 +17,7 @@ use crate::side::{Coming, Sides};
 use crate::{Other, Rules, Threat};
 
 /// Threats that are looked at: the nearest ones.
-pub(crate) const MOST_THREATS: usize = 24;
+pub(crate) const MOST_THREATS: usize = 32;
 /// Weight of an evasion of size 1 beside the task's 1.
 const EVADE: f64 = 100.0;
 /// Weight of what may not be: a wanted full speed pushes through by a millionth of the evasion speed.
@@ -140,7 +140,7 @@ impl Reflex {
     }
 
     /// Turns the wanted joint velocity into one that evades, in `out`. `state` holds the poses of the links at this moment;
-    /// of more than 24 threats the first 24 count, so they should come nearest first.
+    /// of more than 32 threats the first 32 count, so they should come nearest first.
     pub fn react(
         &mut self,
         chain: &Chain,
