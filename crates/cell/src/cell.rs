@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{Laws, Region, Volume, VolumeModel, arm_volumes};
@@ -39,12 +40,27 @@ pub struct Cell {
     pub laws: CellLaws,
     /// One per robot; `None` for a robot that stands at its start.
     pub programs: Vec<Option<Program>>,
+    /// One per robot; `None` for a robot that does not evade.
+    pub avoidance: Vec<Option<AvoidanceSpec>>,
     /// Joint-space maps, checked but used by later verbs.
     pub maps: Vec<MapSpec>,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// What a user should know about the file, none of it fatal.
     pub warnings: Vec<Warning>,
+}
+
+/// How a robot evades what moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AvoidanceSpec {
+    /// How hard and where to.
+    pub rules: Rules,
+    /// Speeds, distances and times.
+    pub settings: AvoiderSettings,
+    /// Indices of the objects that it sees coming; all others are where its programs know them to be.
+    pub objects: Vec<usize>,
+    /// Whether another way is planned where what is in the way stands.
+    pub replan: bool,
 }
 
 /// The units of a cell file.

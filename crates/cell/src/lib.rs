@@ -45,13 +45,14 @@ mod summary;
 pub mod watch;
 
 pub use cell::{
-    Action, Cell, CellLaws, CellRegion, CellRobot, Encoder, Follow, JointLimits, MapSpec, Program, ProgramBody, Step,
-    Target, TrajectoryRow, Travel, Units,
+    Action, AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Encoder, Follow, JointLimits, MapSpec, Program,
+    ProgramBody, Step, Target, TrajectoryRow, Travel, Units,
 };
 pub use file::{CellFile, NumberTable};
 pub use mover::{Drive, Leg, Mover, Repeat, Way};
 pub use recording::{
-    Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, Span, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack,
+    Sample, Span, TickTimes,
 };
 pub use run::{RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

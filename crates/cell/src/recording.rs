@@ -1,5 +1,7 @@
 //! What a run leaves behind: read by the report and the CSV writers.
 
+use elbowroom_avoidance::Doing;
+use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_monitor::{Guards, Reason};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -46,6 +48,36 @@ pub struct RobotTrack {
     pub min_override: f64,
     /// First contact of each pair that touched.
     pub collisions: Vec<Collision>,
+    /// How it evaded; `None` for a robot that does not.
+    pub avoidance: Option<AvoidanceTrack>,
+}
+
+/// What avoidance did to one robot.
+#[derive(Debug, Clone, Default)]
+pub struct AvoidanceTrack {
+    /// One per tick, as the samples are.
+    pub samples: Vec<AvoidanceSample>,
+    /// Wall-clock time of its steps: sense, correct, check and command.
+    pub step_ns: TickTimes,
+    /// Ways that were planned where it did not get on, each with the time it took, s; `None` where none was found.
+    pub plans: Vec<(f64, Option<f64>)>,
+    /// Its rules: one surface per output.
+    pub surfaces: Vec<Surface>,
+}
+
+/// Avoidance at one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoidanceSample {
+    /// What the robot was doing.
+    pub doing: Doing,
+    /// Least distance to anything near, m; infinite where nothing is.
+    pub nearest_m: f64,
+    /// Size of the correction that the rules asked for, 0..1.
+    pub size: f64,
+    /// Off its path by so many seconds of joint motion at full speed.
+    pub astray_s: f64,
+    /// How fast the path was allowed to go on, 0..1.
+    pub rate: f64,
 }
 
 /// The robot at one tick.

@@ -1,8 +1,9 @@
 //! A run in one JSON document: what `elbowroom run --json` prints.
 
+use elbowroom_avoidance::Doing;
 use serde::Serialize;
 
-use crate::Recording;
+use crate::{AvoidanceSample, AvoidanceTrack, Recording};
 
 /// The figures of a run, in SI.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,6 +48,45 @@ pub struct RobotSummary {
     pub min_override: f64,
     /// First contact of each pair.
     pub collisions: Vec<CollisionSummary>,
+    /// How it evaded; null for a robot that does not.
+    pub avoidance: Option<AvoidanceSummary>,
+}
+
+/// How a robot evaded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AvoidanceSummary {
+    /// Time in which the rules corrected its motion, s.
+    pub evading_s: f64,
+    /// Time off its path, s.
+    pub astray_s: f64,
+    /// Time in which it wanted to move and could not, s.
+    pub waiting_s: f64,
+    /// Least distance to anything that it saw, m; null where nothing was near.
+    pub min_distance_m: Option<f64>,
+    /// Ways that were planned around what stood in the way.
+    pub plans: usize,
+    /// Of these, how many were found.
+    pub plans_found: usize,
+    /// Wall-clock time of a step: sense, correct, check, command, ns.
+    pub step_ns: TickNs,
+}
+
+impl AvoidanceSummary {
+    /// Of a track recorded with this tick (s).
+    pub fn new(track: &AvoidanceTrack, tick_s: f64) -> Self {
+        let time = |f: &dyn Fn(&AvoidanceSample) -> bool| track.samples.iter().filter(|s| f(s)).count() as f64 * tick_s;
+        let least = track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min);
+        let t = track.step_ns;
+        Self {
+            evading_s: time(&|s| s.doing == Doing::Evading),
+            astray_s: time(&|s| s.astray_s > 0.0),
+            waiting_s: time(&|s| s.doing == Doing::Waiting),
+            min_distance_m: least.is_finite().then_some(least),
+            plans: track.plans.len(),
+            plans_found: track.plans.iter().filter(|p| p.1.is_some()).count(),
+            step_ns: TickNs { p50: t.p50, p99: t.p99, max: t.max },
+        }
+    }
 }
 
 /// A contact.
@@ -87,6 +127,7 @@ impl From<&Recording> for Summary {
                 .iter()
                 .map(|c| CollisionSummary { t_s: c.t_s, a: c.a.clone(), b: c.b.clone() })
                 .collect(),
+            avoidance: t.avoidance.as_ref().map(|a| AvoidanceSummary::new(a, r.tick_s)),
         };
         let region = |t: &crate::RegionTrack| RegionSummary {
             name: t.name.clone(),

@@ -1,29 +1,87 @@
-//! The example `pallet`: its program is sound, and the cart is in its way.
+//! The example `pallet`: its program is sound, the cart is in its way, and the arm lets it pass.
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_cell::{Cell, RunOptions, RunOutcome, simulate};
+use elbowroom_avoidance::Doing;
+use elbowroom_cell::{Cell, RunOptions, RunOutcome, Summary, simulate};
 
 fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/pallet/cell.toml")
 }
 
-fn run(text: &str) -> RunOutcome {
+fn run(text: &str, evasive: bool) -> RunOutcome {
     let cell = Cell::parse(file(), text).unwrap_or_else(|e| panic!("{e}"));
     assert!(cell.warnings.is_empty(), "{:?}", cell.warnings);
-    simulate(&cell, &RunOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+    simulate(&cell, &RunOptions { evasive, ..RunOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
 fn without_the_cart_everything_goes_well_and_with_it_they_collide() {
     let text = std::fs::read_to_string(file()).unwrap();
     let (begin, end) = (text.find("[object.cart]").unwrap(), text.find("[program.kr150]").unwrap());
-    let alone = run(&format!("{}{}", &text[..begin], &text[end..]));
+    let alone = run(&format!("{}{}", &text[..begin], &text[end..]), true);
     let robot = &alone.recording.robots[0];
     assert!(robot.finished && !alone.bad_news(), "{:?}", robot.collisions);
 
-    let met = run(&text);
+    let met = run(&text, false);
     let robot = &met.recording.robots[0];
-    assert!(robot.finished && met.bad_news());
+    assert!(robot.finished && met.bad_news() && robot.avoidance.is_none());
     assert!(robot.collisions.iter().all(|c| c.b == "cart"), "{:?}", robot.collisions);
+}
+
+#[test]
+fn the_arm_lets_the_cart_pass_and_does_its_work() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let outcome = run(&text, true);
+    let robot = &outcome.recording.robots[0];
+    assert!(robot.finished && !outcome.bad_news(), "{:?}", robot.collisions);
+    let track = robot.avoidance.as_ref().unwrap();
+    assert_eq!(track.samples.len(), robot.samples.len());
+    assert!(track.samples.iter().any(|s| s.doing == Doing::Evading));
+    assert!(track.samples.iter().all(|s| s.nearest_m > 0.04), "the cart comes nearer than the clearance");
+    let summary = Summary::from(&outcome.recording).robots[0].avoidance.unwrap();
+    assert!(summary.evading_s > 0.1 && summary.astray_s > 0.1 && summary.min_distance_m.is_some_and(|m| m > 0.04));
+    let told = |what: &str| outcome.recording.events.iter().any(|e| e.event == what);
+    assert!(told("evade") && told("on_path"));
+    // Where nothing is near the robot is exactly where its program has it: both end in the same place.
+    let without = run(&text, false);
+    assert_eq!(robot.samples.last().unwrap().q, without.recording.robots[0].samples.last().unwrap().q);
+    // The same again: nothing depends on the machine.
+    let again = run(&text, true);
+    let q = |o: &RunOutcome| o.recording.robots[0].samples.iter().map(|s| s.q.clone()).collect::<Vec<_>>();
+    assert_eq!(q(&outcome), q(&again));
+}
+
+#[test]
+fn a_monitor_that_forbids_everything_stops_the_evasion_too() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let region = "[region.everything]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 9000\nwarning = 100\n";
+    let outcome = run(&format!("{text}\n{region}"), true);
+    let robot = &outcome.recording.robots[0];
+    // The program begins, and is stopped; nothing moves after that.
+    let stopped = &robot.samples[robot.samples.len() / 4].q;
+    let first = &robot.samples[0].q;
+    assert!(first.iter().zip(stopped).all(|(a, b)| (a - b).abs() < 0.02), "override 0 let the arm go on");
+    assert!(robot.samples.iter().skip(robot.samples.len() / 4).all(|s| s.q == *stopped), "override 0 moved the arm");
+}
+
+#[test]
+fn mistakes_in_the_table_are_told_with_their_line() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let wrong = |key: &str, word: &str| {
+        let line = 1 + text.lines().position(|l| l.starts_with("[avoidance.kr150]")).unwrap() + 1;
+        let with = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{key}"));
+        let e = Cell::parse(file(), &with).unwrap_err();
+        assert!(e.to_string().contains(word) && e.write_instead.is_some(), "{e}");
+        assert_eq!(e.line, Some(line), "{e}");
+    };
+    wrong("speeed = 5", "speed");
+    wrong("speed = 0", "speed");
+    wrong("return_speed = 0", "return_speed");
+    wrong("patience = -1", "patience");
+    wrong("rules = \"nowhere.toml\"", "nowhere.toml");
+    let unknown = text.replace("objects = [\"cart\"]", "objects = [\"card\"]");
+    assert!(Cell::parse(file(), &unknown).unwrap_err().to_string().contains("cart"));
+    let nobody = text.replace("[avoidance.kr150]", "[avoidance.kr15]");
+    assert!(Cell::parse(file(), &nobody).unwrap_err().to_string().contains("kr150"));
 }

@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another
     Plan(PlanArgs),
+    /// Show the rules by which a robot evades what moves, or write them to a file to change
+    Rules(RulesArgs),
     /// Turn points that the robot was driven to into a region for the cell file
     Teach(TeachArgs),
     /// List the example cells, or copy them to a folder to start from
@@ -49,10 +51,30 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
+  elbowroom rules                             the rules that come along, as a table
+  elbowroom rules --write my_rules.toml       a copy to change; name it in the cell file: [avoidance.ROBOT] rules = ...
+  elbowroom rules my_rules.toml --picture out size.svg and direction.svg: the control surfaces")]
+pub(crate) struct RulesArgs {
+    /// A file of rules; without it, those that come along
+    pub(crate) file: Option<PathBuf>,
+    /// Write the rules that come along to this file, with comments
+    #[arg(long, value_name = "FILE", conflicts_with = "file")]
+    pub(crate) write: Option<PathBuf>,
+    /// Draw the control surfaces into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Print one JSON document instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
   elbowroom run cell.toml                     a summary on the screen
   elbowroom run cell.toml --out out           and trace.csv, events.csv, report.html in out/
   elbowroom run cell.toml --out out --compare the report shows the run without the monitor beside it
   elbowroom run cell.toml --json | jq .regions")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag that is typed
 pub(crate) struct RunArgs {
     /// The cell file (docs/cell-file.md has every key)
     pub(crate) cell: PathBuf,
@@ -62,6 +84,9 @@ pub(crate) struct RunArgs {
     /// Let the monitor watch without slowing anything
     #[arg(long)]
     pub(crate) no_monitor: bool,
+    /// Let robots with [avoidance] keep to their programs, whatever comes
+    #[arg(long)]
+    pub(crate) no_avoidance: bool,
     /// Also run without the monitor and show both in the report
     #[arg(long, requires = "out", conflicts_with = "no_monitor")]
     pub(crate) compare: bool,

@@ -10,6 +10,7 @@ mod map;
 mod output;
 mod plan;
 mod query;
+mod rules;
 mod run;
 mod teach;
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Some(Command::Convert(args)) => convert::convert(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
+        Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),

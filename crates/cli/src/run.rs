@@ -16,7 +16,12 @@ use crate::output::{Failure, Verdict, cannot_write, color, note, print, print_js
 pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let options = RunOptions { monitored: !args.no_monitor, repeat: args.repeat, ..RunOptions::default() };
+    let options = RunOptions {
+        monitored: !args.no_monitor,
+        evasive: !args.no_avoidance,
+        repeat: args.repeat,
+        ..RunOptions::default()
+    };
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(note);
     if let Some(dir) = &args.out {

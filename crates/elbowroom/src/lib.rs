@@ -10,6 +10,7 @@
 //! | [`monitor`] | interference regions, checked every control tick |
 //! | [`cspace`] | obstacles as blocked cells of joint space |
 //! | [`planner`] | ways around, on the joint-space map or in the exact scene |
+//! | [`avoidance`] | reacting while moving: fuzzy rules, evasion, the way back |
 //! | [`vision`] | camera frames and point clouds to obstacles with an identity |
 //! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
 //!
@@ -65,6 +66,7 @@
 #[doc = include_str!("../../../README.md")]
 struct Readme;
 
+pub use elbowroom_avoidance as avoidance;
 pub use elbowroom_cell as cell;
 pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;

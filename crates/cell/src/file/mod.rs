@@ -1,5 +1,6 @@
 //! The cell file: TOML in, [`Cell`](crate::Cell) out. `docs/cell-file.md` describes every key.
 
+mod avoidance;
 mod models;
 mod node;
 mod object;
@@ -26,8 +27,20 @@ type Result<T> = std::result::Result<T, FormatError>;
 const MOST_BYTES: u64 = 64 << 20;
 
 const KEYS: &[&str] = &[
-    "version", "name", "units", "tick_ms", "max_s", "checksum", "robot", "object", "region", "encoder", "monitor",
-    "map", "program",
+    "version",
+    "name",
+    "units",
+    "tick_ms",
+    "max_s",
+    "checksum",
+    "robot",
+    "object",
+    "region",
+    "encoder",
+    "monitor",
+    "map",
+    "avoidance",
+    "program",
 ];
 
 /// A cell file, parsed but not yet resolved: every key and value with its line.
@@ -92,6 +105,7 @@ impl CellFile {
             encoders: Vec::new(),
             laws: laws(&root)?,
             programs: Vec::new(),
+            avoidance: Vec::new(),
             maps: Vec::new(),
             checksum: String::new(),
             warnings: Vec::new(),
@@ -106,6 +120,7 @@ impl CellFile {
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
+        cell.avoidance = avoidance::read(&root, &cell)?;
         check(&root, &mut cell)?;
         cell.warnings = warnings;
         Ok(cell)

@@ -1,6 +1,6 @@
 //! Time along a program: slowed by the override, never faster than the joints can follow, never backwards.
 
-use super::{Plan, PlanStep, Point};
+use super::{Geometry, Plan, PlanStep, Point};
 use crate::JointLimits;
 
 /// Deceleration left for a stop even where following the curve takes more, as a share of it.
@@ -98,6 +98,23 @@ impl Clock {
         matches!(self.plan.steps.get(self.step), Some(PlanStep::Wait(_)))
     }
 
+    /// Where the joint move that is under way ends; `None` where every point of what is under way counts.
+    pub fn end_of_joint_move(&self) -> Option<Vec<f64>> {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) if matches!(m.geometry(), Geometry::Joint { .. }) => Some(m.end()),
+            _ => None,
+        }
+    }
+
+    /// Goes to the end of the move at once: the robot is brought there on another way.
+    pub fn skip_move(&mut self) {
+        let Some(PlanStep::Move(m)) = self.plan.steps.get(self.step) else { return };
+        let duration = m.duration();
+        (self.rate, self.rate_change) = (0.0, 0.0);
+        self.end_step(duration);
+        self.look();
+    }
+
     /// Region switches since the last call: index of the region, on or off.
     pub fn take_switches(&mut self) -> Vec<(usize, bool)> {
         std::mem::take(&mut self.switches)
@@ -127,14 +144,18 @@ impl Clock {
             Some(_) => 0.0,
         };
         if self.time >= duration - 1e-12 {
-            // The end is met exactly: steps meet at rest.
-            self.time = duration;
-            self.look();
-            self.step += 1;
-            self.time = 0.0;
-            self.pass_instants();
+            self.end_step(duration);
         }
         self.look();
+    }
+
+    /// The end is met exactly: steps meet at rest.
+    fn end_step(&mut self, duration: f64) {
+        self.time = duration;
+        self.look();
+        self.step += 1;
+        self.time = 0.0;
+        self.pass_instants();
     }
 
     /// How fast the rate may fall and rise now, 1/s.

@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::plots::reason_text;
 use super::spark::sparkline;
-use crate::recording::{Recording, RegionTrack, RobotTrack};
+use crate::recording::{AvoidanceTrack, Recording, RegionTrack, RobotTrack};
+use crate::summary::AvoidanceSummary;
 
 /// Regions that are listed; the rest is counted.
 const MAX_REGIONS: usize = 12;
@@ -151,6 +152,9 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
         (curve, Style::Plain),
         (numbers, Style::Dim),
     ]);
+    if let Some(track) = &robot.avoidance {
+        lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
+    }
     lines.extend(
         robot
             .collisions
@@ -159,6 +163,18 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
             .map(|c| vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]),
     );
     lines
+}
+
+/// What avoidance did, in words.
+fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
+    let a = AvoidanceSummary::new(track, tick_s);
+    let nearest =
+        a.min_distance_m.map_or_else(|| "nothing near".into(), |m| format!("nearest {}", millimetres(Some(m))));
+    let plans =
+        if a.plans > 0 { format!(", {} of {} ways around found", a.plans_found, a.plans) } else { String::new() };
+    let [evading, astray, waiting] = [a.evading_s, a.astray_s, a.waiting_s];
+    let step = duration(a.step_ns.p50);
+    format!("evaded {evading:.2} s, off its path {astray:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
 }
 
 /// How a robot's program ended, in words.

@@ -87,6 +87,7 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
         finished: true,
         stopped_s: stood as f64 * log.tick_s,
         collisions: Vec::new(),
+        avoidance: None,
     };
     Recording {
         cell: log.title.clone(),

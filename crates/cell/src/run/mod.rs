@@ -1,5 +1,6 @@
 //! A run: programs on one clock, in simulated time, under the monitor.
 
+mod avoid;
 mod ending;
 mod frames;
 mod regions;
@@ -14,6 +15,7 @@ use elbowroom_scene::{FirstContact, FirstContacts, Member, ObjectStep};
 use crate::configure::{self, Setup};
 use crate::motion::{Clock, plan};
 use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
+use avoid::Evasive;
 use ending::{Ending, Halt};
 use frames::Frames;
 use regions::Regions;
@@ -23,6 +25,8 @@ use regions::Regions;
 pub struct RunOptions {
     /// False: the monitor watches but nobody obeys it (`--no-monitor`).
     pub monitored: bool,
+    /// False: robots with `[avoidance]` keep to their programs, whatever comes (`--no-avoidance`).
+    pub evasive: bool,
     /// Programs run this many times, times their own `repeat`.
     pub repeat: u32,
     /// Fault injection: robots (by index) whose controller falls silent at a time (s), standing where they are.
@@ -31,7 +35,7 @@ pub struct RunOptions {
 
 impl Default for RunOptions {
     fn default() -> Self {
-        Self { monitored: true, repeat: 1, vanish: Vec::new() }
+        Self { monitored: true, evasive: true, repeat: 1, vanish: Vec::new() }
     }
 }
 
@@ -91,7 +95,9 @@ pub fn simulate_with(
     }
     let setups = configure::setups(cell)?;
     let monitors = configure::monitors(cell, &setups)?;
-    let mut run = Run::new(cell, options, &setups, monitors, clocks);
+    let scene = crate::query::Subject::of_cell(cell).scene(false)?;
+    let evasive = if options.evasive { Evasive::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
+    let mut run = Run::new(cell, options, &setups, monitors, clocks, evasive);
     let mut tick = 0_u64;
     loop {
         let t_s = instant(tick, cell.tick_s);
@@ -117,6 +123,8 @@ struct Run<'a> {
     setups: &'a [Setup],
     monitors: Vec<Monitor>,
     clocks: Vec<Clock>,
+    /// Per robot; `None` for one that keeps to its program.
+    evasive: Vec<Option<Evasive<'a>>>,
     states: Vec<ChainState>,
     scratch: Vec<ChainState>,
     frames: Frames<'a>,
@@ -141,7 +149,9 @@ impl<'a> Run<'a> {
         setups: &'a [Setup],
         monitors: Vec<Monitor>,
         clocks: Vec<Clock>,
+        mut evasive: Vec<Option<Evasive<'a>>>,
     ) -> Self {
+        evasive.resize_with(cell.robots.len(), || None);
         let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
         let track = |r: &crate::CellRobot| RobotTrack {
             name: r.name.clone(),
@@ -151,6 +161,7 @@ impl<'a> Run<'a> {
             stopped_s: 0.0,
             min_override: 1.0,
             collisions: Vec::new(),
+            avoidance: None,
         };
         Self {
             options,
@@ -174,6 +185,7 @@ impl<'a> Run<'a> {
             tick_ns: Vec::new(),
             monitors,
             clocks,
+            evasive,
             cell,
         }
     }
@@ -237,6 +249,9 @@ impl<'a> Run<'a> {
             let scale = if gone { 0.0 } else { 1.0 };
             state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
             state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
+            if let Some(evasive) = self.evasive[i].as_ref().filter(|e| !gone && !e.is_on_path()) {
+                evasive.look(state);
+            }
             self.cell.robots[i].robot.chain.forward_motion(state);
         }
     }
@@ -269,7 +284,7 @@ impl<'a> Run<'a> {
             qd: &state.qd,
             qdd: &state.qdd,
             programmed_override: clock.programmed_override(),
-            intent: Some(clock.intent()),
+            intent: Some(self.evasive[i].as_ref().map_or(clock.intent(), |e| e.intent(clock))),
             sources: &sources,
         };
         let begin = Instant::now();
@@ -313,7 +328,12 @@ impl<'a> Run<'a> {
 
     fn record(&mut self, i: usize, t_s: f64, o: f64, region: Option<usize>, distance_m: Option<f64>, reason: Reason) {
         let (tcp, tcp_speed) = self.frames.tcp(i, &self.states[i]);
-        let rate = self.clocks[i].rate();
+        // Off its path a robot does not move by its program's time.
+        let astray = self.evasive[i].as_ref().is_some_and(|e| !e.is_on_path());
+        let rate = if astray { 1.0 } else { self.clocks[i].rate() };
+        if let Some(evasive) = &mut self.evasive[i] {
+            evasive.record();
+        }
         let programmed_speed = if rate > 1e-3 {
             tcp_speed / rate
         } else {
@@ -375,7 +395,7 @@ impl<'a> Run<'a> {
     fn ended(&mut self, t_s: f64) -> bool {
         let gone = |i: &usize| self.options.vanish.iter().any(|(r, from)| r == i && t_s >= *from);
         let here: Vec<usize> = (0..self.clocks.len()).filter(|i| !gone(i)).collect();
-        if here.iter().all(|i| self.clocks[*i].finished()) || t_s >= self.cell.max_s {
+        if here.iter().all(|i| self.finished(*i)) || t_s >= self.cell.max_s {
             return true;
         }
         let waiting = here.iter().any(|i| self.clocks[*i].waiting());
@@ -383,22 +403,37 @@ impl<'a> Run<'a> {
         self.ending.nothing_moved(t_s, &self.states, waiting || carried)
     }
 
+    fn finished(&self, robot: usize) -> bool {
+        self.clocks[robot].finished() && self.evasive[robot].as_ref().is_none_or(Evasive::is_on_path)
+    }
+
     fn advance(&mut self) {
         let dt = self.cell.tick_s;
         let t_s = self.tracks.first().and_then(|t| t.samples.last()).map_or(0.0, |s| s.t_s);
         for i in 0..self.clocks.len() {
-            if !self.vanished(i, t_s) {
-                self.clocks[i].advance(dt, self.obeyed[i]);
+            if self.vanished(i, t_s) {
+                continue;
+            }
+            let Self { cell, clocks, evasive, states, obeyed, .. } = self;
+            let Some(evasive) = &mut evasive[i] else {
+                clocks[i].advance(dt, obeyed[i]);
+                continue;
+            };
+            if let Some(event) = evasive.advance(cell, &mut clocks[i], states, t_s, obeyed[i]) {
+                self.event(t_s, i, "", event);
             }
         }
     }
 
-    fn finish(self, t_s: f64) -> Recording {
-        let mut robots = self.tracks;
-        for (track, clock) in robots.iter_mut().zip(&self.clocks) {
-            track.finished = clock.finished();
+    fn finish(mut self, t_s: f64) -> Recording {
+        let mut robots = std::mem::take(&mut self.tracks);
+        for (i, track) in robots.iter_mut().enumerate() {
+            track.finished = self.finished(i);
             // Those of one tick come in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+        }
+        for (track, evasive) in robots.iter_mut().zip(self.evasive) {
+            track.avoidance = evasive.map(Evasive::finish);
         }
         Recording {
             cell: self.cell.name.clone(),

@@ -1,5 +1,6 @@
 //! The plots: figure 12 of the paper, then override, distance, timing and joints.
 
+mod avoidance;
 mod figure;
 mod figure12;
 mod joints;
@@ -38,6 +39,7 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
     let mut figures = figure12::all(scene, runs);
     figures.extend(overrides::all(runs));
     for run in 0..runs.len() {
+        figures.extend(avoidance::all(runs, run));
         figures.extend(timing::chart(runs, run));
         figures.extend(joints::chart(scene, runs, run));
     }

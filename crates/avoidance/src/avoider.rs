@@ -1,0 +1,673 @@
+//! The loop: sense, correct, check, command.
+
+use std::time::{Duration, Instant};
+
+use elbowroom_planner::{Connect, RouteError, RouteOptions};
+use elbowroom_proximity::impact::Steady;
+use elbowroom_scene::{Member, Move, Scene, SceneError, SweepOptions};
+
+use crate::calm::Calm;
+use crate::joint::{self, JointLimit};
+use crate::levers::Levers;
+use crate::sense::Senses;
+use crate::{
+    Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, Task, Threat, VelocityBounds,
+};
+
+/// Below this override nothing is commanded but a stop.
+const NO_OVERRIDE: f64 = 1e-6;
+/// A deviation of so many seconds at full joint speed is none.
+const NONE_S: f64 = 1e-9;
+/// Less than this share of the wanted motion is no headway; nor is the last of it, in seconds of joint motion.
+const HEADWAY: f64 = 0.15;
+const NEARLY_S: f64 = 2e-3;
+/// Slower than this share of its speed the robot counts as standing.
+const STANDS: f64 = 5e-3;
+/// Near something the pull back to the path falls with the distance, in this time, s: a steeper one would tug at evasion.
+const SOFT_S: f64 = 0.15;
+/// A correction of less than this size is not told as evading, nor one that was longer ago, s.
+const EVADING: f64 = 0.02;
+const EVADING_S: f64 = 0.1;
+/// An obstacle slower than this stands, m/s.
+const OBSTACLE_STANDS_M_S: f64 = 0.01;
+
+/// How the loop behaves beyond a single look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoiderSettings {
+    /// Of the single look.
+    pub reflex: ReflexSettings,
+    /// Share of the joints' top speeds on the way back.
+    pub return_share: f64,
+    /// A path that need not be kept is gone on with while the robot is off it by no more than this, in seconds of joint
+    /// motion at full speed.
+    pub stray_s: f64,
+    /// A joint does not turn back twice within this time, s.
+    pub quiet_s: f64,
+    /// After so long without headway another way is asked for, s.
+    pub patience_s: f64,
+}
+
+impl Default for AvoiderSettings {
+    /// Half the speed back, 0.4 s astray, 0.25 s between reversals, 0.6 s of patience.
+    fn default() -> Self {
+        Self { reflex: ReflexSettings::default(), return_share: 0.5, stray_s: 0.4, quiet_s: 0.25, patience_s: 0.6 }
+    }
+}
+
+/// Where the path wants the robot to be at the end of the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference<'a> {
+    /// Joint values, rad or m.
+    pub q: &'a [f64],
+    /// Their velocities at the full rate of the path (override 1), rad/s or m/s.
+    pub qd: &'a [f64],
+    /// What the path is for.
+    pub path: PathKind,
+}
+
+/// What a path is for (S4.11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathKind {
+    /// Every point of it counts (a seam, a line): it is slowed down on rather than left, and resumed where it was left.
+    Continuous,
+    /// Only its end counts: it may be left and joined again farther on.
+    PointToPoint,
+}
+
+/// What the robot is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Doing {
+    /// On its path.
+    #[default]
+    Following,
+    /// Correcting its motion.
+    Evading,
+    /// On the way back to its path.
+    Returning,
+    /// Going around on a planned way.
+    Rounding,
+    /// Wants to move and cannot.
+    Waiting,
+    /// The override is 0.
+    Halted,
+}
+
+impl Doing {
+    /// In one word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Following => "following",
+            Self::Evading => "evading",
+            Self::Returning => "returning",
+            Self::Rounding => "rounding",
+            Self::Waiting => "waiting",
+            Self::Halted => "halted",
+        }
+    }
+}
+
+/// What there is to do if nothing comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    /// On the path.
+    Path,
+    /// Along a proven way.
+    Way,
+    /// Off the path: stand, until there is a proven way.
+    Stop,
+    /// Off the path, and something is near: pulled back to it.
+    Back,
+}
+
+fn manner(mode: Mode, reference: &Reference<'_>) -> Manner {
+    match (mode, reference.path) {
+        (Mode::Way, _) => Manner::Proven,
+        (Mode::Back | Mode::Stop, _) => Manner::Back,
+        (Mode::Path, PathKind::Continuous) => Manner::Holding,
+        // Where it stands, things may stand near.
+        (Mode::Path, PathKind::PointToPoint) if reference.qd.iter().all(|v| *v == 0.0) => Manner::Holding,
+        (Mode::Path, PathKind::PointToPoint) => Manner::Underway,
+    }
+}
+
+/// How long the stages of a tick took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TickTimes {
+    /// Placing everything and finding what is near.
+    pub sense: Duration,
+    /// Rules and least squares.
+    pub correct: Duration,
+    /// The sweep between this command and the next.
+    pub check: Duration,
+}
+
+impl TickTimes {
+    /// All stages.
+    pub fn total(&self) -> Duration {
+        self.sense + self.correct + self.check
+    }
+}
+
+/// What the tick says beside the joint values.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Advice {
+    /// How fast the path may be gone on with, as a share of its full rate, 0 to 1.
+    pub rate: f64,
+    /// What the robot is doing.
+    pub doing: Doing,
+    /// Of the single look.
+    pub reaction: Reaction,
+    /// Least distance to what moves or is not known, m; infinite where none of it is near.
+    pub nearest_m: f64,
+    /// The object or robot link that asked for the correction.
+    pub governed_by: Option<usize>,
+    /// Off the path by so many seconds of joint motion at full speed.
+    pub astray_s: f64,
+    /// A sweep found that the command, or a stop after it, would have hit something; it was replaced by braking.
+    pub braked: bool,
+    /// A proven way is wanted ([`Avoider::plan_to`]): off its path the robot stands and nothing comes, or it has not got on
+    /// for the time of patience because of what stands in its way.
+    pub wants_way: bool,
+    /// How long it took.
+    pub times: TickTimes,
+}
+
+/// Keeps one robot of a scene out of the way of what moves, and brings it back (S4.11).
+///
+/// The path is the caller's: each tick it says where the path wants the robot, at the rate that the last advice allowed;
+/// where nothing is near the command is exactly that. See the crate's documentation for a whole loop.
+#[derive(Debug)]
+pub struct Avoider<'s> {
+    senses: Senses<'s>,
+    reflex: Reflex,
+    limits: Vec<JointLimit>,
+    settings: AvoiderSettings,
+    bounds: VelocityBounds,
+    calm: Calm,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    wanted: Vec<f64>,
+    next: Vec<f64>,
+    intent: Vec<f64>,
+    braked: Vec<f64>,
+    /// A planned way, the next waypoint last.
+    way: Vec<Vec<f64>>,
+    levers: Levers,
+    standing_s: f64,
+    /// Off the path and nothing comes for so long, s.
+    lost_s: f64,
+    /// Speed along the way, as a share of the fastest.
+    way_share: f64,
+    /// Share of the wanted velocity that was left.
+    headway: f64,
+    /// Since the rules last asked for something, s.
+    evaded_s: f64,
+    following: bool,
+}
+
+impl<'s> Avoider<'s> {
+    /// For a robot of a scene that stands at `q`. `limits` has one entry per independent joint.
+    ///
+    /// # Errors
+    /// No such robot, wrong joint values, or a number of limits that is not the robot's.
+    pub fn new(
+        scene: &'s Scene,
+        robot: usize,
+        q: &[f64],
+        limits: &[JointLimit],
+        rules: Rules,
+        settings: AvoiderSettings,
+    ) -> Result<Self, AvoidanceError> {
+        let count = scene.robots().len();
+        let chain = &scene.robots().get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?.robot.chain;
+        let mut senses = Senses::new(scene, robot);
+        senses.place(q, &Around::default())?;
+        let n = chain.dof();
+        let mut limits = limits.to_vec();
+        limits.truncate(n);
+        let missing = JointLimit::of(chain, 0.25, 0.1, 1.0).into_iter().skip(limits.len());
+        limits.extend(missing);
+        let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
+        Ok(Self {
+            reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
+            levers: Levers::new(&scene.robots()[robot].robot),
+            senses,
+            bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
+            calm: Calm::new(n, settings.quiet_s),
+            settings,
+            limits,
+            q: q.to_vec(),
+            qd: vec![0.0; n],
+            qdd: vec![0.0; n],
+            wanted: vec![0.0; n],
+            next: vec![0.0; n],
+            intent: vec![0.0; n],
+            braked: vec![0.0; n],
+            way: Vec::new(),
+            standing_s: 0.0,
+            lost_s: 0.0,
+            way_share: 0.0,
+            headway: 1.0,
+            evaded_s: f64::INFINITY,
+            following: true,
+        })
+    }
+
+    /// The commanded joint values, rad or m.
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// The commanded joint velocities, rad/s or m/s.
+    pub fn qd(&self) -> &[f64] {
+        &self.qd
+    }
+
+    /// The commanded joint accelerations, rad/s² or m/s².
+    pub fn qdd(&self) -> &[f64] {
+        &self.qdd
+    }
+
+    /// The joint velocities that it would have at override 1, rad/s or m/s: for a monitor that knows directions.
+    pub fn intent(&self) -> &[f64] {
+        &self.intent
+    }
+
+    /// The rules it reacts by.
+    pub fn rules(&self) -> &Rules {
+        self.reflex.rules()
+    }
+
+    /// True while a planned way is gone.
+    pub fn has_way(&self) -> bool {
+        !self.way.is_empty()
+    }
+
+    /// One tick of `dt` seconds. `around` is what is seen now; `reference` where the path wants to be after the tick;
+    /// `speed_override` (0 to 1) what a monitor allows, which scales all motion last.
+    ///
+    /// # Errors
+    /// Poses, motions or joint values that are not finite or not there, a tick without time. Nothing has moved then, and the
+    /// caller should stop the robot.
+    pub fn tick(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        around: &Around<'_>,
+        speed_override: f64,
+    ) -> Result<Advice, AvoidanceError> {
+        self.check_call(dt, reference)?;
+        let begin = Instant::now();
+        self.senses.place(&self.q, around)?;
+        self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach());
+        let sensed = Instant::now();
+        let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
+        joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
+        let mode = self.mode(reference);
+        let (reaction, mut exactly) = self.correct(dt, reference, allowed, mode);
+        let corrected = Instant::now();
+        let mut braked = false;
+        let proven = exactly || (mode == Mode::Way && !self.way.is_empty());
+        if !proven && !self.can_stop(dt, around) {
+            braked = true;
+            if mode == Mode::Path {
+                // The path is known to be free, and is slowed down on.
+                self.along_path(dt, reference);
+                exactly = true;
+            } else {
+                brake(&self.limits, &self.qd, dt, &mut self.next);
+            }
+        } else if !exactly {
+            braked = self.check(dt, around);
+        }
+        let checked = Instant::now();
+        self.command(dt, exactly.then_some(reference.q));
+        let times = TickTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
+        Ok(self.advice(dt, reference, allowed, Advice { reaction, braked, times, ..Advice::default() }))
+    }
+
+    /// Plans a way from where the robot stands to `goal`, around everything as it stands now, proven free, and goes it from the
+    /// next tick on, until something comes. Takes as long as planning takes: a controller does it beside its loop.
+    ///
+    /// # Errors
+    /// As [`Connect::plan`].
+    pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
+        let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
+        let route = connect.plan(&self.senses.state, goal, options)?;
+        self.way = route.waypoints;
+        self.way.reverse();
+        // The first waypoint is where the robot stands.
+        self.way.pop();
+        self.standing_s = 0.0;
+        self.lost_s = 0.0;
+        self.way_share = 0.0;
+        self.following = false;
+        Ok(())
+    }
+
+    fn check_call(&self, dt: f64, reference: &Reference<'_>) -> Result<(), AvoidanceError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(AvoidanceError::Period(dt));
+        }
+        let joints = self.q.len();
+        let sound = |v: &[f64]| v.len() == joints && v.iter().all(|v| v.is_finite());
+        if sound(reference.q) && sound(reference.qd) {
+            return Ok(());
+        }
+        Err(AvoidanceError::Reference { given: reference.q.len().min(reference.qd.len()), joints })
+    }
+
+    /// How near what is known must be to matter: what a stop from twice the evasion speed takes.
+    fn fixed_reach(&self) -> f64 {
+        let s = &self.settings.reflex;
+        s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s
+    }
+
+    /// Fills `next` with the velocity to command; true where it is exactly the path's.
+    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) -> (Reaction, bool) {
+        self.want(dt, reference, allowed, mode);
+        if allowed == 0.0 {
+            self.intent.fill(0.0);
+            // A path that is followed brings itself to a stop.
+            match mode {
+                Mode::Path => self.along_path(dt, reference),
+                _ => brake(&self.limits, &self.qd, dt, &mut self.next),
+            }
+            return (Reaction::default(), mode == Mode::Path);
+        }
+        self.calm.hold(&mut self.bounds);
+        for (now, soon) in self.bounds.now.iter_mut().zip(&self.bounds.soon) {
+            // All but limits is scaled last.
+            *now = now.map(|v| (v / allowed).clamp(soon[0], soon[1]));
+        }
+        let Senses { scene, robot, chains, threats, .. } = &self.senses;
+        let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
+        let task = Task { wanted: &self.wanted, bounds: &self.bounds, manner: manner(mode, reference) };
+        let reaction = self.reflex.react(chain, state, &task, threats, &mut self.next);
+        self.headway = headway(&self.next, &self.wanted, &self.limits);
+        self.intent.copy_from_slice(&self.next);
+        self.next.iter_mut().for_each(|v| *v *= allowed);
+        let held = self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0;
+        match mode {
+            _ if reaction.asked && !held => self.way.clear(),
+            Mode::Path if !held => self.along_path(dt, reference),
+            Mode::Way => self.next.iter_mut().zip(&self.wanted).for_each(|(v, w)| *v = w * allowed),
+            Mode::Stop => brake(&self.limits, &self.qd, dt, &mut self.next),
+            // Trapped: to stand is better than to creep.
+            _ if held => brake(&self.limits, &self.qd, dt, &mut self.next),
+            _ => {}
+        }
+        (reaction, mode == Mode::Path && !reaction.asked && !held)
+    }
+
+    /// What there is to do if nothing comes.
+    fn mode(&self, reference: &Reference<'_>) -> Mode {
+        if !self.way.is_empty() {
+            return Mode::Way;
+        }
+        let evades = self.evaded_s < EVADING_S;
+        match reference.path {
+            _ if self.following => Mode::Path,
+            // A way back that is proven is worth a short wait.
+            _ if !evades && self.lost_s < self.settings.patience_s => Mode::Stop,
+            _ => Mode::Back,
+        }
+    }
+
+    /// Fills `next` with what leads to where the path wants to be.
+    fn along_path(&mut self, dt: f64, reference: &Reference<'_>) {
+        for ((v, to), from) in self.next.iter_mut().zip(reference.q).zip(&self.q) {
+            *v = (to - from) / dt;
+        }
+    }
+
+    /// Fills `wanted`: along the path, along a way, or back to the path, at override 1.
+    fn want(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) {
+        let scale = allowed.max(NO_OVERRIDE);
+        match mode {
+            Mode::Path => {
+                for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+                    *v = (to - from) / (dt * scale);
+                }
+            }
+            Mode::Stop => self.wanted.fill(0.0),
+            Mode::Way => self.along_way(dt, allowed),
+            Mode::Back => self.pull(dt, reference),
+        }
+    }
+
+    /// Straight to the next waypoint, all joints together, with ramps between the stops.
+    fn along_way(&mut self, dt: f64, allowed: f64) {
+        let slowest = |f: fn(&JointLimit) -> f64| self.limits.iter().map(f).fold(0.0, f64::max);
+        let (rise_s, stop_s) = (slowest(|l| l.speed / l.acceleration), slowest(|l| l.speed / l.stop));
+        while let Some(left_s) = self.way.last().map(|w| astray(w, &self.q, &self.limits)) {
+            if left_s > NONE_S {
+                let starts = self.way_share == 0.0;
+                let target = slowing(left_s, rise_s).min(self.settings.return_share * allowed).min(left_s / dt);
+                self.way_share = target.clamp((self.way_share - dt / stop_s).max(0.0), self.way_share + dt / rise_s);
+                // The last step ends at the waypoint, not beyond.
+                let rate = (self.way_share / left_s).min(1.0 / dt) / allowed.max(NO_OVERRIDE);
+                let Some(waypoint) = self.way.last() else { break };
+                // From rest: not before the joints may turn back.
+                let towards = waypoint.iter().zip(&self.q).map(|(to, from)| to - from);
+                if starts && !self.calm.allows(towards) {
+                    self.way_share = 0.0;
+                    self.wanted.fill(0.0);
+                    return;
+                }
+                for ((v, to), from) in self.wanted.iter_mut().zip(waypoint).zip(&self.q) {
+                    *v = (to - from) * rate;
+                }
+                return;
+            }
+            self.way.pop();
+            self.way_share = 0.0;
+        }
+        self.wanted.fill(0.0);
+    }
+
+    /// Back to the path, as straight as what is near lets it.
+    fn pull(&mut self, dt: f64, reference: &Reference<'_>) {
+        let left_s = astray(reference.q, &self.q, &self.limits);
+        let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
+        let soft = if self.evaded_s < EVADING_S { left_s / SOFT_S } else { f64::INFINITY };
+        let speed = slowing(left_s, rise_s).min(self.settings.return_share).min(soft);
+        let rate = if left_s > 0.0 { (speed / left_s).min(1.0 / dt) } else { 0.0 };
+        for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+            *v = (to - from) * rate;
+        }
+    }
+
+    /// No collision falls between two commands: replaces `next` by braking where that is hit later.
+    fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
+        let loose = |t: &Threat| matches!(t.other, Other::Loose { .. });
+        let Some(hit) = self.hit(dt, dt, around, false, loose) else { return false };
+        brake(&self.limits, &self.qd, dt, &mut self.braked);
+        let braked_hit = self.hit(dt, dt, around, true, loose).unwrap_or(f64::INFINITY);
+        if braked_hit > hit {
+            self.next.copy_from_slice(&self.braked);
+            return true;
+        }
+        false
+    }
+
+    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command
+    /// does, there is always a stop that does: that of the command before.
+    fn can_stop(&mut self, dt: f64, around: &Around<'_>) -> bool {
+        let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
+        // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
+        let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
+        self.hit(dt, ahead_s, around, false, |t| !matches!(t.other, Other::Loose { .. }) && apart(t)).is_none()
+    }
+
+    /// When the command (or the braking), held for `ahead_s` seconds, first hits any of the chosen threats, as a share of that
+    /// time. Only pairs that can close in it are swept.
+    fn hit(
+        &mut self,
+        dt: f64,
+        ahead_s: f64,
+        around: &Around<'_>,
+        braking: bool,
+        chosen: impl Fn(&Threat) -> bool,
+    ) -> Option<f64> {
+        let velocity = if braking { &self.braked } else { &self.next };
+        for (j, (to, q)) in self.wanted.iter_mut().zip(&self.q).enumerate() {
+            *to = (q + velocity[j] * ahead_s).clamp(self.limits[j].lower, self.limits[j].upper);
+        }
+        let Senses { robot, checker, state, threats, members, .. } = &mut self.senses;
+        let own = Move::Robot { robot: *robot, to: &self.wanted };
+        let mut first: Option<f64> = None;
+        for (threat, (a, b)) in threats.iter().zip(members.iter()).filter(|(t, _)| chosen(t)) {
+            let theirs = 2.0 * threat.velocity().length();
+            if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
+                continue;
+            }
+            let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
+            let path =
+                seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, ahead_s)));
+            let mut pair = checker.between((*a).into(), (*b).into());
+            let answer = match &path {
+                Some((object, path)) => {
+                    pair.sweep(state, &[own, Move::Object { object: *object, path }], &SweepOptions::default())
+                }
+                None => pair.sweep(state, &[own], &SweepOptions::default()),
+            };
+            // What cannot be checked is not done.
+            let time = answer.map_or(Some(0.0), |hit| hit.map(|h| h.time));
+            first = [first, time].into_iter().flatten().reduce(f64::min);
+        }
+        first
+    }
+
+    /// Takes `next` as the command; the values that the path has are taken as they are.
+    fn command(&mut self, dt: f64, exactly: Option<&[f64]>) {
+        for j in 0..self.q.len() {
+            let v = self.next[j];
+            self.qdd[j] = (v - self.qd[j]) / dt;
+            self.qd[j] = v;
+            let limit = &self.limits[j];
+            let q = exactly.map_or_else(|| (self.q[j] + v * dt).clamp(limit.lower, limit.upper), |q| q[j]);
+            self.q[j] = q;
+        }
+        self.calm.note(&self.qd, self.limits.iter().map(|l| l.speed), dt);
+    }
+
+    fn advice(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mut advice: Advice) -> Advice {
+        advice.astray_s = astray(reference.q, &self.q, &self.limits);
+        self.following = self.way.is_empty() && advice.astray_s <= NONE_S;
+        let loose = self.senses.threats.iter().find(|t| matches!(t.other, Other::Loose { .. }));
+        advice.nearest_m = loose.map_or(f64::INFINITY, |t| t.distance_m);
+        let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
+        advice.governed_by =
+            governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
+        let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);
+        let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
+        let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
+        self.standing_s = if held { self.standing_s + dt } else { 0.0 };
+        self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
+        let lost = !self.following && self.way.is_empty() && self.evaded_s >= EVADING_S && allowed > 0.0;
+        self.lost_s = if lost && fastest < STANDS {
+            self.lost_s + dt
+        } else if lost {
+            self.lost_s
+        } else {
+            0.0
+        };
+        advice.wants_way = self.way.is_empty() && (self.lost_s > 0.0 && fastest < STANDS || self.stuck());
+        advice.rate = if advice.braked && self.following { 0.0 } else { self.rate(reference, advice.astray_s) };
+        advice.doing = if allowed == 0.0 {
+            Doing::Halted
+        } else if held && fastest < STANDS && self.standing_s > 0.1 {
+            Doing::Waiting
+        } else if !self.way.is_empty() {
+            Doing::Rounding
+        } else if self.following {
+            Doing::Following
+        } else if self.evaded_s < EVADING_S {
+            Doing::Evading
+        } else {
+            Doing::Returning
+        };
+        advice
+    }
+
+    /// No headway for long, and what is in the way does not move.
+    fn stuck(&self) -> bool {
+        let moves = |t: &Threat| t.velocity().length() > OBSTACLE_STANDS_M_S;
+        self.standing_s >= self.settings.patience_s && !self.senses.threats.iter().any(moves)
+    }
+
+    /// How fast the path may go on.
+    fn rate(&self, reference: &Reference<'_>, astray_s: f64) -> f64 {
+        if !self.way.is_empty() {
+            return 0.0;
+        }
+        let ahead: f64 = reference
+            .qd
+            .iter()
+            .zip(reference.q.iter().zip(&self.q))
+            .zip(&self.limits)
+            .map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed))
+            .sum();
+        match reference.path {
+            PathKind::Continuous if astray_s > NONE_S => 0.0,
+            PathKind::Continuous => self.slowed(reference),
+            // The robot is ahead of its path: the nearest point of the path lies farther on.
+            PathKind::PointToPoint if astray_s > NONE_S && ahead > 0.0 => 1.0,
+            PathKind::PointToPoint => (1.0 - astray_s / self.settings.stray_s).max(0.0),
+        }
+    }
+
+    /// The share of the path's speed at which gaps close half as fast as they may.
+    fn slowed(&self, reference: &Reference<'_>) -> f64 {
+        let chain = &self.senses.scene.robots()[self.senses.robot].robot.chain;
+        let state = &self.senses.chains[self.senses.robot];
+        let s = &self.settings.reflex;
+        let mut rate: f64 = 1.0;
+        let mut columns = [[0.0; 6]; 16];
+        for threat in self.senses.threats.iter().filter(|t| matches!(t.other, Other::Loose { .. })) {
+            let in_link = state.link_in_root(threat.link).inverse().transform_point(threat.on_link);
+            chain.jacobian(state, threat.link, in_link, &mut columns);
+            let along = |c: &[f64; 6]| c[0] * threat.away.x + c[1] * threat.away.y + c[2] * threat.away.z;
+            let closing: f64 = -columns.iter().zip(reference.qd).map(|(c, v)| along(c) * v).sum::<f64>();
+            if closing > 0.0 {
+                let may = 0.5 * (threat.distance_m - s.clearance_m) / s.closing_s
+                    - threat.away.dot(threat.velocity()).max(0.0);
+                rate = rate.min((may / closing).max(0.0));
+            }
+        }
+        rate
+    }
+}
+
+/// Seconds that a stop takes from these velocities.
+fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
+    qd.iter().zip(limits).map(|(v, l)| v.abs() / l.stop).fold(0.0, f64::max)
+}
+
+/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free.
+fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
+    let stop_s = stop_s(limits, qd);
+    let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
+    out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
+}
+
+/// Seconds of joint motion at full speed between two configurations.
+fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
+    to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
+}
+
+/// How much of the wanted velocity a velocity has in its direction, in the norm of the joints' speeds; 1 where nothing is
+/// wanted.
+fn headway(velocity: &[f64], wanted: &[f64], limits: &[JointLimit]) -> f64 {
+    let along =
+        |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
+    let whole = along(wanted);
+    if whole > 0.0 { along(velocity) / whole } else { 1.0 }
+}
+
+/// Share of the speed from which the rest of the way is enough to stop.
+fn slowing(left_s: f64, rise_s: f64) -> f64 {
+    (1.6 * left_s / rise_s.max(1e-6)).sqrt()
+}

@@ -1,0 +1,90 @@
+//! The rules of avoidance: from how near and how fast to how hard and where to.
+
+use crate::fuzzy::{Controller, FuzzyError};
+
+/// The rules that come with the library, as text to copy and change.
+pub const DEFAULT_RULES: &str = include_str!("default.toml");
+
+/// A fuzzy controller with the inputs `proximity` (m) and `speed` (of approach, m/s) and the outputs `size` (share of
+/// the evasion speed, 0 to 1) and `direction` (degrees: 0 straight away from the obstacle, 90 across its way), S4.10.
+///
+/// ```
+/// use elbowroom_avoidance::Rules;
+/// let rules = Rules::default();
+/// let far = rules.correction(0.9, 0.0);
+/// let near = rules.correction(0.05, 0.3);
+/// assert!(far.size == 0.0 && near.size > 0.8);
+/// assert!(near.direction_rad < 0.3, "what is very near and slow is fled from straight away");
+/// assert!(rules.correction(0.45, 1.5).direction_rad > 1.4, "what comes fast from farther off is let pass");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rules {
+    controller: Controller,
+}
+
+/// What the rules ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Correction {
+    /// Share of the evasion speed, 0 to 1.
+    pub size: f64,
+    /// 0: straight away; π/2: across the way of what comes, rad.
+    pub direction_rad: f64,
+}
+
+/// Below this the rules ask for nothing: the centre of gravity is found by samples.
+const NOTHING: f64 = 1e-3;
+
+impl Rules {
+    /// Reads rules in the form of [`DEFAULT_RULES`].
+    ///
+    /// # Errors
+    /// [`FuzzyError`] with the line; other inputs or outputs than those of avoidance, or in other ranges.
+    pub fn from_toml(text: &str) -> Result<Self, FuzzyError> {
+        let controller = Controller::from_toml(text)?;
+        let names = |list: &[crate::fuzzy::Variable]| list.iter().map(|v| v.name.clone()).collect::<Vec<_>>();
+        let (inputs, outputs) = (names(controller.inputs()), names(controller.outputs()));
+        if inputs != ["proximity", "speed"] || outputs != ["size", "direction"] {
+            return Err(FuzzyError::new(
+                format!("the inputs are {} and the outputs {}", inputs.join(", "), outputs.join(", ")),
+                "[input.proximity], [input.speed], [output.size], [output.direction], in this order",
+            ));
+        }
+        let [size, direction] = [0, 1].map(|i| controller.outputs()[i].range);
+        let [proximity, speed] = [0, 1].map(|i| controller.inputs()[i].range);
+        if proximity[0] != 0.0 || speed[0] != 0.0 || size != [0.0, 1.0] || direction[0] < 0.0 || direction[1] > 90.0 {
+            return Err(FuzzyError::new(
+                "a range is not what avoidance needs",
+                "proximity and speed from 0, size in [0, 1], direction within [0, 90]",
+            ));
+        }
+        Ok(Self { controller })
+    }
+
+    /// The controller behind it.
+    pub fn controller(&self) -> &Controller {
+        &self.controller
+    }
+
+    /// Farther away than this, metres, proximity makes no difference any more.
+    pub fn reach_m(&self) -> f64 {
+        self.controller.inputs()[0].range[1]
+    }
+
+    /// For a distance (m) and a speed of approach (m/s; less than 0 counts as 0). NaN counts as touching, and as the
+    /// fastest there is.
+    pub fn correction(&self, distance_m: f64, approach_m_s: f64) -> Correction {
+        let fastest = self.controller.inputs()[1].range[1];
+        let speed = if approach_m_s.is_nan() { fastest } else { approach_m_s };
+        let mut out = [0.0; 2];
+        self.controller.infer(&[distance_m, speed], &mut out);
+        let size = if out[0] < NOTHING { 0.0 } else { out[0] };
+        Correction { size, direction_rad: out[1].to_radians() }
+    }
+}
+
+impl Default for Rules {
+    /// [`DEFAULT_RULES`].
+    fn default() -> Self {
+        Self::from_toml(DEFAULT_RULES).expect("the rules that come along are sound: a test reads them")
+    }
+}

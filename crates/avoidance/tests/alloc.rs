@@ -1,0 +1,37 @@
+//! A tick takes no memory, once what comes near has come near before. Without the test harness, whose threads take some.
+
+mod common;
+
+use std::alloc::System;
+
+use common::{Ball, DT, avoider, scene};
+use elbowroom_avoidance::{Around, PathKind, Reference};
+use elbowroom_spatial::Vec3;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+fn main() {
+    let scene = scene();
+    let lean = [0.0, 0.9, 0.6];
+    let mut avoider = avoider(&scene, &lean);
+    let reference = Reference { q: &lean, qd: &[0.0; 3], path: PathKind::PointToPoint };
+    let from = Vec3::new(0.62, -1.5, 0.5);
+    let ball = Ball { object: 1, from, velocity: Vec3::new(0.0, 0.9, 0.0), stops_s: f64::INFINITY };
+    let mut pass = || {
+        let mut corrected = 0;
+        for tick in 0..900 {
+            let seen = [ball.seen(f64::from(tick) * DT)];
+            let advice = avoider.tick(DT, &reference, &Around { objects: &seen, robots: &[] }, 1.0).unwrap();
+            corrected += usize::from(advice.reaction.size > 0.0);
+        }
+        corrected
+    };
+    assert!(pass() > 100);
+    let region = Region::new(ALLOCATOR);
+    let corrected = pass();
+    let used = region.change();
+    assert_eq!((used.allocations, used.reallocations), (0, 0));
+    assert!(corrected > 100);
+}

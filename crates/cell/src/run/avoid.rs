@@ -1,0 +1,199 @@
+//! Avoidance in a run: each robot that evades goes along its path as far as what comes lets it.
+
+use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_avoidance::{
+    Advice, Around, AvoidanceError, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen,
+};
+use elbowroom_formats::FormatError;
+use elbowroom_kinematics::ChainState;
+use elbowroom_planner::RouteOptions;
+use elbowroom_scene::Scene;
+use elbowroom_spatial::Motion;
+
+use super::tick_times;
+use crate::motion::Clock;
+use crate::{AvoidanceSample, AvoidanceSpec, AvoidanceTrack, Cell};
+
+/// Ways are planned for so long at most, …
+const PLANNING: std::time::Duration = std::time::Duration::from_secs(2);
+/// … staying so far away where there is room for it, m, …
+const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
+/// … and asked for again after this time, s.
+const AGAIN_S: f64 = 0.5;
+/// Values of each input in a picture of the rules.
+const SURFACE: usize = 33;
+
+/// One robot that evades.
+#[derive(Debug)]
+pub(super) struct Evasive<'s> {
+    avoider: Avoider<'s>,
+    spec: &'s AvoidanceSpec,
+    robot: usize,
+    advice: Advice,
+    not_before_s: f64,
+    step_ns: Vec<u64>,
+    track: AvoidanceTrack,
+}
+
+impl<'s> Evasive<'s> {
+    /// One entry per robot of the cell; `None` where it does not evade.
+    pub fn of_cell(cell: &'s Cell, scene: &'s Scene, clocks: &[Clock]) -> Result<Vec<Option<Self>>, FormatError> {
+        let each = cell.avoidance.iter().enumerate();
+        each.map(|(robot, spec)| spec.as_ref().map(|s| Self::new(cell, scene, robot, s, &clocks[robot])).transpose())
+            .collect()
+    }
+
+    fn new(
+        cell: &Cell,
+        scene: &'s Scene,
+        robot: usize,
+        spec: &'s AvoidanceSpec,
+        clock: &Clock,
+    ) -> Result<Self, FormatError> {
+        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
+        let (q, limits) = (&clock.point().q, limits(cell, robot));
+        let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
+        Ok(Self {
+            avoider,
+            spec,
+            robot,
+            advice: Advice { rate: 1.0, nearest_m: f64::INFINITY, ..Advice::default() },
+            not_before_s: 0.0,
+            step_ns: Vec::new(),
+            track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
+        })
+    }
+
+    /// Writes where the robot is and how it moves.
+    pub fn look(&self, state: &mut ChainState) {
+        state.q.copy_from_slice(self.avoider.q());
+        state.qd.copy_from_slice(self.avoider.qd());
+        state.qdd.copy_from_slice(self.avoider.qdd());
+    }
+
+    /// Joint velocities that it would have at override 1.
+    pub fn intent<'a>(&'a self, clock: &'a Clock) -> &'a [f64] {
+        if self.is_on_path() { clock.intent() } else { self.avoider.intent() }
+    }
+
+    /// True where the robot is where its program has it.
+    pub fn is_on_path(&self) -> bool {
+        self.advice.astray_s == 0.0
+    }
+
+    /// What is told of the present tick.
+    pub fn record(&mut self) {
+        let a = &self.advice;
+        self.track.samples.push(AvoidanceSample {
+            doing: a.doing,
+            nearest_m: a.nearest_m,
+            size: a.reaction.size,
+            astray_s: a.astray_s,
+            rate: a.rate,
+        });
+    }
+
+    /// All that was recorded.
+    pub fn finish(mut self) -> AvoidanceTrack {
+        self.track.step_ns = tick_times(self.step_ns);
+        self.track
+    }
+
+    /// From `t_s` to the next tick, under the override of the monitor. Returns the event that this is, where it is one.
+    pub fn advance(
+        &mut self,
+        cell: &Cell,
+        clock: &mut Clock,
+        states: &[ChainState],
+        t_s: f64,
+        allowed: f64,
+    ) -> Option<&'static str> {
+        let before = self.advice.doing;
+        if self.spec.replan && self.advice.wants_way && t_s >= self.not_before_s {
+            self.plan(clock, t_s);
+        }
+        // What a program waits for happens at its place: away from it time does not run.
+        if !(clock.waiting() && self.advice.rate == 0.0) {
+            clock.advance(cell.tick_s, allowed * self.advice.rate);
+        }
+        self.step(cell, clock, states, t_s, allowed);
+        let now = self.advice.doing;
+        (now != before).then(|| event(now))
+    }
+
+    fn step(&mut self, cell: &Cell, clock: &Clock, states: &[ChainState], t_s: f64, allowed: f64) {
+        let fled = |object: usize| self.spec.objects.contains(&object);
+        let moving = cell.movers.iter().map(|m| Seen {
+            object: m.object,
+            in_world: m.pose(t_s),
+            motion: m.motion(t_s),
+            known: !fled(m.object),
+        });
+        let stands = |o: &&usize| !cell.movers.iter().any(|m| m.object == **o);
+        let standing = self.spec.objects.iter().filter(stands).map(|&object| Seen {
+            object,
+            in_world: cell.objects[object].in_world,
+            motion: Motion::REST,
+            known: false,
+        });
+        let objects: Vec<Seen> = moving.chain(standing).collect();
+        let others = states.iter().enumerate().filter(|(i, _)| *i != self.robot);
+        let robots: Vec<Neighbour<'_>> = others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd }).collect();
+        let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
+        let reference = Reference { q: &clock.point().q, qd: &clock.point().first, path };
+        let around = Around { objects: &objects, robots: &robots };
+        match self.avoider.tick(cell.tick_s, &reference, &around, allowed) {
+            Ok(advice) => {
+                self.advice = advice;
+                self.step_ns.push(advice.times.total().as_nanos() as u64);
+            }
+            // Nothing was commanded: the robot stands, and its path with it.
+            Err(_) => self.advice = Advice { rate: 0.0, doing: Doing::Halted, ..self.advice },
+        }
+    }
+
+    /// Another way: to the end of a joint move, else back to where the path was left.
+    fn plan(&mut self, clock: &mut Clock, t_s: f64) {
+        self.not_before_s = t_s + AGAIN_S;
+        let end = clock.end_of_joint_move();
+        let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
+        let begin = std::time::Instant::now();
+        let found = CLEARANCES_M.into_iter().any(|clearance_m| {
+            let options = RouteOptions { time_limit: PLANNING, clearance_m, ..RouteOptions::default() };
+            self.avoider.plan_to(&goal, &options).is_ok()
+        });
+        self.track.plans.push((t_s, found.then(|| begin.elapsed().as_secs_f64())));
+        if found && end.is_some() {
+            clock.skip_move();
+        }
+    }
+}
+
+fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
+    (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE)).collect()
+}
+
+fn event(doing: Doing) -> &'static str {
+    match doing {
+        Doing::Following => "on_path",
+        Doing::Evading => "evade",
+        Doing::Returning => "return",
+        Doing::Rounding => "go_around",
+        Doing::Waiting => "wait",
+        Doing::Halted => "halt",
+    }
+}
+
+fn limits(cell: &Cell, robot: usize) -> Vec<JointLimit> {
+    let robot = &cell.robots[robot];
+    let chain = &robot.robot.chain;
+    let bounds = chain.lower().into_iter().zip(chain.upper());
+    let limit = |((lower, upper), l): ((f64, f64), &crate::JointLimits)| JointLimit {
+        lower,
+        upper,
+        speed: l.velocity,
+        acceleration: l.acceleration,
+        stop: l.stop.max(l.acceleration),
+    };
+    bounds.zip(&robot.limits).map(limit).collect()
+}

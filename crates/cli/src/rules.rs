@@ -1,0 +1,95 @@
+//! `elbowroom rules`: the rules of avoidance, read, shown, written.
+
+use std::path::Path;
+
+use elbowroom::avoidance::fuzzy::Surface;
+use elbowroom::avoidance::{DEFAULT_RULES, Rules};
+use serde::Serialize;
+
+use crate::args::RulesArgs;
+use crate::output::{Failure, Verdict, cannot_write, print, print_json};
+
+/// Distances (m) and speeds of approach (m/s) of the table.
+const DISTANCES_M: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8];
+const SPEEDS_M_S: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 1.0, 1.5];
+/// Values of each input in a picture.
+const STEPS: usize = 41;
+
+#[derive(Serialize)]
+struct Answer {
+    rules: usize,
+    surfaces: Vec<SurfaceAnswer>,
+}
+
+#[derive(Serialize)]
+struct SurfaceAnswer {
+    output: String,
+    unit: &'static str,
+    proximity_m: Vec<f64>,
+    speed_m_s: Vec<f64>,
+    /// One row per speed.
+    values: Vec<Vec<f64>>,
+}
+
+pub(crate) fn rules(args: &RulesArgs) -> Result<Verdict, Failure> {
+    if let Some(path) = &args.write {
+        if path.exists() {
+            return Err(Failure::Wrong(format!(
+                "{} is there already\n  write: --write with another name",
+                path.display()
+            )));
+        }
+        std::fs::write(path, DEFAULT_RULES).map_err(cannot_write(path))?;
+    }
+    let rules = match &args.file {
+        None => Rules::default(),
+        Some(path) => read(path)?,
+    };
+    let surfaces: Vec<Surface> = (0..2).filter_map(|o| Surface::of(rules.controller(), o, STEPS)).collect();
+    if let Some(dir) = &args.picture {
+        std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
+        for (surface, unit) in surfaces.iter().zip(["", "deg"]) {
+            let path = dir.join(format!("{}.svg", surface.z_name));
+            std::fs::write(&path, surface.to_svg(["m", "m/s", unit])).map_err(cannot_write(&path))?;
+        }
+    }
+    if args.json {
+        let answer = |(s, unit): (Surface, &'static str)| SurfaceAnswer {
+            output: s.z_name,
+            unit,
+            proximity_m: s.x,
+            speed_m_s: s.y,
+            values: s.z,
+        };
+        let surfaces = surfaces.into_iter().zip(["1", "deg"]).map(answer).collect();
+        print_json(&Answer { rules: rules.controller().rules().len(), surfaces })?;
+    } else {
+        print(&table(&rules))?;
+    }
+    Ok(Verdict::Good)
+}
+
+fn read(path: &Path) -> Result<Rules, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::Wrong(format!("{}: {e}", path.display())))?;
+    Rules::from_toml(&text).map_err(|e| {
+        let line = e.line.map_or(String::new(), |l| format!("{l}:"));
+        Failure::Wrong(format!("{}:{line} {}\n  write: {}", path.display(), e.what, e.write_instead))
+    })
+}
+
+fn table(rules: &Rules) -> String {
+    let count = rules.controller().rules().len();
+    let head = format!("{count} rules. Size of the correction (%) / its direction (deg; 0: straight away, 90: aside)");
+    let distances: String = DISTANCES_M.iter().map(|d| format!("{d:>9.2}")).collect();
+    let row = |speed: &f64| {
+        let cells: String = DISTANCES_M.iter().map(|d| format!("{:>9}", cell(rules, *d, *speed))).collect();
+        format!("{speed:8.2} {cells}\n")
+    };
+    let rows: String = SPEEDS_M_S.iter().map(row).collect();
+    format!("{head}\n\n  speed     distance (m)\n   (m/s) {distances}\n{rows}")
+}
+
+fn cell(rules: &Rules, distance_m: f64, speed_m_s: f64) -> String {
+    let c = rules.correction(distance_m, speed_m_s);
+    if c.size > 0.0 { format!("{:.0}/{:.0}", 100.0 * c.size, c.direction_rad.to_degrees()) } else { "-".into() }
+}
