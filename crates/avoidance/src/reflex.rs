@@ -167,7 +167,13 @@ impl Reflex {
             let first = self.least.wishes().len();
             self.keep_clear(threat);
             let size = self.evade(threat, task);
-            if matches!(threat.other, Other::Loose { .. } | Other::Moving { .. }) {
+            let counts = match threat.other {
+                Other::Loose { .. } => true,
+                // A path was made with it in mind.
+                Other::Moving { .. } => matches!(task.manner, Manner::Proven | Manner::Back),
+                Other::Own(_) | Other::Fixed => false,
+            };
+            if counts {
                 let missed = |w: &crate::Wish| !(w.weight == 0.0 || w.miss(&self.scaled) == 0.0);
                 reaction.asked |= self.least.wishes()[first..].iter().any(missed);
             }

@@ -37,14 +37,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         PathBuf::from,
     );
     let mut cell = Cell::load(file)?;
-    let object = cell.movers.first().ok_or("the cell has no object that moves")?.object;
+    let seen = cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot does not evade")?.objects.clone();
+    let moves = |o: &&usize| cell.movers.iter().any(|m| m.object == **o);
+    let object = *seen.iter().find(moves).ok_or("nothing that moves is evaded")?;
     let free = alone(&cell)?;
     println!("{}: {} robot(s), the program alone takes {:.2} s", cell.name, cell.robots.len(), free.duration_s);
+    // One run alone, with what the robot did before it was hit.
+    let only: Option<usize> = std::env::var("EVADE_ONLY").ok().and_then(|o| o.parse().ok());
     let mut random = Random(2026);
-    let mut tally = Tally::default();
+    let mut tally = Tally { show: only.is_some(), quietest_s: f64::INFINITY, ..Tally::default() };
     while tally.runs < runs {
         let Some(way) = crossing(&cell, object, free.duration_s, &mut random)? else { continue };
         cell.movers.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = Drive::Way(way.clone()));
+        if only.is_some_and(|o| o != tally.runs) {
+            tally.runs += 1;
+            continue;
+        }
         let run = |evasive| simulate(&cell, &RunOptions { evasive, ..RunOptions::default() });
         let (off, on) = (run(false)?.recording, run(true)?.recording);
         tally.add(&cell, &off, &on, tally.runs);
@@ -124,13 +132,11 @@ struct Tally {
     over: [f64; 2],
     quietest_s: f64,
     plans: [usize; 2],
+    show: bool,
 }
 
 impl Tally {
     fn add(&mut self, cell: &Cell, off: &Recording, on: &Recording, number: usize) {
-        if self.runs == 0 {
-            self.quietest_s = f64::INFINITY;
-        }
         self.runs += 1;
         let (without, with) = (&off.robots[0], &on.robots[0]);
         let (hit_off, hit_on) = (!without.collisions.is_empty(), !with.collisions.is_empty());
@@ -138,7 +144,7 @@ impl Tally {
         self.hit_on += usize::from(hit_on);
         if let Some(first) = with.collisions.first() {
             println!("run {number}: {} hits {} at {:.3} s, {} without avoidance", first.a, first.b, first.t_s, hit_off);
-            if std::env::var_os("EVADE_SHOW").is_some() {
+            if self.show {
                 show(with, first.t_s);
             }
         }

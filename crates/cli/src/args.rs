@@ -84,7 +84,7 @@ pub(crate) struct RunArgs {
     /// Let the monitor watch without slowing anything
     #[arg(long)]
     pub(crate) no_monitor: bool,
-    /// Let robots with [avoidance] keep to their programs, whatever comes
+    /// Let robots that evade keep to their programs, whatever comes
     #[arg(long)]
     pub(crate) no_avoidance: bool,
     /// Also run without the monitor and show both in the report

@@ -156,6 +156,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             } else {
                 vec![Collision { t_s: 3.1, a: "ns16/fore".into(), b: "table".into() }]
             },
+            avoidance: None,
         }],
         objects: vec![],
         regions: vec![
