@@ -194,6 +194,9 @@ pub struct Avoider<'s> {
     /// A planned way, the next waypoint last.
     way: Vec<Vec<f64>>,
     levers: Levers,
+    /// The fastest that each joint can be commanded next, and how long that and a stop take to matter, s.
+    fastest: Vec<f64>,
+    ahead_s: f64,
     standing_s: f64,
     /// Off the path and nothing comes for so long, s.
     lost_s: f64,
@@ -229,6 +232,9 @@ impl<'s> Avoider<'s> {
         let missing = JointLimit::of(chain, 0.25, 0.1, 1.0).into_iter().skip(limits.len());
         limits.extend(missing);
         let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
+        // A gap must not close faster than a stop takes.
+        let mut settings = settings;
+        settings.reflex.closing_s = settings.reflex.closing_s.max(stop_s(&limits, &speeds));
         Ok(Self {
             reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
             levers: Levers::new(&scene.robots()[robot].robot),
@@ -244,6 +250,8 @@ impl<'s> Avoider<'s> {
             next: vec![0.0; n],
             intent: vec![0.0; n],
             braked: vec![0.0; n],
+            fastest: vec![0.0; n],
+            ahead_s: 0.0,
             way: Vec::new(),
             standing_s: 0.0,
             lost_s: 0.0,
@@ -300,6 +308,10 @@ impl<'s> Avoider<'s> {
         self.check_call(dt, reference)?;
         let begin = Instant::now();
         self.senses.place(&self.q, around)?;
+        for (fastest, (v, limit)) in self.fastest.iter_mut().zip(self.qd.iter().zip(&self.limits)) {
+            *fastest = (v.abs() + limit.stop * dt).min(limit.speed);
+        }
+        self.ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.fastest);
         self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach());
         let sensed = Instant::now();
         let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
@@ -308,9 +320,11 @@ impl<'s> Avoider<'s> {
         let (reaction, mut exactly) = self.correct(dt, reference, allowed, mode);
         let corrected = Instant::now();
         let mut braked = false;
-        let proven = exactly || (mode == Mode::Way && !self.way.is_empty());
-        if !proven && !self.can_stop(dt, around) {
+        // A way was proven with all that stood: what has moved since may stand on it.
+        let on_way = mode == Mode::Way && !self.way.is_empty();
+        if !exactly && !self.can_stop(dt, around, on_way) {
             braked = true;
+            self.way.clear();
             if mode == Mode::Path {
                 // The path is known to be free, and is slowed down on.
                 self.along_path(dt, reference);
@@ -334,6 +348,7 @@ impl<'s> Avoider<'s> {
     /// As [`Connect::plan`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
         let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
+        self.senses.state.set_q(self.senses.scene, self.senses.robot, &self.q)?;
         let route = connect.plan(&self.senses.state, goal, options)?;
         self.way = route.waypoints;
         self.way.reverse();
@@ -358,10 +373,12 @@ impl<'s> Avoider<'s> {
         Err(AvoidanceError::Reference { given: reference.q.len().min(reference.qd.len()), joints })
     }
 
-    /// How near what is known must be to matter: what a stop from twice the evasion speed takes.
+    /// How near what is known must be to matter: what a stop takes from the fastest that the next command can be, or from
+    /// half again the evasion speed in the reflex's own time.
     fn fixed_reach(&self) -> f64 {
         let s = &self.settings.reflex;
-        s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s
+        let nearby = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
+        nearby.max(self.levers.farthest(&self.fastest, self.ahead_s))
     }
 
     /// Fills `next` with the velocity to command; true where it is exactly the path's.
@@ -387,7 +404,12 @@ impl<'s> Avoider<'s> {
         let reaction = self.reflex.react(chain, state, &task, threats, &mut self.next);
         self.headway = headway(&self.next, &self.wanted, &self.limits);
         self.intent.copy_from_slice(&self.next);
-        self.next.iter_mut().for_each(|v| *v *= allowed);
+        // The bounds were widened by the override, and what is lowered last must keep them, too.
+        joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
+        self.calm.hold(&mut self.bounds);
+        for (v, [low, high]) in self.next.iter_mut().zip(&self.bounds.now) {
+            *v = (*v * allowed).clamp(*low, *high);
+        }
         let held = self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0;
         match mode {
             _ if reaction.asked && !held => self.way.clear(),
@@ -492,13 +514,14 @@ impl<'s> Avoider<'s> {
         false
     }
 
-    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command
+    /// Whether the command, and a stop right after it, run free of what does not come by itself; on a way, of everything. As long as each command
     /// does, there is always a stop that does: that of the command before.
-    fn can_stop(&mut self, dt: f64, around: &Around<'_>) -> bool {
+    fn can_stop(&mut self, dt: f64, around: &Around<'_>, on_way: bool) -> bool {
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
         // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
         let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
-        self.hit(dt, ahead_s, around, false, |t| !matches!(t.other, Other::Loose { .. }) && apart(t)).is_none()
+        self.hit(dt, ahead_s, around, false, |t| (on_way || !matches!(t.other, Other::Loose { .. })) && apart(t))
+            .is_none()
     }
 
     /// When the command (or the braking), held for `ahead_s` seconds, first hits any of the chosen threats, as a share of that
@@ -515,17 +538,23 @@ impl<'s> Avoider<'s> {
         for (j, (to, q)) in self.wanted.iter_mut().zip(&self.q).enumerate() {
             *to = (q + velocity[j] * ahead_s).clamp(self.limits[j].lower, self.limits[j].upper);
         }
-        let Senses { robot, checker, state, threats, members, .. } = &mut self.senses;
-        let own = Move::Robot { robot: *robot, to: &self.wanted };
         let mut first: Option<f64> = None;
+        // What was left off the list may be nearer than the robot can move.
+        if self.senses.left_off_m <= self.levers.farthest(velocity, ahead_s) {
+            first = Some(0.0);
+        }
+        let Senses { robot, checker, state, threats, members, radii, .. } = &mut self.senses;
+        let own = Move::Robot { robot: *robot, to: &self.wanted };
         for (threat, (a, b)) in threats.iter().zip(members.iter()).filter(|(t, _)| chosen(t)) {
-            let theirs = 2.0 * threat.velocity().length();
-            if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
-                continue;
-            }
             let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
             let path =
                 seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, ahead_s)));
+            let turning =
+                |s: &crate::Seen| s.motion.velocity.length() + s.motion.angular_velocity.length() * radii[s.object];
+            let theirs = seen(*a).or_else(|| seen(*b)).map_or_else(|| 2.0 * threat.velocity().length(), turning);
+            if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
+                continue;
+            }
             let mut pair = checker.between((*a).into(), (*b).into());
             let answer = match &path {
                 Some((object, path)) => {
@@ -574,7 +603,7 @@ impl<'s> Avoider<'s> {
         } else {
             0.0
         };
-        advice.wants_way = self.way.is_empty() && (self.lost_s > 0.0 && fastest < STANDS || self.stuck());
+        advice.wants_way = self.way.is_empty() && fastest < STANDS && (self.lost_s > 0.0 || self.stuck());
         advice.rate = if advice.braked && self.following { 0.0 } else { self.rate(reference, advice.astray_s) };
         advice.doing = if allowed == 0.0 {
             Doing::Halted

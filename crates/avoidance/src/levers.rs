@@ -40,6 +40,12 @@ impl Levers {
         levers
     }
 
+    /// No point of any link moves farther than this in `dt` seconds at joint velocities `qd`, m.
+    pub fn farthest(&self, qd: &[f64], dt: f64) -> f64 {
+        let of = |row: &[f64]| row.iter().zip(qd).map(|(lever, v)| lever * v.abs()).sum::<f64>();
+        self.alone.chunks(self.joints.max(1)).map(of).fold(0.0, f64::max) * dt
+    }
+
     /// The gap of a threat closes by no more than this in `dt` seconds at joint velocities `qd`, m.
     pub fn closing(&self, threat: &Threat, qd: &[f64], dt: f64) -> f64 {
         let a = threat.link.0;

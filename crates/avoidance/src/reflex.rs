@@ -17,7 +17,7 @@ use crate::side::{Coming, Sides};
 use crate::{Other, Rules, Threat};
 
 /// Threats that are looked at: the nearest ones.
-pub(crate) const MOST_THREATS: usize = 32;
+pub(crate) const MOST_THREATS: usize = 48;
 /// Weight of an evasion of size 1 beside the task's 1.
 const EVADE: f64 = 100.0;
 /// Weight of what may not be: a wanted full speed pushes through by a millionth of the evasion speed.
@@ -140,7 +140,7 @@ impl Reflex {
     }
 
     /// Turns the wanted joint velocity into one that evades, in `out`. `state` holds the poses of the links at this moment;
-    /// of more than 32 threats the first 32 count, so they should come nearest first.
+    /// of more than 48 threats the first 48 count, so they should come nearest first.
     pub fn react(
         &mut self,
         chain: &Chain,
@@ -182,8 +182,8 @@ impl Reflex {
             }
         }
         if !self.least.solve(&mut self.scaled) {
-            // Nothing that can be trusted: stand.
-            out.fill(0.0);
+            // Nothing that can be trusted: as slow as the joints can be.
+            out.iter_mut().zip(&bounds.now).for_each(|(v, [low, high])| *v = 0.0_f64.clamp(*low, *high));
             return Reaction { asked: true, ..reaction };
         }
         for (j, speed) in self.speeds.iter().enumerate() {

@@ -53,7 +53,9 @@ pub struct Senses<'s> {
     /// Per robot, for velocities.
     pub chains: Vec<ChainState>,
     /// Radius of a ball around each object's origin.
-    radii: Vec<f64>,
+    pub radii: Vec<f64>,
+    /// Distance of the nearest pair that is not on the list for want of room, m.
+    pub left_off_m: f64,
     /// Per object: how it moves, where it is seen.
     loose: Vec<Option<(Motion, bool)>>,
     pub threats: Vec<Threat>,
@@ -72,6 +74,7 @@ impl<'s> Senses<'s> {
             state: SceneState::new(scene),
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             radii,
+            left_off_m: f64::INFINITY,
             loose: vec![None; scene.objects().len()],
             threats: Vec::with_capacity(MOST_THREATS),
             members: Vec::with_capacity(MOST_THREATS),
@@ -131,8 +134,14 @@ impl<'s> Senses<'s> {
             let told = |t: &Threat| matches!(t.other, Other::Loose { .. } | Other::Moving { .. });
             found.extend(view.threat(&d).filter(|t| !told(t)).map(|t| (t, d.a, d.b)));
         });
-        found.sort_unstable_by(|a, b| a.0.distance_m.total_cmp(&b.0.distance_m));
+        // What comes is never left off for what stands.
+        let comes = |t: &Threat| matches!(t.other, Other::Loose { .. } | Other::Moving { .. });
+        let near = |a: &Threat, b: &Threat| a.distance_m.total_cmp(&b.distance_m);
+        found.sort_unstable_by(|a, b| comes(&b.0).cmp(&comes(&a.0)).then(near(&a.0, &b.0)));
+        self.left_off_m =
+            found.get(MOST_THREATS..).unwrap_or_default().iter().map(|f| f.0.distance_m).fold(f64::INFINITY, f64::min);
         found.truncate(MOST_THREATS);
+        found.sort_unstable_by(|a, b| near(&a.0, &b.0));
         self.threats.clear();
         self.members.clear();
         for (threat, a, b) in found.iter() {

@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let run = |evasive| simulate(&cell, &RunOptions { evasive, ..RunOptions::default() });
         let (off, on) = (run(false)?.recording, run(true)?.recording);
         tally.add(&cell, &off, &on, tally.runs);
-        if tally.runs % 50 == 0 {
+        if tally.runs.is_multiple_of(50) {
             eprintln!("{} runs: {} hit without, {} with", tally.runs, tally.hit_off, tally.hit_on);
         }
     }

@@ -180,7 +180,7 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Written {
-    /// NAME.urdf, meshes/*.stl, and NAME.srdf where pairs are disabled
+    /// NAME.urdf, meshes/NAME/*.stl, and NAME.srdf where pairs are disabled
     Urdf,
     /// NAME.3ds, and NAME.joints.toml with what a 3DS file cannot say
     #[value(name = "3ds")]

@@ -20,7 +20,13 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<Verdict, Failure> {
             Written::Urdf => format!("{name}.urdf"),
             Written::Tds => format!("{name}.3ds"),
         });
-        refuse_same(&path, &args.model)?;
+        let beside: &[&str] = match to {
+            Written::Urdf => &["urdf", "srdf"],
+            Written::Tds => &["3ds", "joints.toml"],
+        };
+        for extension in beside {
+            keep_own(&args.out.join(format!("{name}.{extension}")), &args.model)?;
+        }
         let files = match to {
             Written::Urdf => robot::write_urdf(&robot, &args.out, &name)?,
             Written::Tds => write_tds(&robot, &path)?,
@@ -78,11 +84,12 @@ fn write_tds(robot: &Robot, path: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(vec![path.to_owned(), beside])
 }
 
-/// A model is not written over itself.
-fn refuse_same(path: &Path, model: &Path) -> Result<(), Failure> {
-    let same = path.canonicalize().is_ok_and(|p| model.canonicalize().is_ok_and(|m| p == m));
-    if same {
-        let what = format!("{}: would be written over itself\n  write: --out with another folder", path.display());
+/// Neither a model nor what lies beside it is written over: its SRDF and its joints may be the user's own work.
+fn keep_own(path: &Path, model: &Path) -> Result<(), Failure> {
+    let folder = |p: &Path| p.canonicalize().ok().and_then(|p| p.parent().map(Path::to_owned));
+    if path.exists() && folder(path) == folder(model) {
+        let what =
+            format!("{}: is there already, beside the model\n  write: --out with another folder", path.display());
         return Err(Failure::Wrong(what));
     }
     Ok(())

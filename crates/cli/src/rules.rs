@@ -1,5 +1,6 @@
 //! `elbowroom rules`: the rules of avoidance, read, shown, written.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use elbowroom::avoidance::fuzzy::Surface;
@@ -80,13 +81,17 @@ fn read(path: &Path) -> Result<Rules, Failure> {
 fn table(rules: &Rules) -> String {
     let count = rules.controller().rules().len();
     let head = format!("{count} rules. Size of the correction (%) / its direction (deg; 0: straight away, 90: aside)");
-    let distances: String = DISTANCES_M.iter().map(|d| format!("{d:>9.2}")).collect();
-    let row = |speed: &f64| {
-        let cells: String = DISTANCES_M.iter().map(|d| format!("{:>9}", cell(rules, *d, *speed))).collect();
-        format!("{speed:8.2} {cells}\n")
-    };
-    let rows: String = SPEEDS_M_S.iter().map(row).collect();
-    format!("{head}\n\n  speed     distance (m)\n   (m/s) {distances}\n{rows}")
+    let mut text = format!("{head}\n\n  speed     distance (m)\n   (m/s) ");
+    for distance in DISTANCES_M {
+        _ = write!(text, "{distance:>9.2}");
+    }
+    for speed in SPEEDS_M_S {
+        _ = write!(text, "\n{speed:8.2} ");
+        for distance in DISTANCES_M {
+            _ = write!(text, "{:>9}", cell(rules, distance, speed));
+        }
+    }
+    text + "\n"
 }
 
 fn cell(rules: &Rules, distance_m: f64, speed_m_s: f64) -> String {

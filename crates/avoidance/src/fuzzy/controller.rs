@@ -4,6 +4,8 @@ use super::{Rule, Variable};
 
 /// Most inputs, outputs, and sets of one variable: what inference keeps on the stack.
 const MOST: usize = 16;
+/// Combinations of the inputs' sets that are looked at.
+const MOST_COMBINATIONS: usize = 200_000;
 /// Places at which an output's sets are known.
 const SAMPLES: usize = 129;
 
@@ -176,6 +178,10 @@ impl Controller {
         let mut x = vec![0.0; self.inputs.len()];
         let ticks: Vec<Vec<f64>> = self.inputs.iter().map(ticks).collect();
         let combinations: usize = ticks.iter().map(Vec::len).product();
+        if combinations > MOST_COMBINATIONS {
+            let what = format!("the sets of the inputs make {combinations} combinations, too many to look at all");
+            return Err(FuzzyError::new(what, "fewer inputs, or fewer sets of each"));
+        }
         for index in 0..combinations {
             let mut rest = index;
             for (value, ticks) in x.iter_mut().zip(&ticks) {

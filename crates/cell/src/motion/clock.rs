@@ -24,6 +24,7 @@ pub struct Clock {
     here: Point,
     intent: Vec<f64>,
     switches: Vec<(usize, bool)>,
+    held: bool,
 }
 
 impl Clock {
@@ -43,6 +44,7 @@ impl Clock {
             intent: here.first.clone(),
             here,
             switches: Vec::new(),
+            held: false,
         };
         clock.pass_instants();
         clock.look();
@@ -106,12 +108,11 @@ impl Clock {
         }
     }
 
-    /// Goes to the end of the move at once: the robot is brought there on another way.
+    /// Goes to the end of the joint move at once: the robot is brought there on another way. What follows begins with the
+    /// next [`Clock::advance`] that is not [held](Clock::hold).
     pub fn skip_move(&mut self) {
         let Some(PlanStep::Move(m)) = self.plan.steps.get(self.step) else { return };
-        let duration = m.duration();
-        (self.rate, self.rate_change) = (0.0, 0.0);
-        self.end_step(duration);
+        (self.time, self.rate, self.rate_change) = (m.duration(), 0.0, 0.0);
         self.look();
     }
 
@@ -144,9 +145,18 @@ impl Clock {
             Some(_) => 0.0,
         };
         if self.time >= duration - 1e-12 {
-            self.end_step(duration);
+            if self.held {
+                (self.time, self.rate, self.rate_change) = (duration, 0.0, 0.0);
+            } else {
+                self.end_step(duration);
+            }
         }
         self.look();
+    }
+
+    /// While held, no step ends: the robot is not where its program has it, and what comes next must not begin.
+    pub fn hold(&mut self, held: bool) {
+        self.held = held;
     }
 
     /// The end is met exactly: steps meet at rest.

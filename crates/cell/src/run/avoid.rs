@@ -31,6 +31,8 @@ pub(super) struct Evasive<'s> {
     robot: usize,
     advice: Advice,
     not_before_s: f64,
+    /// Plans in a row that found nothing.
+    failed: u32,
     step_ns: Vec<u64>,
     track: AvoidanceTrack,
 }
@@ -59,6 +61,7 @@ impl<'s> Evasive<'s> {
             robot,
             advice: Advice { rate: 1.0, nearest_m: f64::INFINITY, ..Advice::default() },
             not_before_s: 0.0,
+            failed: 0,
             step_ns: Vec::new(),
             track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
         })
@@ -112,6 +115,7 @@ impl<'s> Evasive<'s> {
         if self.spec.replan && self.advice.wants_way && t_s >= self.not_before_s {
             self.plan(clock, t_s);
         }
+        clock.hold(!self.is_on_path());
         // What a program waits for happens at its place: away from it time does not run.
         if !(clock.waiting() && self.advice.rate == 0.0) {
             clock.advance(cell.tick_s, allowed * self.advice.rate);
@@ -154,7 +158,6 @@ impl<'s> Evasive<'s> {
 
     /// Another way: to the end of a joint move, else back to where the path was left.
     fn plan(&mut self, clock: &mut Clock, t_s: f64) {
-        self.not_before_s = t_s + AGAIN_S;
         let end = clock.end_of_joint_move();
         let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
         let begin = std::time::Instant::now();
@@ -162,6 +165,9 @@ impl<'s> Evasive<'s> {
             let options = RouteOptions { time_limit: PLANNING, clearance_m, ..RouteOptions::default() };
             self.avoider.plan_to(&goal, &options).is_ok()
         });
+        self.failed = if found { 0 } else { self.failed + 1 };
+        // A trapped robot is not planned for all the time.
+        self.not_before_s = t_s + AGAIN_S * f64::from(1_u32 << self.failed.min(5));
         self.track.plans.push((t_s, found.then(|| begin.elapsed().as_secs_f64())));
         if found && end.is_some() {
             clock.skip_move();

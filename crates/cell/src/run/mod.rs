@@ -398,7 +398,8 @@ impl<'a> Run<'a> {
         if here.iter().all(|i| self.finished(*i)) || t_s >= self.cell.max_s {
             return true;
         }
-        let waiting = here.iter().any(|i| self.clocks[*i].waiting());
+        let on_path = |i: usize| self.evasive[i].as_ref().is_none_or(Evasive::is_on_path);
+        let waiting = here.iter().any(|i| self.clocks[*i].waiting() && on_path(*i));
         let carried = self.frames.anything_travels(t_s);
         self.ending.nothing_moved(t_s, &self.states, waiting || carried)
     }

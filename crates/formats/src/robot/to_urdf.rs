@@ -64,7 +64,7 @@ pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>,
             FormatError::new(&path, None, format!("cannot be written: {e}")).hint("a folder that you may write to")
         }
     };
-    std::fs::create_dir_all(dir.join("meshes")).map_err(cannot(dir))?;
+    std::fs::create_dir_all(dir.join("meshes").join(plain_name(name))).map_err(cannot(dir))?;
     let mut files = vec![dir.join(format!("{name}.urdf"))];
     std::fs::write(&files[0], &export.urdf).map_err(cannot(&files[0]))?;
     if let Some(srdf) = &export.srdf {
@@ -85,11 +85,13 @@ pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>,
 fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, MeshData)>) -> fmt::Result {
     let chain = &robot.chain;
     writeln!(out, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(name))?;
+    // Robots that are written beside each other keep their own meshes.
+    let folder = plain_name(name);
     for (i, link) in chain.links().iter().enumerate() {
-        let collisions = solids(link, "", i, &robot.bodies[i], meshes);
+        let collisions = solids(link, (&folder, ""), i, &robot.bodies[i], meshes);
         let visuals = match &robot.visuals[i][..] {
             [] => collisions.clone(),
-            visuals => solids(link, "visual_", i, visuals, meshes),
+            visuals => solids(link, (&folder, "visual_"), i, visuals, meshes),
         };
         if collisions.is_empty() && visuals.is_empty() {
             writeln!(out, "  <link name=\"{}\"/>", escaped(link))?;
@@ -122,7 +124,13 @@ struct Solid {
     geometry: String,
 }
 
-fn solids(link: &str, prefix: &str, index: usize, bodies: &[Body], meshes: &mut Vec<(String, MeshData)>) -> Vec<Solid> {
+fn solids(
+    link: &str,
+    (folder, prefix): (&str, &str),
+    index: usize,
+    bodies: &[Body],
+    meshes: &mut Vec<(String, MeshData)>,
+) -> Vec<Solid> {
     let mut solids = Vec::new();
     for (b, body) in bodies.iter().enumerate() {
         let mut solid =
@@ -144,10 +152,9 @@ fn solids(link: &str, prefix: &str, index: usize, bodies: &[Body], meshes: &mut 
             Shape::HalfSpace(_) => {}
             Shape::Hull(_) | Shape::Mesh(_) => {
                 let (vertices, triangles) = tessellate(&body.shape, 0.0);
-                let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-                let link: String = link.chars().map(plain).take(80).collect();
+                let link = plain_name(link);
                 let file = format!(
-                    "meshes/{index:02}_{prefix}{link}{}.stl",
+                    "meshes/{folder}/{index:02}_{prefix}{link}{}.stl",
                     if b == 0 { String::new() } else { format!("_{}", b + 1) }
                 );
                 solid(body.in_link, format!("<mesh filename=\"{file}\"/>"));
@@ -156,6 +163,12 @@ fn solids(link: &str, prefix: &str, index: usize, bodies: &[Body], meshes: &mut 
         }
     }
     solids
+}
+
+/// A name as part of a file's.
+fn plain_name(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
+    name.chars().map(plain).take(80).collect()
 }
 
 fn sphere(radius: f64) -> String {
