@@ -28,6 +28,8 @@ const SOFT_S: f64 = 0.15;
 /// A correction of less than this size is not told as evading, nor one that was longer ago, s.
 const EVADING: f64 = 0.02;
 const EVADING_S: f64 = 0.1;
+/// What passes nearer than this, m, is not taken as free.
+const GRAZE_M: f64 = 1e-3;
 /// An obstacle slower than this stands, m/s.
 const OBSTACLE_STANDS_M_S: f64 = 0.01;
 
@@ -555,12 +557,13 @@ impl<'s> Avoider<'s> {
             if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
                 continue;
             }
+            // A graze is a hit: what is free stays so by a hair's breadth, or by half of what there is.
+            let clearance_m = GRAZE_M.min(0.5 * threat.distance_m);
+            let options = SweepOptions { clearance_m, ..SweepOptions::default() };
             let mut pair = checker.between((*a).into(), (*b).into());
             let answer = match &path {
-                Some((object, path)) => {
-                    pair.sweep(state, &[own, Move::Object { object: *object, path }], &SweepOptions::default())
-                }
-                None => pair.sweep(state, &[own], &SweepOptions::default()),
+                Some((object, path)) => pair.sweep(state, &[own, Move::Object { object: *object, path }], &options),
+                None => pair.sweep(state, &[own], &options),
             };
             // What cannot be checked is not done.
             let time = answer.map_or(Some(0.0), |hit| hit.map(|h| h.time));
