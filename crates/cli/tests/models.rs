@@ -104,7 +104,7 @@ fn the_robot_of_a_cell_is_converted_and_mistakes_are_told() {
     for (call, said) in [
         (vec!["convert", "cell.toml", "--out", "out", "--robot", "nobody"], "--robot with one of arm"),
         (vec!["convert", "cell.toml", "--out", "out", "--unit", "mm"], "go with a model"),
-        (vec!["convert", "out/arm.urdf", "--out", "out"], "over itself"),
+        (vec!["convert", "out/arm.urdf", "--out", "out"], "is there already, beside the model"),
         (vec!["convert", "out/arm.urdf", "--out", "x", "--robot", "arm"], "goes with a cell file"),
         (vec!["convert", "out/arm.urdf", "--out", "x", "--joint", "a: axis=z"], "its own joints"),
         (vec!["query", "cell.toml", "--ask", "collision", "--joint", "a: axis=z"], "--urdf MODEL"),

@@ -20,6 +20,9 @@ const PLANNING: std::time::Duration = std::time::Duration::from_secs(2);
 const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
 /// … and asked for again after this time, s.
 const AGAIN_S: f64 = 0.5;
+/// After so many in a row that found nothing, after this time, s.
+const MANY: u64 = 8;
+const LATER_S: f64 = 4.0;
 /// Values of each input in a picture of the rules.
 const SURFACE: usize = 33;
 
@@ -32,7 +35,7 @@ pub(super) struct Evasive<'s> {
     advice: Advice,
     not_before_s: f64,
     /// Plans in a row that found nothing.
-    failed: u32,
+    failed: u64,
     step_ns: Vec<u64>,
     track: AvoidanceTrack,
 }
@@ -162,12 +165,14 @@ impl<'s> Evasive<'s> {
         let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
         let begin = std::time::Instant::now();
         let found = CLEARANCES_M.into_iter().any(|clearance_m| {
-            let options = RouteOptions { time_limit: PLANNING, clearance_m, ..RouteOptions::default() };
+            // What was not found one way may be found another.
+            let seed = 1 + self.failed;
+            let options = RouteOptions { time_limit: PLANNING, clearance_m, seed };
             self.avoider.plan_to(&goal, &options).is_ok()
         });
         self.failed = if found { 0 } else { self.failed + 1 };
         // A trapped robot is not planned for all the time.
-        self.not_before_s = t_s + AGAIN_S * f64::from(1_u32 << self.failed.min(5));
+        self.not_before_s = t_s + if self.failed < MANY { AGAIN_S } else { LATER_S };
         self.track.plans.push((t_s, found.then(|| begin.elapsed().as_secs_f64())));
         if found && end.is_some() {
             clock.skip_move();
