@@ -48,7 +48,8 @@ pub struct RobotSummary {
     pub min_override: f64,
     /// First contact of each pair.
     pub collisions: Vec<CollisionSummary>,
-    /// How it evaded; null for a robot that does not.
+    /// How it evaded; left out for a robot that does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub avoidance: Option<AvoidanceSummary>,
 }
 
