@@ -318,7 +318,7 @@ impl<'s> Avoider<'s> {
         let sensed = Instant::now();
         let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
         joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
-        let mode = self.mode(reference);
+        let mode = self.mode();
         let (reaction, mut exactly) = self.correct(dt, reference, allowed, mode);
         let corrected = Instant::now();
         let mut braked = false;
@@ -426,17 +426,16 @@ impl<'s> Avoider<'s> {
     }
 
     /// What there is to do if nothing comes.
-    fn mode(&self, reference: &Reference<'_>) -> Mode {
+    fn mode(&self) -> Mode {
         if !self.way.is_empty() {
             return Mode::Way;
         }
-        let evades = self.evaded_s < EVADING_S;
-        match reference.path {
-            _ if self.following => Mode::Path,
-            // A way back that is proven is worth a short wait.
-            _ if !evades && self.lost_s < self.settings.patience_s => Mode::Stop,
-            _ => Mode::Back,
+        if self.following {
+            return Mode::Path;
         }
+        // A way back that is proven is worth a short wait.
+        let waits = self.evaded_s >= EVADING_S && self.lost_s < self.settings.patience_s;
+        if waits { Mode::Stop } else { Mode::Back }
     }
 
     /// Fills `next` with what leads to where the path wants to be.
