@@ -344,14 +344,15 @@ impl<'s> Avoider<'s> {
     }
 
     /// Plans a way from where the robot stands to `goal`, around everything as it stands now, proven free, and goes it from the
-    /// next tick on, until something comes. Takes as long as planning takes: a controller does it beside its loop.
+    /// next tick on, until something comes. The clearance is kept where the ends of the way have it
+    /// ([`Connect::plan_out`]). Takes as long as planning takes: a controller does it beside its loop.
     ///
     /// # Errors
     /// As [`Connect::plan`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
         let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
         self.senses.state.set_q(self.senses.scene, self.senses.robot, &self.q)?;
-        let route = connect.plan(&self.senses.state, goal, options)?;
+        let route = connect.plan_out(&self.senses.state, goal, options)?;
         self.way = route.waypoints;
         self.way.reverse();
         // The first waypoint is where the robot stands.
@@ -515,14 +516,19 @@ impl<'s> Avoider<'s> {
         false
     }
 
-    /// Whether the command, and a stop right after it, run free of what does not come by itself; on a way, of everything. As long as each command
-    /// does, there is always a stop that does: that of the command before.
+    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command does,
+    /// there is always a stop that does: that of the command before. A way was proven with all that is fixed: there it is
+    /// what can have moved since that counts.
     fn can_stop(&mut self, dt: f64, around: &Around<'_>, on_way: bool) -> bool {
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
         // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
         let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
-        self.hit(dt, ahead_s, around, false, |t| (on_way || !matches!(t.other, Other::Loose { .. })) && apart(t))
-            .is_none()
+        let counts = |t: &Threat| match t.other {
+            Other::Own(_) | Other::Fixed => !on_way,
+            Other::Moving { .. } => true,
+            Other::Loose { .. } => on_way,
+        };
+        self.hit(dt, ahead_s, around, false, |t| counts(t) && apart(t)).is_none()
     }
 
     /// When the command (or the braking), held for `ahead_s` seconds, first hits any of the chosen threats, as a share of that
