@@ -1,23 +1,22 @@
 //! The loop: sense, correct, check, command.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use elbowroom_planner::{Connect, RouteError, RouteOptions};
-use elbowroom_proximity::impact::Steady;
-use elbowroom_scene::{Member, Move, Scene, SceneError, SweepOptions};
+use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
 use crate::calm::Calm;
-use crate::joint::{self, JointLimit};
-use crate::levers::Levers;
+use crate::joint::{self, JointLimit, astray, brake, headway, slowing, stop_s};
+use crate::proof::{Course, Proof};
 use crate::sense::Senses;
+use crate::way::{NONE_S, Way};
 use crate::{
-    Around, AvoidanceError, Manner, Other, Reaction, Reflex, ReflexSettings, Rules, Task, Threat, VelocityBounds,
+    Advice, Around, AvoidanceError, Doing, Manner, Other, PathKind, Reaction, Reference, Reflex, ReflexSettings, Rules,
+    Task, Threat, TickTimes, VelocityBounds,
 };
 
 /// Below this override nothing is commanded but a stop.
 const NO_OVERRIDE: f64 = 1e-6;
-/// A deviation of so many seconds at full joint speed is none.
-const NONE_S: f64 = 1e-9;
 /// Less than this share of the wanted motion is no headway; nor is the last of it, in seconds of joint motion.
 const HEADWAY: f64 = 0.15;
 const NEARLY_S: f64 = 2e-3;
@@ -28,8 +27,6 @@ const SOFT_S: f64 = 0.15;
 /// A correction of less than this size is not told as evading, nor one that was longer ago, s.
 const EVADING: f64 = 0.02;
 const EVADING_S: f64 = 0.1;
-/// What passes nearer than this, m, is not taken as free.
-const GRAZE_M: f64 = 1e-3;
 /// An obstacle slower than this stands, m/s.
 const OBSTACLE_STANDS_M_S: f64 = 0.01;
 
@@ -53,58 +50,6 @@ impl Default for AvoiderSettings {
     /// Half the speed back, 0.4 s astray, 0.25 s between reversals, 0.6 s of patience.
     fn default() -> Self {
         Self { reflex: ReflexSettings::default(), return_share: 0.5, stray_s: 0.4, quiet_s: 0.25, patience_s: 0.6 }
-    }
-}
-
-/// Where the path wants the robot to be at the end of the tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reference<'a> {
-    /// Joint values, rad or m.
-    pub q: &'a [f64],
-    /// Their velocities at the full rate of the path (override 1), rad/s or m/s.
-    pub qd: &'a [f64],
-    /// What the path is for.
-    pub path: PathKind,
-}
-
-/// What a path is for (S4.11).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PathKind {
-    /// Every point of it counts (a seam, a line): it is slowed down on rather than left, and resumed where it was left.
-    Continuous,
-    /// Only its end counts: it may be left and joined again farther on.
-    PointToPoint,
-}
-
-/// What the robot is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Doing {
-    /// On its path.
-    #[default]
-    Following,
-    /// Correcting its motion.
-    Evading,
-    /// On the way back to its path.
-    Returning,
-    /// Going around on a planned way.
-    Rounding,
-    /// Wants to move and cannot.
-    Waiting,
-    /// The override is 0.
-    Halted,
-}
-
-impl Doing {
-    /// In one word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Following => "following",
-            Self::Evading => "evading",
-            Self::Returning => "returning",
-            Self::Rounding => "rounding",
-            Self::Waiting => "waiting",
-            Self::Halted => "halted",
-        }
     }
 }
 
@@ -132,48 +77,6 @@ fn manner(mode: Mode, reference: &Reference<'_>) -> Manner {
     }
 }
 
-/// How long the stages of a tick took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct TickTimes {
-    /// Placing everything and finding what is near.
-    pub sense: Duration,
-    /// Rules and least squares.
-    pub correct: Duration,
-    /// The sweep between this command and the next.
-    pub check: Duration,
-}
-
-impl TickTimes {
-    /// All stages.
-    pub fn total(&self) -> Duration {
-        self.sense + self.correct + self.check
-    }
-}
-
-/// What the tick says beside the joint values.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Advice {
-    /// How fast the path may be gone on with, as a share of its full rate, 0 to 1.
-    pub rate: f64,
-    /// What the robot is doing.
-    pub doing: Doing,
-    /// Of the single look.
-    pub reaction: Reaction,
-    /// Least distance to what moves or is not known, m; infinite where none of it is near.
-    pub nearest_m: f64,
-    /// The object or robot link that asked for the correction.
-    pub governed_by: Option<usize>,
-    /// Off the path by so many seconds of joint motion at full speed.
-    pub astray_s: f64,
-    /// A sweep found that the command, or a stop after it, would have hit something; it was replaced by braking.
-    pub braked: bool,
-    /// A proven way is wanted ([`Avoider::plan_to`]): off its path the robot stands and nothing comes, or it has not got on
-    /// for the time of patience because of what stands in its way.
-    pub wants_way: bool,
-    /// How long it took.
-    pub times: TickTimes,
-}
-
 /// Keeps one robot of a scene out of the way of what moves, and brings it back (S4.11).
 ///
 /// The path is the caller's: each tick it says where the path wants the robot, at the rate that the last advice allowed;
@@ -193,17 +96,14 @@ pub struct Avoider<'s> {
     next: Vec<f64>,
     intent: Vec<f64>,
     braked: Vec<f64>,
-    /// A planned way, the next waypoint last.
-    way: Vec<Vec<f64>>,
-    levers: Levers,
+    way: Way,
+    proof: Proof,
     /// The fastest that each joint can be commanded next, and how long that and a stop take to matter, s.
     fastest: Vec<f64>,
     ahead_s: f64,
     standing_s: f64,
     /// Off the path and nothing comes for so long, s.
     lost_s: f64,
-    /// Speed along the way, as a share of the fastest.
-    way_share: f64,
     /// Share of the wanted velocity that was left.
     headway: f64,
     /// Since the rules last asked for something, s.
@@ -239,7 +139,7 @@ impl<'s> Avoider<'s> {
         settings.reflex.closing_s = settings.reflex.closing_s.max(stop_s(&limits, &speeds));
         Ok(Self {
             reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
-            levers: Levers::new(&scene.robots()[robot].robot),
+            proof: Proof::new(scene),
             senses,
             bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
             calm: Calm::new(n, settings.quiet_s),
@@ -254,10 +154,9 @@ impl<'s> Avoider<'s> {
             braked: vec![0.0; n],
             fastest: vec![0.0; n],
             ahead_s: 0.0,
-            way: Vec::new(),
+            way: Way::default(),
             standing_s: 0.0,
             lost_s: 0.0,
-            way_share: 0.0,
             headway: 1.0,
             evaded_s: f64::INFINITY,
             following: true,
@@ -344,21 +243,18 @@ impl<'s> Avoider<'s> {
     }
 
     /// Plans a way from where the robot stands to `goal`, around everything as it stands now, proven free, and goes it from the
-    /// next tick on, until something comes. Takes as long as planning takes: a controller does it beside its loop.
+    /// next tick on, until something comes. The clearance is kept where the ends of the way have it
+    /// ([`Connect::plan_out`]). Takes as long as planning takes: a controller does it beside its loop.
     ///
     /// # Errors
     /// As [`Connect::plan`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
         let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
         self.senses.state.set_q(self.senses.scene, self.senses.robot, &self.q)?;
-        let route = connect.plan(&self.senses.state, goal, options)?;
-        self.way = route.waypoints;
-        self.way.reverse();
-        // The first waypoint is where the robot stands.
-        self.way.pop();
+        let route = connect.plan_out(&self.senses.state, goal, options)?;
+        self.way = Way::new(route.waypoints);
         self.standing_s = 0.0;
         self.lost_s = 0.0;
-        self.way_share = 0.0;
         self.following = false;
         Ok(())
     }
@@ -380,7 +276,7 @@ impl<'s> Avoider<'s> {
     fn fixed_reach(&self) -> f64 {
         let s = &self.settings.reflex;
         let nearby = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
-        nearby.max(self.levers.farthest(&self.fastest, self.ahead_s))
+        nearby.max(self.proof.farthest(self.senses.robot, &self.fastest, self.ahead_s))
     }
 
     /// Fills `next` with the velocity to command; true where it is exactly the path's.
@@ -455,39 +351,13 @@ impl<'s> Avoider<'s> {
                 }
             }
             Mode::Stop => self.wanted.fill(0.0),
-            Mode::Way => self.along_way(dt, allowed),
+            Mode::Way => {
+                let most = self.settings.return_share * allowed;
+                self.way.follow(dt, most, &self.q, &self.limits, &self.calm, &mut self.wanted);
+                self.wanted.iter_mut().for_each(|v| *v /= scale);
+            }
             Mode::Back => self.pull(dt, reference),
         }
-    }
-
-    /// Straight to the next waypoint, all joints together, with ramps between the stops.
-    fn along_way(&mut self, dt: f64, allowed: f64) {
-        let slowest = |f: fn(&JointLimit) -> f64| self.limits.iter().map(f).fold(0.0, f64::max);
-        let (rise_s, stop_s) = (slowest(|l| l.speed / l.acceleration), slowest(|l| l.speed / l.stop));
-        while let Some(left_s) = self.way.last().map(|w| astray(w, &self.q, &self.limits)) {
-            if left_s > NONE_S {
-                let starts = self.way_share == 0.0;
-                let target = slowing(left_s, rise_s).min(self.settings.return_share * allowed).min(left_s / dt);
-                self.way_share = target.clamp((self.way_share - dt / stop_s).max(0.0), self.way_share + dt / rise_s);
-                // The last step ends at the waypoint, not beyond.
-                let rate = (self.way_share / left_s).min(1.0 / dt) / allowed.max(NO_OVERRIDE);
-                let Some(waypoint) = self.way.last() else { break };
-                // From rest: not before the joints may turn back.
-                let towards = waypoint.iter().zip(&self.q).map(|(to, from)| to - from);
-                if starts && !self.calm.allows(towards) {
-                    self.way_share = 0.0;
-                    self.wanted.fill(0.0);
-                    return;
-                }
-                for ((v, to), from) in self.wanted.iter_mut().zip(waypoint).zip(&self.q) {
-                    *v = (to - from) * rate;
-                }
-                return;
-            }
-            self.way.pop();
-            self.way_share = 0.0;
-        }
-        self.wanted.fill(0.0);
     }
 
     /// Back to the path, as straight as what is near lets it.
@@ -505,70 +375,31 @@ impl<'s> Avoider<'s> {
     /// No collision falls between two commands: replaces `next` by braking where that is hit later.
     fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
         let loose = |t: &Threat| matches!(t.other, Other::Loose { .. });
-        let Some(hit) = self.hit(dt, dt, around, false, loose) else { return false };
-        brake(&self.limits, &self.qd, dt, &mut self.braked);
-        let braked_hit = self.hit(dt, dt, around, true, loose).unwrap_or(f64::INFINITY);
-        if braked_hit > hit {
-            self.next.copy_from_slice(&self.braked);
-            return true;
+        let Self { proof, senses, limits, q, next, braked, .. } = self;
+        let mut hit = |qd: &[f64]| proof.first_hit(senses, &Course { q, qd, limits, seconds: dt }, around, loose);
+        let Some(first) = hit(next) else { return false };
+        brake(limits, &self.qd, dt, braked);
+        let better = hit(braked).unwrap_or(f64::INFINITY) > first;
+        if better {
+            next.copy_from_slice(braked);
         }
-        false
+        better
     }
 
-    /// Whether the command, and a stop right after it, run free of what does not come by itself; on a way, of everything. As long as each command
-    /// does, there is always a stop that does: that of the command before.
+    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command does,
+    /// there is always a stop that does: that of the command before. A way was proven with all that is fixed: there it is
+    /// what can have moved since that counts.
     fn can_stop(&mut self, dt: f64, around: &Around<'_>, on_way: bool) -> bool {
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
         // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
         let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
-        self.hit(dt, ahead_s, around, false, |t| (on_way || !matches!(t.other, Other::Loose { .. })) && apart(t))
-            .is_none()
-    }
-
-    /// When the command (or the braking), held for `ahead_s` seconds, first hits any of the chosen threats, as a share of that
-    /// time. Only pairs that can close in it are swept.
-    fn hit(
-        &mut self,
-        dt: f64,
-        ahead_s: f64,
-        around: &Around<'_>,
-        braking: bool,
-        chosen: impl Fn(&Threat) -> bool,
-    ) -> Option<f64> {
-        let velocity = if braking { &self.braked } else { &self.next };
-        for (j, (to, q)) in self.wanted.iter_mut().zip(&self.q).enumerate() {
-            *to = (q + velocity[j] * ahead_s).clamp(self.limits[j].lower, self.limits[j].upper);
-        }
-        let mut first: Option<f64> = None;
-        // What was left off the list may be nearer than the robot can move.
-        if self.senses.left_off_m <= self.levers.farthest(velocity, ahead_s) {
-            first = Some(0.0);
-        }
-        let Senses { robot, checker, state, threats, members, radii, .. } = &mut self.senses;
-        let own = Move::Robot { robot: *robot, to: &self.wanted };
-        for (threat, (a, b)) in threats.iter().zip(members.iter()).filter(|(t, _)| chosen(t)) {
-            let seen = |o: Member| around.objects.iter().find(|s| Member::Object(s.object) == o);
-            let path =
-                seen(*a).or_else(|| seen(*b)).map(|s| (s.object, Steady::from_motion(s.in_world, &s.motion, ahead_s)));
-            let turning =
-                |s: &crate::Seen| s.motion.velocity.length() + s.motion.angular_velocity.length() * radii[s.object];
-            let theirs = seen(*a).or_else(|| seen(*b)).map_or_else(|| 2.0 * threat.velocity().length(), turning);
-            if threat.distance_m > self.levers.closing(threat, velocity, ahead_s) + theirs * ahead_s.max(dt) {
-                continue;
-            }
-            // A graze is a hit: what is free stays so by a hair's breadth, or by half of what there is.
-            let clearance_m = GRAZE_M.min(0.5 * threat.distance_m);
-            let options = SweepOptions { clearance_m, ..SweepOptions::default() };
-            let mut pair = checker.between((*a).into(), (*b).into());
-            let answer = match &path {
-                Some((object, path)) => pair.sweep(state, &[own, Move::Object { object: *object, path }], &options),
-                None => pair.sweep(state, &[own], &options),
-            };
-            // What cannot be checked is not done.
-            let time = answer.map_or(Some(0.0), |hit| hit.map(|h| h.time));
-            first = [first, time].into_iter().flatten().reduce(f64::min);
-        }
-        first
+        let counts = |t: &Threat| match t.other {
+            Other::Own(_) | Other::Fixed => !on_way,
+            Other::Moving { .. } => true,
+            Other::Loose { .. } => on_way,
+        };
+        let course = Course { q: &self.q, qd: &self.next, limits: &self.limits, seconds: ahead_s };
+        self.proof.first_hit(&mut self.senses, &course, around, |t| counts(t) && apart(t)).is_none()
     }
 
     /// Takes `next` as the command; the values that the path has are taken as they are.
@@ -670,35 +501,4 @@ impl<'s> Avoider<'s> {
         }
         rate
     }
-}
-
-/// Seconds that a stop takes from these velocities.
-fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
-    qd.iter().zip(limits).map(|(v, l)| v.abs() / l.stop).fold(0.0, f64::max)
-}
-
-/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free.
-fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
-    let stop_s = stop_s(limits, qd);
-    let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
-    out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
-}
-
-/// Seconds of joint motion at full speed between two configurations.
-fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
-    to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
-}
-
-/// How much of the wanted velocity a velocity has in its direction, in the norm of the joints' speeds; 1 where nothing is
-/// wanted.
-fn headway(velocity: &[f64], wanted: &[f64], limits: &[JointLimit]) -> f64 {
-    let along =
-        |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
-    let whole = along(wanted);
-    if whole > 0.0 { along(velocity) / whole } else { 1.0 }
-}
-
-/// Share of the speed from which the rest of the way is enough to stop.
-fn slowing(left_s: f64, rise_s: f64) -> f64 {
-    (1.6 * left_s / rise_s.max(1e-6)).sqrt()
 }

@@ -51,10 +51,16 @@ impl JointLimit {
         [-fastest(q - self.lower), fastest(self.upper - q)]
     }
 
+    /// The greatest velocity after one tick: to rest as fast as a stop, from there as fast as the joint accelerates.
+    fn faster(&self, qd: f64, dt: f64) -> f64 {
+        let stopping_s = (-qd).max(0.0) / self.stop;
+        if stopping_s >= dt { qd + self.stop * dt } else { qd.max(0.0) + self.acceleration * (dt - stopping_s) }
+    }
+
     /// The same for the next command, from the velocity `qd`.
     fn now(&self, [low, high]: [f64; 2], qd: f64, dt: f64) -> [f64; 2] {
-        let rate = |slows: bool| if slows { self.stop } else { self.acceleration };
-        let (lower, upper) = (qd - rate(qd > 0.0) * dt, qd + rate(qd < 0.0) * dt);
+        let upper = self.faster(qd, dt);
+        let lower = -self.faster(-qd, dt);
         // A limit of the joint goes before one of its acceleration.
         [lower.clamp(low, high), upper.clamp(low, high)]
     }
@@ -65,5 +71,54 @@ pub fn fill(bounds: &mut VelocityBounds, limits: &[JointLimit], q: &[f64], qd: &
     for (j, limit) in limits.iter().enumerate() {
         bounds.soon[j] = limit.soon(q[j], dt);
         bounds.now[j] = limit.now(bounds.soon[j], qd[j], dt);
+    }
+}
+
+/// Seconds that a stop takes from these velocities.
+pub fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
+    qd.iter().zip(limits).map(|(v, l)| v.abs() / l.stop).fold(0.0, f64::max)
+}
+
+/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free.
+pub fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
+    let stop_s = stop_s(limits, qd);
+    let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
+    out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
+}
+
+/// Seconds of joint motion at full speed between two configurations.
+pub fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
+    to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
+}
+
+/// How much of the wanted velocity a velocity has in its direction, in the norm of the joints' speeds; 1 where nothing is
+/// wanted.
+pub fn headway(velocity: &[f64], wanted: &[f64], limits: &[JointLimit]) -> f64 {
+    let along =
+        |a: &[f64]| a.iter().zip(wanted).zip(limits).map(|((a, w), l)| a * w / (l.speed * l.speed)).sum::<f64>();
+    let whole = along(wanted);
+    if whole > 0.0 { along(velocity) / whole } else { 1.0 }
+}
+
+/// Share of the speed from which the rest of the way is enough to stop.
+pub fn slowing(left_s: f64, rise_s: f64) -> f64 {
+    (1.6 * left_s / rise_s.max(1e-6)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_that_turns_back_stops_hard_and_accelerates_softly() {
+        let limit = JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 4.0, stop: 10.0 };
+        let now = |qd: f64| limit.now([-2.0, 2.0], qd, 0.1);
+        let near =
+            |a: [f64; 2], b: [f64; 2]| assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12, "{a:?}");
+        near(now(0.0), [-0.4, 0.4]);
+        near(now(1.5), [0.5, 1.9]);
+        // Half of the tick to rest, the other half away from it.
+        near(now(0.5), [-0.2, 0.9]);
+        near(now(-0.5), [-0.9, 0.2]);
     }
 }

@@ -10,6 +10,7 @@
 //! Avoidance proposes a motion. A monitor of interference regions stands above it and scales last; it never depends on
 //! this crate.
 
+mod advice;
 mod avoider;
 mod calm;
 mod error;
@@ -17,13 +18,16 @@ pub mod fuzzy;
 mod joint;
 mod least;
 mod levers;
+mod proof;
 mod reflex;
 mod rules;
 mod sense;
 mod side;
 mod threat;
+mod way;
 
-pub use avoider::{Advice, Avoider, AvoiderSettings, Doing, PathKind, Reference, TickTimes};
+pub use advice::{Advice, Doing, PathKind, Reference, TickTimes};
+pub use avoider::{Avoider, AvoiderSettings};
 pub use error::AvoidanceError;
 pub use joint::JointLimit;
 pub use least::{LeastSquares, Wish};

@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_avoidance::Doing;
 use elbowroom_cell::run::simulate;
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pallet/cell.toml")),
         PathBuf::from,
     );
-    let mut cell = Cell::load(file)?;
+    let cell = Cell::load(file)?;
     let seen = cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot does not evade")?.objects.clone();
     let moves = |o: &&usize| cell.movers.iter().any(|m| m.object == **o);
     let object = *seen.iter().find(moves).ok_or("nothing that moves is evaded")?;
@@ -45,23 +46,49 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // One run alone, with what the robot did before it was hit.
     let only: Option<usize> = std::env::var("EVADE_ONLY").ok().and_then(|o| o.parse().ok());
     let mut random = Random(2026);
+    let mut ways = Vec::new();
+    while ways.len() < runs {
+        ways.extend(crossing(&cell, object, free.duration_s, &mut random)?);
+    }
+    let chosen: Vec<usize> = only.map_or_else(|| (0..runs).collect(), |o| vec![o.min(runs - 1)]);
     let mut tally = Tally { show: only.is_some(), quietest_s: f64::INFINITY, ..Tally::default() };
-    while tally.runs < runs {
-        let Some(way) = crossing(&cell, object, free.duration_s, &mut random)? else { continue };
-        cell.movers.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = Drive::Way(way.clone()));
-        if only.is_some_and(|o| o != tally.runs) {
-            tally.runs += 1;
-            continue;
+    for some in chosen.chunks(50) {
+        for (number, off, on) in both(&cell, object, &ways, some)? {
+            tally.add(&cell, &off, &on, number);
         }
-        let run = |evasive| simulate(&cell, &RunOptions { evasive, ..RunOptions::default() });
-        let (off, on) = (run(false)?.recording, run(true)?.recording);
-        tally.add(&cell, &off, &on, tally.runs);
-        if tally.runs.is_multiple_of(50) {
-            eprintln!("{} runs: {} hit without, {} with", tally.runs, tally.hit_off, tally.hit_on);
-        }
+        eprintln!("{} runs: {} hit without, {} with", tally.runs, tally.hit_off, tally.hit_on);
     }
     tally.print();
     Ok(())
+}
+
+/// The chosen runs without avoidance and with it, on all cores, in order.
+fn both(
+    cell: &Cell,
+    object: usize,
+    ways: &[Way],
+    chosen: &[usize],
+) -> Result<Vec<(usize, Recording, Recording)>, Box<dyn std::error::Error>> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let (mut mine, mut cell) = (Vec::new(), cell.clone());
+        while let Some(&number) = chosen.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let drive = Drive::Way(ways[number].clone());
+            cell.movers.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = drive.clone());
+            let run = |evasive| simulate(&cell, &RunOptions { evasive, ..RunOptions::default() });
+            let both = run(false).and_then(|off| Ok((off.recording, run(true)?.recording)));
+            mine.push(both.map(|(off, on)| (number, off, on)).map_err(|e| e.to_string()));
+        }
+        mine
+    };
+    let all = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect::<Result<Vec<_>, String>>()
+    });
+    let mut all = all?;
+    all.sort_by_key(|run| run.0);
+    Ok(all)
 }
 
 /// The program with nothing in its way.

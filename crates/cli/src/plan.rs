@@ -23,6 +23,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Verdict, Failure> {
             time_limit: Duration::from_secs_f64(args.time_limit),
             clearance_m: args.clearance,
             seed: args.seed,
+            ..RouteOptions::default()
         },
         period_s: args.period,
     };

@@ -138,6 +138,70 @@ fn a_clearance_is_kept() {
     assert!(error.unwrap_err().to_string().contains("less than the clearance of 3 m"));
 }
 
+/// A random state that stands this near to something.
+fn tight(scene: &Scene, random: &mut Random, range: std::ops::Range<f64>) -> Vec<f64> {
+    let mut checker = Checker::new(scene, Options::default());
+    loop {
+        let q = random.free(scene, 0).unwrap();
+        let near = checker.between(Selection::Robot(0), Selection::All).distance(&standing(scene, 0, &q)).unwrap();
+        if range.contains(&near.metres) {
+            return q;
+        }
+    }
+}
+
+#[test]
+fn ends_that_stand_near_something_are_left_before_the_clearance_is_kept() {
+    let scene = example::two_arms();
+    let mut random = Random(11);
+    let options = RouteOptions { clearance_m: 0.04, ..RouteOptions::default() };
+    let mut checker = Checker::new(&scene, Options::default());
+    for _ in 0..12 {
+        let ends = [tight(&scene, &mut random, 0.001..0.015), tight(&scene, &mut random, 0.001..0.015)];
+        let state = standing(&scene, 0, &ends[0]);
+        let mut connect = Connect::new(&scene, 0).unwrap();
+        assert!(matches!(connect.plan(&state, &ends[1], &options), Err(RouteError::Contact { .. })));
+        let route = connect.plan_out(&state, &ends[1], &options).unwrap();
+        let points = &route.waypoints;
+        assert_eq!([&points[0], &points[points.len() - 1]], [&ends[0], &ends[1]]);
+        let mut room = |q: &[f64]| {
+            let all = checker.between(Selection::Robot(0), Selection::All);
+            { all }.distance(&standing(&scene, 0, q)).unwrap().metres
+        };
+        let at_ends = [room(&ends[0]), room(&ends[1])];
+        let legs = points.len() - 1;
+        for (leg, w) in points.windows(2).enumerate() {
+            let least = match leg {
+                0 => 0.5 * at_ends[0],
+                l if l + 1 == legs => 0.5 * at_ends[1],
+                _ => 0.04,
+            };
+            for n in 0..=200 {
+                let q: Vec<f64> = w[0].iter().zip(&w[1]).map(|(a, b)| a + (b - a) * f64::from(n) / 200.0).collect();
+                assert!(room(&q) >= least, "leg {leg}: {} < {least}", room(&q));
+            }
+        }
+        assert_eq!(connect.plan_out(&state, &ends[1], &options).unwrap().waypoints, route.waypoints);
+    }
+    // Where there is room at the ends nothing is different.
+    let (from, to) = ([-0.9, 1.3, 0.6], [0.9, 1.3, 0.6]);
+    let state = standing(&scene, 0, &from);
+    let mut connect = Connect::new(&scene, 0).unwrap();
+    let both = [connect.plan(&state, &to, &options).unwrap(), connect.plan_out(&state, &to, &options).unwrap()];
+    assert_eq!(both[0].waypoints, both[1].waypoints);
+}
+
+#[test]
+fn a_number_of_looks_ends_a_search_too() {
+    let scene = halved();
+    let options = RouteOptions { most_states: 500, time_limit: Duration::from_mins(10), ..RouteOptions::default() };
+    let (here, there) = ([1.57, 1.0, 0.0], [-1.57, 1.0, 0.0]);
+    let state = standing(&scene, 0, &here);
+    let error = Connect::new(&scene, 0).unwrap().plan(&state, &there, &options).unwrap_err();
+    let RouteError::NotFound { states, .. } = error else { panic!("{error}") };
+    assert!((500..700).contains(&states), "{states}");
+}
+
 #[test]
 fn what_is_locked_in_finds_no_way_and_says_that_this_proves_nothing() {
     let scene = halved();

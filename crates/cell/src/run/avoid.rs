@@ -14,8 +14,10 @@ use super::tick_times;
 use crate::motion::Clock;
 use crate::{AvoidanceSample, AvoidanceSpec, AvoidanceTrack, Cell};
 
-/// Ways are planned for so long at most, …
-const PLANNING: std::time::Duration = std::time::Duration::from_secs(2);
+/// Ways are planned with so many looks at most: a run is the same on every machine, …
+const LOOKS: u64 = 40_000;
+/// … if only it has the time, …
+const PLANNING: std::time::Duration = std::time::Duration::from_secs(60);
 /// … staying so far away where there is room for it, m, …
 const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
 /// … and asked for again after this time, s.
@@ -167,7 +169,7 @@ impl<'s> Evasive<'s> {
         let found = CLEARANCES_M.into_iter().any(|clearance_m| {
             // What was not found one way may be found another.
             let seed = 1 + self.failed;
-            let options = RouteOptions { time_limit: PLANNING, clearance_m, seed };
+            let options = RouteOptions { time_limit: PLANNING, most_states: LOOKS, clearance_m, seed };
             self.avoider.plan_to(&goal, &options).is_ok()
         });
         self.failed = if found { 0 } else { self.failed + 1 };

@@ -43,7 +43,14 @@ impl Bounds {
                 return Err(RouteError::Beyond { end, joint, value, lower: self.lower[i], upper: self.upper[i], unit });
             }
         }
-        Ok(q.iter().enumerate().map(|(i, v)| v.max(self.lower[i]).min(self.upper[i])).collect())
+        let mut q = q.to_vec();
+        self.clamp(&mut q);
+        Ok(q)
+    }
+
+    /// The nearest values within limits.
+    pub fn clamp(&self, q: &mut [f64]) {
+        q.iter_mut().enumerate().for_each(|(i, v)| *v = v.max(self.lower[i]).min(self.upper[i]));
     }
 
     /// Joints that reach the same posture by whole turns nearer to where they are, with that value.

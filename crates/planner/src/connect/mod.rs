@@ -2,6 +2,7 @@
 
 mod bounds;
 mod error;
+mod exit;
 mod random;
 mod reach;
 mod search;
@@ -31,6 +32,8 @@ const FOREVER: Duration = Duration::from_hours(365 * 24);
 pub struct RouteOptions {
     /// Search and shortening together take no longer than about this.
     pub time_limit: Duration,
+    /// … nor look at more configurations than about this: unlike time, the same on every machine.
+    pub most_states: u64,
     /// Pairs stay farther apart than this beyond their margins, m.
     pub clearance_m: f64,
     /// Another number may find another route.
@@ -38,9 +41,9 @@ pub struct RouteOptions {
 }
 
 impl Default for RouteOptions {
-    /// 5 s, no clearance.
+    /// 5 s, any number of configurations, no clearance.
     fn default() -> Self {
-        Self { time_limit: Duration::from_secs(5), clearance_m: 0.0, seed: 1 }
+        Self { time_limit: Duration::from_secs(5), most_states: u64::MAX, clearance_m: 0.0, seed: 1 }
     }
 }
 
@@ -108,30 +111,65 @@ impl<'s> Connect<'s> {
     /// cannot be; no route found in time, which proves nothing.
     pub fn plan(&mut self, start: &SceneState, goal: &[f64], options: &RouteOptions) -> Result<Route, RouteError> {
         let begin = Instant::now();
-        let until = begin + options.time_limit.min(FOREVER);
-        let [from, to] = self.ends(start, goal, options)?;
+        let ends = self.ends(start, goal, options)?;
+        self.between(begin, ends, &mut Random::new(options.seed), options)
+    }
+
+    /// As [`plan`](Self::plan), but the ends need only be free: one that stands nearer to something than the clearance is left
+    /// (or arrived at) by a straight stretch that keeps half of the room there is at it, before the clearance is kept.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan); no such stretch found counts as no route found.
+    pub fn plan_out(&mut self, start: &SceneState, goal: &[f64], options: &RouteOptions) -> Result<Route, RouteError> {
+        let begin = Instant::now();
+        let ends = self.ends(start, goal, &RouteOptions { clearance_m: 0.0, ..*options })?;
         let mut random = Random::new(options.seed);
+        let mut exits = ends.clone();
+        for exit in &mut exits {
+            let out = self.exit(exit, options.clearance_m, &mut random);
+            *exit = out.ok_or_else(|| self.not_found(&ends, 0, options))?;
+        }
+        self.way.sweep = elbowroom_scene::SweepOptions { clearance_m: options.clearance_m, ..self.way.sweep };
+        let mut route = self.between(begin, exits, &mut random, options)?;
+        let [from, to] = ends;
+        route.waypoints.insert(0, from);
+        route.waypoints.push(to);
+        route.waypoints.dedup();
+        if route.waypoints.len() < 2 {
+            route.waypoints.push(route.waypoints[0].clone());
+        }
+        route.length_rad = total(&route.waypoints);
+        Ok(route)
+    }
+
+    fn between(
+        &mut self,
+        begin: Instant,
+        [from, to]: [Vec<f64>; 2],
+        random: &mut Random,
+        options: &RouteOptions,
+    ) -> Result<Route, RouteError> {
         let path = if self.way.free(&from, &to) {
             vec![from, to]
         } else {
             let window = self.bounds.window(&from, &to);
-            let mut search = Search::new(&mut self.way, &window, &mut random, until, [&from, &to]);
+            let mut search = Search::new(&mut self.way, &window, random, [&from, &to]);
             let found = search.run();
             let nodes = search.nodes();
-            let seconds = options.time_limit.as_secs_f64();
-            let states = self.way.states;
-            found.ok_or_else(|| {
-                let nearer = self.bounds.nearer(&from, &to);
-                RouteError::NotFound { seconds, states, nodes, nearer }
-            })?
+            found.ok_or_else(|| self.not_found(&[from, to], nodes, options))?
         };
         let planning = begin.elapsed();
         let mut waypoints = path;
         let found_rad = total(&waypoints);
-        Shorten { way: &mut self.way, random: &mut random, until }.run(&mut waypoints);
+        Shorten { way: &mut self.way, random }.run(&mut waypoints);
         let simplifying = begin.elapsed().saturating_sub(planning);
         let states = self.way.states;
         Ok(Route { length_rad: total(&waypoints), found_rad, waypoints, planning, simplifying, states })
+    }
+
+    fn not_found(&self, [from, to]: &[Vec<f64>; 2], nodes: usize, options: &RouteOptions) -> RouteError {
+        let (seconds, states) = (options.time_limit.as_secs_f64(), self.way.states);
+        RouteError::NotFound { seconds, states, nodes, nearer: self.bounds.nearer(from, to) }
     }
 
     /// Start and goal, within limits and free; the proof is made as fine as they are near to something.
@@ -141,6 +179,8 @@ impl<'s> Connect<'s> {
             return Err(RouteError::Option { what: "the clearance", value: clearance_m, unit: "metres" });
         }
         self.way.stand(start, goal)?;
+        self.way.until = Instant::now() + options.time_limit.min(FOREVER);
+        self.way.most_states = options.most_states;
         self.way.sweep = elbowroom_scene::SweepOptions { clearance_m, ..Default::default() };
         let ends = [(End::Start, start.q(self.robot)), (End::Goal, goal)];
         let mut checked = Vec::new();

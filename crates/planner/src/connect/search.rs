@@ -2,8 +2,6 @@
 //! edges are looked at where they are made and proven where they are on a path; one that the proof refuses is cut off
 //! with all that hangs on it, and the search goes on.
 
-use std::time::Instant;
-
 use super::bounds::Window;
 use super::random::Random;
 use super::tree::Tree;
@@ -19,21 +17,14 @@ pub(super) struct Search<'w, 's> {
     way: &'w mut Way<'s>,
     window: &'w Window,
     random: &'w mut Random,
-    until: Instant,
     /// The first is that of the start where `swapped` is false.
     trees: [Tree; 2],
     swapped: bool,
 }
 
 impl<'w, 's> Search<'w, 's> {
-    pub fn new(
-        way: &'w mut Way<'s>,
-        window: &'w Window,
-        random: &'w mut Random,
-        until: Instant,
-        [start, goal]: [&[f64]; 2],
-    ) -> Self {
-        Self { way, window, random, until, trees: [Tree::new(start), Tree::new(goal)], swapped: false }
+    pub fn new(way: &'w mut Way<'s>, window: &'w Window, random: &'w mut Random, [start, goal]: [&[f64]; 2]) -> Self {
+        Self { way, window, random, trees: [Tree::new(start), Tree::new(goal)], swapped: false }
     }
 
     /// Number of states in both trees.
@@ -45,7 +36,7 @@ impl<'w, 's> Search<'w, 's> {
     pub fn run(&mut self) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         for round in 0_u32.. {
-            if Instant::now() >= self.until {
+            if self.way.late() {
                 break;
             }
             // At first near the ends; later anywhere, and near the ends still at times.
@@ -89,7 +80,7 @@ impl<'w, 's> Search<'w, 's> {
             }
             last = self.trees[tree].add(last, &next);
             made = Some((last, arrives));
-            if arrives || Instant::now() >= self.until {
+            if arrives || self.way.late() {
                 break;
             }
         }

@@ -1,7 +1,5 @@
 //! A path pulled taut: every leg stays proven.
 
-use std::time::Instant;
-
 use super::random::Random;
 use super::way::{Way, length, lerp};
 
@@ -18,7 +16,6 @@ const PULLS: [f64; 4] = [0.9, 0.5, 0.25, 0.1];
 pub(super) struct Shorten<'w, 's> {
     pub way: &'w mut Way<'s>,
     pub random: &'w mut Random,
-    pub until: Instant,
 }
 
 impl Shorten<'_, '_> {
@@ -30,20 +27,16 @@ impl Shorten<'_, '_> {
             let before = total(path);
             self.skip(path);
             self.pull(path);
-            if self.late() || total(path) > before * (1.0 - GAIN) {
+            if self.way.late() || total(path) > before * (1.0 - GAIN) {
                 break;
             }
         }
     }
 
-    fn late(&self) -> bool {
-        Instant::now() >= self.until
-    }
-
     /// Leaves out waypoints, as many at once as possible.
     fn skip(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut from = 0;
-        while from + 2 < path.len() && !self.late() {
+        while from + 2 < path.len() && !self.way.late() {
             let far = (from + 2..path.len()).rev().find(|&to| self.way.free(&path[from], &path[to]));
             if let Some(to) = far {
                 path.drain(from + 1..to);
@@ -56,7 +49,7 @@ impl Shorten<'_, '_> {
     fn cut(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut vain = 0;
         for _ in 0..TRIES {
-            if path.len() < 3 || vain >= VAIN || self.late() {
+            if path.len() < 3 || vain >= VAIN || self.way.late() {
                 return;
             }
             vain = if self.cut_once(path) { 0 } else { vain + 1 };
@@ -81,7 +74,7 @@ impl Shorten<'_, '_> {
     fn pull(&mut self, path: &mut [Vec<f64>]) {
         for n in 1..path.len().saturating_sub(1) {
             for share in PULLS {
-                if self.late() {
+                if self.way.late() {
                     return;
                 }
                 let moved = pulled(&path[n - 1], &path[n], &path[n + 1], share);

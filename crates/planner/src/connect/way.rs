@@ -1,5 +1,7 @@
 //! One robot in the exact scene, all else where it is: what is free, what looks free, what is proven.
 
+use std::time::Instant;
+
 use elbowroom_scene::{
     Checker, Contact, Distance, Move, Options, Scene, SceneError, SceneState, Selection, SweepOptions,
 };
@@ -22,13 +24,23 @@ pub(super) struct Way<'s> {
     most: f64,
     /// Configurations that were looked at.
     pub states: u64,
+    /// When it is enough.
+    pub until: Instant,
+    pub most_states: u64,
 }
 
 impl<'s> Way<'s> {
     pub fn new(scene: &'s Scene, robot: usize, reach: Vec<f64>) -> Self {
         let (checker, state) = (Checker::new(scene, Options::default()), SceneState::new(scene));
         let most = reach.iter().copied().fold(0.0, f64::max);
-        Self { scene, robot, checker, state, sweep: SweepOptions::default(), reach, most, states: 0 }
+        let sweep = SweepOptions::default();
+        let until = Instant::now();
+        Self { scene, robot, checker, state, sweep, reach, most, states: 0, until, most_states: u64::MAX }
+    }
+
+    /// True when the search has had what it was given.
+    pub fn late(&self) -> bool {
+        self.states >= self.most_states || Instant::now() >= self.until
     }
 
     /// Everything stands as in `state`; the robot could go to `goal`.
@@ -82,6 +94,11 @@ impl<'s> Way<'s> {
     pub fn travel(&self, a: &[f64], b: &[f64]) -> f64 {
         let each = a.iter().zip(b).zip(&self.reach).map(|((x, y), r)| ((x - y) * r).powi(2));
         if self.most > 0.0 { each.sum::<f64>().sqrt() / self.most } else { 0.0 }
+    }
+
+    /// What each joint must turn (or slide) to move solids as far as `travel` of the one that moves them most.
+    pub fn alike(&self, travel: f64) -> impl Iterator<Item = f64> + '_ {
+        self.reach.iter().map(move |r| if *r > 0.0 { travel * self.most / r } else { 0.0 })
     }
 
     /// Looks at `b`, then between, coarsely first. True is no proof.
