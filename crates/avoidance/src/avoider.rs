@@ -101,6 +101,7 @@ pub struct Avoider<'s> {
     /// The fastest that each joint can be commanded next, and how long that and a stop take to matter, s.
     fastest: Vec<f64>,
     ahead_s: f64,
+    columns: Vec<[f64; 6]>,
     standing_s: f64,
     /// Off the path and nothing comes for so long, s.
     lost_s: f64,
@@ -153,6 +154,7 @@ impl<'s> Avoider<'s> {
             intent: vec![0.0; n],
             braked: vec![0.0; n],
             fastest: vec![0.0; n],
+            columns: vec![[0.0; 6]; n],
             ahead_s: 0.0,
             way: Way::default(),
             standing_s: 0.0,
@@ -461,7 +463,7 @@ impl<'s> Avoider<'s> {
     }
 
     /// How fast the path may go on.
-    fn rate(&self, reference: &Reference<'_>, astray_s: f64) -> f64 {
+    fn rate(&mut self, reference: &Reference<'_>, astray_s: f64) -> f64 {
         if !self.way.is_empty() {
             return 0.0;
         }
@@ -482,15 +484,15 @@ impl<'s> Avoider<'s> {
     }
 
     /// The share of the path's speed at which gaps close half as fast as they may.
-    fn slowed(&self, reference: &Reference<'_>) -> f64 {
+    fn slowed(&mut self, reference: &Reference<'_>) -> f64 {
         let chain = &self.senses.scene.robots()[self.senses.robot].robot.chain;
         let state = &self.senses.chains[self.senses.robot];
         let s = &self.settings.reflex;
         let mut rate: f64 = 1.0;
-        let mut columns = [[0.0; 6]; 16];
+        let columns = &mut self.columns;
         for threat in self.senses.threats.iter().filter(|t| matches!(t.other, Other::Loose { .. })) {
             let in_link = state.link_in_root(threat.link).inverse().transform_point(threat.on_link);
-            chain.jacobian(state, threat.link, in_link, &mut columns);
+            chain.jacobian(state, threat.link, in_link, columns);
             let along = |c: &[f64; 6]| c[0] * threat.away.x + c[1] * threat.away.y + c[2] * threat.away.z;
             let closing: f64 = -columns.iter().zip(reference.qd).map(|(c, v)| along(c) * v).sum::<f64>();
             if closing > 0.0 {

@@ -224,7 +224,8 @@ impl View<'_> {
                 let chain = &self.chains[robot];
                 let in_root = base.inverse().transform_point(on_other);
                 let velocity = chain.link_motion(link).velocity_at(in_root - chain.link_in_root(link).translation);
-                let key = self.radii.len() + 64 * robot + link.0;
+                let before = self.scene.robots()[..robot].iter().map(|r| r.robot.chain.links().len());
+                let key = self.radii.len() + before.sum::<usize>() + link.0;
                 self.as_loose(base.rotation * velocity, on_other, 0.0, key)
             }
         }

@@ -4,7 +4,7 @@ use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{
     Advice, Around, AvoidanceError, Avoider, Doing, JointLimit, Neighbour, PathKind, Reference, Seen,
 };
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RouteOptions;
 use elbowroom_scene::Scene;
@@ -17,7 +17,7 @@ use crate::{AvoidanceSample, AvoidanceSpec, AvoidanceTrack, Cell};
 /// Ways are planned with so many looks at most: a run is the same on every machine, …
 const LOOKS: u64 = 40_000;
 /// … if only it has the time, …
-const PLANNING: std::time::Duration = std::time::Duration::from_secs(60);
+const PLANNING: std::time::Duration = std::time::Duration::from_mins(1);
 /// … staying so far away where there is room for it, m, …
 const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
 /// … and asked for again after this time, s.
@@ -40,6 +40,8 @@ pub(super) struct Evasive<'s> {
     failed: u64,
     step_ns: Vec<u64>,
     track: AvoidanceTrack,
+    /// The first tick that could not be done, and why.
+    fault: Option<(f64, String)>,
 }
 
 impl<'s> Evasive<'s> {
@@ -69,6 +71,7 @@ impl<'s> Evasive<'s> {
             failed: 0,
             step_ns: Vec::new(),
             track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
+            fault: None,
         })
     }
 
@@ -99,6 +102,18 @@ impl<'s> Evasive<'s> {
             astray_s: a.astray_s,
             rate: a.rate,
         });
+    }
+
+    /// Why it stood still where its tick could not be done; `None` where each could.
+    pub fn trouble(&self, cell: &Cell) -> Option<Warning> {
+        let (t_s, why) = self.fault.as_ref()?;
+        let robot = &cell.robots[self.robot];
+        Some(Warning {
+            file: cell.file.clone(),
+            line: Some(robot.line),
+            what: format!("avoidance of '{}' failed at {t_s:.3} s, and it stood still: {why}", robot.name),
+            write_instead: None,
+        })
     }
 
     /// All that was recorded.
@@ -157,7 +172,10 @@ impl<'s> Evasive<'s> {
                 self.step_ns.push(advice.times.total().as_nanos() as u64);
             }
             // Nothing was commanded: the robot stands, and its path with it.
-            Err(_) => self.advice = Advice { rate: 0.0, doing: Doing::Halted, ..self.advice },
+            Err(why) => {
+                self.advice = Advice { rate: 0.0, doing: Doing::Halted, ..self.advice };
+                self.fault.get_or_insert_with(|| (t_s, why.to_string()));
+            }
         }
     }
 

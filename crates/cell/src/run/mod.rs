@@ -110,6 +110,7 @@ pub fn simulate_with(
         }
         run.tick(t_s);
         if run.ended(t_s) {
+            notes.extend(run.evasive.iter().flatten().filter_map(|e| e.trouble(cell)));
             return Ok(RunOutcome { recording: run.finish(t_s), notes });
         }
         run.advance();
