@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use elbowroom_planner::{Connect, RouteError, RouteOptions};
+use elbowroom_planner::{Connect, Fence, RouteError, RouteOptions};
 use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
 use crate::calm::Calm;
@@ -251,7 +251,24 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// As [`Connect::plan`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
+        self.plan_within(goal, options, None)
+    }
+
+    /// As [`plan_to`](Self::plan_to), on a way that stays out of something else, too ([`Connect::fenced`]): regions, for which a
+    /// monitor would stop it.
+    ///
+    /// # Errors
+    /// As [`Connect::plan`].
+    pub fn plan_within(
+        &mut self,
+        goal: &[f64],
+        options: &RouteOptions,
+        fence: Option<&mut dyn Fence>,
+    ) -> Result<(), RouteError> {
         let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
+        if let Some(fence) = fence {
+            connect = connect.fenced(fence);
+        }
         self.senses.state.set_q(self.senses.scene, self.senses.robot, &self.q)?;
         let route = connect.plan_out(&self.senses.state, goal, options)?;
         self.way = Way::new(route.waypoints);

@@ -30,6 +30,7 @@
 mod cell;
 pub mod configure;
 pub mod csv;
+mod fence;
 mod file;
 pub mod inspect;
 pub mod map;

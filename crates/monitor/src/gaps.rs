@@ -184,10 +184,19 @@ pub(crate) trait PairLaw {
     fn only_closest_matters(&self) -> bool;
 }
 
+/// How far a region is from the guarded volumes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Closest {
+    /// Distance, m.
+    pub(crate) distance: f64,
+    /// Proven: it is not below this, m.
+    pub(crate) lower_bound: f64,
+}
+
 /// Exact distance of a region from the guarded volumes, where it is not above `limit`.
-pub(crate) fn distance(config: &Configuration, now: &Placement, region: RegionId, limit: f64) -> Option<f64> {
+pub(crate) fn distance(config: &Configuration, now: &Placement, region: RegionId, limit: f64) -> Option<Closest> {
     let r = region.0;
-    let mut best = None;
+    let mut best: Option<Closest> = None;
     let mut reach = limit;
     for (v, volume) in config.volumes.iter().enumerate() {
         if !volume.part.counts_for(config.regions[r].guards) {
@@ -200,7 +209,8 @@ pub(crate) fn distance(config: &Configuration, now: &Placement, region: RegionId
         let found = separation_within(&volume.shape, in_world, &config.regions[r].shape, region_in_world, reach);
         if let Some(s) = found {
             reach = reach.min(s.distance);
-            best = Some(reach);
+            let lower_bound = best.map_or(s.lower_bound, |b| b.lower_bound.min(s.lower_bound));
+            best = Some(Closest { distance: reach, lower_bound });
         }
     }
     best

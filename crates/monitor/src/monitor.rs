@@ -159,7 +159,8 @@ impl Monitor {
     /// Distance (m) of the region to the closest volume it guards at the last tick's state; `None` where it is farther
     /// than `limit` or the region is inactive. Not part of the tick: for reports.
     pub fn distance(&self, region: RegionId, limit: f64) -> Option<f64> {
-        self.active[region.0].then(|| gaps::distance(&self.config, &self.now, region, limit)).flatten()
+        let found = self.active[region.0].then(|| gaps::distance(&self.config, &self.now, region, limit)).flatten();
+        found.map(|closest| closest.distance)
     }
 
     /// True where a guarded volume is inside the region (with hysteresis).
@@ -178,6 +179,17 @@ impl Monitor {
             Kind::Exchange { slot } => self.seat.as_ref().is_some_and(|seat| seat.holds(slot)),
             Kind::Forbidden | Kind::Monitored { .. } => false,
         }
+    }
+
+    /// True where the region stops this robot now: it is active, and forbidden or in the hands of another robot. An exchange
+    /// region that nobody holds is open: it is granted when it is come to.
+    pub fn is_closed(&self, region: RegionId) -> bool {
+        self.active[region.0]
+            && match self.config.regions[region.0].kind {
+                Kind::Forbidden => true,
+                Kind::Monitored { .. } => false,
+                Kind::Exchange { slot } => self.seat.as_ref().is_some_and(|seat| seat.is_taken(slot)),
+            }
     }
 
     /// Where the region's shape stood in the last tick.

@@ -51,6 +51,18 @@ impl Placement {
         self.place_regions(config, |source| advanced(&s.sources[source], ahead_s));
     }
 
+    /// Places the regions where the sources are, at once.
+    pub(crate) fn place_sources(&mut self, config: &Configuration, sources: &[Source]) {
+        self.place_regions(config, |source| sources[source].pose);
+    }
+
+    /// Places the volumes as they are at these joint values.
+    pub(crate) fn place_robot(&mut self, config: &Configuration, q: &[f64]) {
+        self.chain.q.copy_from_slice(q);
+        config.chain.forward(&mut self.chain);
+        self.place_volumes(config);
+    }
+
     fn place_volumes(&mut self, config: &Configuration) {
         for (i, volume) in config.volumes.iter().enumerate() {
             let pose = config.base_in_world * self.chain.link_in_root(volume.link) * volume.in_link;

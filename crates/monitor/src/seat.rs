@@ -70,6 +70,15 @@ impl Seat {
         }
     }
 
+    /// True where another robot holds the slot, or is in its regions.
+    pub(crate) fn is_taken(&self, slot: SlotId) -> bool {
+        let inside = |r: &RobotSlot| self.board.stay(slot, *r) == Stay::Inside;
+        match self.board.holder(slot) {
+            Some(holder) => holder != self.robot,
+            None => (0..self.board.robots()).map(RobotSlot).filter(|r| *r != self.robot).any(|r| inside(&r)),
+        }
+    }
+
     pub(crate) fn holds(&self, slot: SlotId) -> bool {
         self.slots.iter().any(|u| u.slot == slot && u.state == SlotState::Held)
     }

@@ -28,7 +28,7 @@ mod space;
 mod timing;
 
 pub use check::{CheckError, MappedJoints};
-pub use connect::{Connect, Route, RouteError, RouteOptions};
+pub use connect::{Connect, Fence, Route, RouteError, RouteOptions};
 pub use path::{End, Path, PlanError};
 pub use planner::{PlanOptions, Planner};
 pub use replan::{How, Progress, Standing};

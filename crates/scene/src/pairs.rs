@@ -100,6 +100,28 @@ pub fn motion_bound(chain: &Chain, link: LinkId, radius_m: f64, joints: &[JointI
     bound
 }
 
+/// No point of the link within `radius_m` of its origin travels farther than this, m, while all joints go straight and together
+/// from one configuration to another; in a share of that no farther than the same share. As [`motion_bound`], but slides
+/// count as far out as they are on that way, not as far as they can be.
+pub fn farthest(chain: &Chain, link: LinkId, radius_m: f64, from: &[f64], to: &[f64]) -> f64 {
+    let (mut reach, mut travel) = (radius_m, 0.0);
+    for id in chain.path(link).iter().rev() {
+        let joint = &chain.joints()[id.0];
+        let (source, multiplier, offset) =
+            chain.mimic_source(*id).map_or((*id, 1.0, 0.0), |m| (m.joint, m.multiplier, m.offset));
+        let ends =
+            chain.q_index(source).and_then(|i| Some([*from.get(i)?, *to.get(i)?])).filter(|_| joint.kind.moves());
+        let values = ends.map_or([0.0; 2], |ends| ends.map(|q| multiplier * q + offset));
+        let change = (values[1] - values[0]).abs();
+        travel += if joint.kind == JointKind::Prismatic { change } else { change * reach };
+        reach += joint.origin.translation.length();
+        if joint.kind == JointKind::Prismatic {
+            reach += values[0].abs().max(values[1].abs());
+        }
+    }
+    travel
+}
+
 /// Distance (m) of the farthest point of the bodies from their link's origin, at most.
 pub fn radius(bodies: &[Body]) -> f64 {
     let corner = |b: &Aabb| b.min.abs().max(b.max.abs()).length();

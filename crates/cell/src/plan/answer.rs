@@ -18,6 +18,8 @@ pub struct PathAnswer {
     pub robot: String,
     /// Names of its joints, in the order of all values.
     pub joints: Vec<String>,
+    /// Names of the regions that it stays out of.
+    pub regions: Vec<String>,
     /// Why none was found.
     pub reason: Option<String>,
     /// Time of the search, µs.
@@ -49,6 +51,7 @@ impl PathAnswer {
             found: false,
             robot: robot.name.clone(),
             joints: robot.joint_names(),
+            regions: Vec::new(),
             reason: Some(reason),
             planning_us: micros(took),
             simplify_us: 0,
@@ -62,6 +65,7 @@ impl PathAnswer {
             found: true,
             robot: robot.name.clone(),
             joints: robot.joint_names(),
+            regions: Vec::new(),
             reason: None,
             planning_us: micros(route.planning),
             simplify_us: micros(route.simplifying),
@@ -78,6 +82,7 @@ impl Serialize for PathAnswer {
             reason: Option<&'a str>,
             robot: &'a str,
             joints: &'a [String],
+            regions: &'a [String],
             waypoints: &'a [Vec<f64>],
             cost_rad: Option<f64>,
             duration_s: Option<f64>,
@@ -91,6 +96,7 @@ impl Serialize for PathAnswer {
             reason: self.reason.as_deref(),
             robot: &self.robot,
             joints: &self.joints,
+            regions: &self.regions,
             waypoints: motion.map_or(&[], |m| &m.waypoints),
             cost_rad: motion.map(|m| m.cost_rad),
             duration_s: motion.map(|m| m.duration_s),

@@ -1,6 +1,7 @@
 //! A timed path for one robot of a cell: what `elbowroom plan` answers.
 //!
 //! The scene is the one of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and load, the pair matrix.
+//! Permanent forbidden regions that concern the robot are obstacles to what its monitor guards.
 
 mod answer;
 pub(crate) mod subject;
@@ -11,6 +12,7 @@ use elbowroom_formats::FormatError;
 use elbowroom_planner::{Connect, RouteError, RouteOptions};
 use elbowroom_scene::{Scene, SceneState};
 
+use crate::fence::{self, RegionFence};
 use crate::{Cell, CellRobot};
 
 pub use answer::{Motion, PathAnswer};
@@ -53,7 +55,8 @@ pub struct PathRequest {
 /// ```
 ///
 /// # Errors
-/// An unknown robot, one without speeds, ends that it cannot have: beyond limits, in collision, too few values.
+/// An unknown robot, one without speeds, ends that it cannot have: beyond limits, in collision, too few values; a goal in a
+/// region, or a start in one that no straight way leads out of.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (index, robot) = subject::robot(cell, request.robot.as_deref())?;
     let limits = subject::limits(cell, robot)?;
@@ -64,17 +67,27 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let scene = crate::query::Subject::of_cell(cell).scene(false)?;
     let refused = |e: RouteError| subject::refused(cell, robot, &e);
     let state = standing(cell, &scene, index, from).map_err(|e| refused(e.into()))?;
-    let mut connect = Connect::new(&scene, index).map_err(|e| refused(e.into()))?;
-    let begin = Instant::now();
-    let route = match connect.plan(&state, &request.to, &request.options) {
-        Ok(route) => route,
-        Err(e @ RouteError::NotFound { .. }) => return Ok(PathAnswer::none(robot, begin.elapsed(), e.to_string())),
-        Err(e) => return Err(refused(e)),
-    };
-    let period = request.period_s.unwrap_or(cell.tick_s);
-    let motion = connect.time(&state, &route, &limits, period, &request.options).map_err(refused)?;
-    let rows = motion.rows(period).map_err(|e| refused(e.into()))?;
-    Ok(PathAnswer::found(robot, route, &motion, rows))
+    let least_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
+    fence::at_start(cell, index, from, least_m, |fence| {
+        let regions = fence.as_ref().map(RegionFence::names).unwrap_or_default();
+        let mut connect = Connect::new(&scene, index).map_err(|e| refused(e.into()))?;
+        if let Some(fence) = fence {
+            connect = connect.fenced(fence);
+        }
+        let begin = Instant::now();
+        let route = match connect.plan(&state, &request.to, &request.options) {
+            Ok(route) => route,
+            Err(e @ RouteError::NotFound { .. }) => {
+                let answer = PathAnswer::none(robot, begin.elapsed(), e.to_string());
+                return Ok(PathAnswer { regions, ..answer });
+            }
+            Err(e) => return Err(refused(e)),
+        };
+        let period = request.period_s.unwrap_or(cell.tick_s);
+        let motion = connect.time(&state, &route, &limits, period, &request.options).map_err(refused)?;
+        let rows = motion.rows(period).map_err(|e| refused(e.into()))?;
+        Ok(PathAnswer { regions, ..PathAnswer::found(robot, route, &motion, rows) })
+    })
 }
 
 /// All robots at their start, one of them elsewhere.

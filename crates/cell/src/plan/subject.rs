@@ -96,6 +96,11 @@ pub(super) fn refused(cell: &Cell, robot: &CellRobot, e: &RouteError) -> FormatE
                 "joint values at which they are apart (`elbowroom query` tells the distance): another {end}"
             ))
         }
+        RouteError::Fenced { end, what, .. } => {
+            let no_way = if *end == End::Start { ", and no straight way out of it was found" } else { "" };
+            error(format!("{}: in {what}{no_way}", of(end)))
+                .hint(format!("joint values at which all that the monitor guards is outside of it: another {end}"))
+        }
         other => error(other.to_string()),
     }
 }

@@ -6,11 +6,12 @@ use elbowroom_avoidance::{
 };
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
-use elbowroom_planner::RouteOptions;
+use elbowroom_planner::{Fence, RouteOptions};
 use elbowroom_scene::Scene;
 use elbowroom_spatial::Motion;
 
 use super::tick_times;
+use crate::fence::RegionFence;
 use crate::motion::Clock;
 use crate::{AvoidanceSample, AvoidanceSpec, AvoidanceTrack, Cell};
 
@@ -20,6 +21,8 @@ const LOOKS: u64 = 40_000;
 const PLANNING: std::time::Duration = std::time::Duration::from_mins(1);
 /// … staying so far away where there is room for it, m, …
 const CLEARANCES_M: [f64; 3] = [0.06, 0.02, 0.0];
+/// … and so far into the warning zone of a region, as a share of it that is left, at the same try: so much is left of the speed, …
+const WARNINGS: [f64; 3] = [0.25, 0.1, 0.0];
 /// … and asked for again after this time, s.
 const AGAIN_S: f64 = 0.5;
 /// After so many in a row that found nothing, after this time, s.
@@ -123,17 +126,18 @@ impl<'s> Evasive<'s> {
     }
 
     /// From `t_s` to the next tick, under the override of the monitor. Returns the event that this is, where it is one.
-    pub fn advance(
+    pub fn advance<'f>(
         &mut self,
         cell: &Cell,
         clock: &mut Clock,
         states: &[ChainState],
         t_s: f64,
         allowed: f64,
+        regions: impl FnMut(f64) -> Option<RegionFence<'f>>,
     ) -> Option<&'static str> {
         let before = self.advice.doing;
         if self.spec.replan && self.advice.wants_way && t_s >= self.not_before_s {
-            self.plan(clock, t_s);
+            self.plan(clock, t_s, regions);
         }
         clock.hold(!self.is_on_path());
         // What a program waits for happens at its place: away from it time does not run.
@@ -180,15 +184,16 @@ impl<'s> Evasive<'s> {
     }
 
     /// Another way: to the end of a joint move, else back to where the path was left.
-    fn plan(&mut self, clock: &mut Clock, t_s: f64) {
+    fn plan<'f>(&mut self, clock: &mut Clock, t_s: f64, mut regions: impl FnMut(f64) -> Option<RegionFence<'f>>) {
         let end = clock.end_of_joint_move();
         let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
         let begin = std::time::Instant::now();
-        let found = CLEARANCES_M.into_iter().any(|clearance_m| {
+        let found = CLEARANCES_M.into_iter().zip(WARNINGS).any(|(clearance_m, share)| {
             // What was not found one way may be found another.
             let seed = 1 + self.failed;
             let options = RouteOptions { time_limit: PLANNING, most_states: LOOKS, clearance_m, seed };
-            self.avoider.plan_to(&goal, &options).is_ok()
+            let mut fence = regions(share);
+            self.avoider.plan_within(&goal, &options, fence.as_mut().map(|f| f as &mut dyn Fence)).is_ok()
         });
         self.failed = if found { 0 } else { self.failed + 1 };
         // A trapped robot is not planned for all the time.

@@ -8,7 +8,7 @@ use crate::{Cell, Follow};
 
 /// Frames of robots and encoders.
 #[derive(Debug)]
-pub(super) struct Frames<'a> {
+pub(crate) struct Frames<'a> {
     cell: &'a Cell,
 }
 

@@ -2,7 +2,7 @@
 
 mod avoid;
 mod ending;
-mod frames;
+pub(crate) mod frames;
 mod regions;
 
 use std::time::Instant;
@@ -13,6 +13,7 @@ use elbowroom_monitor::{AccessClass, EventKind, Kind, Monitor, Reason, Snapshot,
 use elbowroom_scene::{FirstContact, FirstContacts, Member, ObjectStep};
 
 use crate::configure::{self, Setup};
+use crate::fence::RegionFence;
 use crate::motion::{Clock, plan};
 use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
 use avoid::Evasive;
@@ -416,12 +417,16 @@ impl<'a> Run<'a> {
             if self.vanished(i, t_s) {
                 continue;
             }
-            let Self { cell, clocks, evasive, states, obeyed, .. } = self;
+            let Self { cell, clocks, evasive, states, obeyed, monitors, frames, setups, .. } = self;
             let Some(evasive) = &mut evasive[i] else {
                 clocks[i].advance(dt, obeyed[i]);
                 continue;
             };
-            if let Some(event) = evasive.advance(cell, &mut clocks[i], states, t_s, obeyed[i]) {
+            let regions = |share: f64| {
+                let sources = frames.sources(&setups[i].sources, states, t_s);
+                RegionFence::new(&monitors[i], &sources, share, 0.0)
+            };
+            if let Some(event) = evasive.advance(cell, &mut clocks[i], states, t_s, obeyed[i], regions) {
                 self.event(t_s, i, "", event);
             }
         }

@@ -44,6 +44,19 @@ pub enum RouteError {
         /// What was asked for, m.
         clearance_m: f64,
     },
+    /// A start or goal in what a [`Fence`](crate::Fence) keeps the robot out of: a goal, or a start from which no way leads out.
+    #[error(
+        "{end}: it is in {what}{}: write joint values outside of it",
+        if *end == End::Start { ", and no straight way out was found" } else { "" }
+    )]
+    Fenced {
+        /// Which of the two.
+        end: End,
+        /// What it is in.
+        what: String,
+        /// Metres to it: 0 or less, or NaN where that is not known.
+        metres: f64,
+    },
     /// None was found in the time allowed. That proves nothing.
     #[error(
         "no path found in {seconds} s ({states} states looked at, {nodes} of them joined to start or goal): this proves nothing, \

@@ -3,6 +3,7 @@
 mod bounds;
 mod error;
 mod exit;
+mod fence;
 mod random;
 mod reach;
 mod search;
@@ -16,9 +17,11 @@ use std::time::{Duration, Instant};
 use elbowroom_scene::{Scene, SceneError, SceneState};
 
 pub use error::RouteError;
+pub use fence::Fence;
 
 use crate::path::End;
 use bounds::Bounds;
+use fence::Fenced;
 use random::Random;
 use search::Search;
 use shorten::{Shorten, total};
@@ -103,16 +106,31 @@ impl<'s> Connect<'s> {
         Ok(Self { way: Way::new(scene, robot, reach), bounds, robot })
     }
 
+    /// With what else its routes stay out of.
+    ///
+    /// A start that is in it, or nearer to it than routes may be, is left by a straight stretch that comes no nearer; at a goal
+    /// that is nearer the route arrives in the same way. A goal inside is refused.
+    #[must_use]
+    pub fn fenced(mut self, fence: impl Fence + 's) -> Self {
+        self.way.fenced = Some(Fenced::new(fence));
+        self
+    }
+
     /// From where `start` has the robot to `goal` (rad, m where a joint slides). Self-collision, objects and other robots,
     /// which stay where `start` has them, count by the scene's pair matrix.
     ///
     /// # Errors
-    /// An end beyond limits, in contact or nearer than the clearance; values that are NaN or too few; an option that
-    /// cannot be; no route found in time, which proves nothing.
+    /// An end beyond limits, in contact or nearer than the clearance, a goal behind the [`Fence`]; values that are NaN or too
+    /// few; an option that cannot be; no route found in time, which proves nothing.
     pub fn plan(&mut self, start: &SceneState, goal: &[f64], options: &RouteOptions) -> Result<Route, RouteError> {
         let begin = Instant::now();
         let ends = self.ends(start, goal, options)?;
-        self.between(begin, ends, &mut Random::new(options.seed), options)
+        let mut random = Random::new(options.seed);
+        if self.way.fenced.is_none() {
+            return self.between(begin, ends, &mut random, options);
+        }
+        let exits = self.exits(&ends, &mut random, options)?;
+        Ok(joined(ends, self.between(begin, exits, &mut random, options)?))
     }
 
     /// As [`plan`](Self::plan), but the ends need only be free: one that stands nearer to something than the clearance is left
@@ -124,22 +142,9 @@ impl<'s> Connect<'s> {
         let begin = Instant::now();
         let ends = self.ends(start, goal, &RouteOptions { clearance_m: 0.0, ..*options })?;
         let mut random = Random::new(options.seed);
-        let mut exits = ends.clone();
-        for exit in &mut exits {
-            let out = self.exit(exit, options.clearance_m, &mut random);
-            *exit = out.ok_or_else(|| self.not_found(&ends, 0, options))?;
-        }
+        let exits = self.exits(&ends, &mut random, options)?;
         self.way.sweep = elbowroom_scene::SweepOptions { clearance_m: options.clearance_m, ..self.way.sweep };
-        let mut route = self.between(begin, exits, &mut random, options)?;
-        let [from, to] = ends;
-        route.waypoints.insert(0, from);
-        route.waypoints.push(to);
-        route.waypoints.dedup();
-        if route.waypoints.len() < 2 {
-            route.waypoints.push(route.waypoints[0].clone());
-        }
-        route.length_rad = total(&route.waypoints);
-        Ok(route)
+        Ok(joined(ends, self.between(begin, exits, &mut random, options)?))
     }
 
     fn between(
@@ -198,4 +203,18 @@ impl<'s> Connect<'s> {
         let to = checked.pop().unwrap_or_default();
         Ok([checked.pop().unwrap_or_default(), to])
     }
+}
+
+/// With its own ends.
+fn joined([from, to]: [Vec<f64>; 2], mut route: Route) -> Route {
+    let before = total(&route.waypoints);
+    route.waypoints.insert(0, from);
+    route.waypoints.push(to);
+    route.waypoints.dedup();
+    if route.waypoints.len() < 2 {
+        route.waypoints.push(route.waypoints[0].clone());
+    }
+    route.length_rad = total(&route.waypoints);
+    route.found_rad += route.length_rad - before;
+    route
 }

@@ -6,6 +6,8 @@ use elbowroom_scene::{
     Checker, Contact, Distance, Move, Options, Scene, SceneError, SceneState, Selection, SweepOptions,
 };
 
+use super::fence::Fenced;
+
 /// Between looks solids move no farther than about so much (rad or m) of the joint that moves them most would: what is
 /// missed in between is found by the proof.
 const STEP: f64 = 0.06;
@@ -18,6 +20,8 @@ pub(super) struct Way<'s> {
     checker: Checker<'s>,
     state: SceneState,
     pub sweep: SweepOptions,
+    /// What else it stays out of.
+    pub fenced: Option<Fenced<'s>>,
     /// Metres per rad or m of each value, see [`super::reach`].
     pub reach: Vec<f64>,
     /// The most of them.
@@ -35,7 +39,8 @@ impl<'s> Way<'s> {
         let most = reach.iter().copied().fold(0.0, f64::max);
         let sweep = SweepOptions::default();
         let until = Instant::now();
-        Self { scene, robot, checker, state, sweep, reach, most, states: 0, until, most_states: u64::MAX }
+        let (states, most_states) = (0, u64::MAX);
+        Self { scene, robot, checker, state, sweep, fenced: None, reach, most, states, until, most_states }
     }
 
     /// True when the search has had what it was given.
@@ -87,7 +92,8 @@ impl<'s> Way<'s> {
     pub fn is_free(&mut self, q: &[f64]) -> bool {
         self.states += 1;
         let room = self.sweep.clearance_m + self.sweep.tolerance_m;
-        self.put(q) && self.nearer(room).is_none()
+        // The fence first: it is soon told.
+        self.fenced.as_mut().is_none_or(|f| f.is_free(q)) && self.put(q) && self.nearer(room).is_none()
     }
 
     /// How far solids are moved, about, as rad (or m) of the joint that moves them most.
@@ -124,6 +130,16 @@ impl<'s> Way<'s> {
 
     /// Straight from `a` to `b` in joint space, proven free all along.
     pub fn proven(&mut self, a: &[f64], b: &[f64]) -> bool {
+        self.fenced.as_mut().is_none_or(|f| f.proven(a, b)) && self.swept(a, b)
+    }
+
+    /// The same where `a` may be nearer to the fence than ways may, if nothing comes nearer.
+    pub fn leaves(&mut self, a: &[f64], b: &[f64]) -> bool {
+        self.fenced.as_mut().is_none_or(|f| f.leaves(a, b)) && self.swept(a, b)
+    }
+
+    /// The scene's share of the proof.
+    fn swept(&mut self, a: &[f64], b: &[f64]) -> bool {
         if !self.put(a) {
             return false;
         }
