@@ -219,6 +219,7 @@ pub(crate) struct MapArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
+  elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {

@@ -208,14 +208,14 @@ fn product(rows: &serde_json::Value, q: &dyn Fn(&str) -> (f64, bool), modified: 
     at
 }
 
-/// Elbow over a rail; the tip stands aside where `aside` is not 0.
-fn railed(aside: f64) -> String {
+/// Elbow over a rail, about an axis; the tip stands aside of its frame's x.
+fn railed(axis: &str, aside: f64) -> String {
     format!(
         r#"<robot name="railed"><link name="hall"/><link name="cart"/><link name="arm"/><link name="hand"/>
   <joint name="x" type="prismatic"><parent link="hall"/><child link="cart"/><axis xyz="1 0 0"/>
     <limit lower="0" upper="2" velocity="1" effort="0"/></joint>
   <joint name="turn" type="revolute"><parent link="cart"/><child link="arm"/><origin xyz="0.1 0.2 0.3" rpy="0.3 0 0"/>
-    <limit lower="-1" upper="1" velocity="1" effort="0"/></joint>
+    <axis xyz="{axis}"/><limit lower="-1" upper="1" velocity="1" effort="0"/></joint>
   <joint name="end" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="0.5 {aside} 0.1"/></joint></robot>"#
     )
 }
@@ -223,11 +223,14 @@ fn railed(aside: f64) -> String {
 #[test]
 fn every_table_multiplies_out_to_the_tip_and_classical_is_refused_with_b() {
     let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("straight.urdf"), railed(0.0)).unwrap();
-    std::fs::write(dir.path().join("aside.urdf"), railed(0.25)).unwrap();
+    for (name, axis, aside) in [("straight", "0 0 1", 0.0), ("aside", "0 0 1", 0.25), ("split", "1 0 0", 0.25)] {
+        std::fs::write(dir.path().join(format!("{name}.urdf")), railed(axis, aside)).unwrap();
+    }
     for (model, joints, tip, classical) in [
         (ns16().as_str(), "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6", "tool0", true),
         ("straight.urdf", "x,turn", "hand", true),
+        // The way to the tip takes two rows, and then no b.
+        ("split.urdf", "x,turn", "hand", true),
         ("aside.urdf", "x,turn", "hand", false),
     ] {
         let q = [0.3, -0.7, 0.9, 0.4, -0.5, 0.6];
