@@ -44,8 +44,8 @@ fn links(parts: [(Option<Mesh>, Vec<Primitive>); 7], &Colours { paint, cast }: &
 }
 
 /// Six joints that turn, foot to flange, and where the bare frame stands on the last link: metres; roll, pitch, yaw.
-pub fn joints(axes: [Axis; 6], [frame_xyz, frame_rpy]: [[f64; 3]; 2]) -> Vec<Joint> {
-    let turning = |(i, (name, xyz, axis, range_deg, speed_deg_s)): (usize, Axis)| Joint {
+pub fn joints(axes: &[Axis; 6], [frame_xyz, frame_rpy]: [[f64; 3]; 2]) -> Vec<Joint> {
+    let turning = |(i, &(name, xyz, axis, range_deg, speed_deg_s)): (usize, &Axis)| Joint {
         name,
         parent: LINKS[i],
         child: LINKS[i + 1],
@@ -55,5 +55,5 @@ pub fn joints(axes: [Axis; 6], [frame_xyz, frame_rpy]: [[f64; 3]; 2]) -> Vec<Joi
     };
     let (parent, child) = (LINKS[6], LINKS[7]);
     let frame = Joint { name: "flange", parent, child, xyz: frame_xyz, rpy: frame_rpy, turns: None };
-    axes.into_iter().enumerate().map(turning).chain([frame]).collect()
+    axes.iter().enumerate().map(turning).chain([frame]).collect()
 }

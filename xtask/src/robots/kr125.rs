@@ -47,7 +47,7 @@ fn joints() -> Vec<Joint> {
         ("joint_5", [0.45, 0.0, 0.0], Y, [-120.0, 120.0], 167.0),
         ("joint_6", [0.0, 0.0, 0.0], X_BACK, [-350.0, 350.0], 251.0),
     ];
-    arm::joints(axes, [[0.21, 0.0, 0.0], tool_rpy])
+    arm::joints(&axes, [[0.21, 0.0, 0.0], tool_rpy])
 }
 
 /// A foot plate and a pedestal.

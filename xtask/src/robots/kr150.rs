@@ -56,7 +56,7 @@ fn joints() -> Vec<Joint> {
         ("joint_a5", [FOREARM, 0.0, 0.0], Y, [-125.0, 125.0], 170.0),
         ("joint_a6", [HAND, 0.0, 0.0], X_BACK, [-350.0, 350.0], 238.0),
     ];
-    arm::joints(axes, [[0.0; 3], tool_rpy])
+    arm::joints(&axes, [[0.0; 3], tool_rpy])
 }
 
 /// Foot plate, cast pedestal, cable box at the back.

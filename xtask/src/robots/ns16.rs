@@ -44,7 +44,7 @@ fn joints() -> Vec<Joint> {
         ("joint_5", [0.386, 0.0, 0.0], Y, [-180.0, 180.0], 375.0),
         ("joint_6", [0.106, 0.0, 0.0], X, [-360.0, 360.0], 550.0),
     ];
-    arm::joints(axes, [[0.014, 0.0, 0.0], tool_rpy])
+    arm::joints(&axes, [[0.014, 0.0, 0.0], tool_rpy])
 }
 
 /// Foot plate with four bolts, cast pedestal with gussets, cable box at the back.

@@ -44,7 +44,7 @@ fn joints() -> Vec<Joint> {
         ("joint_5", [0.0, 0.0, 0.210], Y, [-109.5, 120.5], 320.0),
         ("joint_6", [0.0; 3], Z, [-270.0, 270.0], 700.0),
     ];
-    arm::joints(axes, [[0.0, 0.0, 0.065], [0.0; 3]])
+    arm::joints(&axes, [[0.0, 0.0, 0.065], [0.0; 3]])
 }
 
 /// Foot with four bolts, waisted pedestal, cable box with two plugs at the back.
