@@ -146,6 +146,12 @@ fn count(option: &str, value: &str) -> Result<usize, String> {
     number.ok_or_else(|| format!("`{option} {value}`: write a whole number of 1 or more"))
 }
 
+/// Where the real robots are: as told, or as `ELBOWROOM_DATA` has it, or beside the workspace.
+fn data_folder(root: &Path, told: Option<&Path>) -> PathBuf {
+    let told = told.map(Path::to_path_buf).or_else(|| std::env::var_os("ELBOWROOM_DATA").map(PathBuf::from));
+    told.unwrap_or_else(|| root.join("../shared/data"))
+}
+
 /// The directory above `xtask`, wherever the command was started.
 fn workspace_root() -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));

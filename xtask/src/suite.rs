@@ -152,7 +152,7 @@ fn tests(context: &Context) -> Result<(), String> {
 
 /// Tests on real robots pass where their data are missing: the log must show which run it was.
 fn announce_data(root: &Path) {
-    let folder = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), Into::into);
+    let folder = crate::data_folder(root, None);
     let verdict = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
     println!("{verdict} {}", folder.display());
 }

@@ -79,7 +79,22 @@ fn mistakes_in_the_table_are_told_with_their_line() {
     wrong("speed = 0", "speed");
     wrong("return_speed = 0", "return_speed");
     wrong("patience = -1", "patience");
+    for key in ["speed", "clearance", "return_speed", "patience"] {
+        for value in ["0", "-1", "nan", "inf", "-inf", "1e9", "1e300", "1e-9", "\"fast\"", "[1]"] {
+            wrong(&format!("{key} = {value}"), &format!("avoidance.kr150.{key}"));
+        }
+    }
+    wrong("speed = 5e4", "10 mm per second to 20000 mm per second");
+    wrong("clearance = 1e-3", "0.1 mm to 5000 mm");
+    wrong("clearance = 1500", "1000 mm that the rules look ahead");
+    wrong("patience = 3600", "0.01 to 60 s");
     wrong("rules = \"nowhere.toml\"", "nowhere.toml");
+    let sound = "speed = 20000\nclearance = 0.1\nreturn_speed = 1\npatience = 60";
+    let sound = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{sound}"));
+    let cell = Cell::parse(file(), &sound).unwrap();
+    let settings = cell.avoidance[0].as_ref().unwrap().settings;
+    assert_eq!((settings.reflex.speed_m_s, settings.reflex.clearance_m), (20.0, 1e-4));
+    assert_eq!((settings.return_share, settings.patience_s), (0.01, 60.0));
     let unknown = text.replace("objects = [\"cart\"]", "objects = [\"card\"]");
     assert!(Cell::parse(file(), &unknown).unwrap_err().to_string().contains("cart"));
     let nobody = text.replace("[avoidance.kr150]", "[avoidance.kr15]");

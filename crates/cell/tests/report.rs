@@ -107,3 +107,50 @@ fn the_summary_says_where_and_why_and_colours_only_terminals() {
     }
     assert!(summary(&run, 80, true).contains("\u{1b}["));
 }
+
+/// Without the monitor nothing holds a robot back, and "free" would be all that a reader is told of a collision.
+#[test]
+fn from_a_collision_on_the_report_tells_it_instead_of_free() {
+    let mut run = report_demo::recording(false, 3000, "column");
+    let robot = &mut run.robots[0];
+    let hit_s = robot.collisions[0].t_s;
+    let (before, after): (Vec<_>, Vec<_>) = (0..robot.samples.len()).partition(|&i| robot.samples[i].t_s < hit_s);
+    assert!(!before.is_empty() && !after.is_empty());
+    for sample in &mut robot.samples {
+        sample.region = None;
+        sample.distance_m = None;
+        sample.reason = elbowroom_monitor::Reason::Free;
+        sample.tcp_speed = if sample.t_s < hit_s { 0.5 } else { 0.0 };
+    }
+    robot.finished = false;
+    let scene = |run: &Recording| block(&page(run, run), "scene-data")["runs"][0]["robots"][0].clone();
+    let shown = scene(&run);
+    let frames = shown["reason"].as_array().unwrap();
+    let text = |frame: usize| shown["reasons"][frames[frame].as_u64().unwrap() as usize].as_str().unwrap();
+    assert_eq!(text(0), "free");
+    assert_eq!(text(frames.len() - 1), "fore hit table at 3.100 s");
+    let outcome = shown["outcome"].as_str().unwrap();
+    assert!(outcome.contains("fore hit table at 3.100 s") && !outcome.contains("free"), "{outcome}");
+    let wide = summary(&run, 200, false);
+    assert!(wide.contains("fore hit table at 3.100 s") && !wide.contains("free"), "{wide}");
+    assert!(block(&page(&run, &run), "plot-data").to_string().contains("<br>fore hit table at 3.100 s"));
+
+    // One that evades and waits says so; a region that holds it back is still named.
+    let evading = elbowroom_cell::AvoidanceSample {
+        doing: elbowroom_avoidance::Doing::Waiting,
+        nearest_m: 0.0,
+        size: 0.0,
+        astray_s: 0.1,
+        rate: 0.0,
+    };
+    let samples = vec![evading; run.robots[0].samples.len()];
+    run.robots[0].avoidance = Some(elbowroom_cell::AvoidanceTrack { samples, ..Default::default() });
+    let last = run.robots[0].samples.last_mut().unwrap();
+    last.reason = elbowroom_monitor::Reason::Region(elbowroom_monitor::RegionId(0));
+    assert!(summary(&run, 200, false).contains("fore hit table at 3.100 s; waiting; near column"));
+    run.robots[0].collisions.clear();
+    assert_eq!(scene(&run)["reasons"][0], "waiting");
+    // What the end of the run cut off has not stopped.
+    run.robots[0].samples.last_mut().unwrap().tcp_speed = 0.5;
+    assert!(summary(&run, 200, false).contains("still under way at 6.00 s"));
+}

@@ -219,6 +219,7 @@ pub(crate) struct MapArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
+  elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {
@@ -235,6 +236,9 @@ pub(crate) struct InspectArgs {
     /// The link at which the Denavit-Hartenberg table ends
     #[arg(long, value_name = "LINK")]
     pub(crate) tip: Option<String>,
+    /// The Denavit-Hartenberg tables to print, with commas between; --json has them all
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "TABLE,…", conflicts_with = "states")]
+    pub(crate) dh: Vec<Dh>,
     /// Joint states (a header of joint names, a row of radians or metres each): print link poses instead
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
@@ -250,6 +254,18 @@ pub(crate) struct InspectArgs {
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Dh {
+    /// Rz(theta) Tz(d) Tx(a) Ty(b) Rx(alpha) along the axes; the default
+    Generalized,
+    /// Rz(theta) Tz(d) Tx(a) Rx(alpha), where no row needs b
+    Classical,
+    /// Rx(alpha) Tx(a) Rz(theta) Tz(d), Craig's
+    Modified,
+    /// Generalized, a row for each frame of the model
+    Direct,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

@@ -6,12 +6,12 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use elbowroom::cell::csv::read_states;
-use elbowroom::cell::inspect::{InspectOptions, Inspection};
+use elbowroom::cell::inspect::{DhConvention, InspectOptions, Inspection};
 use elbowroom::formats::stl::write_binary;
 use elbowroom::kinematics::{ChainState, LinkId};
 use elbowroom::spatial::units::LengthUnit;
 
-use crate::args::{InspectArgs, Unit};
+use crate::args::{Dh, InspectArgs, Unit};
 use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
@@ -21,6 +21,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
         joints: args.joints.joints.clone(),
         joint: args.joints.joint.clone(),
         tip: args.tip.clone(),
+        dh: args.dh.iter().copied().map(DhConvention::from).collect(),
         brief: args.brief || args.states.is_some(),
     };
     let inspection = Inspection::of(&args.model, &options)?;
@@ -108,6 +109,17 @@ fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<Verdict, F
     }
     print(&text)?;
     Ok(Verdict::Good)
+}
+
+impl From<Dh> for DhConvention {
+    fn from(table: Dh) -> Self {
+        match table {
+            Dh::Generalized => Self::Generalized,
+            Dh::Classical => Self::Classical,
+            Dh::Modified => Self::Modified,
+            Dh::Direct => Self::Direct,
+        }
+    }
 }
 
 impl From<Unit> for LengthUnit {

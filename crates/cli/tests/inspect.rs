@@ -167,3 +167,115 @@ fn units_are_doubted_where_they_are_wrong_and_nowhere_else() {
         }
     }
 }
+
+/// Rows and columns of a rotation and an origin.
+type Matrix = [[f64; 4]; 3];
+
+fn times(a: &Matrix, b: &Matrix) -> Matrix {
+    let entry =
+        |r: usize, c: usize| (0..3).map(|k| a[r][k] * b[k][c]).sum::<f64>() + if c == 3 { a[r][3] } else { 0.0 };
+    std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c)))
+}
+
+fn about_x(v: f64) -> Matrix {
+    let (s, c) = v.sin_cos();
+    [[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0]]
+}
+
+fn about_z(v: f64) -> Matrix {
+    let (s, c) = v.sin_cos();
+    [[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]
+}
+
+fn along(x: f64, y: f64, z: f64) -> Matrix {
+    [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
+}
+
+/// The product of the rows of one of the tables, its factors multiplied out as the documents say.
+fn product(rows: &serde_json::Value, q: &dyn Fn(&str) -> (f64, bool), modified: bool) -> Matrix {
+    let mut at = along(0.0, 0.0, 0.0);
+    for row in rows.as_array().unwrap() {
+        let number = |key: &str| row[key].as_f64();
+        let (q, slides) = row["joint"].as_str().map_or((0.0, false), q);
+        let theta = number("theta").unwrap() + if slides { 0.0 } else { q };
+        let d = number("d").unwrap() + if slides { q } else { 0.0 };
+        let (turn, slide) = (about_z(theta), along(0.0, 0.0, d));
+        let (aside, twist) =
+            (along(number("a").unwrap(), number("b").unwrap_or(0.0), 0.0), about_x(number("alpha").unwrap()));
+        let factors = if modified { [twist, aside, turn, slide] } else { [turn, slide, aside, twist] };
+        at = factors.iter().fold(at, |at, f| times(&at, f));
+    }
+    at
+}
+
+/// Elbow over a rail, about an axis; the tip stands aside of its frame's x.
+fn railed(axis: &str, aside: f64) -> String {
+    format!(
+        r#"<robot name="railed"><link name="hall"/><link name="cart"/><link name="arm"/><link name="hand"/>
+  <joint name="x" type="prismatic"><parent link="hall"/><child link="cart"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="2" velocity="1" effort="0"/></joint>
+  <joint name="turn" type="revolute"><parent link="cart"/><child link="arm"/><origin xyz="0.1 0.2 0.3" rpy="0.3 0 0"/>
+    <axis xyz="{axis}"/><limit lower="-1" upper="1" velocity="1" effort="0"/></joint>
+  <joint name="end" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="0.5 {aside} 0.1"/></joint></robot>"#
+    )
+}
+
+#[test]
+fn every_table_multiplies_out_to_the_tip_and_classical_is_refused_with_b() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, axis, aside) in [("straight", "0 0 1", 0.0), ("aside", "0 0 1", 0.25), ("split", "1 0 0", 0.25)] {
+        std::fs::write(dir.path().join(format!("{name}.urdf")), railed(axis, aside)).unwrap();
+    }
+    for (model, joints, tip, classical) in [
+        (ns16().as_str(), "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6", "tool0", true),
+        ("straight.urdf", "x,turn", "hand", true),
+        // The way to the tip takes two rows, and then no b.
+        ("split.urdf", "x,turn", "hand", true),
+        ("aside.urdf", "x,turn", "hand", false),
+    ] {
+        let q = [0.3, -0.7, 0.9, 0.4, -0.5, 0.6];
+        let row: Vec<String> = joints.split(',').zip(q).map(|(_, v)| v.to_string()).collect();
+        std::fs::write(dir.path().join("q.csv"), format!("{joints}\n{}\n", row.join(","))).unwrap();
+        let poses = elbowroom(dir.path(), &["inspect", model, "--states", "q.csv"]).expect(0).stdout;
+        let pose = poses.lines().find(|l| l.split(',').nth(1) == Some(tip)).unwrap();
+        let n: Vec<f64> = pose.split(',').skip(2).map(|v| v.parse().unwrap()).collect();
+        let right: Matrix = std::array::from_fn(|r| [n[3 * r], n[3 * r + 1], n[3 * r + 2], n[9 + r]]);
+        let value = |name: &str| {
+            let i = joints.split(',').position(|j| j == name).unwrap();
+            (q[i], name == "x")
+        };
+        let json = elbowroom(dir.path(), &["inspect", model, "--brief", "--json"]).expect(0).json();
+        let assert_right = |rows: &serde_json::Value, modified: bool| {
+            let made = product(rows, &value, modified);
+            let off = made.iter().flatten().zip(right.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9, "{model}: {off}: {rows}");
+        };
+        assert_right(&json["dh"], false);
+        assert_right(&json["dh_direct"]["rows"], false);
+        assert_right(&json["dh_modified"]["rows"], true);
+        let rows = &json["dh_classical"]["rows"];
+        let why_not = json["dh_classical"]["why_not"].as_str();
+        let text = elbowroom(dir.path(), &["inspect", model, "--brief", "--dh", "classical,modified,direct"]).expect(0);
+        assert!(text.stdout.contains("Modified DH (Craig)") && text.stdout.contains("DH of each frame"));
+        assert!(!text.stdout.contains("Generalized"), "only what was asked for: {}", text.stdout);
+        if classical {
+            assert_right(rows, false);
+            assert_eq!((keys(&rows[0]), why_not), (vec!["a", "alpha", "d", "joint", "theta"], None));
+            assert!(json["dh_classical"]["residual"].as_f64().unwrap() < 1e-9);
+            assert!(text.stdout.contains("\nClassical DH to "), "{}", text.stdout);
+        } else {
+            assert_eq!(
+                (rows.as_array().map(Vec::len), &json["dh_classical"]["residual"]),
+                (Some(0), &serde_json::Value::Null)
+            );
+            let why_not = why_not.unwrap();
+            assert!(why_not.contains("`turn`") && why_not.contains("b = 0.25"), "{why_not}");
+            assert!(text.stdout.contains(&format!("No classical DH to hand: {why_not}")), "{}", text.stdout);
+        }
+    }
+    let torch = examples().join("models/tools/torch.stl");
+    let json = elbowroom(&examples(), &["inspect", torch.to_str().unwrap(), "--brief", "--json"]).expect(0).json();
+    assert!(["dh_classical", "dh_modified", "dh_direct"].iter().all(|key| json[*key].is_null()), "{json}");
+    let refused = elbowroom(dir.path(), &["inspect", "straight.urdf", "--dh", "craig"]).expect(2);
+    assert!(refused.stderr.contains("modified"), "{}", refused.stderr);
+}

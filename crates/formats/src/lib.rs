@@ -35,6 +35,7 @@ mod error;
 pub mod gltf;
 pub mod joints;
 pub mod mesh;
+mod names;
 pub mod nodetree;
 pub mod obj;
 pub mod off;

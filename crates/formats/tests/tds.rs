@@ -256,3 +256,63 @@ proptest! {
         }
     }
 }
+
+fn chunk(id: u16, body: &[u8]) -> Vec<u8> {
+    let length = u32::try_from(body.len() + 6).unwrap();
+    [&id.to_le_bytes()[..], &length.to_le_bytes(), body].concat()
+}
+
+/// A node of the keyframer at the top, with a name and one key of its position.
+fn node(id: u16, name: &str, at: [f32; 3]) -> Vec<u8> {
+    let header = chunk(0xb010, &[name.as_bytes(), &[0, 0, 0, 0, 0, 0xff, 0xff]].concat());
+    let key = chunk(0xb020, &[&[0; 10][..], &1u32.to_le_bytes(), &[0; 6], &floats(&at)].concat());
+    chunk(id, &[header, key].concat())
+}
+
+/// An object with three vertices and one face.
+fn object(name: &str) -> Vec<u8> {
+    let vertices = chunk(0x4110, &[&3u16.to_le_bytes()[..], &floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.])].concat());
+    let faces = chunk(0x4120, &[1, 0, 0, 0, 1, 0, 2, 0, 0, 0]);
+    let mesh = chunk(0x4100, &[vertices, faces].concat());
+    chunk(0x4000, &[name.as_bytes(), &[0], &mesh[..]].concat())
+}
+
+/// Looking through all nodes for each camera, or through all nodes for each object, would take 10¹¹ comparisons here.
+#[test]
+fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_in_no_time() {
+    const MANY: usize = 200_000;
+    let mut nodes = Vec::new();
+    for i in 0..MANY {
+        nodes.extend(node(0xb003, &format!("c{i}"), [0.0; 3]));
+        nodes.extend(node(0xb005, &format!("l{i}"), [0.0; 3]));
+    }
+    for i in (0..MANY).step_by(2) {
+        // To the right, and for a second of the same name to the left, which does not count.
+        nodes.extend(node(0xb004, &format!("c{i}"), [1.0, 0.0, 0.0]));
+        nodes.extend(node(0xb004, &format!("c{i}"), [-1.0, 0.0, 0.0]));
+    }
+    let objects: Vec<u8> = (0..MANY).flat_map(|i| object(&format!("o{i}"))).collect();
+    let bytes = chunk(0x4d4d, &[chunk(0x3d3d, &objects), chunk(0xb000, &nodes)].concat());
+    let start = std::time::Instant::now();
+    let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
+    let took = start.elapsed();
+    // Targets carry nothing, so they are no nodes.
+    assert_eq!(tree.nodes.len(), 3 * MANY);
+    let look = |i: usize| tree.nodes[2 * i].in_parent.transform_vector(-Vec3::Z);
+    assert_eq!((tree.nodes[MANY].name.as_str(), tree.nodes[2 * MANY].name.as_str()), ("c100000", "o0"));
+    for i in [0, 2, MANY / 2, MANY - 2] {
+        assert!(look(i).distance(Vec3::X) < 1e-6 && look(i + 1).distance(-Vec3::Z) < 1e-6, "{i}: {:?}", look(i));
+    }
+    assert!(took.as_secs() < 15, "{took:?}");
+}
+
+#[test]
+fn nodes_of_one_name_are_written_in_no_time() {
+    let mut tree = NodeTree::new("a");
+    tree.nodes = vec![Node::new("bolt", None, Pose::IDENTITY); 65_000];
+    let start = std::time::Instant::now();
+    let bytes = tds::write(&tree, FILE.as_ref()).unwrap();
+    let took = start.elapsed();
+    assert!(took.as_secs() < 15, "{took:?}");
+    assert_eq!(tds::parse(&bytes, FILE.as_ref()).unwrap().nodes[64_999].name, "bolt_65000");
+}

@@ -50,8 +50,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     if let Some(ended) = release::again(root, &again) {
         return Ok(ended?);
     }
-    let data = options.data.clone().or_else(|| std::env::var_os("ELBOWROOM_DATA").map(PathBuf::from));
-    let data = data.unwrap_or_else(|| root.join("../shared/data"));
+    let data = crate::data_folder(root, options.data.as_deref());
     let mut robots = world::find(&data);
     robots.retain(|files| match &options.only {
         Some(only) => files.name.contains(only),

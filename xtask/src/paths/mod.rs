@@ -78,8 +78,7 @@ fn judge_all(root: &Path, python: &Path, folder: &Path, options: &Options) -> Re
             judged(&map::course(folder, name, &obstacles, options.pairs)?)?;
         }
     }
-    let data = options.data.clone().or_else(|| std::env::var_os("ELBOWROOM_DATA").map(PathBuf::from));
-    let data = data.unwrap_or_else(|| root.join("../shared/data"));
+    let data = crate::data_folder(root, options.data.as_deref());
     let found = judge::world::find(&data);
     if found.is_empty() && !options.json {
         println!("real robots skipped: no data at {}", data.display());

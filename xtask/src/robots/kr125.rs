@@ -1,6 +1,7 @@
 //! An arm with the dimensions of the KUKA KR125, the robot of the paper on joint-space models; solids of our own.
 
-use super::{Form, Joint, Link, Primitive, PrimitiveKind, Robot, Turn};
+use super::arm::{self, Colours, X_BACK, Y, Z_DOWN};
+use super::{Form, Joint, Primitive, PrimitiveKind, Robot};
 use std::f64::consts::FRAC_PI_2;
 
 const ABOUT: &str = "
@@ -13,9 +14,7 @@ const ABOUT: &str = "
      what is not, turns about axis 1 and is round.
 ";
 
-const PAINT: [f64; 3] = [0.95, 0.46, 0.10];
-const CAST: [f64; 3] = [0.22, 0.23, 0.25];
-const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
+const COLOURS: Colours = Colours { paint: [0.95, 0.46, 0.10], cast: [0.22, 0.23, 0.25] };
 
 /// Height of the frame of joint 1 above the floor, metres.
 const FOOT: f64 = 0.35;
@@ -24,21 +23,11 @@ const HALF_WAY: f64 = 0.55;
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, primitives, colour| Link { name, solid: None, primitives, colour };
     Robot {
         name: "kr125",
         about: ABOUT,
         form: Form::Urdf,
-        links: vec![
-            solid("base_link", base(), CAST),
-            solid("link_1", column(), PAINT),
-            solid("link_2", upper_arm(), PAINT),
-            solid("link_3", elbow(), PAINT),
-            solid("link_4", forearm(), PAINT),
-            solid("link_5", wrist(), CAST),
-            solid("link_6", flange(), STEEL),
-            solid("tool0", Vec::new(), STEEL),
-        ],
+        links: arm::of_primitives([base(), column(), upper_arm(), elbow(), forearm(), wrist(), flange()], &COLOURS),
         joints: joints(),
         disabled: vec![
             // Within the limits of joint 5 the flange stays clear of the fork.
@@ -49,22 +38,16 @@ pub fn robot() -> Robot {
 }
 
 fn joints() -> Vec<Joint> {
-    const X_BACK: [f64; 3] = [-1.0, 0.0, 0.0];
-    const Y: [f64; 3] = [0.0, 1.0, 0.0];
-    let turning = |name, parent, child, xyz, axis, range_deg, speed_deg_s| {
-        let turns = Some(Turn { axis, range_deg, speed_deg_s });
-        Joint { name, parent, child, xyz, rpy: [0.0; 3], turns }
-    };
     let tool_rpy = [0.0, FRAC_PI_2, 0.0];
-    vec![
-        turning("joint_1", "base_link", "link_1", [0.0, 0.0, FOOT], [0.0, 0.0, -1.0], [-185.0, 185.0], 100.0),
-        turning("joint_2", "link_1", "link_2", [0.41, 0.0, 0.515], Y, [-130.0, 3.0], 100.0),
-        turning("joint_3", "link_2", "link_3", [1.0, 0.0, 0.0], Y, [-120.0, 148.0], 100.0),
-        turning("joint_4", "link_3", "link_4", [HALF_WAY, 0.0, 0.045], X_BACK, [-350.0, 350.0], 154.0),
-        turning("joint_5", "link_4", "link_5", [0.45, 0.0, 0.0], Y, [-120.0, 120.0], 167.0),
-        turning("joint_6", "link_5", "link_6", [0.0, 0.0, 0.0], X_BACK, [-350.0, 350.0], 251.0),
-        Joint { name: "flange", parent: "link_6", child: "tool0", xyz: [0.21, 0.0, 0.0], rpy: tool_rpy, turns: None },
-    ]
+    let axes = [
+        ("joint_1", [0.0, 0.0, FOOT], Z_DOWN, [-185.0, 185.0], 100.0),
+        ("joint_2", [0.41, 0.0, 0.515], Y, [-130.0, 3.0], 100.0),
+        ("joint_3", [1.0, 0.0, 0.0], Y, [-120.0, 148.0], 100.0),
+        ("joint_4", [HALF_WAY, 0.0, 0.045], X_BACK, [-350.0, 350.0], 154.0),
+        ("joint_5", [0.45, 0.0, 0.0], Y, [-120.0, 120.0], 167.0),
+        ("joint_6", [0.0, 0.0, 0.0], X_BACK, [-350.0, 350.0], 251.0),
+    ];
+    arm::joints(&axes, [[0.21, 0.0, 0.0], tool_rpy])
 }
 
 /// A foot plate and a pedestal.

@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use elbowroom_spatial::Vec3;
 
+use super::arm::{self, Colours, X_BACK, Y, Z_DOWN};
 use super::parts::{bolt, skin};
-use super::{Form, Joint, Link, Robot, Turn};
+use super::{Form, Joint, Robot};
 use crate::solid::outline::{Outline, rounded_rectangle, tapered_slot};
 use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, ring, upright};
 
@@ -17,9 +18,7 @@ const ABOUT: &str = "
      tool0 lies on the flange, z out of it, x down at zero.
 ";
 
-const PAINT: [f64; 3] = [0.93, 0.45, 0.11];
-const CAST: [f64; 3] = [0.22, 0.23, 0.25];
-const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
+const COLOURS: Colours = Colours { paint: [0.93, 0.45, 0.11], cast: [0.22, 0.23, 0.25] };
 
 /// Height of the shoulder, and how far it lies before axis 1, metres.
 const SHOULDER: [f64; 2] = [0.75, 0.35];
@@ -36,44 +35,28 @@ const BEARING: f64 = 0.32;
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), primitives: Vec::new(), colour };
     Robot {
         name: "kr150",
         about: ABOUT,
         form: Form::Tds,
-        links: vec![
-            solid("base_link", base(), CAST),
-            solid("link_1", carousel(), PAINT),
-            solid("link_2", upper_arm(), PAINT),
-            solid("link_3", elbow(), PAINT),
-            solid("link_4", forearm(), PAINT),
-            solid("link_5", wrist(), CAST),
-            solid("link_6", flange(), STEEL),
-            Link { name: "tool0", solid: None, primitives: Vec::new(), colour: STEEL },
-        ],
+        links: arm::of_meshes([base(), carousel(), upper_arm(), elbow(), forearm(), wrist(), flange()], &COLOURS),
         joints: joints(),
         disabled: vec![("link_4", "link_6", "Never")],
     }
 }
 
 fn joints() -> Vec<Joint> {
-    const X_BACK: [f64; 3] = [-1.0, 0.0, 0.0];
-    const Y: [f64; 3] = [0.0, 1.0, 0.0];
-    let turning = |name, parent, child, xyz, axis, range_deg, speed_deg_s| {
-        let turns = Some(Turn { axis, range_deg, speed_deg_s });
-        Joint { name, parent, child, xyz, rpy: [0.0; 3], turns }
-    };
     let [height, offset] = SHOULDER;
     let tool_rpy = [0.0, FRAC_PI_2, 0.0];
-    vec![
-        turning("joint_a1", "base_link", "link_1", [0.0, 0.0, height], [0.0, 0.0, -1.0], [-185.0, 185.0], 110.0),
-        turning("joint_a2", "link_1", "link_2", [offset, 0.0, 0.0], Y, [-146.0, 0.0], 110.0),
-        turning("joint_a3", "link_2", "link_3", [UPPER_ARM, 0.0, 0.0], Y, [-119.0, 155.0], 100.0),
-        turning("joint_a4", "link_3", "link_4", [0.0, 0.0, -DROP], X_BACK, [-350.0, 350.0], 170.0),
-        turning("joint_a5", "link_4", "link_5", [FOREARM, 0.0, 0.0], Y, [-125.0, 125.0], 170.0),
-        turning("joint_a6", "link_5", "link_6", [HAND, 0.0, 0.0], X_BACK, [-350.0, 350.0], 238.0),
-        Joint { name: "flange", parent: "link_6", child: "tool0", xyz: [0.0; 3], rpy: tool_rpy, turns: None },
-    ]
+    let axes = [
+        ("joint_a1", [0.0, 0.0, height], Z_DOWN, [-185.0, 185.0], 110.0),
+        ("joint_a2", [offset, 0.0, 0.0], Y, [-146.0, 0.0], 110.0),
+        ("joint_a3", [UPPER_ARM, 0.0, 0.0], Y, [-119.0, 155.0], 100.0),
+        ("joint_a4", [0.0, 0.0, -DROP], X_BACK, [-350.0, 350.0], 170.0),
+        ("joint_a5", [FOREARM, 0.0, 0.0], Y, [-125.0, 125.0], 170.0),
+        ("joint_a6", [HAND, 0.0, 0.0], X_BACK, [-350.0, 350.0], 238.0),
+    ];
+    arm::joints(&axes, [[0.0; 3], tool_rpy])
 }
 
 /// Foot plate, cast pedestal, cable box at the back.
@@ -104,7 +87,7 @@ fn carousel() -> Mesh {
         section(0.36, 0.24, 0.50, 0.32, 0.09),
         section(0.43, 0.33, 0.40, 0.29, 0.095),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&turret, |[x, y]| Vec3::new(x, y, 0.0)));
+    mesh.add(&upright([0.0; 3]), &skin(&turret, 4, |[x, y]| Vec3::new(x, y, 0.0)));
     let x = SHOULDER[1];
     mesh.add(&along_y([x, -0.055, 0.0]), &drum(0.225, 0.30, 32));
     mesh.add(&along_y([x, 0.238, 0.0]), &motor(0.105, 0.27, 20));
@@ -142,7 +125,7 @@ fn elbow() -> Mesh {
         (Vec3::new(0.24, 0.01, -DROP), [0.24, 0.25], 0.11),
         (Vec3::new(0.36, 0.0, -DROP), [0.23, 0.23], 0.11),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&housing, |[y, z]| Vec3::new(0.0, y, z)));
+    mesh.add(&upright([0.0; 3]), &skin(&housing, 4, |[y, z]| Vec3::new(0.0, y, z)));
     for (y, z, radius, length) in
         [(0.035, 0.03, 0.062, 0.24), (-0.035, -0.115, 0.055, 0.21), (0.105, -0.115, 0.055, 0.21)]
     {
@@ -162,7 +145,7 @@ fn forearm() -> Mesh {
         (Vec3::new(0.86, 0.0, 0.0), [0.22, 0.17], 0.05),
         (Vec3::new(0.96, 0.0, 0.0), [0.23, 0.16], 0.03),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&fork, |[y, z]| Vec3::new(0.0, y, z)));
+    mesh.add(&upright([0.0; 3]), &skin(&fork, 4, |[y, z]| Vec3::new(0.0, y, z)));
     for cheek in [along_y([FOREARM, 0.0, 0.0]), along_minus_y([FOREARM, 0.0, 0.0])] {
         let outline: Outline = tapered_slot(0.085, 0.075, 0.17, 0.0, 6).iter().map(|&[u, v]| [-v, u]).collect();
         mesh.add(&cheek, &extrude(&outline, 0.075, 0.118, 0.012));

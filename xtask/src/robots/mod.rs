@@ -1,5 +1,6 @@
 //! Example robots of our own: figures in, URDF or 3DS, SRDF and meshes out. One file per robot.
 
+mod arm;
 mod kr125;
 mod kr150;
 mod ns16;

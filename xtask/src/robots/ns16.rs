@@ -2,8 +2,9 @@
 
 use elbowroom_spatial::Vec3;
 
+use super::arm::{self, Colours, X, Y, Z};
 use super::parts::{bolt, bolts, motor, skin};
-use super::{Form, Joint, Link, Robot, Turn};
+use super::{Form, Joint, Robot};
 use crate::solid::outline::{Outline, circle, rounded_rectangle, tapered_slot};
 use crate::solid::{Mesh, along_minus_x, along_minus_y, along_x, along_y, extrude, lathe, ring, upright};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -18,50 +19,32 @@ const ABOUT: &str = "
      the other way round, where the forearm dips 80 and rises 200 degrees from our zero instead of 110 and 170.
 ";
 
-const PAINT: [f64; 3] = [0.86, 0.24, 0.12];
-const CAST: [f64; 3] = [0.25, 0.26, 0.28];
-const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
+const COLOURS: Colours = Colours { paint: [0.86, 0.24, 0.12], cast: [0.25, 0.26, 0.28] };
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), primitives: Vec::new(), colour };
     Robot {
         name: "ns16",
         about: ABOUT,
         form: Form::Urdf,
-        links: vec![
-            solid("base_link", base(), CAST),
-            solid("link_1", column(), PAINT),
-            solid("link_2", upper_arm(), PAINT),
-            solid("link_3", elbow(), PAINT),
-            solid("link_4", forearm(), PAINT),
-            solid("link_5", wrist(), CAST),
-            solid("link_6", flange(), STEEL),
-            Link { name: "tool0", solid: None, primitives: Vec::new(), colour: STEEL },
-        ],
+        links: arm::of_meshes([base(), column(), upper_arm(), elbow(), forearm(), wrist(), flange()], &COLOURS),
         joints: joints(),
         disabled: Vec::new(),
     }
 }
 
 fn joints() -> Vec<Joint> {
-    const Y: [f64; 3] = [0.0, 1.0, 0.0];
-    const X: [f64; 3] = [1.0, 0.0, 0.0];
-    let turning = |name, parent, child, xyz, axis, range_deg, speed_deg_s| {
-        let turns = Some(Turn { axis, range_deg, speed_deg_s });
-        Joint { name, parent, child, xyz, rpy: [0.0; 3], turns }
-    };
     // z of tool0 is x of link_6, x of tool0 is z of link_6.
     let tool_rpy = [PI, -FRAC_PI_2, 0.0];
-    vec![
-        turning("joint_1", "base_link", "link_1", [0.0, 0.0, 0.251], [0.0, 0.0, 1.0], [-180.0, 180.0], 175.0),
-        turning("joint_2", "link_1", "link_2", [0.3, 0.0, 0.349], Y, [-50.0, 95.0], 155.0),
-        turning("joint_3", "link_2", "link_3", [0.0, 0.0, 0.7], Y, [-170.0, 110.0], 175.0),
-        turning("joint_4", "link_3", "link_4", [0.238, 0.0, 0.185], X, [-360.0, 360.0], 360.0),
-        turning("joint_5", "link_4", "link_5", [0.386, 0.0, 0.0], Y, [-180.0, 180.0], 375.0),
-        turning("joint_6", "link_5", "link_6", [0.106, 0.0, 0.0], X, [-360.0, 360.0], 550.0),
-        Joint { name: "flange", parent: "link_6", child: "tool0", xyz: [0.014, 0.0, 0.0], rpy: tool_rpy, turns: None },
-    ]
+    let axes = [
+        ("joint_1", [0.0, 0.0, 0.251], Z, [-180.0, 180.0], 175.0),
+        ("joint_2", [0.3, 0.0, 0.349], Y, [-50.0, 95.0], 155.0),
+        ("joint_3", [0.0, 0.0, 0.7], Y, [-170.0, 110.0], 175.0),
+        ("joint_4", [0.238, 0.0, 0.185], X, [-360.0, 360.0], 360.0),
+        ("joint_5", [0.386, 0.0, 0.0], Y, [-180.0, 180.0], 375.0),
+        ("joint_6", [0.106, 0.0, 0.0], X, [-360.0, 360.0], 550.0),
+    ];
+    arm::joints(&axes, [[0.014, 0.0, 0.0], tool_rpy])
 }
 
 /// Foot plate with four bolts, cast pedestal with gussets, cable box at the back.
@@ -111,7 +94,7 @@ fn column() -> Mesh {
         section(0.330, 0.280, 0.250, 0.190, 0.020),
         section(0.390, 0.298, 0.190, 0.184, 0.020),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&rows, |[x, y]| Vec3::new(x, y, 0.0)));
+    mesh.add(&upright([0.0; 3]), &skin(&rows, 4, |[x, y]| Vec3::new(x, y, 0.0)));
     let shoulder = [0.3, 0.0, 0.349];
     mesh.add(&along_y([0.3, -0.084, 0.349]), &extrude(&circle(0.148, 36), 0.0, 0.218, 0.014));
     mesh.add(&along_y([0.3, 0.0, 0.349]), &bolts(0.128, 12, 0.134, 0.006));
@@ -151,7 +134,7 @@ fn elbow() -> Mesh {
         (Vec3::new(0.016, 0.002, 0.110), [0.250, 0.149], 0.035),
         (Vec3::new(0.030, 0.0, 0.150), [0.290, 0.147], 0.035),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&rise, |[x, y]| Vec3::new(x, y, 0.0)));
+    mesh.add(&upright([0.0; 3]), &skin(&rise, 4, |[x, y]| Vec3::new(x, y, 0.0)));
     let housing = [
         (Vec3::new(-0.150, 0.0, 0.185), [0.140, 0.165], 0.040),
         (Vec3::new(-0.138, 0.0, 0.185), [0.154, 0.184], 0.050),
@@ -159,7 +142,7 @@ fn elbow() -> Mesh {
         (Vec3::new(0.150, 0.0, 0.185), [0.154, 0.172], 0.070),
         (Vec3::new(0.225, 0.0, 0.185), [0.152, 0.156], 0.075),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&housing, |[y, z]| Vec3::new(0.0, y, z)));
+    mesh.add(&upright([0.0; 3]), &skin(&housing, 4, |[y, z]| Vec3::new(0.0, y, z)));
     mesh.add(&along_x([0.216, 0.0, 0.185]), &lathe(&[[0.084, 0.0], [0.084, 0.016], [0.079, 0.020]], 36));
     for (y, z, radius, length) in
         [(0.0, 0.229, 0.036, 0.165), (0.037, 0.150, 0.032, 0.140), (-0.037, 0.150, 0.032, 0.140)]
@@ -203,7 +186,7 @@ fn forearm() -> Mesh {
         (Vec3::new(0.245, 0.0, 0.0), [0.128, 0.098], 0.030),
         (Vec3::new(0.320, 0.0, 0.0), [0.132, 0.096], 0.022),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&shoulder, |[y, z]| Vec3::new(0.0, y, z)));
+    mesh.add(&upright([0.0; 3]), &skin(&shoulder, 4, |[y, z]| Vec3::new(0.0, y, z)));
     for side in [1.0, -1.0] {
         // The outline's v runs from the wrist back along the forearm.
         let turned: Outline = tapered_slot(0.049, 0.043, 0.086, 0.0, 12).iter().map(|&[u, v]| [-v, u]).collect();

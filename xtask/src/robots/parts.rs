@@ -40,10 +40,11 @@ pub fn bolts(circle_radius: f64, count: usize, z: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// A loft of rounded rectangles `(centre, size, corner radius)`; `plane` puts the flat section into space.
-pub fn skin(rows: &[(Vec3, [f64; 2], f64)], plane: impl Fn([f64; 2]) -> Vec3) -> Mesh {
+/// A loft of rounded rectangles `(centre, size, corner radius)` with `arc` edges to a corner; `plane` puts the flat section
+/// into space.
+pub fn skin(rows: &[(Vec3, [f64; 2], f64)], arc: usize, plane: impl Fn([f64; 2]) -> Vec3) -> Mesh {
     let section = |&(center, [width, height], radius): &(Vec3, [f64; 2], f64)| {
-        let outline = rounded_rectangle(width, height, radius, 4);
+        let outline = rounded_rectangle(width, height, radius, arc);
         outline.into_iter().map(|flat| center + plane(flat)).collect()
     };
     loft(&rows.iter().map(section).collect::<Vec<_>>())

@@ -4,9 +4,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use elbowroom_spatial::Vec3;
 
-use super::{Form, Joint, Link, Robot, Turn};
+use super::arm::{self, Colours, Y, Z};
+use super::parts::{bolt, skin};
+use super::{Form, Joint, Robot};
 use crate::solid::outline::{circle, rounded_rectangle, tapered_slot};
-use crate::solid::{Mesh, along_minus_x, along_minus_y, along_y, extrude, lathe, loft, ring, upright};
+use crate::solid::{Mesh, along_minus_x, along_minus_y, along_y, extrude, lathe, ring, upright};
 
 const ABOUT: &str = "
      Dimensions of the Staubli RX60B as commonly published; solids and colours are our own, and so are the signs:
@@ -16,51 +18,33 @@ const ABOUT: &str = "
      23,012 triangles in all, as many as the model of the paper's test has.
 ";
 
-const PAINT: [f64; 3] = [0.93, 0.77, 0.16];
-const CAST: [f64; 3] = [0.30, 0.31, 0.33];
-const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
+const COLOURS: Colours = Colours { paint: [0.93, 0.77, 0.16], cast: [0.30, 0.31, 0.33] };
 
 /// Edges around the large round parts.
 const ROUND: usize = 66;
 
 /// The whole robot.
 pub fn robot() -> Robot {
-    let solid = |name, mesh, colour| Link { name, solid: Some(mesh), primitives: Vec::new(), colour };
     Robot {
         name: "rx60b",
         about: ABOUT,
         form: Form::Urdf,
-        links: vec![
-            solid("base_link", base(), CAST),
-            solid("link_1", shoulder(), PAINT),
-            solid("link_2", upper_arm(), PAINT),
-            solid("link_3", elbow(), PAINT),
-            solid("link_4", forearm(), PAINT),
-            solid("link_5", wrist(), CAST),
-            solid("link_6", flange(), STEEL),
-            Link { name: "tool0", solid: None, primitives: Vec::new(), colour: STEEL },
-        ],
+        links: arm::of_meshes([base(), shoulder(), upper_arm(), elbow(), forearm(), wrist(), flange()], &COLOURS),
         joints: joints(),
         disabled: Vec::new(),
     }
 }
 
 fn joints() -> Vec<Joint> {
-    const Y: [f64; 3] = [0.0, 1.0, 0.0];
-    const Z: [f64; 3] = [0.0, 0.0, 1.0];
-    let turning = |name, parent, child, xyz, axis, range_deg, speed_deg_s| {
-        let turns = Some(Turn { axis, range_deg, speed_deg_s });
-        Joint { name, parent, child, xyz, rpy: [0.0; 3], turns }
-    };
-    vec![
-        turning("joint_1", "base_link", "link_1", [0.0, 0.0, 0.341], Z, [-160.0, 160.0], 287.0),
-        turning("joint_2", "link_1", "link_2", [0.0; 3], Y, [-127.5, 127.5], 287.0),
-        turning("joint_3", "link_2", "link_3", [0.0, 0.049, 0.290], Y, [-134.5, 134.5], 319.0),
-        turning("joint_4", "link_3", "link_4", [0.0, 0.0, 0.100], Z, [-270.0, 270.0], 410.0),
-        turning("joint_5", "link_4", "link_5", [0.0, 0.0, 0.210], Y, [-109.5, 120.5], 320.0),
-        turning("joint_6", "link_5", "link_6", [0.0; 3], Z, [-270.0, 270.0], 700.0),
-        Joint { name: "flange", parent: "link_6", child: "tool0", xyz: [0.0, 0.0, 0.065], rpy: [0.0; 3], turns: None },
-    ]
+    let axes = [
+        ("joint_1", [0.0, 0.0, 0.341], Z, [-160.0, 160.0], 287.0),
+        ("joint_2", [0.0; 3], Y, [-127.5, 127.5], 287.0),
+        ("joint_3", [0.0, 0.049, 0.290], Y, [-134.5, 134.5], 319.0),
+        ("joint_4", [0.0, 0.0, 0.100], Z, [-270.0, 270.0], 410.0),
+        ("joint_5", [0.0, 0.0, 0.210], Y, [-109.5, 120.5], 320.0),
+        ("joint_6", [0.0; 3], Z, [-270.0, 270.0], 700.0),
+    ];
+    arm::joints(&axes, [[0.0, 0.0, 0.065], [0.0; 3]])
 }
 
 /// Foot with four bolts, waisted pedestal, cable box with two plugs at the back.
@@ -98,7 +82,7 @@ fn shoulder() -> Mesh {
         section(0.035, 0.160, 0.158, 0.040),
         section(0.060, 0.135, 0.150, 0.040),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&rows));
+    mesh.add(&upright([0.0; 3]), &upright_skin(&rows));
     mesh.add(&along_y([0.0; 3]), &lathe(&drum(0.095, [-0.045, 0.125], 0.014, 6), ROUND));
     mesh.add(&along_y([0.0, 0.120, 0.0]), &cap(0.068, 0.020, 36));
     mesh.add(&along_y([0.0; 3]), &screws(0.0745, 10, 0.125, 0.005));
@@ -132,7 +116,7 @@ fn elbow() -> Mesh {
         (Vec3::new(0.0, 0.0, 0.070), [0.138, 0.138], 0.056),
         (Vec3::new(0.0, 0.0, 0.088), [0.130, 0.130], 0.062),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&rows));
+    mesh.add(&upright([0.0; 3]), &upright_skin(&rows));
     mesh.add(&upright([0.0; 3]), &lathe(&drum(0.063, [0.080, 0.0985], 0.004, 3), ROUND));
     let motor = [[0.052, 0.0], [0.052, 0.008], [0.046, 0.012], [0.046, 0.050], [0.048, 0.053], [0.043, 0.062]];
     mesh.add(&along_y([0.0, 0.074, 0.0]), &lathe(&motor, 44));
@@ -156,7 +140,7 @@ fn forearm() -> Mesh {
         (Vec3::new(0.0, 0.0, 0.135), [0.078, 0.104], 0.028),
         (Vec3::new(0.0, 0.0, 0.152), [0.074, 0.104], 0.026),
     ];
-    mesh.add(&upright([0.0; 3]), &skin(&rows));
+    mesh.add(&upright([0.0; 3]), &upright_skin(&rows));
     for cheek in [along_y([0.0, 0.0, 0.210]), along_minus_y([0.0, 0.0, 0.210])] {
         // v of the outline runs along z or against it: the part is turned so that it goes back to the tube.
         let back = if cheek.transform_vector(Vec3::Y).z < 0.0 { 1.0 } else { -1.0 };
@@ -229,20 +213,15 @@ fn cap(radius: f64, height: f64, segments: usize) -> Mesh {
 /// Hexagon heads on a circle about z, sunk a little into the plane at `z`.
 fn screws(circle_radius: f64, count: usize, z: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::new();
-    let height = radius * 1.2;
-    let head = lathe(&[[radius, 0.0], [radius, height * 0.85], [radius * 0.88, height]], 6);
     for [x, y] in circle(circle_radius, count) {
-        mesh.add(&upright([x, y, z - radius * 0.5]), &head);
+        mesh.add(&upright([x, y, z - radius * 0.5]), &bolt(radius, radius * 1.2));
     }
     mesh
 }
 
 /// A loft along z of rounded rectangles `(centre, size, corner radius)`.
-fn skin(rows: &[(Vec3, [f64; 2], f64)]) -> Mesh {
-    let section = |&(center, [depth, width], radius): &(Vec3, [f64; 2], f64)| -> Vec<Vec3> {
-        rounded_rectangle(depth, width, radius, 8).iter().map(|&[x, y]| center + Vec3::new(x, y, 0.0)).collect()
-    };
-    loft(&rows.iter().map(section).collect::<Vec<_>>())
+fn upright_skin(rows: &[(Vec3, [f64; 2], f64)]) -> Mesh {
+    skin(rows, 8, |[x, y]| Vec3::new(x, y, 0.0))
 }
 
 #[cfg(test)]

@@ -5,11 +5,20 @@ use elbowroom_formats::FormatError;
 
 use super::read::{Table, Value};
 use super::{robot_of, suggest};
-use crate::{AvoidanceSpec, Cell};
+use crate::{AvoidanceSpec, Cell, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 const KEYS: &[&str] = &["rules", "objects", "speed", "clearance", "return_speed", "patience", "replan"];
+
+/// Of a collision point, least and most, m/s: slower nothing is evaded, and faster no robot is.
+const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
+/// Kept to what is fled from, least and most, m; rules bound it further.
+const CLEARANCES_M: (f64, f64) = (1e-4, 5.0);
+/// Less than this share of the joints' speeds is no way back.
+const LEAST_RETURN: f64 = 0.01;
+/// Before another way is planned, least and most, s.
+const PATIENCES_S: (f64, f64) = (0.01, 60.0);
 
 pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<AvoidanceSpec>>> {
     let mut all = vec![None; cell.robots.len()];
@@ -25,35 +34,64 @@ fn spec(t: &Table<'_>, cell: &Cell) -> Result<AvoidanceSpec> {
     let units = cell.units;
     let mut settings = AvoiderSettings::default();
     if let Some(v) = t.get("speed") {
-        settings.reflex.speed_m_s = units.positive_length(&v)?;
+        settings.reflex.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;
     }
     if let Some(v) = t.get("clearance") {
-        settings.reflex.clearance_m = units.positive_length(&v)?;
+        settings.reflex.clearance_m = length(&v, units, CLEARANCES_M, "")?;
     }
     if let Some(v) = t.get("return_speed") {
         settings.return_share = v.percent()?;
-        if settings.return_share <= 0.0 {
-            return Err(v.error("is 0: the robot would never come back").hint("return_speed = 50   (percent)"));
+        if settings.return_share < LEAST_RETURN {
+            let what = "is less than 1 percent: the robot would hardly come back";
+            return Err(v.error(what).hint("return_speed = 50   (percent)"));
         }
     }
     if let Some(v) = t.get("patience") {
         settings.patience_s = v.positive()?;
+        if !within(PATIENCES_S, settings.patience_s) {
+            let (least, most) = PATIENCES_S;
+            let what = format!("is {} s, and can be {least} to {most} s", settings.patience_s);
+            return Err(v
+                .error(what)
+                .hint("patience = 0.6   (seconds without headway, before another way is planned)"));
+        }
     }
     let rules = t.get("rules").map_or_else(|| Ok(Rules::default()), |v| rules(&v))?;
     let reach = rules.reach_m();
     if settings.reflex.clearance_m >= reach {
-        let what = format!(
-            "`{}`: the clearance is not less than the {} that the rules look ahead",
-            t.name,
-            units.show_length(reach)
-        );
-        return Err(t.error(what).hint("clearance = 50, or rules with a wider range of proximity"));
+        let what = format!("is not less than the {} that the rules look ahead", units.show_length(reach));
+        // Without the key the rules look less far than the default.
+        let error = t
+            .get("clearance")
+            .map_or_else(|| t.error(format!("`{}`: the default clearance {what}", t.name)), |v| v.error(&what));
+        return Err(error.hint("clearance = 50, or rules with a wider range of proximity"));
     }
     let objects = match t.get("objects") {
         None => cell.movers.iter().map(|m| m.object).collect(),
         Some(v) => v.list("objects = [\"cart\"]")?.iter().map(|v| object(v, cell)).collect::<Result<_>>()?,
     };
     Ok(AvoidanceSpec { rules, settings, objects, replan: t.flag_or("replan", true)? })
+}
+
+/// A length (m), or with `per` a speed, that makes sense.
+fn length(v: &Value<'_>, units: Units, bounds: (f64, f64), per: &str) -> Result<f64> {
+    let metres = units.positive_length(v)?;
+    if within(bounds, metres) {
+        return Ok(metres);
+    }
+    let show = |m: f64| format!("{} {per}", units.show_length(m)).trim_end().to_owned();
+    let (least, most) = (show(bounds.0), show(bounds.1));
+    let sense = if metres < bounds.0 { bounds.0 } else { bounds.1 };
+    let number = (sense / units.length.to_metres(1.0) * 1e6).round() / 1e6;
+    // As it was written: a tiny number must not be rounded to 0.
+    let what = format!("is {}, and can be {least} to {most}", v.number()?);
+    Err(v
+        .error(what)
+        .hint(format!("{} = {number}, or a number between; or leave it out: a default fits most", v.key())))
+}
+
+fn within((least, most): (f64, f64), v: f64) -> bool {
+    (least..=most).contains(&v)
 }
 
 fn object(v: &Value<'_>, cell: &Cell) -> Result<usize> {

@@ -104,7 +104,7 @@ impl<'a> Value<'a> {
         self.error(format!("must be {wanted}, not {}", self.node.data.type_name())).hint(example)
     }
 
-    fn key(&self) -> &str {
+    pub fn key(&self) -> &str {
         self.name.rsplit('.').next().unwrap_or(&self.name)
     }
 

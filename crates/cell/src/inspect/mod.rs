@@ -1,6 +1,7 @@
-//! What is in a model: joints and limits, meshes and their faults, the generalized DH table, resolution levels.
+//! What is in a model: joints and limits, meshes and their faults, DH tables, resolution levels.
 
 mod deviation;
+mod dh;
 mod edges;
 mod levels;
 mod pairs;
@@ -23,13 +24,14 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::LengthUnit;
 use serde::Serialize;
 
+pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
 pub use levels::Level2;
 pub use pairs::PairRow;
 pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
-pub use rows::{DhRow, JointRow, MeshRow};
+pub use rows::{JointRow, MeshRow};
 pub use units::UnitDoubt;
 
-use rows::{dh_row, joint_row, mesh_row, mesh_rows};
+use rows::{joint_row, mesh_row, mesh_rows};
 
 /// How to look at a model.
 #[derive(Debug, Clone, Default)]
@@ -44,6 +46,8 @@ pub struct InspectOptions {
     pub joint: Vec<String>,
     /// The link that the DH table ends at; default: the leaf with the most independent joints above it.
     pub tip: Option<String>,
+    /// The DH tables of the text for people, in this order; empty: the generalized one. JSON has them all.
+    pub dh: Vec<DhConvention>,
     /// Leave out what takes time: resolution levels, pairs, and what is only looked at.
     pub brief: bool,
 }
@@ -87,6 +91,12 @@ pub struct Inspection {
     pub dh: Vec<DhRow>,
     /// Largest difference between the product of the rows and forward kinematics; null for a mesh.
     pub dh_residual: Option<f64>,
+    /// The table in the classical convention, where all b are 0; null for a mesh.
+    pub dh_classical: Option<ClassicalDh>,
+    /// The table in the modified convention (Craig); null for a mesh.
+    pub dh_modified: Option<ModifiedDh>,
+    /// The table with a row for each frame of the model; null for a mesh.
+    pub dh_direct: Option<DirectDh>,
     /// Resolution level L2: the volume that stands for each solid when the whole arm is guarded.
     pub levels: Vec<Level2>,
     /// The same levels and more, per link, with coarse, middle and fine triangles. Empty where they were left out.
@@ -97,6 +107,8 @@ pub struct Inspection {
     pub unit_doubts: Vec<UnitDoubt>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    #[serde(skip)]
+    dh_shown: Vec<DhConvention>,
     #[serde(skip)]
     robot: Option<Robot>,
     /// The objects of a mesh file.
@@ -132,8 +144,14 @@ impl Inspection {
         inspection.meshes = mesh_rows(&loaded.robot);
         inspection.disabled_pairs = loaded.robot.disabled_pairs.len();
         inspection.dh_tip = Some(chain.links()[tip.0].clone());
-        inspection.dh = table.rows.iter().map(dh_row).collect();
+        inspection.dh = dh::generalized(&table);
         inspection.dh_residual = Some(table.residual);
+        inspection.dh_classical = Some(ClassicalDh::of(&table));
+        inspection.dh_modified = Some(ModifiedDh::of(chain, tip));
+        inspection.dh_direct = Some(DirectDh::of(chain, tip));
+        if !options.dh.is_empty() {
+            inspection.dh_shown.clone_from(&options.dh);
+        }
         inspection.doubt_units(units::of_robot(&loaded.robot));
         inspection.doubt_meshes();
         if !options.brief {
@@ -188,11 +206,15 @@ impl Inspection {
             dh_tip: None,
             dh: vec![],
             dh_residual: None,
+            dh_classical: None,
+            dh_modified: None,
+            dh_direct: None,
             levels: vec![],
             resolution: vec![],
             pairs: vec![],
             unit_doubts: vec![],
             warnings: warnings.iter().map(ToString::to_string).collect(),
+            dh_shown: vec![DhConvention::Generalized],
             robot: None,
             solids: vec![],
         }

@@ -1,6 +1,6 @@
-//! The rows of an inspection: joints, solids of triangles, the Denavit-Hartenberg table.
+//! The rows of an inspection: joints and solids of triangles.
 
-use elbowroom_kinematics::{Chain, JointKind, dh};
+use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_scene::{Body, Robot};
 use serde::Serialize;
@@ -56,23 +56,6 @@ pub struct MeshRow {
     pub extent_m: [f64; 3],
 }
 
-/// A row of the generalized DH table.
-#[derive(Debug, Clone, Serialize)]
-pub struct DhRow {
-    /// The joint whose value is added to θ (turning) or d (sliding); null in fixed and auxiliary rows.
-    pub joint: Option<String>,
-    /// Turn about z, rad.
-    pub theta: f64,
-    /// Along x, m.
-    pub a: f64,
-    /// Along y, m.
-    pub b: f64,
-    /// Along z, m.
-    pub d: f64,
-    /// Turn about x, rad.
-    pub alpha: f64,
-}
-
 pub(super) fn joint_row(chain: &Chain, joint: &elbowroom_kinematics::Joint) -> JointRow {
     let bound = |v: f64| (v.is_finite() && joint.kind.moves() && joint.kind != JointKind::Continuous).then_some(v);
     JointRow {
@@ -94,10 +77,6 @@ fn kind_name(kind: JointKind) -> &'static str {
         JointKind::Continuous => "continuous",
         JointKind::Prismatic => "prismatic",
     }
-}
-
-pub(super) fn dh_row(row: &dh::Row) -> DhRow {
-    DhRow { joint: row.joint.clone(), theta: row.theta, a: row.a, b: row.b, d: row.d, alpha: row.alpha }
 }
 
 pub(super) fn mesh_rows(robot: &Robot) -> Vec<MeshRow> {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Inspection, TrianglesRow};
+use super::{DhConvention, Inspection, TrianglesRow, dh};
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -117,12 +117,14 @@ impl Inspection {
 
     fn fmt_dh(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Some(tip), Some(residual)) = (&self.dh_tip, self.dh_residual) else { return Ok(()) };
-        writeln!(f, "\nGeneralized DH to {tip} (deg, m), residual {residual:.1e}")?;
-        writeln!(f, "{:24} {:>9} {:>9} {:>9} {:>9} {:>9}", "joint", "theta", "a", "b", "d", "alpha")?;
-        for row in &self.dh {
-            let name = shortened(row.joint.as_deref().unwrap_or("-"), 24);
-            let (theta, alpha) = (row.theta.to_degrees(), row.alpha.to_degrees());
-            writeln!(f, "{name:24} {theta:>9.3} {:>9.4} {:>9.4} {:>9.4} {alpha:>9.3}", row.a, row.b, row.d)?;
+        let (classical, modified, direct) = (&self.dh_classical, &self.dh_modified, &self.dh_direct);
+        for convention in &self.dh_shown {
+            match convention {
+                DhConvention::Generalized => dh::fmt_generalized(f, tip, &self.dh, residual)?,
+                DhConvention::Classical => classical.iter().try_for_each(|t| dh::fmt_classical(f, tip, t))?,
+                DhConvention::Modified => modified.iter().try_for_each(|t| dh::fmt_modified(f, tip, t))?,
+                DhConvention::Direct => direct.iter().try_for_each(|t| dh::fmt_direct(f, tip, t))?,
+            }
         }
         Ok(())
     }
@@ -139,7 +141,7 @@ fn in_user_units(v: f64, kind: &str) -> f64 {
     if kind == "prismatic" { v } else { v.to_degrees() }
 }
 
-fn shortened(name: &str, width: usize) -> String {
+pub(super) fn shortened(name: &str, width: usize) -> String {
     if name.chars().count() <= width {
         return name.to_owned();
     }

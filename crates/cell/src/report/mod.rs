@@ -20,6 +20,7 @@ mod summary;
 mod tables;
 mod view;
 mod watched;
+mod why;
 
 pub use html::write_html;
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::plots::reason_text;
 use super::spark::sparkline;
+use super::why::why;
 use crate::recording::{AvoidanceTrack, Recording, RegionTrack, RobotTrack};
 use crate::summary::AvoidanceSummary;
 
@@ -193,7 +193,8 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
             format!("stopped {} before {}, {place}", millimetres(Some(d)), clip(&region.name, 20))
         }
         (Some(region), _) => format!("stopped at {}, {place}", clip(&region.name, 20)),
-        _ => format!("stopped {place}: {}", reason_text(last.reason, rec)),
+        _ if last.tcp_speed > STANDING_M_S => format!("still under way at {:.2} s", last.t_s),
+        _ => format!("stopped {place}: {}", why(robot, robot.samples.len() - 1, rec)),
     }
 }
 

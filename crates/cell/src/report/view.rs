@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 
 use super::downsample::every;
 use super::outline::{self, Surface};
-use super::plots::reason_text;
 use super::scene::{ReportMesh, ReportRobot, ReportScene};
+use super::why::why;
 use super::{palette, summary};
 use crate::recording::{Recording, RegionPoses, RegionTrack, RobotTrack, Span};
 
@@ -128,7 +128,7 @@ fn frames_of(robot: Option<&ReportRobot>, track: &RobotTrack, rec: &Recording, f
     let mut reasons: Vec<String> = Vec::new();
     let mut reason_at = Vec::with_capacity(frames.len());
     for &i in frames {
-        let text = reason_text(track.samples[i].reason, rec);
+        let text = why(track, i, rec);
         let known = reasons.iter().position(|r| *r == text);
         reason_at.push(known.unwrap_or(reasons.len()));
         if known.is_none() {

@@ -1,6 +1,6 @@
 //! Robots out of node trees: every node is a link, and what moves is said by tracks, by a file of joints, or by options.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use super::ask;
 use super::motion::{Found, Motion, motion, show};
 use crate::error::Warnings;
 use crate::joints::{AxisFrame, JointSpec};
+use crate::names::Names;
 use crate::nodetree::NodeTree;
 use crate::{FormatError, Warning};
 
@@ -59,16 +60,19 @@ struct Builder<'a> {
     tree: NodeTree,
     /// Unique, one per node.
     names: Vec<String>,
+    /// Of the link that carries all, where the file has none.
+    own_root: String,
     frames: Vec<Pose>,
     file: &'a Path,
 }
 
 impl<'a> Builder<'a> {
     fn new(tree: NodeTree, file: &'a Path) -> Self {
-        let mut taken = HashSet::new();
-        let names = tree.nodes.iter().map(|n| unique(&n.name, &mut taken)).collect();
+        let mut taken = Names::default();
+        let names = tree.nodes.iter().map(|n| taken.unique(named(&n.name))).collect();
+        let own_root = taken.unique(named(&tree.name));
         let frames = tree.in_world();
-        Self { tree, names, frames, file }
+        Self { tree, names, own_root, frames, file }
     }
 
     /// What moves each node; `None` where it is fixed.
@@ -185,13 +189,12 @@ impl<'a> Builder<'a> {
         let is_root = |i: usize| moves[i].is_none() && apart(&nodes[i].in_parent, &Pose::IDENTITY) <= SAME;
         let own_root = !(tops.len() == 1 && is_root(tops[0]));
         let mut links = self.names.clone();
-        let mut taken: HashSet<String> = links.iter().cloned().collect();
         let root = links.len();
         if own_root {
-            links.push(unique(&self.tree.name, &mut taken));
+            links.push(self.own_root.clone());
         }
         let mut joints = Vec::new();
-        let mut joint_names = HashSet::new();
+        let mut joint_names = Names::default();
         for (i, node) in nodes.iter().enumerate() {
             if node.parent.is_none() && !own_root {
                 continue;
@@ -207,7 +210,7 @@ impl<'a> Builder<'a> {
             };
             let moved = moves[i].as_ref().unwrap_or(&fixed);
             joints.push(Joint {
-                name: unique(&moved.name, &mut joint_names),
+                name: joint_names.unique(named(&moved.name)),
                 kind: moved.kind,
                 parent: LinkId(node.parent.unwrap_or(root)),
                 child: LinkId(i),
@@ -292,14 +295,6 @@ pub(super) fn apart(a: &Pose, b: &Pose) -> f64 {
     (a.rotation.inverse() * b.rotation).angle().max(a.translation.distance(b.translation))
 }
 
-/// A name that is not yet taken.
-fn unique(name: &str, taken: &mut HashSet<String>) -> String {
-    let name = if name.is_empty() { "node" } else { name };
-    let mut unique = name.to_owned();
-    let mut number = 2;
-    while !taken.insert(unique.clone()) {
-        unique = format!("{name}_{number}");
-        number += 1;
-    }
-    unique
+fn named(name: &str) -> &str {
+    if name.is_empty() { "node" } else { name }
 }

@@ -23,6 +23,7 @@
 
 mod chunk;
 mod keyframer;
+mod look;
 mod object;
 mod place;
 mod track;

@@ -7,6 +7,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::Scene;
 use super::keyframer::{FileNode, Kind};
+use super::look::Targets;
 use super::object::Object;
 use super::track::FRAMES_PER_SECOND;
 use crate::error::Warnings;
@@ -46,7 +47,9 @@ pub(super) fn tree(scene: Scene, file: &Path, warnings: &mut Warnings) -> Result
         }
         index_of.insert(i, placer.tree.push(node));
     }
-    for object in (0..objects.len()).filter(|o| !shown.contains(&Some(*o))) {
+    let mut is_shown = vec![false; objects.len()];
+    shown.iter().flatten().for_each(|&object| is_shown[object] = true);
+    for object in (0..objects.len()).filter(|&o| !is_shown[o]) {
         placer.alone(object)?;
     }
     let mut tree = placer.tree;
@@ -149,13 +152,14 @@ struct Frames {
 
 impl Frames {
     fn of_tracks(nodes: &[FileNode], parents: &[Option<usize>], order: &[usize]) -> Self {
+        let targets = Targets::new(nodes, parents);
         let mut full = vec![Affine::IDENTITY; nodes.len()];
         for &i in order {
             let node = &nodes[i];
             let position = node.position.first().map_or(Vec3::ZERO, |k| k.1);
             let mut rotation = node.rotation.first().map_or(Rotation::IDENTITY, |k| k.1);
             if node.kind == Kind::Looks {
-                rotation = looking(i, nodes, parents);
+                rotation = targets.looking(i);
             }
             full[i] = parent_of(&full, parents[i]).after(&local(position, rotation, scale(node)));
         }
@@ -269,21 +273,6 @@ fn to_object(object: &Object) -> Affine {
         return Affine::IDENTITY;
     };
     if axes.is_mirror() { Affine::scale([-1.0, 1.0, 1.0]).after(&back) } else { back }
-}
-
-/// A camera looks at its target along -z, its x level; then it rolls. The file has degrees.
-fn looking(i: usize, nodes: &[FileNode], parents: &[Option<usize>]) -> Rotation {
-    let same =
-        |t: &(usize, &FileNode)| t.1.kind == Kind::Target && t.1.name == nodes[i].name && parents[t.0] == parents[i];
-    let Some((_, target)) = nodes.iter().enumerate().find(same) else { return Rotation::IDENTITY };
-    let (Some(eye), Some(target)) = (nodes[i].position.first(), target.position.first()) else {
-        return Rotation::IDENTITY;
-    };
-    let Some(back) = (eye.1 - target.1).try_normalize() else { return Rotation::IDENTITY };
-    let right = Vec3::Z.cross(back).try_normalize().unwrap_or(Vec3::X);
-    let roll = nodes[i].roll.first().map_or(0.0, |k| k.1.to_radians());
-    let level = Rotation::from_columns(right, back.cross(right), back).unwrap_or(Rotation::IDENTITY);
-    level * Rotation::from_axis_angle(Vec3::Z, roll)
 }
 
 struct Placer<'a> {

@@ -1,6 +1,5 @@
 //! Trees to 3DS files.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use elbowroom_spatial::{Pose, Vec3};
@@ -8,6 +7,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::track::FRAMES_PER_SECOND;
 use crate::FormatError;
 use crate::mesh::MeshData;
+use crate::names::Names;
 use crate::nodetree::{Key, NodeTree};
 
 /// The format counts with 16 bits.
@@ -69,7 +69,7 @@ struct Part {
 
 fn parts(tree: &NodeTree, file: &Path) -> Result<Vec<Part>, FormatError> {
     let frames = tree.in_world();
-    let mut names = HashSet::new();
+    let mut names = Names::default();
     let mut parts: Vec<Part> = Vec::new();
     let mut of_node = Vec::with_capacity(tree.nodes.len());
     for (i, (node, in_world)) in tree.nodes.iter().zip(frames).enumerate() {
@@ -78,7 +78,7 @@ fn parts(tree: &NodeTree, file: &Path) -> Result<Vec<Part>, FormatError> {
             return Err(FormatError::new(file, None, what).hint("parents before their children"));
         }
         let parent = node.parent.map(|p| of_node[p]);
-        let (name, in_parent, track) = (unique(&node.name, &mut names), node.in_parent, node.track.clone());
+        let (name, in_parent, track) = (names.unique(&plain(&node.name)), node.in_parent, node.track.clone());
         of_node.push(parts.len());
         parts.push(Part { name, parent, in_parent, in_world, mesh: None, track });
         let mut meshes = Vec::new();
@@ -91,7 +91,7 @@ fn parts(tree: &NodeTree, file: &Path) -> Result<Vec<Part>, FormatError> {
             parts[holder].mesh = meshes.pop();
         }
         parts.extend(meshes.into_iter().map(|mesh| Part {
-            name: unique(&mesh.name, &mut names),
+            name: names.unique(&plain(&mesh.name)),
             parent: Some(holder),
             in_parent: Pose::IDENTITY,
             in_world,
@@ -114,18 +114,11 @@ fn check(mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// A name that no other part has, in characters that the file can hold.
-fn unique(name: &str, taken: &mut HashSet<String>) -> String {
+/// A name in characters that the file can hold.
+fn plain(name: &str) -> String {
     let plain = |c: char| if u32::from(c) < 256 && !c.is_control() { c } else { '_' };
     let plain: String = name.chars().map(plain).take(200).collect();
-    let plain = if plain.is_empty() { "node".to_owned() } else { plain };
-    let mut unique = plain.clone();
-    let mut number = 2;
-    while !taken.insert(unique.clone()) {
-        unique = format!("{plain}_{number}");
-        number += 1;
-    }
-    unique
+    if plain.is_empty() { "node".to_owned() } else { plain }
 }
 
 /// The mesh in pieces that 16 bits can count.

@@ -8,7 +8,6 @@ mod overrides;
 mod timing;
 mod watched;
 
-use elbowroom_monitor::Reason;
 use plotly::Plot;
 
 use crate::recording::{Recording, RobotTrack};
@@ -44,22 +43,6 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
         figures.extend(joints::chart(scene, runs, run));
     }
     figures
-}
-
-/// Why an override is what it is, with the region's name.
-pub fn reason_text(reason: Reason, recording: &Recording) -> String {
-    let name = |i: usize| recording.regions.get(i).map_or("?", |r| r.name.as_str());
-    match reason {
-        Reason::Free => "free".into(),
-        Reason::Region(r) => format!("near {}", name(r.0)),
-        Reason::SpeedZone(r) => format!("speed zone {}", name(r.0)),
-        Reason::Waiting(r) => format!("waiting for {}", name(r.0)),
-        Reason::Rate => "changing at its largest rate".into(),
-        Reason::Fault(elbowroom_monitor::Fault::Source { region }) => {
-            format!("the source of {} is lost", name(region.0))
-        }
-        Reason::Fault(fault) => fault.to_string(),
-    }
 }
 
 /// Each robot of each run: its label, the recording, index of the robot, the robot. Runs with control come last, so

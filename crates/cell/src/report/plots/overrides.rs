@@ -5,11 +5,12 @@ use plotly::Plot;
 use plotly::common::Line;
 
 use super::figure::{axis, bars, layout, line, round};
-use super::{Figure, curve_name, plain, reason_text, tracks};
-use crate::recording::{Recording, Sample};
+use super::{Figure, curve_name, plain, tracks};
+use crate::recording::{Recording, RobotTrack, Sample};
 use crate::report::downsample::{MAX_POINTS, pick};
 use crate::report::palette;
 use crate::report::spans::runs as equal_runs;
+use crate::report::why::{hit, reason_text, why};
 
 /// More bands than this would hide each other, and make the file large.
 const MAX_BANDS: usize = 1000;
@@ -30,6 +31,7 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
         let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
         plot.add_trace(line(t, y, &name, style));
         add_bands(&mut plot, recording, &track.samples, rows.len(), &name);
+        add_collisions(&mut plot, recording, track, rows.len(), &name);
         rows.push(name);
     }
     let strip = (0.06 * rows.len() as f64).clamp(0.08, 0.4);
@@ -50,7 +52,8 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
     );
     Figure {
         title: "Override and the region that governs".into(),
-        note: "The strip below names what holds the override down: hover it. Without control it is only watched."
+        note: "The strip below names what holds the override down, and in red what was hit: hover it. Without control it is \
+               only watched."
             .into(),
         over_time: true,
         run: None,
@@ -94,6 +97,17 @@ fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: us
     }
 }
 
+/// A mark where something was hit first; how long they touched is not recorded.
+fn add_collisions(plot: &mut Plot, recording: &Recording, track: &RobotTrack, row: usize, who: &str) {
+    let wide = recording.tick_s.max(recording.duration_s / 200.0);
+    for collision in track.collisions.iter().take(MAX_BANDS) {
+        let text = plain(&hit(collision, track));
+        let span = [(collision.t_s, collision.t_s + wide)];
+        let mark = bars(&span, row as f64, 18.0, &text, "#d62728", &format!("{who}<br>{text}"));
+        plot.add_trace(mark.y_axis("y2").show_legend(false));
+    }
+}
+
 fn distance(runs: &[(&str, &Recording)]) -> Figure {
     let mut plot = Plot::new();
     for (label, recording, robot, track) in tracks(runs) {
@@ -101,7 +115,7 @@ fn distance(runs: &[(&str, &Recording)]) -> Figure {
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(1e3 * at(i))).collect();
-        let texts = kept.iter().map(|&i| plain(&reason_text(track.samples[i].reason, recording))).collect();
+        let texts = kept.iter().map(|&i| plain(&why(track, i, recording))).collect();
         let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
         let curve = line(t, y, &curve_name(label, recording, track), style);
         plot.add_trace(curve.hover_text_array(texts));
