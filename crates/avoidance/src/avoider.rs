@@ -6,10 +6,10 @@ use elbowroom_planner::{Connect, Fence, RouteError, RouteOptions};
 use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
 use crate::calm::Calm;
-use crate::joint::{self, JointLimit, astray, brake, headway, slowing, stop_s};
+use crate::joint::{self, JointLimit, astray, brake, headway, share, slowing, stop_s};
 use crate::proof::{Course, Proof};
 use crate::sense::Senses;
-use crate::way::{NONE_S, Way};
+use crate::way::{Moving, NONE_S, Way};
 use crate::{
     Advice, Around, AvoidanceError, Doing, Manner, Other, PathKind, Reaction, Reference, Reflex, ReflexSettings, Rules,
     Task, Threat, TickTimes, VelocityBounds,
@@ -372,7 +372,8 @@ impl<'s> Avoider<'s> {
             Mode::Stop => self.wanted.fill(0.0),
             Mode::Way => {
                 let most = self.settings.return_share * allowed;
-                self.way.follow(dt, most, &self.q, &self.limits, &self.calm, &mut self.wanted);
+                let now = Moving { q: &self.q, qd: &self.qd, limits: &self.limits };
+                self.way.follow(dt, most, &now, &self.calm, &mut self.wanted);
                 self.wanted.iter_mut().for_each(|v| *v /= scale);
             }
             Mode::Back => self.pull(dt, reference),
@@ -442,7 +443,7 @@ impl<'s> Avoider<'s> {
         let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
         advice.governed_by =
             governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
-        let fastest = self.qd.iter().zip(&self.limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max);
+        let fastest = share(&self.qd, &self.limits);
         let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
         let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
         self.standing_s = if held { self.standing_s + dt } else { 0.0 };

@@ -86,6 +86,11 @@ pub fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
     out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
 }
 
+/// The fastest of these velocities as a share of its joint's top speed.
+pub fn share(qd: &[f64], limits: &[JointLimit]) -> f64 {
+    qd.iter().zip(limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max)
+}
+
 /// Seconds of joint motion at full speed between two configurations.
 pub fn astray(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64 {
     to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)

@@ -1,10 +1,20 @@
 //! A planned way that is gone along.
 
 use crate::calm::Calm;
-use crate::joint::{JointLimit, astray, slowing};
+use crate::joint::{JointLimit, astray, share, slowing};
 
 /// A deviation of so many seconds at full joint speed is none.
 pub const NONE_S: f64 = 1e-9;
+
+/// A robot on its way.
+#[derive(Debug, Clone, Copy)]
+pub struct Moving<'a> {
+    /// Joint values, rad or m.
+    pub q: &'a [f64],
+    /// Their velocities, rad/s or m/s.
+    pub qd: &'a [f64],
+    pub limits: &'a [JointLimit],
+}
 
 /// Waypoints that are still to come: straight from one to the next, with a stop at each.
 #[derive(Debug, Clone, Default)]
@@ -35,7 +45,10 @@ impl Way {
 
     /// The next velocity, in `out`, all joints together, with ramps between the stops: at most `most` as a share of the
     /// joints' speeds.
-    pub fn follow(&mut self, dt: f64, most: f64, q: &[f64], limits: &[JointLimit], calm: &Calm, out: &mut [f64]) {
+    pub fn follow(&mut self, dt: f64, most: f64, now: &Moving<'_>, calm: &Calm, out: &mut [f64]) {
+        let Moving { q, qd, limits } = *now;
+        // What was braked since goes on from the speed that is left.
+        self.share = self.share.min(share(qd, limits));
         let slowest = |f: fn(&JointLimit) -> f64| limits.iter().map(f).fold(0.0, f64::max);
         let (rise_s, stop_s) = (slowest(|l| l.speed / l.acceleration), slowest(|l| l.speed / l.stop));
         out.fill(0.0);
@@ -56,5 +69,39 @@ impl Way {
             self.waypoints.pop();
             self.share = 0.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn after_braking_it_goes_on_from_the_speed_that_is_left() {
+        let limits = [JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 8.0, stop: 20.0 }; 2];
+        let (calm, dt) = (Calm::new(2, 0.25), 0.004);
+        let mut way = Way::new(vec![vec![0.0, 0.0], vec![1.0, -0.5], vec![1.5, 0.5]]);
+        let (mut q, mut qd) = ([0.0, 0.0], [0.0, 0.0]);
+        let mut next = [0.0, 0.0];
+        let mut ticks = 0;
+        while !way.is_empty() {
+            way.follow(dt, 0.5, &Moving { q: &q, qd: &qd, limits: &limits }, &calm, &mut next);
+            // Somebody brakes now and then.
+            if (20..24).contains(&(ticks % 50)) {
+                crate::joint::brake(&limits, &qd, dt, &mut next);
+            }
+            for j in 0..2 {
+                let rate = (next[j] - qd[j]) / dt;
+                assert!(rate.abs() <= 20.0 * (1.0 + 1e-9), "tick {ticks}: {rate}");
+                assert!(next[j].abs() <= 1.0 + 1e-9);
+                let faster = (next[j].abs() - qd[j].abs()) / dt;
+                assert!(faster <= 8.0 * (1.0 + 1e-9), "tick {ticks}: {faster}");
+                q[j] += next[j] * dt;
+            }
+            qd = next;
+            ticks += 1;
+            assert!(ticks < 5_000);
+        }
+        assert!((q[0] - 1.5).abs() < 1e-6 && (q[1] - 0.5).abs() < 1e-6, "{q:?}");
     }
 }

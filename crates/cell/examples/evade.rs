@@ -53,8 +53,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let chosen: Vec<usize> = only.map_or_else(|| (0..runs).collect(), |o| vec![o.min(runs - 1)]);
     let mut tally = Tally { show: only.is_some(), quietest_s: f64::INFINITY, ..Tally::default() };
     for some in chosen.chunks(50) {
-        for (number, off, on) in both(&cell, object, &ways, some)? {
-            tally.add(&cell, &off, &on, number);
+        for run in both(&cell, object, &ways, some)? {
+            tally.add(&cell, &run);
         }
         eprintln!("{} runs: {} hit without, {} with", tally.runs, tally.hit_off, tally.hit_on);
     }
@@ -62,13 +62,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The chosen runs without avoidance and with it, on all cores, in order.
-fn both(
-    cell: &Cell,
-    object: usize,
-    ways: &[Way],
-    chosen: &[usize],
-) -> Result<Vec<(usize, Recording, Recording)>, Box<dyn std::error::Error>> {
+/// One way of the object, without avoidance and with it.
+struct Pair {
+    number: usize,
+    off: Recording,
+    on: Recording,
+}
+
+/// The chosen runs, on all cores, in order.
+fn both(cell: &Cell, object: usize, ways: &[Way], chosen: &[usize]) -> Result<Vec<Pair>, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
     let work = || {
@@ -77,17 +79,17 @@ fn both(
             let drive = Drive::Way(ways[number].clone());
             cell.movers.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = drive.clone());
             let run = |evasive| simulate(&cell, &RunOptions { evasive, ..RunOptions::default() });
-            let both = run(false).and_then(|off| Ok((off.recording, run(true)?.recording)));
-            mine.push(both.map(|(off, on)| (number, off, on)).map_err(|e| e.to_string()));
+            let pair = run(false).and_then(|off| Ok(Pair { number, off: off.recording, on: run(true)?.recording }));
+            mine.push(pair.map_err(|e| e.to_string()));
         }
         mine
     };
     let all = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect::<Result<Vec<_>, String>>()
+        threads.into_iter().flat_map(|t| t.join().expect("a run does not panic")).collect::<Result<Vec<_>, String>>()
     });
     let mut all = all?;
-    all.sort_by_key(|run| run.0);
+    all.sort_by_key(|pair| pair.number);
     Ok(all)
 }
 
@@ -163,7 +165,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, cell: &Cell, off: &Recording, on: &Recording, number: usize) {
+    fn add(&mut self, cell: &Cell, Pair { number, off, on }: &Pair) {
         self.runs += 1;
         let (without, with) = (&off.robots[0], &on.robots[0]);
         let (hit_off, hit_on) = (!without.collisions.is_empty(), !with.collisions.is_empty());
