@@ -56,9 +56,6 @@ fn the_way_back_leads_around_a_region() {
 
     let outcome = run(&format!("{HEAD}{GANTRY}{WALL}{PUSHER}"));
     let (robot, wall) = (&outcome.recording.robots[0], &outcome.recording.regions[0]);
-    for s in robot.samples.iter().step_by(100) {
-        println!("{:.1} s: {:.3?}, override {:.3}", s.t_s, s.q, s.speed_override);
-    }
     // It was driven off, so far that the straight way to the end leads through the wall.
     assert!(furthest_off(&outcome) > 0.2 && begin > 0, "{}", furthest_off(&outcome));
     let track = robot.avoidance.as_ref().unwrap();
@@ -67,6 +64,19 @@ fn the_way_back_leads_around_a_region() {
     assert!(robot.finished, "it stands at {:?}", robot.samples.last().unwrap().q);
     let end = &robot.samples.last().unwrap().q;
     assert!((end[0] - 1.0).abs() < 1e-6 && end[1].abs() < 1e-6, "{end:?}");
+}
+
+#[test]
+fn who_was_driven_up_to_a_border_gets_off_it_again() {
+    // The pusher comes while the ball is so near to the wall that it flees up to it.
+    let start = GANTRY.replace("[-1400, 0]", "[-200, 0]");
+    let pusher = PUSHER.replace("[3000,", "[1900,").replace("-800,", "-500,").replace(" 50,", " -160,");
+    let outcome = run(&format!("{HEAD}{start}{WALL}{pusher}"));
+    let (robot, wall) = (&outcome.recording.robots[0], &outcome.recording.regions[0]);
+    let stood = robot.samples.iter().find(|s| s.speed_override < 1e-3).expect("it comes to the border");
+    assert!(stood.q[1].abs() > 0.1, "off the path: {:?}", stood.q);
+    assert!(robot.finished, "it stands at {:?}", robot.samples.last().unwrap().q);
+    assert!(!outcome.bad_news() && !wall.entered, "{:?}", robot.collisions);
 }
 
 fn request(from: [f64; 2], to: [f64; 2]) -> PathRequest {

@@ -28,6 +28,10 @@ const AGAIN_S: f64 = 0.5;
 /// After so many in a row that found nothing, after this time, s.
 const MANY: u64 = 8;
 const LATER_S: f64 = 4.0;
+/// Below this share of the programmed override a robot off its path is at a border: nearer, it would take too long to get away.
+const BORDER: f64 = 1e-3;
+/// A joint stands that is slower, rad/s or m/s.
+const STANDS: f64 = 1e-3;
 /// Values of each input in a picture of the rules.
 const SURFACE: usize = 33;
 
@@ -136,9 +140,14 @@ impl<'s> Evasive<'s> {
         regions: impl FnMut(f64) -> Option<RegionFence<'f>>,
     ) -> Option<&'static str> {
         let before = self.advice.doing;
-        if self.spec.replan && self.advice.wants_way && t_s >= self.not_before_s {
+        let at_border = self.at_border(clock, allowed);
+        let stands = self.avoider.qd().iter().all(|v| v.abs() < STANDS);
+        let wants_way = self.advice.wants_way || (at_border && stands);
+        if self.spec.replan && wants_way && t_s >= self.not_before_s {
             self.plan(clock, t_s, regions);
         }
+        // Not nearer to a border than a way leads off from in good time.
+        let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
         clock.hold(!self.is_on_path());
         // What a program waits for happens at its place: away from it time does not run.
         if !(clock.waiting() && self.advice.rate == 0.0) {
@@ -147,6 +156,13 @@ impl<'s> Evasive<'s> {
         self.step(cell, clock, states, t_s, allowed);
         let now = self.advice.doing;
         (now != before).then(|| event(now))
+    }
+
+    /// True where the monitor all but stops the robot off its path: it was driven up to a region. A planned way leads off; where
+    /// none is found for long it is left to what draws it back.
+    fn at_border(&self, clock: &Clock, allowed: f64) -> bool {
+        let free = self.is_on_path() || self.avoider.has_way() || allowed >= BORDER * clock.programmed_override();
+        !free && self.spec.replan && self.failed < MANY
     }
 
     fn step(&mut self, cell: &Cell, clock: &Clock, states: &[ChainState], t_s: f64, allowed: f64) {

@@ -142,7 +142,15 @@ fn levers(setup: &Setup) -> Vec<(usize, f64)> {
     for volume in &setup.configuration.volumes {
         let box_in_link = volume.shape.aabb(&volume.in_link);
         let radius = box_in_link.min.abs().max(box_in_link.max.abs()).length();
+        let mut own: Vec<(usize, f64)> = Vec::new();
         for (joint, lever) in motion_bound(chain, volume.link, radius, &chain.path(volume.link)) {
+            // Joints that follow one another have its index, and add up.
+            match own.iter_mut().find(|o| o.0 == joint) {
+                Some(o) => o.1 += lever,
+                None => own.push((joint, lever)),
+            }
+        }
+        for (joint, lever) in own {
             match most.iter_mut().find(|m| m.0 == joint) {
                 Some(m) => m.1 = m.1.max(lever),
                 None => most.push((joint, lever)),
