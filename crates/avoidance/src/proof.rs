@@ -161,7 +161,7 @@ mod tests {
             // Both lean towards each other.
             let q = [1.0, -1.0].map(|lean| vec![random(-0.6, 0.6), lean * random(0.4, 1.5), lean * random(-0.2, 1.2)]);
             let qd: [Vec<f64>; 2] = std::array::from_fn(|_| (0..3).map(|_| random(-1.0, 1.0)).collect());
-            let robots = [Neighbour { robot: 1, q: &q[1], qd: &qd[1] }];
+            let robots = [Neighbour { robot: 1, q: &q[1], qd: &qd[1], known: false }];
             let around = Around { objects: &[], robots: &robots };
             if senses.place(&q[0], &around).is_err() {
                 continue;

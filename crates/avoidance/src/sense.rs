@@ -29,6 +29,8 @@ pub struct Neighbour<'a> {
     pub q: &'a [f64],
     /// Their velocities, rad/s or m/s.
     pub qd: &'a [f64],
+    /// True where the path was made with it in mind: it is kept clear of and not fled from.
+    pub known: bool,
 }
 
 /// All that moves beside the robot.
@@ -58,6 +60,8 @@ pub struct Senses<'s> {
     pub left_off_m: f64,
     /// Per object: how it moves, where it is seen.
     loose: Vec<Option<(Motion, bool)>>,
+    /// Per robot: whether it is known.
+    known: Vec<bool>,
     pub threats: Vec<Threat>,
     /// Who they are, in the same order.
     pub members: Vec<(Member, Member)>,
@@ -76,6 +80,7 @@ impl<'s> Senses<'s> {
             radii,
             left_off_m: f64::INFINITY,
             loose: vec![None; scene.objects().len()],
+            known: vec![false; scene.robots().len()],
             threats: Vec::with_capacity(MOST_THREATS),
             members: Vec::with_capacity(MOST_THREATS),
             found: Vec::with_capacity(64),
@@ -89,6 +94,7 @@ impl<'s> Senses<'s> {
         self.scene.robots()[self.robot].robot.chain.forward(&mut self.chains[self.robot]);
         for neighbour in around.robots.iter().filter(|n| n.robot != self.robot) {
             self.state.set_q(self.scene, neighbour.robot, neighbour.q)?;
+            self.known[neighbour.robot] = neighbour.known;
             let chain = &mut self.chains[neighbour.robot];
             chain.q.copy_from_slice(neighbour.q);
             // Velocities that are not there are none that can be trusted.
@@ -109,7 +115,7 @@ impl<'s> Senses<'s> {
 
     /// Finds what is nearer than `reach_m` (what is loose) or `fixed_reach_m` (all else), the nearest first.
     pub fn look(&mut self, around: &Around<'_>, reach_m: f64, fixed_reach_m: f64) {
-        let Self { scene, robot, checker, state, chains, radii, loose, found, .. } = self;
+        let Self { scene, robot, checker, state, chains, radii, loose, known, found, .. } = self;
         let base = scene.robots()[*robot].base_in_world;
         let view = View {
             scene,
@@ -119,6 +125,7 @@ impl<'s> Senses<'s> {
             chains,
             radii,
             loose,
+            known,
             state,
         };
         found.clear();
@@ -160,6 +167,7 @@ struct View<'a> {
     chains: &'a [ChainState],
     radii: &'a [f64],
     loose: &'a [Option<(Motion, bool)>],
+    known: &'a [bool],
     state: &'a SceneState,
 }
 
@@ -224,6 +232,9 @@ impl View<'_> {
                 let chain = &self.chains[robot];
                 let in_root = base.inverse().transform_point(on_other);
                 let velocity = chain.link_motion(link).velocity_at(in_root - chain.link_in_root(link).translation);
+                if self.known[robot] {
+                    return Other::Moving { velocity: self.world_in_root.rotation * (base.rotation * velocity) };
+                }
                 let before = self.scene.robots()[..robot].iter().map(|r| r.robot.chain.links().len());
                 let key = self.radii.len() + before.sum::<usize>() + link.0;
                 self.as_loose(base.rotation * velocity, on_other, 0.0, key)

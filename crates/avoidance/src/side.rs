@@ -5,9 +5,9 @@ use elbowroom_spatial::Vec3;
 /// Directions looked at around the way of what comes.
 const AROUND: usize = 8;
 /// A side once taken is kept unless another is better by more than this share …
-const LOYALTY: f64 = 0.3;
-/// … or this time, s.
-const LOYALTY_S: f64 = 0.1;
+const LOYALTY: f64 = 1.0;
+/// … and this time, s: joints that turn round brake first, and stand for a while.
+const LOYALTY_S: f64 = 0.3;
 /// How much a second of joint motion counts beside a second of waiting.
 const MOTION: f64 = 0.3;
 /// Sides remembered.

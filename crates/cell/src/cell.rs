@@ -59,6 +59,8 @@ pub struct AvoidanceSpec {
     pub settings: AvoiderSettings,
     /// Indices of the objects that it sees coming; all others are where its programs know them to be.
     pub objects: Vec<usize>,
+    /// Indices of the robots that it sees coming; of all others its programs know.
+    pub robots: Vec<usize>,
     /// Whether another way is planned where what is in the way stands.
     pub replan: bool,
 }

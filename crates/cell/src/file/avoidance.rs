@@ -9,7 +9,7 @@ use crate::{AvoidanceSpec, Cell, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-const KEYS: &[&str] = &["rules", "objects", "speed", "clearance", "return_speed", "patience", "replan"];
+const KEYS: &[&str] = &["rules", "objects", "robots", "speed", "clearance", "return_speed", "patience", "replan"];
 
 /// Of a collision point, least and most, m/s: slower nothing is evaded, and faster no robot is.
 const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
@@ -25,12 +25,12 @@ pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<Avoidance
     for (name, t) in root.named("avoidance")? {
         t.only(KEYS)?;
         let (index, _) = robot_of(name, &t, &cell.robots)?;
-        all[index] = Some(spec(&t, cell)?);
+        all[index] = Some(spec(&t, cell, index)?);
     }
     Ok(all)
 }
 
-fn spec(t: &Table<'_>, cell: &Cell) -> Result<AvoidanceSpec> {
+fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
     let units = cell.units;
     let mut settings = AvoiderSettings::default();
     if let Some(v) = t.get("speed") {
@@ -70,7 +70,11 @@ fn spec(t: &Table<'_>, cell: &Cell) -> Result<AvoidanceSpec> {
         None => cell.movers.iter().map(|m| m.object).collect(),
         Some(v) => v.list("objects = [\"cart\"]")?.iter().map(|v| object(v, cell)).collect::<Result<_>>()?,
     };
-    Ok(AvoidanceSpec { rules, settings, objects, replan: t.flag_or("replan", true)? })
+    let robots = match t.get("robots") {
+        None => (0..cell.robots.len()).filter(|r| *r != own).collect(),
+        Some(v) => v.list("robots = [\"r2\"]")?.iter().map(|v| neighbour(v, cell, own)).collect::<Result<_>>()?,
+    };
+    Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)? })
 }
 
 /// A length (m), or with `per` a speed, that makes sense.
@@ -99,6 +103,18 @@ fn object(v: &Value<'_>, cell: &Cell) -> Result<usize> {
     cell.objects.iter().position(|o| o.name == name).ok_or_else(|| {
         v.error(format!("names the object \"{name}\", which is not in this cell"))
             .hint(suggest::hint(name, cell.objects.iter().map(|o| o.name.as_str())))
+    })
+}
+
+fn neighbour(v: &Value<'_>, cell: &Cell, own: usize) -> Result<usize> {
+    let name = v.text()?;
+    let others = || cell.robots.iter().enumerate().filter(|(i, _)| *i != own);
+    if name == cell.robots[own].name {
+        return Err(v.error(format!("names \"{name}\" itself")).hint("robots = [], or the names of others"));
+    }
+    others().find(|(_, r)| r.name == name).map(|(i, _)| i).ok_or_else(|| {
+        v.error(format!("names the robot \"{name}\", which is not in this cell"))
+            .hint(suggest::hint(name, others().map(|(_, r)| r.name.as_str())))
     })
 }
 

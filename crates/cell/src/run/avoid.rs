@@ -182,7 +182,9 @@ impl<'s> Evasive<'s> {
         });
         let objects: Vec<Seen> = moving.chain(standing).collect();
         let others = states.iter().enumerate().filter(|(i, _)| *i != self.robot);
-        let robots: Vec<Neighbour<'_>> = others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd }).collect();
+        let known = |robot: usize| !self.spec.robots.contains(&robot);
+        let robots: Vec<Neighbour<'_>> =
+            others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd, known: known(robot) }).collect();
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
         let reference = Reference { q: &clock.point().q, qd: &clock.point().first, path };
         let around = Around { objects: &objects, robots: &robots };
