@@ -283,7 +283,8 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv   and timed samples for the controller
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
 
-Objects, the other robots at their start, the robot itself with tool and load count, by the pair matrix of the cell.
+Objects, the other robots at their start, the robot itself with tool and load count, by the pair matrix of the cell;
+permanent forbidden regions count for what the monitor guards against them.
 Exit status: 1 where no path was found, which proves nothing: there may be one (docs/plan.md).")]
 pub(crate) struct PlanArgs {
     /// The cell file

@@ -60,6 +60,9 @@ fn text(answer: &PathAnswer) -> String {
     let legs = if legs == 1 { "straight".into() } else { format!("{legs} straight stretches") };
     let mut out = format!("{}: {legs}, {cost_rad:.4} rad in joint space, {duration_s:.3} s, {stops}\n", answer.robot);
     let (searched, shortened) = (milliseconds(answer.planning_us), milliseconds(answer.simplify_us));
+    if !answer.regions.is_empty() {
+        let _ = writeln!(out, "stays out of {}", answer.regions.join(", "));
+    }
     let _ = write!(out, "searched for {searched:.1} ms, made short in {shortened:.1} ms\n\n     ");
     let width = |joint: &str| joint.chars().count().max(9) + 2;
     for joint in &answer.joints {

@@ -148,3 +148,19 @@ fn six_joints_with_meshes_find_around_the_pallet() {
     std::fs::write(dir.path().join("q.csv"), states.join("\n")).unwrap();
     elbowroom(dir.path(), &["query", cell.to_str().unwrap(), "--ask", "collision", "--states", "q.csv"]).expect(0);
 }
+
+/// The arm's reach along x, kept off by a region instead of a ball.
+#[test]
+fn forbidden_regions_are_obstacles_and_are_named() {
+    let cell = CELL.replace("[object.ball]", "[region.press]") + "warning = 50\nrobots = [\"arm\"]\n";
+    let cell = cell.replace("at = [600, 0, 0]\nradius", "centre = [600, 0, 0]\nradius");
+    let go = ["--robot", "arm", "--from", "-1,0.1", "--to", "1,-.1", "--json"];
+    let answer = plan(&cell, &go).expect(0).json();
+    assert_eq!(answer["regions"], serde_json::json!(["press"]));
+    assert!(answer["waypoints"].as_array().unwrap().len() > 2);
+    let open = plan(&cell.replace("warning = 50", "life = \"temporary\""), &go).expect(0).json();
+    assert_eq!(open["regions"], serde_json::json!([]));
+    assert_eq!(open["waypoints"].as_array().unwrap().len(), 2);
+    let refused = plan(&cell, &["--robot", "arm", "--from", "-1,0.1", "--to", "0,0"]).expect(2);
+    assert!(refused.stderr.contains("goal") && refused.stderr.contains("region `press`"), "{}", refused.stderr);
+}
