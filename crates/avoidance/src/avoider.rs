@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use elbowroom_planner::{Connect, Fence, RouteError, RouteOptions};
+use elbowroom_planner::{Connect, Fence, RouteOptions};
 use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
 use crate::calm::Calm;
@@ -116,7 +116,7 @@ impl<'s> Avoider<'s> {
     /// For a robot of a scene that stands at `q`. `limits` has one entry per independent joint.
     ///
     /// # Errors
-    /// No such robot, wrong joint values, or a number of limits that is not the robot's.
+    /// No such robot, wrong joint values, limits that no joint can have, or not one per joint.
     pub fn new(
         scene: &'s Scene,
         robot: usize,
@@ -130,10 +130,13 @@ impl<'s> Avoider<'s> {
         let mut senses = Senses::new(scene, robot);
         senses.place(q, &Around::default())?;
         let n = chain.dof();
-        let mut limits = limits.to_vec();
-        limits.truncate(n);
-        let missing = JointLimit::of(chain, 0.25, 0.1, 1.0).into_iter().skip(limits.len());
-        limits.extend(missing);
+        if limits.len() != n {
+            return Err(AvoidanceError::Limits { given: limits.len(), joints: n });
+        }
+        if let Some((joint, what)) = limits.iter().enumerate().find_map(|(j, l)| Some((j, l.wrong()?))) {
+            return Err(AvoidanceError::Limit { joint, what });
+        }
+        let limits = limits.to_vec();
         let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
         // A gap must not close faster than a stop takes.
         let mut settings = settings;
@@ -199,9 +202,26 @@ impl<'s> Avoider<'s> {
     /// `speed_override` (0 to 1) what a monitor allows, which scales all motion last.
     ///
     /// # Errors
-    /// Poses, motions or joint values that are not finite or not there, a tick without time. Nothing has moved then, and the
-    /// caller should stop the robot.
+    /// Poses, motions or joint values that are not finite or not there, a tick without time. The robot is to be stopped
+    /// then: the next tick takes it as standing where it was commanded last, and leads it back.
     pub fn tick(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        around: &Around<'_>,
+        speed_override: f64,
+    ) -> Result<Advice, AvoidanceError> {
+        let advice = self.try_tick(dt, reference, around, speed_override);
+        if advice.is_err() {
+            self.way.clear();
+            self.following = false;
+            self.qd.fill(0.0);
+            self.qdd.fill(0.0);
+        }
+        advice
+    }
+
+    fn try_tick(
         &mut self,
         dt: f64,
         reference: &Reference<'_>,
@@ -215,7 +235,7 @@ impl<'s> Avoider<'s> {
             *fastest = (v.abs() + limit.stop * dt).min(limit.speed);
         }
         self.ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.fastest);
-        self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach());
+        self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach(), self.ahead_s);
         let sensed = Instant::now();
         let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
         joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
@@ -224,7 +244,7 @@ impl<'s> Avoider<'s> {
         let corrected = Instant::now();
         let mut braked = false;
         // A way was proven with all that stood: what has moved since may stand on it.
-        let on_way = mode == Mode::Way && !self.way.is_empty();
+        let on_way = mode == Mode::Way;
         if !exactly && !self.can_stop(dt, around, on_way) {
             braked = true;
             self.way.clear();
@@ -233,7 +253,7 @@ impl<'s> Avoider<'s> {
                 self.along_path(dt, reference);
                 exactly = true;
             } else {
-                brake(&self.limits, &self.qd, dt, &mut self.next);
+                brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next);
             }
         } else if !exactly {
             braked = self.check(dt, around);
@@ -249,8 +269,8 @@ impl<'s> Avoider<'s> {
     /// ([`Connect::plan_out`]). Takes as long as planning takes: a controller does it beside its loop.
     ///
     /// # Errors
-    /// As [`Connect::plan`].
-    pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), RouteError> {
+    /// The robot moves, or as [`Connect::plan_out`].
+    pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), AvoidanceError> {
         self.plan_within(goal, options, None)
     }
 
@@ -258,14 +278,18 @@ impl<'s> Avoider<'s> {
     /// monitor would stop it.
     ///
     /// # Errors
-    /// As [`Connect::plan`].
+    /// The robot moves, or as [`Connect::plan_out`].
     pub fn plan_within(
         &mut self,
         goal: &[f64],
         options: &RouteOptions,
         fence: Option<&mut dyn Fence>,
-    ) -> Result<(), RouteError> {
-        let mut connect = Connect::new(self.senses.scene, self.senses.robot)?;
+    ) -> Result<(), AvoidanceError> {
+        if share(&self.qd, &self.limits) >= STANDS {
+            return Err(AvoidanceError::Underway);
+        }
+        let limits = self.limits.iter().map(|l| (l.lower, l.upper));
+        let mut connect = Connect::new(self.senses.scene, self.senses.robot)?.within(limits);
         if let Some(fence) = fence {
             connect = connect.fenced(fence);
         }
@@ -295,7 +319,7 @@ impl<'s> Avoider<'s> {
     fn fixed_reach(&self) -> f64 {
         let s = &self.settings.reflex;
         let nearby = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
-        nearby.max(self.proof.farthest(self.senses.robot, &self.fastest, self.ahead_s))
+        nearby.max(self.senses.levers[self.senses.robot].farthest(&self.fastest, self.ahead_s))
     }
 
     /// Fills `next` with the velocity to command; true where it is exactly the path's.
@@ -306,7 +330,7 @@ impl<'s> Avoider<'s> {
             // A path that is followed brings itself to a stop.
             match mode {
                 Mode::Path => self.along_path(dt, reference),
-                _ => brake(&self.limits, &self.qd, dt, &mut self.next),
+                _ => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
             }
             return (Reaction::default(), mode == Mode::Path);
         }
@@ -332,9 +356,9 @@ impl<'s> Avoider<'s> {
             _ if reaction.asked && !held => self.way.clear(),
             Mode::Path if !held => self.along_path(dt, reference),
             Mode::Way => self.next.iter_mut().zip(&self.wanted).for_each(|(v, w)| *v = w * allowed),
-            Mode::Stop => brake(&self.limits, &self.qd, dt, &mut self.next),
+            Mode::Stop => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
             // Trapped: to stand is better than to creep.
-            _ if held => brake(&self.limits, &self.qd, dt, &mut self.next),
+            _ if held => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
             _ => {}
         }
         (reaction, mode == Mode::Path && !reaction.asked && !held)
@@ -395,10 +419,10 @@ impl<'s> Avoider<'s> {
     /// No collision falls between two commands: replaces `next` by braking where that is hit later.
     fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
         let loose = |t: &Threat| matches!(t.other, Other::Loose { .. });
-        let Self { proof, senses, limits, q, next, braked, .. } = self;
+        let Self { proof, senses, limits, bounds, q, next, braked, .. } = self;
         let mut hit = |qd: &[f64]| proof.first_hit(senses, &Course { q, qd, limits, seconds: dt }, around, loose);
         let Some(first) = hit(next) else { return false };
-        brake(limits, &self.qd, dt, braked);
+        brake(limits, &bounds.soon, &self.qd, dt, braked);
         let better = hit(braked).unwrap_or(f64::INFINITY) > first;
         if better {
             next.copy_from_slice(braked);
@@ -407,14 +431,15 @@ impl<'s> Avoider<'s> {
     }
 
     /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command does,
-    /// there is always a stop that does: that of the command before. A way was proven with all that is fixed: there it is
-    /// what can have moved since that counts.
+    /// there is always a stop that does, as far as things stand: that of the command before. A way was proven with all that
+    /// is fixed: as long as it is kept to, what can have moved since is what counts.
     fn can_stop(&mut self, dt: f64, around: &Around<'_>, on_way: bool) -> bool {
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
         // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
         let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
+        let left_way = self.way.is_empty();
         let counts = |t: &Threat| match t.other {
-            Other::Own(_) | Other::Fixed => !on_way,
+            Other::Own(_) | Other::Fixed => !on_way || left_way,
             Other::Moving { .. } => true,
             Other::Loose { .. } => on_way,
         };
@@ -425,12 +450,14 @@ impl<'s> Avoider<'s> {
     /// Takes `next` as the command; the values that the path has are taken as they are.
     fn command(&mut self, dt: f64, exactly: Option<&[f64]>) {
         for j in 0..self.q.len() {
-            let v = self.next[j];
+            let limit = &self.limits[j];
+            let beyond = self.q[j] + self.next[j] * dt;
+            let held = beyond.clamp(limit.lower, limit.upper);
+            // What a limit holds back does not move so fast.
+            let v = if held == beyond { self.next[j] } else { (held - self.q[j]) / dt };
             self.qdd[j] = (v - self.qd[j]) / dt;
             self.qd[j] = v;
-            let limit = &self.limits[j];
-            let q = exactly.map_or_else(|| (self.q[j] + v * dt).clamp(limit.lower, limit.upper), |q| q[j]);
-            self.q[j] = q;
+            self.q[j] = exactly.map_or(held, |q| q[j]);
         }
         self.calm.note(&self.qd, self.limits.iter().map(|l| l.speed), dt);
     }

@@ -38,6 +38,22 @@ impl JointLimit {
             .collect()
     }
 
+    /// What is wrong with it, and what to write instead.
+    pub(crate) fn wrong(&self) -> Option<&'static str> {
+        let rate = |v: f64| v > 0.0 && v.is_finite();
+        if !rate(self.speed) {
+            return Some("the speed is not above 0: give its top speed, rad/s or m/s");
+        }
+        if !rate(self.acceleration) {
+            return Some("the acceleration is not above 0: give rad/s² or m/s²");
+        }
+        if !(self.stop >= self.acceleration && self.stop.is_finite()) {
+            return Some("the deceleration of a stop is less than the acceleration: give at least that");
+        }
+        let bounds = self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY;
+        (!bounds).then_some("lower and upper are no range: give lower <= upper, -inf and inf where there is none")
+    }
+
     /// Velocities after which the joint can still stop before its limits, `dt` seconds being the command's length.
     fn soon(&self, q: f64, dt: f64) -> [f64; 2] {
         // v·dt + v²/(2a) = room
@@ -79,11 +95,14 @@ pub fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
     qd.iter().zip(limits).map(|(v, l)| v.abs() / l.stop).fold(0.0, f64::max)
 }
 
-/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free.
-pub fn brake(limits: &[JointLimit], qd: &[f64], dt: f64, out: &mut [f64]) {
+/// Slower by as much as a stop allows, all joints in proportion: straight on, where it was proven to be free. A joint that
+/// would so pass its limit (`soon`, the velocities from which it can still stop) stops by itself.
+pub fn brake(limits: &[JointLimit], soon: &[[f64; 2]], qd: &[f64], dt: f64, out: &mut [f64]) {
     let stop_s = stop_s(limits, qd);
     let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
-    out.iter_mut().zip(qd).for_each(|(out, v)| *out = v * left);
+    for ((out, v), [low, high]) in out.iter_mut().zip(qd).zip(soon) {
+        *out = (v * left).clamp(low.min(0.0), high.max(0.0));
+    }
 }
 
 /// The fastest of these velocities as a share of its joint's top speed.

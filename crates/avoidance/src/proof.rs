@@ -1,10 +1,11 @@
 //! Sweeps between what is commanded now and what can be commanded next.
 
+use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::impact::Steady;
 use elbowroom_scene::{Member, Move, Scene, SweepOptions};
 
 use crate::joint::JointLimit;
-use crate::levers::Levers;
+use crate::reflex::MOST_THREATS;
 use crate::sense::Senses;
 use crate::{Around, Seen, Threat};
 
@@ -27,24 +28,16 @@ pub struct Course<'a> {
 /// What a robot and its neighbours run through.
 #[derive(Debug)]
 pub struct Proof {
-    /// Per robot.
-    levers: Vec<Levers>,
     /// Per robot: where it ends.
     to: Vec<Vec<f64>>,
+    /// Numbers of the threats that can close in time.
+    near: Vec<usize>,
 }
 
 impl Proof {
     pub fn new(scene: &Scene) -> Self {
-        let robots = scene.robots();
-        Self {
-            levers: robots.iter().map(|r| Levers::new(&r.robot)).collect(),
-            to: robots.iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect(),
-        }
-    }
-
-    /// No point of a robot's links moves farther than this in so many seconds, m.
-    pub fn farthest(&self, robot: usize, qd: &[f64], seconds: f64) -> f64 {
-        self.levers[robot].farthest(qd, seconds)
+        let to = scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect();
+        Self { to, near: Vec::with_capacity(MOST_THREATS) }
     }
 
     /// When the course first meets any of the chosen threats, as a share of its time; all else that moves goes on as it
@@ -57,17 +50,21 @@ impl Proof {
         chosen: impl Fn(&Threat) -> bool,
     ) -> Option<f64> {
         self.ends(senses.robot, course, around);
-        // What was left off the list may be nearer than the robot can move.
-        let beyond = senses.left_off_m <= self.farthest(senses.robot, course.qd, course.seconds);
+        let beyond =
+            senses.left_off.iter().flatten().any(|t| chosen(t) && t.distance_m <= nearing(senses, course, around));
         let mut first = beyond.then_some(0.0);
-        let Senses { robot, checker, state, threats, members, radii, .. } = senses;
+        let reach = |t: &Threat, a: Member, b: Member| {
+            let theirs = [a, b].map(|m| senses.coming(m, around, course.seconds));
+            senses.levers[senses.robot].closing(t, course.qd, course.seconds) + theirs[0] + theirs[1]
+        };
+        self.near.clear();
+        let pairs = senses.threats.iter().zip(&senses.members).enumerate();
+        let near = pairs.filter(|(_, (t, (a, b)))| chosen(t) && t.distance_m <= reach(t, *a, *b));
+        self.near.extend(near.map(|(n, _)| n));
+        let Senses { robot, checker, state, threats, members, .. } = senses;
         let own = Move::Robot { robot: *robot, to: &self.to[*robot] };
-        for (threat, (a, b)) in threats.iter().zip(members.iter()).filter(|(t, _)| chosen(t)) {
-            let theirs = [*a, *b].into_iter().map(|m| self.coming(m, *robot, around, radii, course.seconds));
-            let closing = self.levers[*robot].closing(threat, course.qd, course.seconds);
-            if threat.distance_m > closing + theirs.sum::<f64>() {
-                continue;
-            }
+        for &n in &self.near {
+            let (threat, (a, b)) = (&threats[n], &members[n]);
             // A graze is a hit: what is free stays so by a hair's breadth, or by half of what there is.
             let clearance_m = GRAZE_M.min(0.5 * threat.distance_m);
             let options = SweepOptions { clearance_m, ..SweepOptions::default() };
@@ -102,15 +99,14 @@ impl Proof {
             }
         }
     }
+}
 
-    /// How far any point of the other side can come by itself, m.
-    fn coming(&self, member: Member, robot: usize, around: &Around<'_>, radii: &[f64], seconds: f64) -> f64 {
-        if let Some(s) = seen(around, member) {
-            return (s.motion.velocity.length() + s.motion.angular_velocity.length() * radii[s.object]) * seconds;
-        }
-        let other = around.robots.iter().find(|n| Some(n.robot) == neighbour(around, member, robot));
-        other.map_or(0.0, |n| self.farthest(n.robot, n.qd, seconds))
-    }
+/// How far anything can come nearer at most, m.
+fn nearing(senses: &Senses<'_>, course: &Course<'_>, around: &Around<'_>) -> f64 {
+    let objects = around.objects.iter().map(|s| Member::Object(s.object));
+    let robots = around.robots.iter().map(|n| Member::Link { robot: n.robot, link: LinkId(0) });
+    let coming = objects.chain(robots).map(|m| senses.coming(m, around, course.seconds)).fold(0.0, f64::max);
+    senses.levers[senses.robot].farthest(course.qd, course.seconds) + coming
 }
 
 fn seen<'a>(around: &'a Around<'_>, member: Member) -> Option<&'a Seen> {
@@ -166,7 +162,7 @@ mod tests {
             if senses.place(&q[0], &around).is_err() {
                 continue;
             }
-            senses.look(&around, 1.5, 0.0);
+            senses.look(&around, 1.5, 0.0, 0.3);
             let other = |t: &Threat| matches!(t.other, crate::Other::Loose { .. }) && t.distance_m > 2.0 * GRAZE_M;
             let apart = senses.threats.iter().all(|t| t.distance_m > 2.0 * GRAZE_M);
             let inside = (0..3).all(|j| (limits[j].lower..limits[j].upper).contains(&(q[0][j] + qd[0][j] * seconds)));

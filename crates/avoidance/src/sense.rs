@@ -1,9 +1,10 @@
 //! What is near, from the exact scene.
 
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_scene::{Checker, Distance, Member, Scene, SceneState, Selection};
 use elbowroom_spatial::{Motion, Pose, Vec3};
 
+use crate::levers::Levers;
 use crate::reflex::MOST_THREATS;
 use crate::{AvoidanceError, Other, Threat};
 
@@ -36,9 +37,10 @@ pub struct Neighbour<'a> {
 /// All that moves beside the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Around<'a> {
-    /// Objects. Those that are not named stand where the scene has them, and are known.
+    /// Objects. Those that were never named stand where the scene has them, and are fixed; those that no longer are stand
+    /// where they were seen last, and may move.
     pub objects: &'a [Seen],
-    /// Robots. Those that are not named stand with all joints where they were before.
+    /// Robots. Those that are not named stand where they were named last, or where the scene has them.
     pub robots: &'a [Neighbour<'a>],
 }
 
@@ -56,9 +58,11 @@ pub struct Senses<'s> {
     pub chains: Vec<ChainState>,
     /// Radius of a ball around each object's origin.
     pub radii: Vec<f64>,
-    /// Distance of the nearest pair that is not on the list for want of room, m.
-    pub left_off_m: f64,
-    /// Per object: how it moves, where it is seen.
+    /// Per robot: how far its joints move it at most.
+    pub levers: Vec<Levers>,
+    /// The nearest pair that is not on the list for want of room: of what comes, and of what stands.
+    pub left_off: [Option<Threat>; 2],
+    /// Per object: how it moves, where it was seen at any time.
     loose: Vec<Option<(Motion, bool)>>,
     /// Per robot: whether it is known.
     known: Vec<bool>,
@@ -66,6 +70,8 @@ pub struct Senses<'s> {
     /// Who they are, in the same order.
     pub members: Vec<(Member, Member)>,
     found: Vec<(Threat, Member, Member)>,
+    /// All that is not fixed, and how near it matters, m.
+    others: Vec<(Member, f64)>,
 }
 
 impl<'s> Senses<'s> {
@@ -78,12 +84,14 @@ impl<'s> Senses<'s> {
             state: SceneState::new(scene),
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             radii,
-            left_off_m: f64::INFINITY,
+            levers: scene.robots().iter().map(|r| Levers::new(&r.robot)).collect(),
+            left_off: [None; 2],
             loose: vec![None; scene.objects().len()],
             known: vec![false; scene.robots().len()],
             threats: Vec::with_capacity(MOST_THREATS),
             members: Vec::with_capacity(MOST_THREATS),
             found: Vec::with_capacity(64),
+            others: Vec::with_capacity(scene.objects().len() + scene.robots().len()),
         }
     }
 
@@ -92,17 +100,24 @@ impl<'s> Senses<'s> {
         self.state.set_q(self.scene, self.robot, q)?;
         self.chains[self.robot].q.copy_from_slice(q);
         self.scene.robots()[self.robot].robot.chain.forward(&mut self.chains[self.robot]);
+        // Who says nothing stands.
+        for (_, chain) in self.chains.iter_mut().enumerate().filter(|(i, _)| *i != self.robot) {
+            chain.qd.fill(0.0);
+        }
         for neighbour in around.robots.iter().filter(|n| n.robot != self.robot) {
             self.state.set_q(self.scene, neighbour.robot, neighbour.q)?;
             self.known[neighbour.robot] = neighbour.known;
             let chain = &mut self.chains[neighbour.robot];
             chain.q.copy_from_slice(neighbour.q);
-            // Velocities that are not there are none that can be trusted.
-            chain.qd.fill(f64::NAN);
-            chain.qd.iter_mut().zip(neighbour.qd).for_each(|(to, v)| *to = *v);
+            if neighbour.qd.len() != chain.qd.len() || neighbour.qd.iter().any(|v| !v.is_finite()) {
+                let (robot, joints) = (self.scene.robots()[neighbour.robot].name.clone(), chain.qd.len());
+                return Err(AvoidanceError::Neighbour { robot, given: neighbour.qd.len(), joints });
+            }
+            chain.qd.copy_from_slice(neighbour.qd);
             self.scene.robots()[neighbour.robot].robot.chain.forward_motion(chain);
         }
-        self.loose.fill(None);
+        // What is no longer seen may still be there.
+        self.loose.iter_mut().flatten().for_each(|(motion, _)| *motion = Motion::REST);
         for seen in around.objects {
             self.state.place(self.scene, seen.object, seen.in_world)?;
             if !seen.motion.is_finite() {
@@ -113,9 +128,33 @@ impl<'s> Senses<'s> {
         Ok(())
     }
 
-    /// Finds what is nearer than `reach_m` (what is loose) or `fixed_reach_m` (all else), the nearest first.
-    pub fn look(&mut self, around: &Around<'_>, reach_m: f64, fixed_reach_m: f64) {
-        let Self { scene, robot, checker, state, chains, radii, loose, known, found, .. } = self;
+    /// How far any point of a member can come by itself, m.
+    pub fn coming(&self, member: Member, around: &Around<'_>, seconds: f64) -> f64 {
+        let far = |s: &Seen| s.motion.velocity.length() + s.motion.angular_velocity.length() * self.radii[s.object];
+        match member {
+            Member::Object(o) => {
+                around.objects.iter().filter(|s| s.object == o).map(|s| far(s) * seconds).fold(0.0, f64::max)
+            }
+            Member::Link { robot, .. } => {
+                let others = around.robots.iter().filter(|n| n.robot == robot && robot != self.robot);
+                others.map(|n| self.levers[robot].farthest(n.qd, seconds)).fold(0.0, f64::max)
+            }
+        }
+    }
+
+    /// Finds what is nearer than `fixed_reach_m`, and what can come that near within `ahead_s` seconds or is nearer than
+    /// `reach_m`, if it is not fixed; the nearest first.
+    pub fn look(&mut self, around: &Around<'_>, reach_m: f64, fixed_reach_m: f64, ahead_s: f64) {
+        let mut others = std::mem::take(&mut self.others);
+        others.clear();
+        let objects = (0..self.loose.len()).filter(|o| self.loose[*o].is_some()).map(Member::Object);
+        // One link of a robot stands for all.
+        let links = (0..self.chains.len()).filter(|r| *r != self.robot);
+        let links = links.map(|robot| Member::Link { robot, link: LinkId(0) });
+        let reach = |m: Member| reach_m.max(fixed_reach_m + self.coming(m, around, ahead_s));
+        others.extend(objects.chain(links).map(|m| (m, reach(m))));
+        self.others = others;
+        let Self { scene, robot, checker, state, chains, radii, loose, known, found, others, .. } = self;
         let base = scene.robots()[*robot].base_in_world;
         let view = View {
             scene,
@@ -130,10 +169,12 @@ impl<'s> Senses<'s> {
         };
         found.clear();
         let own = Selection::Robot(*robot);
-        let objects = around.objects.iter().map(|s| Selection::Object(s.object));
-        let robots = around.robots.iter().filter(|n| n.robot != *robot).map(|n| Selection::Robot(n.robot));
-        for other in objects.chain(robots) {
-            checker.between(own, other).near(state, reach_m, |d| {
+        for (other, reach_m) in others.iter() {
+            let other = match other {
+                Member::Object(o) => Selection::Object(*o),
+                Member::Link { robot, .. } => Selection::Robot(*robot),
+            };
+            checker.between(own, other).near(state, *reach_m, |d| {
                 found.extend(view.threat(&d).map(|t| (t, d.a, d.b)));
             });
         }
@@ -145,8 +186,8 @@ impl<'s> Senses<'s> {
         let comes = |t: &Threat| matches!(t.other, Other::Loose { .. } | Other::Moving { .. });
         let near = |a: &Threat, b: &Threat| a.distance_m.total_cmp(&b.distance_m);
         found.sort_unstable_by(|a, b| comes(&b.0).cmp(&comes(&a.0)).then(near(&a.0, &b.0)));
-        self.left_off_m =
-            found.get(MOST_THREATS..).unwrap_or_default().iter().map(|f| f.0.distance_m).fold(f64::INFINITY, f64::min);
+        let beyond = found.get(MOST_THREATS..).unwrap_or_default();
+        self.left_off = [true, false].map(|c| beyond.iter().map(|f| f.0).find(|t| comes(t) == c));
         found.truncate(MOST_THREATS);
         found.sort_unstable_by(|a, b| near(&a.0, &b.0));
         self.threats.clear();

@@ -58,7 +58,7 @@ impl Way {
             if left_s > NONE_S {
                 // From rest: not before the joints may turn back.
                 if self.share > 0.0 || calm.allows(towards()) {
-                    let target = slowing(left_s, rise_s).min(most).min(left_s / dt);
+                    let target = slowing(left_s, rise_s).min(most).min(stopping(left_s, stop_s, dt));
                     self.share = target.clamp((self.share - dt / stop_s).max(0.0), self.share + dt / rise_s);
                     // The last step ends at the waypoint, not beyond.
                     let rate = (self.share / left_s).min(1.0 / dt);
@@ -70,6 +70,11 @@ impl Way {
             self.share = 0.0;
         }
     }
+}
+
+/// Share of the speed from which, after this tick, a stop ends no farther: `v·dt + v²/(2a) = left`.
+fn stopping(left_s: f64, stop_s: f64, dt: f64) -> f64 {
+    2.0 * left_s / (dt + (dt * dt + 2.0 * left_s * stop_s).sqrt())
 }
 
 #[cfg(test)]
@@ -88,7 +93,7 @@ mod tests {
             way.follow(dt, 0.5, &Moving { q: &q, qd: &qd, limits: &limits }, &calm, &mut next);
             // Somebody brakes now and then.
             if (20..24).contains(&(ticks % 50)) {
-                crate::joint::brake(&limits, &qd, dt, &mut next);
+                crate::joint::brake(&limits, &[[-9.0, 9.0]; 2], &qd, dt, &mut next);
             }
             for j in 0..2 {
                 let rate = (next[j] - qd[j]) / dt;

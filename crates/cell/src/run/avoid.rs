@@ -193,9 +193,9 @@ impl<'s> Evasive<'s> {
                 self.advice = advice;
                 self.step_ns.push(advice.times.total().as_nanos() as u64);
             }
-            // Nothing was commanded: the robot stands, and its path with it.
+            // Nothing was commanded: the robot stands where it is, wherever its path would be.
             Err(why) => {
-                self.advice = Advice { rate: 0.0, doing: Doing::Halted, ..self.advice };
+                self.advice = Advice { rate: 0.0, doing: Doing::Halted, astray_s: f64::INFINITY, ..self.advice };
                 self.fault.get_or_insert_with(|| (t_s, why.to_string()));
             }
         }

@@ -251,8 +251,9 @@ impl<'a> Run<'a> {
             let scale = if gone { 0.0 } else { 1.0 };
             state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
             state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
-            if let Some(evasive) = self.evasive[i].as_ref().filter(|e| !gone && !e.is_on_path()) {
+            if let Some(evasive) = self.evasive[i].as_ref().filter(|e| !e.is_on_path()) {
                 evasive.look(state);
+                state.qd.iter_mut().chain(&mut state.qdd).for_each(|v| *v *= scale);
             }
             self.cell.robots[i].robot.chain.forward_motion(state);
         }

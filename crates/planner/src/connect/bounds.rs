@@ -48,6 +48,13 @@ impl Bounds {
         Ok(q)
     }
 
+    /// No wider than these.
+    pub fn narrow(&mut self, limits: impl Iterator<Item = (f64, f64)>) {
+        for ((lower, upper), (low, high)) in self.lower.iter_mut().zip(&mut self.upper).zip(limits) {
+            (*lower, *upper) = (lower.max(low), upper.min(high));
+        }
+    }
+
     /// The nearest values within limits.
     pub fn clamp(&self, q: &mut [f64]) {
         q.iter_mut().enumerate().for_each(|(i, v)| *v = v.max(self.lower[i]).min(self.upper[i]));

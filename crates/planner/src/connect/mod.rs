@@ -116,6 +116,14 @@ impl<'s> Connect<'s> {
         self
     }
 
+    /// Within limits narrower than the robot's own: lowest and highest value per joint, rad or m. Missing ones, and what is wider,
+    /// leave its own.
+    #[must_use]
+    pub fn within(mut self, limits: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        self.bounds.narrow(limits.into_iter());
+        self
+    }
+
     /// From where `start` has the robot to `goal` (rad, m where a joint slides). Self-collision, objects and other robots,
     /// which stay where `start` has them, count by the scene's pair matrix.
     ///
