@@ -12,7 +12,7 @@ use elbowroom_avoidance::Doing;
 use elbowroom_cell::run::simulate;
 use elbowroom_cell::{Cell, Drive, Recording, Repeat, RobotTrack, RunOptions, Way};
 use elbowroom_scene::{Checker, Options, Scene, SceneState, Selection};
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
 /// What comes keeps so far from the axis of the base, m: a pedestal cannot get out of the way.
 const PEDESTAL_M: f64 = 1.0;
@@ -47,8 +47,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let only: Option<usize> = std::env::var("EVADE_ONLY").ok().and_then(|o| o.parse().ok());
     let mut random = Random(2026);
     let mut ways = Vec::new();
+    let scene = alone_with(&cell, object)?;
     while ways.len() < runs {
-        ways.extend(crossing(&cell, object, free.duration_s, &mut random)?);
+        ways.extend(crossing(&cell, &scene, free.duration_s, &mut random)?);
     }
     let chosen: Vec<usize> = only.map_or_else(|| (0..runs).collect(), |o| vec![o.min(runs - 1)]);
     let mut tally = Tally { show: only.is_some(), quietest_s: f64::INFINITY, ..Tally::default() };
@@ -109,10 +110,19 @@ fn alone(cell: &Cell) -> Result<Recording, Box<dyn std::error::Error>> {
     Ok(recording)
 }
 
+/// The robot and what comes.
+fn alone_with(cell: &Cell, object: usize) -> Result<Scene, Box<dyn std::error::Error>> {
+    let mut builder = Scene::builder();
+    let robot = &cell.robots[0];
+    builder.robot(&robot.name, robot.robot.clone(), robot.base_in_world);
+    builder.object(cell.objects[object].clone());
+    Ok(builder.build()?)
+}
+
 /// A straight way through where the arm works; `None` where it would begin in the arm or cross the pedestal.
 fn crossing(
     cell: &Cell,
-    object: usize,
+    scene: &Scene,
     seconds: f64,
     random: &mut Random,
 ) -> Result<Option<Way>, Box<dyn std::error::Error>> {
@@ -131,16 +141,10 @@ fn crossing(
     if miss < PEDESTAL_M {
         return Ok(None);
     }
-    let mut builder = Scene::builder();
-    let robot = &cell.robots[0];
-    builder.robot(&robot.name, robot.robot.clone(), base);
-    let mut thing = cell.objects[object].clone();
-    thing.in_world.translation = from;
-    builder.object(thing);
-    let scene = builder.build()?;
-    let mut state = SceneState::new(&scene);
-    state.set_q(&scene, 0, &robot.start)?;
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut state = SceneState::new(scene);
+    state.set_q(scene, 0, &cell.robots[0].start)?;
+    state.place(scene, 0, Pose { translation: from, ..scene.objects()[0].in_world })?;
+    let mut checker = Checker::new(scene, Options::default());
     let near = checker.between(Selection::Robot(0), Selection::Object(0)).within(&state, BEGINS_M);
     Ok(near.is_none().then_some(way))
 }
@@ -179,6 +183,9 @@ impl Tally {
         }
         if !with.finished {
             println!("run {number}: not finished after {:.1} s", on.duration_s);
+            if self.show {
+                show(with, on.duration_s);
+            }
             self.unfinished += 1;
         }
         let Some(track) = &with.avoidance else { return };

@@ -57,14 +57,14 @@ pub enum RouteError {
         /// Metres to it: 0 or less, or NaN where that is not known.
         metres: f64,
     },
-    /// None was found in the time allowed. That proves nothing.
+    /// None was found with what was allowed. That proves nothing.
     #[error(
-        "no path found in {seconds} s ({states} states looked at, {nodes} of them joined to start or goal): this proves nothing, \
+        "no path found in {seconds:.1} s ({states} states looked at, {nodes} of them joined to start or goal): this proves nothing, \
          there may be one; allow more time, or plan over a state in between{}",
         also(nearer)
     )]
     NotFound {
-        /// The time allowed, s.
+        /// The time it took, s.
         seconds: f64,
         /// States that were looked at.
         states: u64,

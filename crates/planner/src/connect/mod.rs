@@ -181,7 +181,9 @@ impl<'s> Connect<'s> {
     }
 
     fn not_found(&self, [from, to]: &[Vec<f64>; 2], nodes: usize, options: &RouteOptions) -> RouteError {
-        let (seconds, states) = (options.time_limit.as_secs_f64(), self.way.states);
+        let left = self.way.until.saturating_duration_since(Instant::now());
+        let seconds = options.time_limit.min(FOREVER).saturating_sub(left).as_secs_f64();
+        let states = self.way.states;
         RouteError::NotFound { seconds, states, nodes, nearer: self.bounds.nearer(from, to) }
     }
 
