@@ -493,7 +493,7 @@ impl<'s> Avoider<'s> {
             Doing::Rounding
         } else if self.following {
             Doing::Following
-        } else if self.evaded_s < EVADING_S {
+        } else if self.evaded_s < EVADING_S || advice.reaction.asked {
             Doing::Evading
         } else {
             Doing::Returning
