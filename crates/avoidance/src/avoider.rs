@@ -193,6 +193,11 @@ impl<'s> Avoider<'s> {
         self.reflex.rules()
     }
 
+    /// True where it is slow enough for a way to begin.
+    pub fn stands(&self) -> bool {
+        share(&self.qd, &self.limits) < STANDS
+    }
+
     /// True while a planned way is gone.
     pub fn has_way(&self) -> bool {
         !self.way.is_empty()
@@ -285,7 +290,7 @@ impl<'s> Avoider<'s> {
         options: &RouteOptions,
         fence: Option<&mut dyn Fence>,
     ) -> Result<(), AvoidanceError> {
-        if share(&self.qd, &self.limits) >= STANDS {
+        if !self.stands() {
             return Err(AvoidanceError::Underway);
         }
         let limits = self.limits.iter().map(|l| (l.lower, l.upper));
@@ -470,24 +475,24 @@ impl<'s> Avoider<'s> {
         let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
         advice.governed_by =
             governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
-        let fastest = share(&self.qd, &self.limits);
+        let stands = self.stands();
         let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
-        let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && fastest < STANDS));
+        let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && stands));
         self.standing_s = if held { self.standing_s + dt } else { 0.0 };
         self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
         let lost = !self.following && self.way.is_empty() && self.evaded_s >= EVADING_S && allowed > 0.0;
-        self.lost_s = if lost && fastest < STANDS {
+        self.lost_s = if lost && stands {
             self.lost_s + dt
         } else if lost {
             self.lost_s
         } else {
             0.0
         };
-        advice.wants_way = self.way.is_empty() && fastest < STANDS && (self.lost_s > 0.0 || self.stuck());
+        advice.wants_way = self.way.is_empty() && stands && (self.lost_s > 0.0 || self.stuck());
         advice.rate = if advice.braked && self.following { 0.0 } else { self.rate(reference, advice.astray_s) };
         advice.doing = if allowed == 0.0 {
             Doing::Halted
-        } else if held && fastest < STANDS && self.standing_s > 0.1 {
+        } else if held && stands && self.standing_s > 0.1 {
             Doing::Waiting
         } else if !self.way.is_empty() {
             Doing::Rounding

@@ -30,8 +30,6 @@ const MANY: u64 = 8;
 const LATER_S: f64 = 4.0;
 /// Below this share of the programmed override a robot off its path is at a border: nearer, it would take too long to get away.
 const BORDER: f64 = 1e-3;
-/// A joint stands that is slower, rad/s or m/s.
-const STANDS: f64 = 1e-3;
 /// Values of each input in a picture of the rules.
 const SURFACE: usize = 33;
 
@@ -141,8 +139,7 @@ impl<'s> Evasive<'s> {
     ) -> Option<&'static str> {
         let before = self.advice.doing;
         let at_border = self.at_border(clock, allowed);
-        let stands = self.avoider.qd().iter().all(|v| v.abs() < STANDS);
-        let wants_way = self.advice.wants_way || (at_border && stands);
+        let wants_way = self.advice.wants_way || (at_border && self.avoider.stands());
         if self.spec.replan && wants_way && t_s >= self.not_before_s {
             self.plan(clock, t_s, regions);
         }
