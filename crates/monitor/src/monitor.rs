@@ -104,7 +104,9 @@ impl Monitor {
         self.measure(s, dt_s);
         self.update_presence();
         if let Some(seat) = &mut self.seat {
-            seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
+            let Self { active, presence, gaps, log, .. } = self;
+            let stops = |r: usize| gaps.get(r).is_none_or(|g| g.stops);
+            seat.update(|r| (active[r.0], presence[r.0], stops(r.0)), s.now_s, log);
         }
         self.conclude(s, dt_s)
     }
@@ -124,6 +126,9 @@ impl Monitor {
         }
         if self.active[region.0] != on {
             self.active[region.0] = on;
+            if let (true, Kind::Exchange { slot }, Some(seat)) = (on, r.kind, &self.seat) {
+                seat.forget(slot);
+            }
             if self.switched.len() < self.switched.capacity() {
                 self.switched.push((region, on));
             }

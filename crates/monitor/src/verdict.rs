@@ -15,6 +15,8 @@ pub(crate) const LOOKAHEAD_S: f64 = 0.01;
 const STOP_SHORT_M: f64 = 5e-4;
 /// Accelerations are taken this much larger than they are now: they may grow while the robot brakes.
 const ACCELERATION_MARGIN: f64 = 1.2;
+/// Joints slower than this (rad/s, m/s) are at rest where nothing is known of how they brake.
+const AT_REST: f64 = 1e-3;
 /// A gap must grow by at least this speed (m/s) to count as growing.
 const LEAVING_SPEED: f64 = 5e-4;
 
@@ -84,6 +86,48 @@ impl Judge<'_> {
             1.0,
             self.deceleration,
         ))
+    }
+
+    /// True where the robot ends outside the region if it is told override 0 from this tick on: by the stopping law, or,
+    /// where no deceleration is stated, because it is at rest.
+    fn can_stop_outside(&self, pair: &Pair) -> bool {
+        if pair.separation.distance <= 0.0 {
+            return false;
+        }
+        match (&self.config.laws.stopping_distance, self.intent) {
+            (Some(stopping), Some(intent)) if !Self::is_still(intent) => {
+                let (s, region) = (&pair.separation, &self.config.regions[pair.region]);
+                let Some(towards) = (s.on_b - s.on_a).try_normalize() else { return false };
+                let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
+                let approach = (-region_velocity.dot(towards)).max(0.0);
+                let left = s.distance - approach * (stopping.reaction_s + self.braking_s());
+                let at_full = self.closing_speed(pair, intent, towards);
+                let bend = ACCELERATION_MARGIN * boxed_acceleration(self, intent, pair.volume);
+                let rate = self.rate(intent);
+                let now = self.closing_speed(pair, &self.now.chain, towards).max(at_full * rate);
+                let moved_s = rate * stopping.reaction_s;
+                let left_then = left - now.max(0.0) * stopping.reaction_s - 0.5 * bend * moved_s * moved_s;
+                let time_s = time_to_close(left_then, at_full, bend);
+                left_then > 0.0 && braking_factor(time_s, 1.0, self.deceleration) >= rate
+            }
+            _ => self.is_at_rest(pair),
+        }
+    }
+
+    /// How fast the program's time runs: as last told, or faster where the joints still are.
+    fn rate(&self, intent: &ChainState) -> f64 {
+        let real = self.now.chain.qd.iter().zip(&intent.qd).filter(|(_, v)| **v != 0.0);
+        real.map(|(real, full)| (real / full).abs()).fold(self.last_override, |rate, r| rate.max(r.min(1.0)))
+    }
+
+    /// True where neither the joints nor the region move, nor are about to.
+    fn is_at_rest(&self, pair: &Pair) -> bool {
+        let told = |v: &f64| (v * self.last_override).abs() <= AT_REST;
+        let region = &self.config.regions[pair.region];
+        let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, pair.separation.on_b);
+        self.now.chain.qd.iter().all(|v| v.abs() <= AT_REST)
+            && self.snapshot.intent.is_none_or(|intent| intent.iter().all(told))
+            && region_velocity.length() <= AT_REST
     }
 
     /// From full override to rest, s.
@@ -163,6 +207,10 @@ impl PairLaw for Judge<'_> {
             Kind::Monitored { slow_to: None } => v0,
             Kind::Monitored { slow_to: Some(slow) } => speed_zone(pair.separation.distance, region.warning_m, slow, v0),
         }
+    }
+
+    fn stops_outside(&self, pair: &Pair) -> bool {
+        self.can_stop_outside(pair)
     }
 
     fn extra_reach(&self, volume: usize) -> f64 {
