@@ -61,7 +61,7 @@ impl Seat {
             // the warning law, until it is let in.
             let held = u.state == SlotState::Held;
             let stay = |(_, presence, stops): (bool, Presence, bool)| {
-                let stops = stops || (!self.proves_stops && !(held && presence.warned));
+                let stops = stops || !(self.proves_stops || held && presence.warned);
                 presence.stay(stops)
             };
             let active = u.regions.iter().map(|r| at(*r)).filter(|a| a.0);

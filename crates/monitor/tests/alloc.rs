@@ -6,10 +6,10 @@ mod common;
 use std::alloc::System;
 use std::sync::Arc;
 
-use common::{Random, arm, arm_volumes, configuration};
+use common::{Random, arm, arm_volumes, parts};
 use elbowroom_monitor::{
-    AccessClass, Board, Configuration, EventKind, Kind, Laws, Life, Monitor, Region, RobotSlot, SlotId, Snapshot,
-    Stopping,
+    AccessClass, Board, Configuration, ConfigurationParts, EventKind, Kind, Laws, Life, Monitor, Region, RobotSlot,
+    SlotId, Snapshot, Stopping,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
@@ -34,8 +34,8 @@ fn main() {
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
-        let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions.clone()) };
-        let mut m = Monitor::new(config, None).unwrap();
+        let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions.clone()) };
+        let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
         let mut pairs = 0;
@@ -66,8 +66,8 @@ fn exchange() {
         .map(|robot| {
             let laws = Laws { stopping_distance: Some(stopping.clone()), ..Laws::default() };
             let regions = vec![region(0, 0.6), region(1, -0.6)];
-            let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions) };
-            Monitor::new(config, Some((board.clone(), RobotSlot(robot)))).unwrap()
+            let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
+            Monitor::new(Configuration::new(parts).unwrap(), Some((board.clone(), RobotSlot(robot)))).unwrap()
         })
         .collect();
     let counter = Counter::new(ALLOCATOR);
