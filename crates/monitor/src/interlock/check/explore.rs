@@ -44,7 +44,9 @@ impl Graph {
     fn can_finish(&self, world: &World) -> Vec<bool> {
         let mut before: Vec<Vec<u32>> = vec![Vec::new(); self.states.len()];
         for (from, steps) in self.next.iter().enumerate() {
-            steps.iter().for_each(|(_, to)| before[*to as usize].push(from as u32));
+            for (_, to) in steps {
+                before[*to as usize].push(from as u32);
+            }
         }
         let mut can: Vec<bool> = self.states.iter().map(|s| world.finished(s)).collect();
         let mut open: Vec<u32> = (0..self.states.len() as u32).filter(|i| can[*i as usize]).collect();

@@ -18,6 +18,7 @@ pub(super) enum Faults {
 }
 
 #[derive(Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "switches of a test, each on its own")]
 pub(super) struct World {
     /// Per robot, per slot, per place.
     programs: Vec<Vec<Vec<Stay>>>,
