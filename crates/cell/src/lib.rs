@@ -52,8 +52,8 @@ pub use cell::{
 pub use file::{CellFile, NumberTable};
 pub use mover::{Drive, Leg, Mover, Repeat, Way};
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack,
-    Sample, Span, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, Recording, RegionPoses,
+    RegionTrack, RobotEnding, RobotTrack, Sample, Span, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

@@ -136,7 +136,7 @@ fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: usize, spans: &mut 
 }
 
 /// Per joint the farthest that any volume moves per unit.
-fn levers(setup: &Setup) -> Vec<(usize, f64)> {
+pub(super) fn levers(setup: &Setup) -> Vec<(usize, f64)> {
     let chain: &Chain = setup.configuration.chain();
     let mut most: Vec<(usize, f64)> = Vec::new();
     for volume in setup.configuration.volumes() {
