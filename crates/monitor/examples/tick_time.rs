@@ -84,7 +84,12 @@ fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
 
 fn main() {
     println!("{:46} {:>8} {:>8} {:>8} {:>8} {:>9}", "regions (µs per tick)", "median", "p99", "p99.9", "max", "pairs");
-    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![30.0; 6] };
+    let stopping = Stopping {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![30.0; 6],
+        joint_acceleration: vec![10.0; 6],
+    };
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() };
     measure("none", vec![], Laws::default());
     let free = untouched(regions(4000, 0.3, 1.8), 1000);

@@ -26,7 +26,12 @@ fn main() {
         let region = region.warning(0.1).life(if i % 2 == 0 { Life::Permanent } else { Life::Temporary });
         if i % 5 == 0 { region.kind(Kind::Monitored { slow_to: Some(0.5) }) } else { region }
     });
-    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![10.0; 6] };
+    let stopping = Stopping {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![10.0; 6],
+        joint_acceleration: vec![5.0; 6],
+    };
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
