@@ -14,6 +14,10 @@ use crate::commands::Commands;
 use crate::laws::{stop_time, stopping_program_time};
 use crate::{Configuration, Stopping, Volume};
 
+/// A robot that is slowed down still runs by earlier, higher overrides: the override is chosen as if it obeyed so many times
+/// later than it does. Without this margin the proof would fail from time to time, and the override fall to 0 and rise again.
+const LAG: f64 = 2.0;
+
 /// What the law knows in one tick; the memory is taken once.
 #[derive(Debug)]
 pub(crate) struct StoppingLaw {
@@ -265,7 +269,7 @@ impl StoppingLaw {
 
     /// Where the robot runs at override `c`.
     fn course(&self, c: f64, growth: f64) -> Course {
-        self.stop_after(c * self.horizon_s + self.unnoticed_s, c, growth)
+        self.stop_after(LAG * c * self.horizon_s + self.unnoticed_s, c, growth)
     }
 
     /// Where it does until then what it was told before, and `c` after that.
