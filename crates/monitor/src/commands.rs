@@ -46,7 +46,13 @@ impl Commands {
     /// that the robot then has at most. It runs at `running` at `stamp_s`. `stop` says, for the program time passed, the stop
     /// time m at override 1 and how fast it can change by the program's time, α: while the robot is faster than it was told,
     /// its override falls by `(1 − α·σ²) / m` per second at least.
-    pub(crate) fn run(&mut self, stamp_s: f64, now_s: f64, running: f64, stop: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    pub(crate) fn run(
+        &mut self,
+        stamp_s: f64,
+        now_s: f64,
+        running: f64,
+        stop: impl Fn(f64) -> (f64, f64),
+    ) -> (f64, f64) {
         while self.issued.get(1).is_some_and(|next| next.at_s + self.reaction_s <= stamp_s) {
             self.issued.pop_front();
         }

@@ -93,7 +93,8 @@ impl Monitor {
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
         let since_last_s = self.watchdog.since_last(s);
-        let trusted = self.watchdog.check(s, self.config.sources.len(), self.told()).and_then(|()| self.check_sources(s));
+        let trusted =
+            self.watchdog.check(s, self.config.sources.len(), self.told()).and_then(|()| self.check_sources(s));
         if let Err(fault) = trusted {
             return self.stop(s, fault);
         }

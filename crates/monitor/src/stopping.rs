@@ -280,7 +280,11 @@ impl StoppingLaw {
 
     fn stop_after(&self, run_s: f64, sigma: f64, growth: f64) -> Course {
         let full_stop_s = self.program.stop_s + growth * run_s;
-        Course { run_s, stop_s: sigma * full_stop_s, total_s: run_s + stopping_program_time(sigma, full_stop_s, growth) }
+        Course {
+            run_s,
+            stop_s: sigma * full_stop_s,
+            total_s: run_s + stopping_program_time(sigma, full_stop_s, growth),
+        }
     }
 
     /// Where nothing is known but how the robot really moves: all accelerate until the stop begins.
@@ -312,9 +316,8 @@ impl StoppingLaw {
         let acceleration = &stopping.joint_acceleration;
         let drift = |j: usize, u: f64| pace.speed[j] * u + 0.5 * acceleration[j] * u * u;
         let u = course.total_s;
-        let by_program = approach.program_speed * u
-            + 0.5 * approach.acceleration * u * u
-            + bending(levers, |j| drift(j, u));
+        let by_program =
+            approach.program_speed * u + 0.5 * approach.acceleration * u * u + bending(levers, |j| drift(j, u));
         let (u, stop) = (course.run_s, 0.5 * course.stop_s * course.stop_s);
         let by_stop = approach.program_speed.max(0.0) * u
             + 0.5 * approach.acceleration * u * u
@@ -356,7 +359,8 @@ impl CarriedVolume {
         for id in chain.path(volume.link).iter().rev() {
             let joint = &chain.joints()[id.0];
             let mimic = chain.mimic_source(*id);
-            let (source, scale, offset) = mimic.map_or((*id, 1.0, 0.0), |m| (m.joint, m.multiplier.abs(), m.offset.abs()));
+            let (source, scale, offset) =
+                mimic.map_or((*id, 1.0, 0.0), |m| (m.joint, m.multiplier.abs(), m.offset.abs()));
             if let Some(index) = chain.q_index(source).filter(|_| joint.kind.moves()) {
                 let turns = joint.kind.turns();
                 let farthest = if turns { farthest } else { 1.0 };

@@ -1,7 +1,7 @@
 //! What the figures show.
 
-use elbowroom_monitor::{Laws, Stopping};
 use elbowroom_monitor::laws::{rate_limited, speed_zone, warning_factor};
+use elbowroom_monitor::{Laws, Stopping};
 
 use super::rail::{Rail, TICK_S};
 use super::svg::{Axis, Curve, Dash, Plot};
