@@ -37,16 +37,20 @@ fn a_carriage_stops_before_a_wall_however_softly_it_brakes_and_however_late_it_o
 /// second per second at least, also while its program speeds up; and it is not braked harder than stated.
 #[test]
 fn a_program_that_speeds_up_is_braked_no_less() {
-    let outcome = run(&carriage(0.5, 2.0, 850.0));
+    // The bare law, whose zone is too thin for it: while its program still speeds up it is told to stop.
+    let bare = carriage(0.5, 2.0, 850.0).replace("stopping_distance = true", "stopping_distance = false");
+    let outcome = run(&bare.replace("warning = 1\n", "warning = 200\n"));
     let samples = &outcome.recording.robots[0].samples;
     let (tick_s, deceleration) = (0.002, 2.0 / 0.5);
     let speed = |i: usize| (samples[i + 1].q[0] - samples[i].q[0]) / tick_s;
-    let slowed = samples.iter().position(|s| s.speed_override == 0.0 || s.speed_override < 0.2).unwrap();
     let mut braked = 0;
     for i in 1..samples.len() - 2 {
         let change = (speed(i + 1) - speed(i)) / tick_s;
         assert!(change > -deceleration * 1.02 || speed(i + 1) < 0.02, "{change} m/s² at {} s", samples[i].t_s);
-        if i > slowed && speed(i) > 0.1 {
+        // Where it runs faster than it is told, it brakes.
+        // An answer counts one tick later.
+        let told = |i: usize| samples[i.saturating_sub(1)].speed_override * samples[i].programmed_speed;
+        if (i - 1..=i + 1).all(|k| speed(k) > told(k) + 0.02 && samples[k].programmed_speed > 0.1) {
             braked += 1;
             assert!(change < -deceleration * 0.98, "{change} m/s² at {} s", samples[i].t_s);
         }
@@ -58,7 +62,7 @@ fn a_program_that_speeds_up_is_braked_no_less() {
 fn an_override_counts_after_the_reaction_time() {
     let outcome = run(&carriage(0.1, 60.0, 2550.0));
     let samples = &outcome.recording.robots[0].samples;
-    let begins = samples.iter().position(|s| s.t_s > 0.5 && s.speed_override < 0.99).unwrap();
+    let begins = samples.iter().position(|s| s.t_s > 0.5 && s.speed_override < 1.0).unwrap();
     let speed = |i: usize| (samples[i + 1].q[0] - samples[i].q[0]) / 0.002;
     let cruising = speed(begins);
     assert!(cruising > 1.9);
@@ -72,7 +76,7 @@ fn an_override_counts_after_the_reaction_time() {
 fn six_axis_arms_that_brake_softly_stay_outside() {
     let mut random = fastrand(7);
     let (mut slowed, mut cells) = (0, 0);
-    for case in 0..24 {
+    for case in 0..60 {
         let stop_time = [0.3, 0.5][case % 2];
         let angle = |r: &mut dyn FnMut() -> f64, range: f64| (r() * 2.0 - 1.0) * range;
         let ranges = [150.0, 60.0, 60.0, 120.0, 90.0, 180.0];
@@ -94,10 +98,10 @@ fn six_axis_arms_that_brake_softly_stay_outside() {
             continue;
         }
         cells += 1;
-        slowed += usize::from(outcome.recording.robots[0].min_override < 0.5);
+        slowed += usize::from(outcome.recording.robots[0].min_override < 0.9);
         assert!(!region.entered, "entered:\n{text}");
     }
-    assert!(cells > 12 && slowed > 4, "{cells} cells, {slowed} slowed");
+    assert!(cells > 30 && slowed > 8, "{cells} cells, {slowed} slowed");
 }
 
 /// xorshift64*, 0..1.
