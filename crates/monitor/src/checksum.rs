@@ -184,3 +184,6 @@ impl Sink {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
