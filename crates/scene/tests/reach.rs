@@ -18,12 +18,13 @@ fn arm(r: &mut Random, joints: usize) -> Robot {
     let joint = |i: usize, r: &mut Random| {
         let slides = r.unit() < 0.25;
         let middle = r.between(-0.5, 0.5);
+        let offset = if r.unit() < 0.5 { 0.4 } else { 0.02 };
         Joint {
             name: format!("j{i}"),
             kind: if slides { JointKind::Prismatic } else { JointKind::Revolute },
             parent: LinkId(i),
             child: LinkId(i + 1),
-            origin: Pose::from_translation(r.vec3(if r.unit() < 0.5 { 0.4 } else { 0.02 })),
+            origin: Pose::from_translation(r.vec3(offset)),
             axis: [Vec3::X, Vec3::Y, Vec3::Z][(r.unit() * 3.0) as usize],
             limits: Limits::range(middle - r.between(0.2, 1.2), middle + r.between(0.2, 1.2)),
             mimic: (follows && i == 2).then_some(Mimic { joint: JointId(0), multiplier: -1.5, offset: 0.1 }),

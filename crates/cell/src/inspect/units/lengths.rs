@@ -1,8 +1,8 @@
 //! Lengths: solids against the chain that carries them, and the chain against a workshop.
 //!
 //! The chain's own dimensions are the reference `R`: the longest way from the root to a leaf through the origins and
-//! strokes of its joints. Of 35 published arms the largest edges of the boxes of all moved links together are 0.95 to 1.9
-//! times `R`: near enough to each other to tell factors of 2.5 apart. A chain of few links has no such rule; there only what is
+//! strokes of its joints. Of 35 published arms the largest edges of the boxes of all moved links together are 1.0 to 1.65
+//! times that way without strokes: near enough to each other to tell factors of 2.5 apart. A chain of few links has no such rule; there only what is
 //! far too large or too small is in doubt.
 
 use elbowroom_kinematics::{Chain, JointId, JointKind, LinkId};
@@ -13,7 +13,7 @@ use super::UnitDoubt;
 use super::factor::{self, Mistake};
 
 /// All moved links together, in longest ways through the chain, where the units are right.
-const TOGETHER: f64 = 1.2;
+const TOGETHER: f64 = 1.3;
 /// So many moved links with solids make an arm that this is known of.
 const ARM: usize = 4;
 /// A link this many times larger than the chain is long is in doubt,
@@ -36,6 +36,8 @@ struct Sizes<'r> {
     chain: &'r Chain,
     /// Longest way through the chain, m.
     reference: f64,
+    /// The same without strokes, m: what the links of an arm are compared with.
+    arm: f64,
     /// Links with solids: largest edge of the box around them, m, and whether a joint moves the link.
     links: Vec<(LinkId, f64, bool)>,
 }
@@ -63,7 +65,8 @@ impl<'r> Sizes<'r> {
         let chain = &robot.chain;
         let moved = |l: usize| chain.path(LinkId(l)).iter().any(|j| chain.joints()[j.0].kind.moves());
         let link = |l: usize| Some((LinkId(l), extent(robot, l)?, moved(l)));
-        Self { chain, reference: longest_way(chain), links: (0..robot.bodies.len()).filter_map(link).collect() }
+        let (reference, arm) = (longest_way(chain, true), longest_way(chain, false));
+        Self { chain, reference, arm, links: (0..robot.bodies.len()).filter_map(link).collect() }
     }
 
     fn moved(&self) -> impl Iterator<Item = f64> + '_ {
@@ -77,28 +80,33 @@ impl<'r> Sizes<'r> {
     /// How many times too large moved links of `extents` (m) are together; `whole` of them make the arm.
     fn times(&self, extents: &[f64], whole: usize) -> f64 {
         let together = extents.iter().sum::<f64>() * whole as f64 / extents.len() as f64;
-        together / (TOGETHER * self.reference)
+        together / (TOGETHER * self.arm)
     }
 
     /// The moved links that are not far larger than the chain, m.
     fn ordinary(&self) -> Vec<f64> {
-        self.moved().filter(|e| *e <= LARGE_IN_ARM * self.reference).collect()
+        self.moved().filter(|e| *e <= LARGE_IN_ARM * self.arm).collect()
+    }
+
+    /// True where links are as long as the ways between joints. Those of a gantry are as long as its strokes.
+    fn is_arm(&self) -> bool {
+        self.arm > 0.0 && self.arm.is_finite() && self.reference <= 3.0 * self.arm && self.moved().count() >= ARM
     }
 
     /// True where the moved links are those of an arm, but for some that are far too large.
     fn is_arm_but_for_some(&self) -> bool {
         let (ordinary, moved) = (self.ordinary(), self.moved().count());
-        moved >= ARM && 2 * ordinary.len() >= moved && factor::nearest(self.times(&ordinary, moved)).is_none()
+        self.is_arm() && 2 * ordinary.len() >= moved && factor::nearest(self.times(&ordinary, moved)).is_none()
     }
 
     /// All meshes of an arm by the same factor, or all of its joints.
     fn all_links(&self) -> Option<UnitDoubt> {
         let moved: Vec<f64> = self.moved().collect();
-        if moved.len() < ARM || self.is_arm_but_for_some() {
+        if !self.is_arm() || self.is_arm_but_for_some() {
             return None;
         }
         let mistake = factor::nearest(self.times(&moved, moved.len()))?;
-        let (largest, reference) = (self.largest(), self.reference);
+        let (largest, reference) = (self.largest(), self.arm);
         if mistake.factor < 1.0 && reference > FAR_M {
             let times = reference / (moved.iter().sum::<f64>() / TOGETHER);
             return Some(self.joints(factor::nearest(times)?));
@@ -122,11 +130,12 @@ impl<'r> Sizes<'r> {
             (true, false) => LARGE,
             (false, _) => LARGE_AND_FIXED,
         };
-        if !(extent_m > bound * self.reference && (in_arm || extent_m > LARGE_M)) {
+        let reference = if in_arm { self.arm } else { self.reference };
+        if !(extent_m > bound * reference && (in_arm || extent_m > LARGE_M)) {
             return None;
         }
-        let mistake = factor::nearest(extent_m / (LINK * self.reference)).filter(|m| m.factor > 1.0)?;
-        let (name, reference) = (&self.chain.links()[link.0], self.reference);
+        let mistake = factor::nearest(extent_m / (LINK * reference)).filter(|m| m.factor > 1.0)?;
+        let name = &self.chain.links()[link.0];
         let reason = format!(
             "link `{name}` is {extent_m:.4} m large on a chain of {reference:.4} m: {}\n  write: {}",
             mistake.words,
@@ -254,12 +263,12 @@ fn stroke(lower: f64, upper: f64) -> Option<f64> {
     farthest.is_finite().then_some(farthest)
 }
 
-/// Strokes that are in doubt themselves are no reference.
-fn longest_way(chain: &Chain) -> f64 {
+/// The longest way from the root to a leaf, m. Strokes that are in doubt themselves are no reference.
+fn longest_way(chain: &Chain, strokes: bool) -> f64 {
     let stride = |id: &JointId| {
         let joint = &chain.joints()[id.0];
         let stroke = match joint.kind {
-            JointKind::Prismatic => stroke(joint.limits.lower, joint.limits.upper).filter(|s| *s <= FAR_M),
+            JointKind::Prismatic if strokes => stroke(joint.limits.lower, joint.limits.upper).filter(|s| *s <= FAR_M),
             _ => None,
         };
         joint.origin.translation.length() + stroke.unwrap_or(0.0)
