@@ -10,9 +10,10 @@ pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl 
     let (whose, file) = if name.is_some() { ("at its `start`", "srdf = \"FILE\"") } else { ("at rest", "--srdf FILE") };
     pairs::resting_contacts(robot, rest).into_iter().map(move |found| {
         let (a, b) = (&links[found.a.0], &links[found.b.0]);
-        let often = match found.always() {
-            true => format!("in all {} states of the joint space that were looked at", found.samples),
-            false => format!("in {} of {} states of the joint space", found.contacts, found.samples),
+        let often = if found.always() {
+            format!("in all {} states of the joint space that were looked at", found.samples)
+        } else {
+            format!("in {} of {} states of the joint space", found.contacts, found.samples)
         };
         let what = format!(
             "{of_robot}links `{a}` and `{b}` touch {whose}, and {often}, with no solid between them: every such state \

@@ -92,7 +92,7 @@ fn query_tests_likely_pairs_first_and_answers_alike() {
     let colliding = collides.iter().filter(|c| **c).count();
     assert!((300..1000).contains(&colliding), "{colliding}");
     let looked = |c: &Counts| c.pairs_tested.l3;
-    println!(
+    eprintln!(
         "{colliding} of 1000 collide; exact tests: {} by hierarchy, {} by weight",
         looked(&plain),
         looked(&weighed)
@@ -131,6 +131,6 @@ fn weights_before_anything_was_asked_already_save_tests() {
         checker.collides(&state);
         tests += checker.counts().pairs_tested.l3;
     }
-    println!("exact tests: {} by hierarchy, {tests} by the weights that models give", plain.pairs_tested.l3);
+    eprintln!("exact tests: {} by hierarchy, {tests} by the weights that models give", plain.pairs_tested.l3);
     assert!(tests * 20 < plain.pairs_tested.l3 * 19, "{tests} {}", plain.pairs_tested.l3);
 }

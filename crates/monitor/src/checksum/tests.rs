@@ -177,12 +177,12 @@ fn of_region() -> Vec<Named> {
 }
 
 fn of_laws() -> Vec<Named> {
-    let Laws { direction_aware: _, recovery: _, stopping_distance, override_rate: _, stale_s: _ } =
-        configuration().laws;
-    let Stopping { reaction_s: _, joint_deceleration: _ } = stopping_distance.unwrap();
     fn stopping(c: &mut Configuration) -> &mut Stopping {
         c.laws.stopping_distance.as_mut().unwrap()
     }
+    let Laws { direction_aware: _, recovery: _, stopping_distance, override_rate: _, stale_s: _ } =
+        configuration().laws;
+    let Stopping { reaction_s: _, joint_deceleration: _ } = stopping_distance.unwrap();
     vec![
         ("direction_aware", |c| c.laws.direction_aware ^= true),
         ("recovery", |c| c.laws.recovery += 1e-9),
