@@ -41,6 +41,7 @@ mod png;
 pub mod query;
 mod recording;
 pub mod report;
+mod resting;
 pub mod run;
 mod summary;
 pub mod watch;

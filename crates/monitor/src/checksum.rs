@@ -186,3 +186,6 @@ impl Sink {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
