@@ -139,6 +139,7 @@ impl Sink {
             Part::Tcp => 0,
             Part::Tool => 1,
             Part::Arm => 2,
+            Part::TcpOutside => 3,
         });
         self.count(volume.link.0);
         self.pose(&volume.in_link);

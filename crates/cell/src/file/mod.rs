@@ -1,6 +1,7 @@
 //! The cell file: TOML in, [`Cell`](crate::Cell) out. `docs/cell-file.md` describes every key.
 
 mod avoidance;
+mod guarding;
 mod models;
 mod node;
 mod object;
@@ -217,7 +218,9 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     let known = region::Known { robots: &cell.robots, encoders: &cell.encoders };
     let mut regions = Vec::new();
     for (name, t) in root.named("region")? {
-        regions.push(region::read(name, &t, cell.units, &known, warnings)?);
+        let region = region::read(name, &t, cell.units, &known, warnings)?;
+        guarding::check(&t, &region, &cell.robots, warnings)?;
+        regions.push(region);
     }
     cell.regions = regions;
     Ok(())
