@@ -5,6 +5,7 @@ mod guarding;
 mod models;
 mod node;
 mod object;
+mod plausible;
 mod program;
 mod read;
 mod region;
@@ -123,6 +124,7 @@ impl CellFile {
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
         check(&root, &mut cell)?;
+        plausible::check(&root, &cell, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }
