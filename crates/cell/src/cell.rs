@@ -184,6 +184,8 @@ pub enum Travel {
 pub struct CellLaws {
     /// As the monitors take them, without stopping distance.
     pub laws: Laws,
+    /// Time from the monitor's answer to the first deceleration, s: `reaction_ms`, or one tick.
+    pub reaction_s: f64,
     /// Reaction time (s) of the stopping-distance law, where that is on.
     pub stopping_reaction_s: Option<f64>,
 }

@@ -65,7 +65,7 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
 }
 
 /// The lock of each exchange region; zones that overlap share one, so that nobody waits in a circle.
-fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
+pub(crate) fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     let exchange: Vec<usize> =
         (0..cell.regions.len()).filter(|i| matches!(cell.regions[*i].region.kind, Kind::Exchange { .. })).collect();
     // Grouping looks at `follow`, which the cell keeps beside the region.

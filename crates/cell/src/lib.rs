@@ -28,6 +28,7 @@
 //! ```
 
 mod cell;
+pub mod check;
 pub mod configure;
 pub mod csv;
 mod fence;

@@ -196,7 +196,11 @@ fn tick_ms(v: &Value<'_>) -> Result<f64> {
 }
 
 fn laws(root: &Table<'_>) -> Result<CellLaws> {
-    let Some(v) = root.get("monitor") else { return Ok(CellLaws::default()) };
+    // By default the reaction is the time until the next tick obeys.
+    let tick_s = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0;
+    let Some(v) = root.get("monitor") else {
+        return Ok(CellLaws { reaction_s: tick_s, ..CellLaws::default() });
+    };
     let t = v.table("[monitor]")?;
     t.only(&["direction_aware", "recovery", "stopping_distance", "reaction_ms", "override_rate", "stale_ms"])?;
     let mut laws = Laws { direction_aware: t.flag_or("direction_aware", false)?, ..Laws::default() };
@@ -209,11 +213,9 @@ fn laws(root: &Table<'_>) -> Result<CellLaws> {
     if let Some(v) = t.get("stale_ms") {
         laws.stale_s = v.positive()? / 1000.0;
     }
-    let reaction = t.get("reaction_ms").map(|v| v.not_negative()).transpose()?;
+    let reaction_s = t.get("reaction_ms").map_or(Ok(tick_s), |v| v.not_negative().map(|ms| ms / 1000.0))?;
     let stopping = t.flag_or("stopping_distance", false)?;
-    // By default the reaction is the time until the next tick obeys.
-    let tick = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))?;
-    Ok(CellLaws { laws, stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0) })
+    Ok(CellLaws { laws, reaction_s, stopping_reaction_s: stopping.then_some(reaction_s) })
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
