@@ -56,5 +56,5 @@ pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack,
     Sample, Span, TickTimes,
 };
-pub use run::{RunOptions, RunOutcome, simulate};
+pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

@@ -2,6 +2,7 @@
 
 mod avoid;
 mod ending;
+mod faults;
 pub(crate) mod frames;
 mod regions;
 
@@ -18,6 +19,7 @@ use crate::motion::{Clock, plan};
 use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
 use avoid::Evasive;
 use ending::{Ending, Halt};
+pub use faults::{InputFault, InputFaultKind};
 use frames::Frames;
 use regions::Regions;
 
@@ -32,11 +34,14 @@ pub struct RunOptions {
     pub repeat: u32,
     /// Fault injection: robots (by index) whose controller falls silent at a time (s), standing where they are.
     pub vanish: Vec<(usize, f64)>,
+    /// Fault injection: what the robots' monitors are told instead of the truth. Where two faults of one robot overlap,
+    /// the first in this list counts.
+    pub faults: Vec<InputFault>,
 }
 
 impl Default for RunOptions {
     fn default() -> Self {
-        Self { monitored: true, evasive: true, repeat: 1, vanish: Vec::new() }
+        Self { monitored: true, evasive: true, repeat: 1, vanish: Vec::new(), faults: Vec::new() }
     }
 }
 
@@ -130,6 +135,7 @@ struct Run<'a> {
     states: Vec<ChainState>,
     scratch: Vec<ChainState>,
     frames: Frames<'a>,
+    inputs: faults::Inputs<'a>,
     regions: Regions<'a>,
     checker: FirstContacts<'a>,
     tracks: Vec<RobotTrack>,
@@ -171,6 +177,7 @@ impl<'a> Run<'a> {
             scratch: states.clone(),
             states,
             frames: Frames::new(cell),
+            inputs: faults::Inputs::new(&options.faults, cell.robots.len()),
             regions: Regions::new(cell, setups),
             checker: FirstContacts::new(
                 cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
@@ -290,6 +297,7 @@ impl<'a> Run<'a> {
             intent: Some(self.evasive[i].as_ref().map_or(clock.intent(), |e| e.intent(clock))),
             sources: &sources,
         };
+        let Some(snapshot) = self.inputs.pass(i, &snapshot) else { return self.record_unheard(i, t_s) };
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
@@ -327,6 +335,14 @@ impl<'a> Run<'a> {
     fn record_vanished(&mut self, i: usize, t_s: f64) {
         self.obeyed[i] = 0.0;
         self.record(i, t_s, 0.0, None, None, Reason::Fault(elbowroom_monitor::Fault::Stale));
+    }
+
+    /// Nothing reached the monitor, so it said nothing.
+    fn record_unheard(&mut self, i: usize, t_s: f64) {
+        if self.options.monitored && !self.inputs.goes_on(i, t_s) {
+            self.obeyed[i] = 0.0;
+        }
+        self.record(i, t_s, self.obeyed[i], None, None, Reason::Fault(elbowroom_monitor::Fault::Stale));
     }
 
     fn record(&mut self, i: usize, t_s: f64, o: f64, region: Option<usize>, distance_m: Option<f64>, reason: Reason) {
