@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_monitor::{Laws, Part, Region, Volume, VolumeModel, arm_volumes};
+use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
 use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::Mover;
+use crate::{Mover, PoseTrack};
 
 /// A tool centre point so near to a solid (m) lies on its surface: a flange's frame lies on the flange's face.
 const ON_SURFACE_M: f64 = 1e-6;
@@ -39,6 +39,8 @@ pub struct Cell {
     pub regions: Vec<CellRegion>,
     /// In file order.
     pub encoders: Vec<Encoder>,
+    /// Files of poses that regions follow.
+    pub pose_tracks: Vec<PoseTrack>,
     /// The laws of all monitors; joint decelerations are filled in per robot.
     pub laws: CellLaws,
     /// One per robot; `None` for a robot that stands at its start.
@@ -130,6 +132,8 @@ pub struct CellRegion {
     pub robots: Vec<usize>,
     /// What carries it.
     pub follow: Option<Follow>,
+    /// The fastest motion of that which the monitors believe.
+    pub source_limits: SourceLimits,
 }
 
 /// What a dynamic region rides on.
@@ -146,6 +150,10 @@ pub enum Follow {
     },
     /// Index of an encoder.
     Encoder(usize),
+    /// Index of an object, which may move or stand.
+    Object(usize),
+    /// Index of a file of poses.
+    Poses(usize),
 }
 
 /// A conveyor or a rail: something that travels along a line.

@@ -93,7 +93,7 @@ fn a_region_that_nobody_reaches_is_said_without_a_unit_that_makes_no_sense() {
     let all = warnings(&cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]"));
     assert!(all.len() == 1 && all[0].contains("beyond reach") && !all[0].contains("units ="), "{all:#?}");
     // Its warning zone reaches the robot.
-    let zone = cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]").replace("height = 1200\nwarning = 250", "height = 1200\nwarning = 9500");
+    let zone = cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]").replace("height = 1200\nwarning = 250", "height = 1200\nwarning = 9900");
     assert_eq!(warnings(&zone), Vec::<String>::new());
 }
 

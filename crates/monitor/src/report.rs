@@ -110,6 +110,12 @@ pub enum Fault {
         /// The region.
         region: RegionId,
     },
+    /// The source of motion that an active region follows is farther away than it can be by now, or than the motion that it
+    /// states explains.
+    SourceJump {
+        /// The region.
+        region: RegionId,
+    },
 }
 
 impl fmt::Display for Fault {
@@ -123,6 +129,9 @@ impl fmt::Display for Fault {
             Self::BeyondLimits { joint } => write!(f, "joint {joint} is beyond its limits"),
             Self::TooFast { joint } => write!(f, "joint {joint} moves faster than it can"),
             Self::Source { region } => write!(f, "the source that region {} follows is lost", region.0),
+            Self::SourceJump { region } => {
+                write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)
+            }
         }
     }
 }

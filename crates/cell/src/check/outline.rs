@@ -6,6 +6,9 @@ use elbowroom_spatial::{Motion, Pose, Vec3};
 /// Convex hulls with more corners than this are enclosed by their box.
 const MOST_CORNERS: usize = 64;
 
+/// As far (m) as anything in a cell is from anything else: where a half-space is asked how far it reaches.
+const ENDLESS_M: f64 = 1e6;
+
 /// A solid between balls of one radius around `points`: the speed of a rigid motion is a convex function of the place, so
 /// that it is largest at one of the points, but for the radius.
 #[derive(Debug, Clone)]
@@ -25,6 +28,11 @@ impl Outline {
             _ => (corners(shape), 0.0),
         };
         Self { points: points.into_iter().map(|p| pose.transform_point(p)).collect(), radius }
+    }
+
+    /// No point of the solid is farther from the origin of the points' frame, m.
+    pub fn farthest_m(&self) -> f64 {
+        self.points.iter().map(|p| p.length()).fold(0.0, f64::max) + self.radius.min(ENDLESS_M)
     }
 
     /// No point of the solid moves faster, m/s; `motion` is that of the frame of the points, seen from `frame`'s parent.
