@@ -28,6 +28,7 @@
 //! ```
 
 mod cell;
+pub mod check;
 pub mod configure;
 pub mod csv;
 mod fence;
@@ -38,6 +39,7 @@ pub mod motion;
 mod mover;
 pub mod plan;
 mod png;
+mod poses;
 pub mod query;
 mod recording;
 pub mod report;
@@ -52,6 +54,7 @@ pub use cell::{
 };
 pub use file::{CellFile, NumberTable};
 pub use mover::{Drive, Leg, Mover, Repeat, Way};
+pub use poses::PoseTrack;
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack,
     Sample, Span, TickTimes,

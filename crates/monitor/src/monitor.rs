@@ -11,6 +11,7 @@ use crate::laws::rate_limited;
 use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
+use crate::source_watch::{SourceWatch, Trust};
 use crate::stopping::{StoppingLaw, TickState};
 use crate::verdict::{Judge, LOOKAHEAD_S};
 use crate::watchdog::Watchdog;
@@ -40,6 +41,7 @@ pub struct Monitor {
     /// Switched since the last tick.
     switched: Vec<(RegionId, bool)>,
     watchdog: Watchdog,
+    source_watch: SourceWatch,
     seat: Option<Seat>,
     last_override: Option<f64>,
     fault: Option<Fault>,
@@ -80,6 +82,7 @@ impl Monitor {
             outputs: Outputs::new(),
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
+            source_watch: SourceWatch::new(config.sources.len()),
             watchdog: Watchdog::new(&config.chain, laws),
             last_override: None,
             fault: None,
@@ -220,13 +223,14 @@ impl Monitor {
         self.gaps.clear();
     }
 
-    fn check_sources(&self, s: &Snapshot) -> Result<(), Fault> {
+    fn check_sources(&mut self, s: &Snapshot) -> Result<(), Fault> {
+        self.source_watch.look(&self.config.sources, s.sources, s.now_s, self.config.laws.stale_s);
         for (r, source) in self.now.riders.iter().filter(|(r, _)| self.active[*r]) {
-            let source = &s.sources[*source];
-            let age = s.now_s - source.stamp_s;
-            let fresh = (0.0..=self.config.laws.stale_s).contains(&age);
-            if !(fresh && source.pose.is_finite() && source.motion.is_finite()) {
-                return Err(Fault::Source { region: RegionId(*r) });
+            let region = RegionId(*r);
+            match self.source_watch.trust(*source) {
+                Trust::Believed => {}
+                Trust::Lost => return Err(Fault::Source { region }),
+                Trust::Jumped => return Err(Fault::SourceJump { region }),
             }
         }
         Ok(())
@@ -234,7 +238,10 @@ impl Monitor {
 
     fn stop(&mut self, s: &Snapshot, fault: Fault) -> TickReport {
         if self.fault != Some(fault) {
-            let region = if let Fault::Source { region } = fault { Some(region) } else { None };
+            let region = match fault {
+                Fault::Source { region } | Fault::SourceJump { region } => Some(region),
+                _ => None,
+            };
             self.log.push(region, EventKind::Fault);
         }
         self.fault = Some(fault);
