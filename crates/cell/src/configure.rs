@@ -42,19 +42,34 @@ pub fn setups(cell: &Cell) -> Result<Vec<Setup>, FormatError> {
 /// # Errors
 /// As for [`setups`].
 pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatError> {
-    let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
-    let slots = slots(cell);
-    let count = slots.iter().flatten().map(|s| s.0 + 1).max().unwrap_or(0);
-    let slot_names: Vec<String> = (0..count).map(|i| format!("slot {i}")).collect();
-    let slot_names: Vec<&str> = slot_names.iter().map(String::as_str).collect();
-    // Five ticks of silence, or the board's own patience where that is longer.
-    let patience_s = (5.0 * cell.tick_s).max(0.1);
-    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names).patience(patience_s)));
+    monitors_at(cell, setups, board(cell).as_ref())
+}
+
+/// The monitors, joined by the cell's [`board`].
+///
+/// # Errors
+/// As for [`setups`].
+pub fn monitors_at(cell: &Cell, setups: &[Setup], board: Option<&Arc<Board>>) -> Result<Vec<Monitor>, FormatError> {
     let monitor = |(i, s): (usize, &Setup)| {
-        Monitor::new(s.configuration.clone(), board.clone().map(|b| (b, RobotSlot(i))))
+        Monitor::new(s.configuration.clone(), board.map(|b| (b.clone(), RobotSlot(i))))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
     };
     setups.iter().enumerate().map(monitor).collect()
+}
+
+/// The board of the cell's exchange regions, its robots in the order of the cell; `None` where there are no such regions.
+/// Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
+pub fn board(cell: &Cell) -> Option<Arc<Board>> {
+    let slots = slots(cell);
+    let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
+    let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+    let members = |slot: usize| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
+    let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = (0..count).map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    // Five ticks of silence, or the board's own patience where that is longer.
+    let patience_s = (5.0 * cell.tick_s).max(0.1);
+    Some(Arc::new(Board::new(&robots, &names).patience(patience_s)))
 }
 
 /// SHA-256 (hex) over the checksums of all monitors' configurations.

@@ -7,7 +7,7 @@ use crate::bound::RoundedBox;
 use crate::broad::RegionTree;
 use crate::placement::Placement;
 use crate::witness::Witnesses;
-use crate::{Configuration, RegionId};
+use crate::{Configuration, Kind, RegionId};
 
 /// A volume near a region.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +30,8 @@ pub(crate) struct Gap {
     pub(crate) at_once: f64,
     /// The pair that asks for it.
     pub(crate) asking: Pair,
+    /// False where a volume may not be able to stop outside. Only asked for exchange regions; true for others.
+    pub(crate) stops: bool,
 }
 
 /// All gaps of a tick.
@@ -61,7 +63,10 @@ impl Gaps {
             volume_bounds: config.volumes.iter().map(|v| RoundedBox::around(&v.shape)).collect(),
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
             witnesses: Witnesses::new(config),
-            of_region: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, at_once: 0.0, asking }; config.regions.len()],
+            of_region: vec![
+                Gap { tick: 0, distance: 0.0, asks: 0.0, at_once: 0.0, asking, stops: true };
+                config.regions.len()
+            ],
             near: Vec::with_capacity(config.regions.len()),
             tick: 0,
             measured_pairs: 0,
@@ -164,10 +169,12 @@ impl<L: PairLaw> Measuring<'_, L> {
     fn note(&mut self, pair: Pair, fresh: bool) {
         let Asked { speed_override: asks, at_once } = self.law.asks(&pair);
         let distance = pair.separation.distance;
+        let exchanged = matches!(self.config.regions[pair.region].kind, Kind::Exchange { .. });
+        let stops = !exchanged || self.law.stops_outside(&pair);
         let gap = &mut self.of_region[pair.region];
         if fresh {
             self.near.push(pair.region as u32);
-            *gap = Gap { tick: self.tick, distance, asks, at_once, asking: pair };
+            *gap = Gap { tick: self.tick, distance, asks, at_once, asking: pair, stops };
             return;
         }
         if asks < gap.asks || (asks == gap.asks && distance < gap.distance) {
@@ -175,6 +182,7 @@ impl<L: PairLaw> Measuring<'_, L> {
         }
         gap.distance = gap.distance.min(distance);
         gap.at_once = gap.at_once.min(at_once);
+        gap.stops &= stops;
     }
 }
 
@@ -203,6 +211,8 @@ impl Asked {
 pub(crate) trait PairLaw {
     /// The override that a pair asks for.
     fn asks(&self, pair: &Pair) -> Asked;
+    /// True where the robot, told to stop from this tick on, is sure to stop before the pair touches.
+    fn stops_outside(&self, pair: &Pair) -> bool;
     /// How far (m) beyond its warning zone a region can still ask something of this volume.
     fn extra_reach(&self, volume: usize) -> f64;
     /// True where farther pairs never ask for less than closer ones.

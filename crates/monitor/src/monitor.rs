@@ -112,7 +112,9 @@ impl Monitor {
         }
         self.update_presence();
         if let Some(seat) = &mut self.seat {
-            seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
+            let Self { active, presence, gaps, log, .. } = self;
+            let stops = |r: usize| gaps.get(r).is_none_or(|g| g.stops);
+            seat.update(|r| (active[r.0], presence[r.0], stops(r.0)), s.now_s, log);
         }
         self.conclude(s, dt_s)
     }
@@ -132,6 +134,9 @@ impl Monitor {
         }
         if self.active[region.0] != on {
             self.active[region.0] = on;
+            if let (true, Kind::Exchange { slot }, Some(seat)) = (on, r.kind, &self.seat) {
+                seat.forget(slot);
+            }
             if self.switched.len() < self.switched.capacity() {
                 self.switched.push((region, on));
             }
@@ -298,7 +303,9 @@ impl Monitor {
             law.begin(config, stopping, &tick);
             (stopping, &*law)
         });
-        let judge = Judge { config, snapshot: s, now, soon: soon.as_ref(), intent: intent.as_ref(), stopping };
+        let last_override = last_override.unwrap_or(0.0);
+        let (soon, intent) = (soon.as_ref(), intent.as_ref());
+        let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping };
         gaps.measure(config, active, now, &judge);
     }
 
