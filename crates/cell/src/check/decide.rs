@@ -149,7 +149,8 @@ impl Pair<'_> {
             let rate = self.cell.laws.laws.override_rate;
             format!("`override_rate` = {rate} per second is slower than the robot could brake")
         };
-        let key = if self.cell.laws.stopping_reaction_s.is_none() { "stopping_distance = true" } else { "override_rate = 0" };
+        let key =
+            if self.cell.laws.stopping_reaction_s.is_none() { "stopping_distance = true" } else { "override_rate = 0" };
         if needed <= zone {
             let why = format!(
                 "{law}, and `direction_aware` lets it go at full speed along the border, from where its path can bend inwards"
@@ -164,7 +165,10 @@ impl Pair<'_> {
             units.show_length(zone),
         );
         let enough = units.in_file_units(needed);
-        Some(Missing::new(why, format!("{key} in [monitor], or warning = {enough} in [region.{}]", self.region().region.name)))
+        Some(Missing::new(
+            why,
+            format!("{key} in [monitor], or warning = {enough} in [region.{}]", self.region().region.name),
+        ))
     }
 
     /// `(8000 mm/s², 2 ms reaction)`.
@@ -200,7 +204,8 @@ impl Pair<'_> {
     fn proof(&self) -> String {
         let units = self.cell.units;
         let reaction = format!("reaction {} ms", round(self.cell.laws.reaction_s * 1e3));
-        let exchange = if matches!(self.region().region.kind, Kind::Exchange { .. }) { "without the grant " } else { "" };
+        let exchange =
+            if matches!(self.region().region.kind, Kind::Exchange { .. }) { "without the grant " } else { "" };
         if self.fastest_m_s() <= 0.0 {
             return "no program moves what is guarded, and it stands outside".into();
         }

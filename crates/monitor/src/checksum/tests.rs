@@ -36,7 +36,12 @@ fn configuration() -> Configuration {
         warning_output: Some(2),
         ..Region::sphere("r", Vec3::X, 0.2).warning(0.3).kind(Kind::Monitored { slow_to: Some(0.5) })
     };
-    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![3.0, 4.0] };
+    let stopping = Stopping {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![3.0, 4.0],
+        joint_acceleration: vec![5.0, 6.0],
+    };
     Configuration {
         robot: "robot".into(),
         base_in_world: Pose::IDENTITY,
@@ -60,7 +65,7 @@ fn moved() -> Pose {
 }
 
 fn turned() -> Pose {
-    Pose::from_rotation(Rotation::from_axis_angle(Vec3::Y, 1e-9))
+    Pose::new(Rotation::from_axis_angle(Vec3::Y, 1e-9), Vec3::ZERO)
 }
 
 fn top() -> Vec<Named> {
@@ -76,7 +81,10 @@ fn top() -> Vec<Named> {
         ("region gone", |c| _ = c.regions.pop()),
         ("regions in another order", |c| c.regions.reverse()),
         ("source gone", |c| _ = c.sources.pop()),
-        ("source renamed", |c| c.sources[1].push('x')),
+        ("source renamed", |c| c.sources[1].name.push('x')),
+        ("source speed", |c| c.sources[1].limits.speed_m_s += 1e-9),
+        ("source turn", |c| c.sources[1].limits.turn_rad_s += 1e-9),
+        ("source wrap", |c| c.sources[1].limits.wrap_m = Some(Vec3::X)),
         ("names that run together", |c| c.sources = vec!["beltc".into(), "art".into()]),
     ]
 }
@@ -182,12 +190,15 @@ fn of_laws() -> Vec<Named> {
     }
     let Laws { direction_aware: _, recovery: _, stopping_distance, override_rate: _, stale_s: _ } =
         configuration().laws;
-    let Stopping { reaction_s: _, joint_deceleration: _ } = stopping_distance.unwrap();
+    let Stopping { reaction_s: _, period_s: _, joint_deceleration: _, joint_acceleration: _ } =
+        stopping_distance.unwrap();
     vec![
         ("direction_aware", |c| c.laws.direction_aware ^= true),
         ("recovery", |c| c.laws.recovery += 1e-9),
         ("no stopping distance", |c| c.laws.stopping_distance = None),
         ("reaction", |c| stopping(c).reaction_s += 1e-9),
+        ("period", |c| stopping(c).period_s += 1e-9),
+        ("acceleration", |c| stopping(c).joint_acceleration[1] += 1e-9),
         ("deceleration", |c| stopping(c).joint_deceleration[1] += 1e-9),
         ("decelerations exchanged", |c| stopping(c).joint_deceleration.reverse()),
         ("override_rate", |c| c.laws.override_rate += 1e-9),
