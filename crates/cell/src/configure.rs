@@ -6,11 +6,16 @@ use std::sync::Arc;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{
     Board, ConfigError, Configuration, ConfigurationParts, Kind, Monitor, Region, RobotSlot, SlotId, SourceId,
-    Stopping, group_overlapping,
+    SourceLimits, SourceSpec, Stopping, group_overlapping,
 };
 use sha2::{Digest, Sha256};
 
 use crate::{Cell, CellRobot, Follow};
+
+/// Ticks after which a controller that got no answer stops by itself.
+pub const ANSWERS_MISSED: f64 = 2.0;
+/// Linear moves are timed from samples of their course: between those a joint may accelerate by so much more.
+const ACCELERATION_MARGIN: f64 = 1.1;
 
 /// What one robot's monitor is given, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]
@@ -81,7 +86,7 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
 }
 
 /// The lock of each exchange region; zones that overlap share one, so that nobody waits in a circle.
-fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
+pub(crate) fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     let exchange: Vec<usize> =
         (0..cell.regions.len()).filter(|i| matches!(cell.regions[*i].region.kind, Kind::Exchange { .. })).collect();
     // Grouping looks at `follow`, which the cell keeps beside the region.
@@ -101,42 +106,51 @@ fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
 fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<Setup, FormatError> {
     let mut regions = Vec::new();
     let mut indices = Vec::new();
-    let mut sources: Vec<Follow> = Vec::new();
+    let mut sources: Vec<(Follow, SourceLimits)> = Vec::new();
     for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&index)) {
         let mut region = r.region.clone();
         if let Some(slot) = slots[i] {
             region.kind = Kind::Exchange { slot };
         }
         region.follow = r.follow.map(|follow| {
-            let known = sources.iter().position(|s| *s == follow);
+            let source = (follow, r.source_limits);
+            let known = sources.iter().position(|s| *s == source);
             SourceId(known.unwrap_or_else(|| {
-                sources.push(follow);
+                sources.push(source);
                 sources.len() - 1
             }))
         });
         regions.push(region);
         indices.push(i);
     }
-    let stopping_distance = cell
-        .laws
-        .stopping_reaction_s
-        .map(|reaction_s| Stopping { reaction_s, joint_deceleration: robot.limits.iter().map(|l| l.stop).collect() });
+    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
+        reaction_s,
+        // A simulated controller stops by itself where an answer is missing for longer.
+        period_s: ANSWERS_MISSED * cell.tick_s,
+        joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
+        joint_acceleration: robot.limits.iter().map(|l| ACCELERATION_MARGIN * l.acceleration).collect(),
+    });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,
         chain: robot.robot.chain.clone(),
         volumes: robot.guarded_volumes(),
         regions,
-        sources: sources.iter().map(|s| source_name(cell, s)).collect(),
+        sources: sources.iter().map(|(s, limits)| SourceSpec { name: source_name(cell, s), limits: *limits }).collect(),
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
-    Ok(Setup { configuration, regions: indices, sources })
+    Ok(Setup { configuration, regions: indices, sources: sources.into_iter().map(|s| s.0).collect() })
 }
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {
     match follow {
         Follow::Encoder(i) => format!("encoder {}", cell.encoders[*i].name),
+        Follow::Object(i) => format!("object {}", cell.objects[*i].name),
+        Follow::Poses(i) => {
+            let file = cell.pose_tracks[*i].file.file_name();
+            format!("poses {}", file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+        }
         Follow::Robot { robot, link, .. } => {
             let robot = &cell.robots[*robot];
             format!("{}/{}", robot.name, robot.robot.chain.links()[link.0])
