@@ -167,7 +167,8 @@ impl<L: PairLaw> Measuring<'_, L> {
     }
 
     fn note(&mut self, pair: Pair, fresh: bool) {
-        let Asked { speed_override: asks, at_once } = self.law.asks(&pair);
+        let so_far = if fresh { f64::INFINITY } else { self.of_region[pair.region].asks };
+        let Asked { speed_override: asks, at_once } = self.law.asks(&pair, so_far);
         let distance = pair.separation.distance;
         let exchanged = matches!(self.config.regions[pair.region].kind, Kind::Exchange { .. });
         let stops = !exchanged || self.law.stops_outside(&pair);
@@ -209,8 +210,9 @@ impl Asked {
 
 /// How a pair is judged while gaps are measured.
 pub(crate) trait PairLaw {
-    /// The override that a pair asks for.
-    fn asks(&self, pair: &Pair) -> Asked;
+    /// The override that a pair asks for. Another pair of the same region asks for `so_far`: an answer that is not below that
+    /// need not be exact.
+    fn asks(&self, pair: &Pair, so_far: f64) -> Asked;
     /// True where the robot, told to stop from this tick on, is sure to stop before the pair touches.
     fn stops_outside(&self, pair: &Pair) -> bool;
     /// How far (m) beyond its warning zone a region can still ask something of this volume.

@@ -47,27 +47,31 @@ enum Course {
 }
 
 impl Judge<'_> {
-    fn forbidden(&self, pair: &Pair) -> Asked {
+    fn forbidden(&self, pair: &Pair, so_far: f64) -> Asked {
         let v0 = self.snapshot.programmed_override;
         let warned = v0 * warning_factor(pair.separation.distance, self.config.regions[pair.region].warning_m);
-        let stopping = self.stopping_limit(pair, STOP_SHORT_M);
-        let held = Asked { speed_override: warned.min(stopping), at_once: stopping };
-        if self.soon.is_none() || held.speed_override >= v0 {
+        // What a warning zone or another pair asks for is proven to be slow enough more quickly than the limit is found. Where
+        // the override falls at a limited rate it may be above what the zone asks for: then the limit itself counts.
+        let most = if self.config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
+        let stopping = self.stopping_limit(pair, STOP_SHORT_M, most);
+        let held = Asked { speed_override: warned.min(stopping), at_once: stopping.min(v0) };
+        if self.soon.is_none() || held.speed_override >= v0.min(so_far) {
             return held;
         }
         match self.course(pair) {
             Course::Approaching => held,
-            Course::Leaving => Asked::at_once(self.stopping_limit(pair, 0.0)),
+            Course::Leaving => {
+                Asked::at_once(self.stopping_limit(pair, 0.0, if most < v0 { v0.min(so_far) } else { v0 }))
+            }
             Course::Recovering => Asked::at_once(v0 * self.config.laws.recovery),
         }
     }
 
-    /// The largest override from which a stop still ends `short_m` (m) before the region; the programmed one where the law is
-    /// off.
-    fn stopping_limit(&self, pair: &Pair, short_m: f64) -> f64 {
-        let v0 = self.snapshot.programmed_override;
-        let Some((stopping, law)) = self.stopping else { return v0 };
-        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, v0))
+    /// The largest override up to `most` from which a stop still ends `short_m` (m) before the region; the programmed one where
+    /// the law is off.
+    fn stopping_limit(&self, pair: &Pair, short_m: f64, most: f64) -> f64 {
+        let Some((stopping, law)) = self.stopping else { return self.snapshot.programmed_override };
+        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, most))
     }
 
     /// `None` on contact.
@@ -193,11 +197,11 @@ impl Judge<'_> {
 }
 
 impl PairLaw for Judge<'_> {
-    fn asks(&self, pair: &Pair) -> Asked {
+    fn asks(&self, pair: &Pair, so_far: f64) -> Asked {
         let v0 = self.snapshot.programmed_override;
         let region = &self.config.regions[pair.region];
         match region.kind {
-            Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair),
+            Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair, so_far),
             Kind::Monitored { slow_to: None } => Asked::gently(v0, v0),
             Kind::Monitored { slow_to: Some(slow) } => {
                 Asked::gently(speed_zone(pair.separation.distance, region.warning_m, slow, v0), v0)
