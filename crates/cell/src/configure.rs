@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{
-    Board, ConfigError, Configuration, Kind, Monitor, Region, RobotSlot, SlotId, SourceId, Stopping, group_overlapping,
+    Board, ConfigError, Configuration, ConfigurationParts, Kind, Monitor, Region, RobotSlot, SlotId, SourceId,
+    Stopping, group_overlapping,
 };
 use sha2::{Digest, Sha256};
 
@@ -105,7 +106,7 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         .laws
         .stopping_reaction_s
         .map(|reaction_s| Stopping { reaction_s, joint_deceleration: robot.limits.iter().map(|l| l.stop).collect() });
-    let configuration = Configuration {
+    let parts = ConfigurationParts {
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,
         chain: robot.robot.chain.clone(),
@@ -114,7 +115,7 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         sources: sources.iter().map(|s| source_name(cell, s)).collect(),
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
-    configuration.validate().map_err(|e| config_error(cell, robot, &e))?;
+    let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
     Ok(Setup { configuration, regions: indices, sources })
 }
 

@@ -28,7 +28,7 @@ impl<'m> RegionFence<'m> {
     pub fn new(monitor: &'m Monitor, sources: &[Source], share: f64, least_m: f64) -> Option<Self> {
         let gauge = monitor.gauge(sources);
         let keep = |r: &'m elbowroom_monitor::Region| (share * r.warning_m).max(least_m).max(BORDER_M);
-        let each: Vec<_> = monitor.configuration().regions.iter().map(|r| (r.name.as_str(), keep(r))).collect();
+        let each: Vec<_> = monitor.configuration().regions().iter().map(|r| (r.name.as_str(), keep(r))).collect();
         let most_m = gauge.regions().iter().map(|r| each[r.0].1).fold(0.0, f64::max);
         (!gauge.regions().is_empty()).then_some(Self { gauge, each, most_m })
     }

@@ -20,7 +20,7 @@
 //!
 //! ```
 //! use elbowroom::kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
-//! use elbowroom::monitor::{Configuration, Guards, Laws, Monitor, Region, Snapshot, Volume};
+//! use elbowroom::monitor::{Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, Volume};
 //! use elbowroom::spatial::{Pose, Rotation, Vec3, units::{deg, mm}};
 //!
 //! let row = |joint: &str, a: f64| ClassicalRow {
@@ -32,7 +32,7 @@
 //!     .warning(mm(200.0))
 //!     .guards(Guards::TCP);
 //! let mut monitor = Monitor::new(
-//!     Configuration {
+//!     Configuration::new(ConfigurationParts {
 //!         robot: "scara".into(),
 //!         base_in_world: Pose::IDENTITY,
 //!         volumes: vec![Volume::tcp(scara.tip(), Vec3::ZERO)],
@@ -40,7 +40,7 @@
 //!         sources: vec![],
 //!         laws: Laws::default(),
 //!         chain: scara,
-//!     },
+//!     })?,
 //!     None,
 //! )?;
 //! let far = monitor.tick(&Snapshot::still(0.000, &[deg(0.0), deg(0.0)]));

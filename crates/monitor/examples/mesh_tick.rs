@@ -12,10 +12,10 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{Random, configuration};
+use common::{Random, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_monitor::{Configuration, Monitor, Part, Region, Snapshot, Source, SourceId, Volume};
+use elbowroom_monitor::{Configuration, ConfigurationParts, Monitor, Part, Region, Snapshot, Source, SourceId, Volume};
 use elbowroom_proximity::Shape;
 use elbowroom_scene::Robot;
 use elbowroom_spatial::{Motion, Pose, Rotation, Vec3};
@@ -82,8 +82,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
             sources.push(format!("neighbour {}", v.name));
         }
-        let config = Configuration { sources, ..configuration(robot.chain.clone(), own.clone(), all) };
-        let mut monitor = Monitor::new(config, None)?;
+        let parts = ConfigurationParts { sources, ..parts(robot.chain.clone(), own.clone(), all) };
+        let mut monitor = Monitor::new(Configuration::new(parts)?, None)?;
         let mut neighbour = ChainState::new(&robot.chain);
         let base = Pose { rotation: Rotation::from_rpy(0.0, 0.0, 3.0), translation: Vec3::X * apart };
         let (mut times, mut near, mut slowed) = (Vec::new(), 0u64, [0u32; 2]);

@@ -9,8 +9,8 @@ mod common;
 
 use std::time::Instant;
 
-use common::{Random, arm, arm_volumes, configuration};
-use elbowroom_monitor::{Configuration, Laws, Monitor, Region, RegionId, Snapshot, Stopping};
+use common::{Random, arm, arm_volumes, configuration, parts};
+use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Monitor, Region, RegionId, Snapshot, Stopping};
 use elbowroom_spatial::{Rotation, Vec3};
 
 const TICKS: u32 = 200_000;
@@ -59,8 +59,8 @@ fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
 }
 
 fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
-    let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions) };
-    let mut m = Monitor::new(config, None).expect("a valid configuration");
+    let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
+    let mut m = Monitor::new(Configuration::new(parts).expect("valid"), None).expect("a valid configuration");
     let (mut times, mut pairs, mut rate) = (Vec::with_capacity(TICKS as usize), 0_u64, 0.0);
     let mut t = 0.0;
     for i in 0..TICKS {

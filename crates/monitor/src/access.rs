@@ -108,17 +108,21 @@ impl Configuration {
                 changed.regions.push(*region);
             }
             Edit::Change(region) => {
-                let old = changed.allowed_region(who, &region.name, "changing")?;
-                allow(
-                    who,
-                    AccessClass::needed_for(region.life),
-                    format!("making region `{}` {}", region.name, region.life.name()),
-                )?;
-                changed.regions[old] = *region;
+                let at = changed.known(&region.name)?;
+                let (from, to) = (changed.regions[at].life, region.life);
+                let what = if from == to {
+                    format!("changing {} region `{}`", from.name(), region.name)
+                } else {
+                    format!("making {} region `{}` {}", from.name(), region.name, to.name())
+                };
+                allow(who, AccessClass::needed_for(from).max(AccessClass::needed_for(to)), what)?;
+                changed.regions[at] = *region;
             }
             Edit::Remove(name) => {
-                let old = changed.allowed_region(who, &name, "removing")?;
-                changed.regions.remove(old);
+                let at = changed.known(&name)?;
+                let life = changed.regions[at].life;
+                allow(who, AccessClass::needed_for(life), format!("removing {} region `{name}`", life.name()))?;
+                changed.regions.remove(at);
             }
             Edit::Laws(laws) => {
                 allow(who, AccessClass::Integrator, "changing the laws".into())?;
@@ -130,11 +134,8 @@ impl Configuration {
         Ok(())
     }
 
-    fn allowed_region(&self, who: AccessClass, name: &str, doing: &str) -> Result<usize, EditError> {
-        let at = self.region(name).ok_or_else(|| EditError::Unknown(name.into()))?.0;
-        let life = self.regions[at].life;
-        allow(who, AccessClass::needed_for(life), format!("{doing} {} region `{name}`", life.name()))?;
-        Ok(at)
+    fn known(&self, name: &str) -> Result<usize, EditError> {
+        self.region(name).map(|id| id.0).ok_or_else(|| EditError::Unknown(name.into()))
     }
 }
 

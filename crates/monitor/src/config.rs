@@ -5,9 +5,9 @@ use elbowroom_spatial::Pose;
 
 use crate::{Kind, Laws, Region, RegionId, Volume};
 
-/// One robot, its volumes, and the regions that concern it.
+/// What a [`Configuration`] is built from: [`Configuration::new`] checks it.
 #[derive(Debug, Clone)]
-pub struct Configuration {
+pub struct ConfigurationParts {
     /// The robot's name.
     pub robot: String,
     /// Where the chain's root link stands.
@@ -22,6 +22,27 @@ pub struct Configuration {
     pub sources: Vec<String>,
     /// The laws.
     pub laws: Laws,
+}
+
+/// One robot, its volumes, and the regions that concern it: checked when it is built, and changed only by
+/// [`Configuration::edit`], which asks who wants the change.
+///
+/// Its fields cannot be written from outside:
+///
+/// ```compile_fail,E0616
+/// fn remove_all(configuration: &mut elbowroom_monitor::Configuration) {
+///     configuration.regions.clear();
+/// }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Configuration {
+    pub(crate) robot: String,
+    pub(crate) base_in_world: Pose,
+    pub(crate) chain: Chain,
+    pub(crate) volumes: Vec<Volume>,
+    pub(crate) regions: Vec<Region>,
+    pub(crate) sources: Vec<String>,
+    pub(crate) laws: Laws,
 }
 
 /// Why a configuration cannot be monitored.
@@ -58,16 +79,59 @@ pub enum ConfigError {
 }
 
 impl Configuration {
+    /// Checks the parts and puts them together: whatever has been built can be monitored.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that is wrong.
+    pub fn new(parts: ConfigurationParts) -> Result<Self, ConfigError> {
+        let ConfigurationParts { robot, base_in_world, chain, volumes, regions, sources, laws } = parts;
+        let built = Self { robot, base_in_world, chain, volumes, regions, sources, laws };
+        built.validate()?;
+        Ok(built)
+    }
+
+    /// The robot's name.
+    pub fn robot(&self) -> &str {
+        &self.robot
+    }
+
+    /// Where the chain's root link stands.
+    pub fn base_in_world(&self) -> &Pose {
+        &self.base_in_world
+    }
+
+    /// The robot's joints and links.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// What is kept out of regions.
+    pub fn volumes(&self) -> &[Volume] {
+        &self.volumes
+    }
+
+    /// The regions; a [`RegionId`] is an index into them.
+    pub fn regions(&self) -> &[Region] {
+        &self.regions
+    }
+
+    /// Names of the sources that regions follow, in the order of [`Snapshot::sources`](crate::Snapshot::sources).
+    pub fn sources(&self) -> &[String] {
+        &self.sources
+    }
+
+    /// The laws.
+    pub fn laws(&self) -> &Laws {
+        &self.laws
+    }
+
     /// The region of this name.
     pub fn region(&self, name: &str) -> Option<RegionId> {
         self.regions.iter().position(|r| r.name == name).map(RegionId)
     }
 
     /// Checks everything that [`Monitor::new`](crate::Monitor::new) relies on.
-    ///
-    /// # Errors
-    /// [`ConfigError`] names the first thing that is wrong.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
         if !self.base_in_world.is_finite() {
             return Err(ConfigError::Base);
         }

@@ -13,7 +13,7 @@ use crate::{Configuration, Monitor, RegionId, Source};
 ///
 /// ```
 /// use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-/// use elbowroom_monitor::{Configuration, Guards, Laws, Monitor, Region, RegionId, Volume};
+/// use elbowroom_monitor::{Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, RegionId, Volume};
 /// use elbowroom_spatial::{Pose, Vec3};
 ///
 /// let rail = Joint {
@@ -27,7 +27,7 @@ use crate::{Configuration, Monitor, RegionId, Source};
 ///     mimic: None,
 /// };
 /// let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
-/// let configuration = Configuration {
+/// let configuration = Configuration::new(ConfigurationParts {
 ///     robot: "rail".into(),
 ///     base_in_world: Pose::IDENTITY,
 ///     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
@@ -35,7 +35,7 @@ use crate::{Configuration, Monitor, RegionId, Source};
 ///     sources: vec![],
 ///     laws: Laws::default(),
 ///     chain,
-/// };
+/// })?;
 /// let monitor = Monitor::new(configuration, None)?;
 /// let mut gauge = monitor.gauge(&[]);
 /// gauge.place(&[1.0]);

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-//! use elbowroom_monitor::{Configuration, Guards, Laws, Monitor, Region, Snapshot, Volume};
+//! use elbowroom_monitor::{Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, Volume};
 //! use elbowroom_spatial::{Pose, Vec3};
 //!
 //! // A linear axis along x that carries a TCP.
@@ -23,7 +23,7 @@
 //! };
 //! let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
 //! let mut monitor = Monitor::new(
-//!     Configuration {
+//!     Configuration::new(ConfigurationParts {
 //!         robot: "rail".into(),
 //!         base_in_world: Pose::IDENTITY,
 //!         volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
@@ -31,7 +31,7 @@
 //!         sources: vec![],
 //!         laws: Laws::default(),
 //!         chain,
-//!     },
+//!     })?,
 //!     None,
 //! )?;
 //! let report = monitor.tick(&Snapshot::still(0.0, &[1.4]));
@@ -66,7 +66,7 @@ mod watchdog;
 mod witness;
 
 pub use access::{AccessClass, Edit, EditError, SwitchError};
-pub use config::{ConfigError, Configuration};
+pub use config::{ConfigError, Configuration, ConfigurationParts};
 pub use events::{Event, EventKind};
 pub use gauge::Gauge;
 pub use interlock::{Board, Grant, RobotSlot, SlotId, Stay, group_overlapping};

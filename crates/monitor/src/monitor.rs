@@ -57,9 +57,8 @@ impl Monitor {
     /// with the other robots, and this robot's place on it.
     ///
     /// # Errors
-    /// [`ConfigError`] names what cannot be monitored.
+    /// [`ConfigError::NoBoard`] where there are exchange regions, but no board that has their slots.
     pub fn new(config: Configuration, board: Option<(Arc<Board>, RobotSlot)>) -> Result<Self, ConfigError> {
-        config.validate()?;
         let seat = board.and_then(|(board, robot)| Seat::new(board, robot, &config));
         if let (None, Some(region)) = (&seat, config.first_exchange()) {
             return Err(ConfigError::NoBoard(region.name.clone()));

@@ -5,8 +5,10 @@ mod common;
 
 use std::alloc::System;
 
-use common::{Random, arm, arm_volumes, configuration};
-use elbowroom_monitor::{AccessClass, Configuration, Kind, Laws, Life, Monitor, Region, Snapshot, Stopping};
+use common::{Random, arm, arm_volumes, parts};
+use elbowroom_monitor::{
+    AccessClass, Configuration, ConfigurationParts, Kind, Laws, Life, Monitor, Region, Snapshot, Stopping,
+};
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
 
@@ -30,8 +32,8 @@ fn main() {
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
-        let config = Configuration { laws, ..configuration(arm(), arm_volumes(), regions.clone()) };
-        let mut m = Monitor::new(config, None).unwrap();
+        let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions.clone()) };
+        let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
         let mut pairs = 0;

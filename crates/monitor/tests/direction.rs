@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{Random, arm, arm_volumes, configuration, gantry};
+use common::{Random, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    Configuration, Guards, Kind, Laws, Monitor, Reason, Region, RegionId, Snapshot, Source, SourceId, Stopping, Volume,
+    Configuration, ConfigurationParts, Guards, Kind, Laws, Monitor, Reason, Region, RegionId, Snapshot, Source,
+    SourceId, Stopping, Volume,
 };
 use elbowroom_proximity::separation;
 use elbowroom_spatial::{Motion, Obb, Pose, Rotation, Vec3};
@@ -13,7 +14,8 @@ use elbowroom_spatial::{Motion, Obb, Pose, Rotation, Vec3};
 fn point_monitor(regions: Vec<Region>, laws: Laws) -> Monitor {
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
     let regions = regions.into_iter().map(|r| r.guards(Guards::TCP)).collect();
-    Monitor::new(Configuration { laws, ..configuration(gantry(), volumes, regions) }, None).unwrap()
+    let parts = ConfigurationParts { laws, ..parts(gantry(), volumes, regions) };
+    Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
 }
 
 fn ball() -> Region {
@@ -86,9 +88,10 @@ fn a_shrinking_gap_never_clears_an_alarm() {
             1 => Region::cylinder("c", at, 0.1, 0.3, rotation),
             _ => Region::cuboid("b", at, Vec3::new(0.2, 0.15, 0.3), rotation),
         };
-        let config = configuration(arm(), arm_volumes(), vec![region.warning(0.3)]);
-        let mut m = Monitor::new(Configuration { laws: aware(), ..config.clone() }, None).unwrap();
-        let mut papers = Monitor::new(config, None).unwrap();
+        let parts = parts(arm(), arm_volumes(), vec![region.warning(0.3)]);
+        let with_law = ConfigurationParts { laws: aware(), ..parts.clone() };
+        let mut m = Monitor::new(Configuration::new(with_law).unwrap(), None).unwrap();
+        let mut papers = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let q: [f64; 6] = std::array::from_fn(|_| r.between(-1.5, 1.5));
         let intent: [f64; 6] = std::array::from_fn(|_| r.between(-1.0, 1.0));
         let s = Snapshot { intent: Some(&intent), ..Snapshot::still(0.0, &q) };
@@ -166,8 +169,8 @@ fn a_speed_zone_slows_and_never_stops() {
 fn a_region_rides_on_its_source_and_its_motion_counts() {
     let region = Region::sphere("rider", Vec3::X * 0.1, 0.2).warning(0.5).follow(SourceId(0)).guards(Guards::TCP);
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
-    let config = Configuration { sources: vec!["belt".into()], ..configuration(gantry(), volumes, vec![region]) };
-    let mut m = Monitor::new(config, None).unwrap();
+    let parts = ConfigurationParts { sources: vec!["belt".into()], ..parts(gantry(), volumes, vec![region]) };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
     let motion = Motion { velocity: Vec3::Y * 0.4, acceleration: Vec3::Y * -1.0, ..Motion::REST };
     let quarter = Rotation::from_rpy(0.0, 0.0, std::f64::consts::FRAC_PI_2);
     let source = Source { pose: Pose::new(quarter, Vec3::Y), motion, stamp_s: 0.0 };
@@ -198,7 +201,7 @@ fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point
         let t0 = 10.0 * f64::from(case);
         let report = m.tick(&Snapshot { qd: &qd, qdd: &qdd, ..Snapshot::still(t0, &q) });
         let tcp = report.governing.unwrap();
-        let (volume, region) = (&config.volumes[0], &config.regions[0]);
+        let (volume, region) = (&config.volumes()[0], &config.regions()[0]);
         let exact = separation(&volume.shape, &m.volume_in_world(0), &region.shape, &region.anchor);
         assert!((exact.distance - tcp.distance_m).abs() < 1e-12);
         // The same material point a little earlier and later.

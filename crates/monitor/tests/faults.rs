@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{Random, arm, arm_volumes, configuration, gantry};
+use common::{Random, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    Configuration, EventKind, Fault, Monitor, Reason, Region, RegionId, Snapshot, Source, SourceId, Volume,
+    Configuration, ConfigurationParts, EventKind, Fault, Monitor, Reason, Region, RegionId, Snapshot, Source, SourceId,
+    Volume,
 };
 use elbowroom_spatial::{Motion, Pose, Vec3};
 
@@ -70,8 +71,8 @@ fn a_fault_is_reported_once_and_recovered_from() {
 fn a_lost_source_stops_the_robot_while_its_region_is_active() {
     let region = Region::sphere("s", Vec3::ZERO, 0.1).follow(SourceId(0));
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
-    let config = Configuration { sources: vec!["belt".into()], ..configuration(gantry(), volumes, vec![region]) };
-    let mut m = Monitor::new(config, None).unwrap();
+    let parts = ConfigurationParts { sources: vec!["belt".into()], ..parts(gantry(), volumes, vec![region]) };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
     let source =
         |stamp_s: f64, x: f64| Source { pose: Pose::from_translation(Vec3::X * x), motion: Motion::REST, stamp_s };
     let q = [0.0; 6];

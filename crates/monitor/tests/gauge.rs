@@ -4,11 +4,11 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{arm, arm_volumes, configuration, gantry};
+use common::{arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    AccessClass, Board, Grant, Guards, Kind, Life, Monitor, Region, RegionId, RobotSlot, SlotId, Snapshot, Source,
-    SourceId, Stay, Volume,
+    AccessClass, Board, Configuration, ConfigurationParts, Grant, Guards, Kind, Life, Monitor, Region, RegionId,
+    RobotSlot, SlotId, Snapshot, Source, SourceId, Stay, Volume,
 };
 use elbowroom_proximity::{HalfSpace, Shape};
 use elbowroom_spatial::{Motion, Pose, Rotation, Vec3};
@@ -32,9 +32,8 @@ fn source() -> Source {
 }
 
 fn monitor() -> Monitor {
-    let mut config = configuration(arm(), arm_volumes(), regions());
-    config.sources = vec!["belt".into()];
-    Monitor::new(config, None).unwrap()
+    let parts = ConfigurationParts { sources: vec!["belt".into()], ..parts(arm(), arm_volumes(), regions()) };
+    Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
 }
 
 proptest! {

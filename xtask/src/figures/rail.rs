@@ -1,7 +1,9 @@
 //! The smallest robot that a monitor can watch: a linear axis with a TCP, in front of a ball.
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{Configuration, Guards, Laws, Monitor, Region, Snapshot, TickReport, Volume};
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, TickReport, Volume,
+};
 use elbowroom_spatial::{Pose, Vec3};
 
 /// Time between ticks, s.
@@ -34,7 +36,7 @@ impl Rail {
         let mut ball = Region::sphere("ball", Vec3::X * (BORDER_M + 0.5), 0.5).warning(warning_m).guards(Guards::TCP);
         ball.hysteresis_m = hysteresis_m;
         ball.warning_output = Some(0);
-        let config = Configuration {
+        let config = ConfigurationParts {
             robot: "rail".into(),
             base_in_world: Pose::IDENTITY,
             chain: chain.map_err(|e| e.to_string())?,
@@ -43,6 +45,7 @@ impl Rail {
             sources: vec![],
             laws,
         };
+        let config = Configuration::new(config).map_err(|e| e.to_string())?;
         let monitor = Monitor::new(config, None).map_err(|e| e.to_string())?;
         Ok(Self { monitor, ticks: 0, distance_m })
     }

@@ -137,9 +137,9 @@ fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: usize, spans: &mut 
 
 /// Per joint the farthest that any volume moves per unit.
 fn levers(setup: &Setup) -> Vec<(usize, f64)> {
-    let chain: &Chain = &setup.configuration.chain;
+    let chain: &Chain = setup.configuration.chain();
     let mut most: Vec<(usize, f64)> = Vec::new();
-    for volume in &setup.configuration.volumes {
+    for volume in setup.configuration.volumes() {
         let box_in_link = volume.shape.aabb(&volume.in_link);
         let radius = box_in_link.min.abs().max(box_in_link.max.abs()).length();
         let mut own: Vec<(usize, f64)> = Vec::new();

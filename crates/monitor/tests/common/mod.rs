@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{Configuration, Laws, Region, Volume};
+use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Region, Volume};
 use elbowroom_proximity::{Capsule, Shape};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -68,7 +68,11 @@ pub fn arm_volumes() -> Vec<Volume> {
 }
 
 pub fn configuration(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> Configuration {
-    Configuration {
+    Configuration::new(parts(chain, volumes, regions)).expect("a valid configuration")
+}
+
+pub fn parts(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> ConfigurationParts {
+    ConfigurationParts {
         robot: "r".into(),
         base_in_world: Pose::IDENTITY,
         chain,
