@@ -11,6 +11,7 @@ use crate::laws::rate_limited;
 use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
+use crate::sweep::Sweep;
 use crate::verdict::{Judge, LOOKAHEAD_S};
 use crate::watchdog::Watchdog;
 use crate::{
@@ -31,6 +32,8 @@ pub struct Monitor {
     /// Joint velocities of the last intent.
     intent_before: Vec<f64>,
     gaps: Gaps,
+    /// The way here from the tick before.
+    sweep: Sweep,
     presence: Vec<Presence>,
     /// Regions in whose warning zone the robot is.
     warned: Vec<u32>,
@@ -39,6 +42,8 @@ pub struct Monitor {
     log: EventLog,
     /// Switched since the last tick.
     switched: Vec<(RegionId, bool)>,
+    /// Switched on for this tick: they were not there on the way to it.
+    fresh: Vec<RegionId>,
     watchdog: Watchdog,
     seat: Option<Seat>,
     last_override: Option<f64>,
@@ -72,12 +77,14 @@ impl Monitor {
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
             intent_before: vec![0.0; config.chain.dof()],
             gaps: Gaps::new(&config, &now),
+            sweep: Sweep::new(&config),
             presence: vec![Presence::default(); regions],
             warned: Vec::with_capacity(regions),
             warned_before: Vec::with_capacity(regions),
             outputs: Outputs::new(),
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
+            fresh: Vec::with_capacity(2 * regions + 16),
             watchdog: Watchdog::new(&config.chain, laws.stale_s),
             last_override: None,
             fault: None,
@@ -99,6 +106,11 @@ impl Monitor {
         let dt_s = if self.fault.is_some() { 0.0 } else { since_last_s };
         if self.fault.take().is_some() {
             self.log.push(None, EventKind::Recovered);
+        }
+        let known = dt_s > 0.0 && dt_s <= self.config.laws.stale_s;
+        if !known {
+            // Nobody saw the way here.
+            self.sweep.forget();
         }
         self.measure(s, dt_s);
         self.update_presence();
@@ -208,7 +220,9 @@ impl Monitor {
 
     fn begin(&mut self) {
         self.log.clear();
+        self.fresh.clear();
         for (region, on) in self.switched.drain(..) {
+            self.fresh.push(region);
             self.log.push(Some(region), if on { EventKind::On } else { EventKind::Off });
         }
         self.gaps.clear();
@@ -244,8 +258,9 @@ impl Monitor {
     }
 
     fn measure(&mut self, s: &Snapshot, dt_s: f64) {
-        let Self { config, active, now, soon, intent, gaps, last_override, .. } = self;
+        let Self { config, active, now, soon, intent, gaps, sweep, last_override, .. } = self;
         now.place(config, s);
+        sweep.tick(config, now, dt_s, s.sources);
         let mut deceleration = f64::INFINITY;
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
@@ -273,18 +288,24 @@ impl Monitor {
             deceleration,
             last_override: last_override.unwrap_or(0.0),
         };
-        gaps.measure(config, active, now, &judge);
+        gaps.measure(config, active, now, &judge, sweep.reach());
     }
 
     fn update_presence(&mut self) {
         std::mem::swap(&mut self.warned, &mut self.warned_before);
         self.warned.clear();
-        let Self { config, gaps, presence, warned, warned_before, outputs, log, .. } = self;
+        let Self { config, gaps, sweep, fresh, presence, warned, warned_before, outputs, log, .. } = self;
         let left = warned_before.iter().filter(|r| gaps.get(**r as usize).is_none());
         for r in gaps.near().iter().chain(left) {
             let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
             let from = presence[id.0];
-            let to = from.next(gaps.get(id.0).map_or(f64::INFINITY, |g| g.distance), region);
+            let mut to = from.next(gaps.get(id.0).map_or(f64::INFINITY, |g| g.distance), region);
+            if let Some(gap) = gaps.get(id.0).filter(|_| !to.inside && !fresh.contains(&id))
+                && let Some(passed_m) = sweep.passed(config, id, [gap.before, gap.distance], to.warned)
+            {
+                // It is told for one tick; the next begins from where the robot is then.
+                to = from.next(passed_m, region);
+            }
             if to != from {
                 outputs.change(id, region, from, to, log);
                 presence[id.0] = to;
