@@ -12,6 +12,11 @@ use sha2::{Digest, Sha256};
 
 use crate::{Cell, CellRobot, Follow};
 
+/// Ticks after which a controller that got no answer stops by itself.
+pub const ANSWERS_MISSED: f64 = 2.0;
+/// Linear moves are timed from samples of their course: between those a joint may accelerate by so much more.
+const ACCELERATION_MARGIN: f64 = 1.1;
+
 /// What one robot's monitor is given, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]
 pub struct Setup {
@@ -102,10 +107,13 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         regions.push(region);
         indices.push(i);
     }
-    let stopping_distance = cell
-        .laws
-        .stopping_reaction_s
-        .map(|reaction_s| Stopping { reaction_s, joint_deceleration: robot.limits.iter().map(|l| l.stop).collect() });
+    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
+        reaction_s,
+        // A simulated controller stops by itself where an answer is missing for longer.
+        period_s: ANSWERS_MISSED * cell.tick_s,
+        joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
+        joint_acceleration: robot.limits.iter().map(|l| ACCELERATION_MARGIN * l.acceleration).collect(),
+    });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,

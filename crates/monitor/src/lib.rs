@@ -44,8 +44,10 @@
 
 mod access;
 mod bound;
+mod brake_watch;
 mod broad;
 mod checksum;
+mod commands;
 mod config;
 mod events;
 mod gaps;
@@ -55,10 +57,12 @@ pub mod laws;
 mod monitor;
 mod placement;
 mod presence;
+mod recovery;
 mod region;
 mod report;
 mod seat;
 mod snapshot;
+mod stopping;
 mod sweep;
 pub mod teach;
 mod verdict;

@@ -11,6 +11,7 @@ use crate::laws::rate_limited;
 use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
+use crate::stopping::{StoppingLaw, TickState};
 use crate::sweep::Sweep;
 use crate::verdict::{Judge, LOOKAHEAD_S};
 use crate::watchdog::Watchdog;
@@ -29,8 +30,7 @@ pub struct Monitor {
     soon: Option<Placement>,
     /// At the program's own speed, for the laws that need it.
     intent: Option<ChainState>,
-    /// Joint velocities of the last intent.
-    intent_before: Vec<f64>,
+    stopping: Option<StoppingLaw>,
     gaps: Gaps,
     /// The way here from the tick before.
     sweep: Sweep,
@@ -53,6 +53,8 @@ pub struct Monitor {
 /// The smallest override asked for, and by whom.
 struct Verdict<'a> {
     speed_override: f64,
+    /// The override that no limit of its rate may keep it above.
+    at_once: f64,
     reason: Reason,
     gap: Option<&'a Gap>,
 }
@@ -75,7 +77,7 @@ impl Monitor {
             active: config.regions.iter().map(|r| r.life == Life::Permanent).collect(),
             soon: laws.direction_aware.then(|| Placement::new(&config)),
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
-            intent_before: vec![0.0; config.chain.dof()],
+            stopping: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
             gaps: Gaps::new(&config, &now),
             sweep: Sweep::new(&config),
             presence: vec![Presence::default(); regions],
@@ -85,7 +87,7 @@ impl Monitor {
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
             fresh: Vec::with_capacity(2 * regions + 16),
-            watchdog: Watchdog::new(&config.chain, laws.stale_s),
+            watchdog: Watchdog::new(&config.chain, laws),
             last_override: None,
             fault: None,
             now,
@@ -98,7 +100,8 @@ impl Monitor {
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
         let since_last_s = self.watchdog.since_last(s);
-        let trusted = self.watchdog.check(s, self.config.sources.len()).and_then(|()| self.check_sources(s));
+        let trusted =
+            self.watchdog.check(s, self.config.sources.len(), self.told()).and_then(|()| self.check_sources(s));
         if let Err(fault) = trusted {
             return self.stop(s, fault);
         }
@@ -113,6 +116,9 @@ impl Monitor {
             self.sweep.forget();
         }
         self.measure(s, dt_s);
+        if self.stopping.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
+            return self.stop(s, Fault::Braking);
+        }
         self.update_presence();
         if let Some(seat) = &mut self.seat {
             seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
@@ -246,7 +252,7 @@ impl Monitor {
             self.log.push(region, EventKind::Fault);
         }
         self.fault = Some(fault);
-        self.last_override = Some(0.0);
+        self.answer(s, 0.0);
         TickReport {
             stamp_s: s.stamp_s,
             speed_override: 0.0,
@@ -257,37 +263,50 @@ impl Monitor {
         }
     }
 
+    /// The largest override that the robot may be obeying.
+    fn told(&self) -> f64 {
+        self.stopping.as_ref().map_or(0.0, StoppingLaw::largest_told)
+    }
+
+    /// Takes note of an answer.
+    fn answer(&mut self, s: &Snapshot, speed_override: f64) {
+        self.last_override = Some(speed_override);
+        if let Some(law) = &mut self.stopping {
+            law.told(s.now_s, speed_override);
+        }
+    }
+
     fn measure(&mut self, s: &Snapshot, dt_s: f64) {
-        let Self { config, active, now, soon, intent, gaps, sweep, last_override, .. } = self;
-        now.place(config, s);
+        let Self { config, active, now, soon, intent, stopping, watchdog, gaps, sweep, last_override, .. } = self;
+        now.place(config, s, watchdog.velocity());
         sweep.tick(config, now, dt_s, s.sources);
-        let mut deceleration = f64::INFINITY;
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
-            let before = &mut self.intent_before;
-            before.copy_from_slice(&state.qd);
             match s.intent {
                 Some(wanted) => state.qd.copy_from_slice(wanted),
                 None => at_full_override(&mut state.qd, &now.chain.qd, last_override.unwrap_or(1.0)),
             }
-            if let Some(stopping) = &config.laws.stopping_distance {
-                guess_acceleration(state, before, dt_s * last_override.unwrap_or(0.0), &stopping.joint_deceleration);
-            }
             config.chain.forward_motion(state);
-            deceleration = Judge::override_deceleration(config, state);
             if let Some(soon) = soon {
                 soon.place_ahead(config, s, &state.qd, LOOKAHEAD_S);
             }
         }
-        let judge = Judge {
-            config,
-            snapshot: s,
-            now,
-            soon: soon.as_ref(),
-            intent: intent.as_ref(),
-            deceleration,
-            last_override: last_override.unwrap_or(0.0),
-        };
+        let law = config.laws.stopping_distance.as_ref().zip(stopping.as_mut()).zip(intent.as_ref());
+        let stopping = law.map(|((stopping, law), intent)| {
+            let tick = TickState {
+                now: &now.chain,
+                intent,
+                program_is_known: s.intent.is_some(),
+                now_s: s.now_s,
+                stamp_s: s.stamp_s,
+                uncertain_s: watchdog.velocity_uncertain_s(),
+                unnoticed_s: watchdog.unnoticed_s(),
+                volume_in_world: &now.volume_in_world,
+            };
+            law.begin(config, stopping, &tick);
+            (stopping, &*law)
+        });
+        let judge = Judge { config, snapshot: s, now, soon: soon.as_ref(), intent: intent.as_ref(), stopping };
         gaps.measure(config, active, now, &judge, sweep.reach());
     }
 
@@ -326,10 +345,11 @@ impl Monitor {
             speed_override = speed_override.min(wanted);
         }
         speed_override = speed_override.min(s.programmed_override);
+        speed_override = speed_override.min(verdict.at_once);
         if speed_override < wanted {
             reason = Reason::Rate;
         }
-        self.last_override = Some(speed_override);
+        self.answer(s, speed_override);
         TickReport {
             stamp_s: s.stamp_s,
             speed_override,
@@ -342,12 +362,17 @@ impl Monitor {
 
     /// The minimum over all regions (S1, eq. 4); the region of lowest index where several ask for the same.
     fn verdict(&self, s: &Snapshot) -> Verdict<'_> {
-        let mut verdict = Verdict { speed_override: s.programmed_override, reason: Reason::Free, gap: None };
+        let v0 = s.programmed_override;
+        let mut verdict = Verdict { speed_override: v0, at_once: v0, reason: Reason::Free, gap: None };
         for r in self.gaps.near() {
             let Some(gap) = self.gaps.get(*r as usize) else { continue };
             let id = RegionId(*r as usize);
+            if self.holds(id) {
+                continue;
+            }
+            verdict.at_once = verdict.at_once.min(gap.at_once);
             let tie = gap.asks == verdict.speed_override && verdict.gap.is_some_and(|g| id.0 < g.asking.region);
-            if !(gap.asks < verdict.speed_override || tie) || self.holds(id) {
+            if !(gap.asks < verdict.speed_override || tie) {
                 continue;
             }
             let reason = match self.config.regions[id.0].kind {
@@ -355,7 +380,7 @@ impl Monitor {
                 Kind::Monitored { .. } => Reason::SpeedZone(id),
                 Kind::Exchange { .. } => Reason::Waiting(id),
             };
-            verdict = Verdict { speed_override: gap.asks, reason, gap: Some(gap) };
+            (verdict.speed_override, verdict.reason, verdict.gap) = (gap.asks, reason, Some(gap));
         }
         verdict
     }
@@ -383,18 +408,6 @@ impl Monitor {
 fn at_full_override(full: &mut [f64], real: &[f64], last_override: f64) {
     let scale = 1.0 / last_override.max(0.01);
     full.iter_mut().zip(real).for_each(|(f, v)| *f = v * scale);
-}
-
-/// How the program's velocities change by its own time, from one tick to the next. Where the program stood still, what
-/// was known last stays true. A jump between two moves counts as the most that a joint can do.
-fn guess_acceleration(intent: &mut ChainState, before: &[f64], program_s: f64, most: &[f64]) {
-    if program_s < 1e-6 {
-        return;
-    }
-    let (qd, qdd) = (&intent.qd, &mut intent.qdd);
-    for (((guess, v), before), most) in qdd.iter_mut().zip(qd).zip(before).zip(most) {
-        *guess = ((v - before) / program_s).clamp(-most.abs(), most.abs());
-    }
 }
 
 impl Configuration {

@@ -7,7 +7,7 @@ use std::alloc::System;
 
 use common::{Random, arm, arm_volumes, parts};
 use elbowroom_monitor::{
-    AccessClass, Configuration, ConfigurationParts, Kind, Laws, Life, Monitor, Region, Snapshot, Stopping,
+    AccessClass, Configuration, ConfigurationParts, Kind, Laws, Life, Monitor, Reason, Region, Snapshot, Stopping,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
@@ -28,7 +28,12 @@ fn main() {
         let region = region.warning(0.1).life(if i % 2 == 0 { Life::Permanent } else { Life::Temporary });
         if i % 5 == 0 { region.kind(Kind::Monitored { slow_to: Some(0.5) }) } else { region }
     });
-    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![10.0; 6] };
+    let stopping = Stopping {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![10.0; 6],
+        joint_acceleration: vec![5.0; 6],
+    };
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
@@ -36,13 +41,19 @@ fn main() {
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
-        let mut pairs = 0;
+        let (mut pairs, mut obeyed, mut t) = (0, 0.0, 0.0_f64);
         for i in 0..5000 {
-            let t = 0.002 * f64::from(i);
+            let now_s = 0.002 * f64::from(i);
             let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
-            let intent = [1.0, -0.5, 0.3, 0.0, 0.2, 0.1];
+            let speed = [t.cos(), 0.65 * (1.3 * t).cos(), -0.7 * (0.7 * t).sin(), 0.2 * t.cos(), -t.sin(), 0.0];
+            let qd = speed.map(|v| v * obeyed);
             m.switch(switchable, i % 7 < 3, AccessClass::Programmer).unwrap();
-            pairs += m.tick(&Snapshot { intent: Some(&intent), ..Snapshot::still(t, &q) }).measured_pairs;
+            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::still(now_s, &q) });
+            assert!(!matches!(report.reason, Reason::Fault(_)), "{}", report.reason);
+            pairs += report.measured_pairs;
+            // It obeys, but creeps unnoticed where it should stop.
+            obeyed = report.speed_override;
+            t += 0.002 * obeyed.max(0.1);
             assert!(m.events().len() < 8000);
         }
         let change = counter.change();

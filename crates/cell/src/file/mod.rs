@@ -210,7 +210,11 @@ fn laws(root: &Table<'_>) -> Result<CellLaws> {
     let stopping = t.flag_or("stopping_distance", false)?;
     // By default the reaction is the time until the next tick obeys.
     let tick = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))?;
-    Ok(CellLaws { laws, stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0) })
+    Ok(CellLaws {
+        laws,
+        stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0),
+        obeyed_after_s: reaction.unwrap_or(0.0) / 1000.0,
+    })
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
