@@ -24,6 +24,8 @@ pub(crate) struct Gap {
     tick: u64,
     /// Distance of the closest guarded volume, m.
     pub(crate) distance: f64,
+    /// It was not below this in the tick before, m, where the region was active then.
+    pub(crate) before: f64,
     /// The override that the region asks for.
     pub(crate) asks: f64,
     /// The override above which a stop would not end before the region: no limit of the override's rate delays it.
@@ -64,7 +66,7 @@ impl Gaps {
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
             witnesses: Witnesses::new(config),
             of_region: vec![
-                Gap { tick: 0, distance: 0.0, asks: 0.0, at_once: 0.0, asking, stops: true };
+                Gap { tick: 0, distance: 0.0, before: 0.0, asks: 0.0, at_once: 0.0, asking, stops: true };
                 config.regions.len()
             ],
             near: Vec::with_capacity(config.regions.len()),
@@ -92,16 +94,25 @@ impl Gaps {
     }
 
     /// Measures every active region against the volumes it guards. `law` says which override a pair asks for, and how
-    /// much farther than the warning zone a volume must be looked at.
-    pub(crate) fn measure(&mut self, config: &Configuration, active: &[bool], now: &Placement, law: &impl PairLaw) {
+    /// much farther than the warning zone a volume must be looked at; `travel` how far volumes, and volumes and regions, can
+    /// have come nearer since the tick before, m: so far they are looked at, too.
+    pub(crate) fn measure(
+        &mut self,
+        config: &Configuration,
+        active: &[bool],
+        now: &Placement,
+        law: &impl PairLaw,
+        travel: (f64, f64),
+    ) {
         let Self { tree, region_bounds, volume_bounds, roaming, witnesses, of_region, near, tick, measured_pairs } =
             self;
         let bounds = (region_bounds.as_slice(), volume_bounds.as_slice());
         let tick = *tick;
         let mut measuring = Measuring { config, active, now, law, bounds, witnesses, of_region, near, tick, pairs: 0 };
         for volume in 0..config.volumes.len() {
-            let extra_reach = law.extra_reach(volume);
+            let extra_reach = law.extra_reach(volume).max(travel.0);
             tree.visit(&now.volume_box[volume].inflated(extra_reach), |r| measuring.visit(r, volume, extra_reach));
+            let extra_reach = extra_reach.max(travel.1);
             for r in roaming.iter() {
                 measuring.visit(*r as usize, volume, extra_reach);
             }
@@ -175,7 +186,10 @@ impl<L: PairLaw> Measuring<'_, L> {
         let gap = &mut self.of_region[pair.region];
         if fresh {
             self.near.push(pair.region as u32);
-            *gap = Gap { tick: self.tick, distance, asks, at_once, asking: pair, stops };
+            // What was not near then was beyond the reach.
+            let before =
+                if gap.tick + 1 == self.tick { gap.distance } else { self.config.regions[pair.region].reach() };
+            *gap = Gap { tick: self.tick, distance, before, asks, at_once, asking: pair, stops };
             return;
         }
         if asks < gap.asks || (asks == gap.asks && distance < gap.distance) {

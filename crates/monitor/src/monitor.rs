@@ -13,6 +13,7 @@ use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
 use crate::source_watch::{SourceWatch, Trust};
 use crate::stopping::{StoppingLaw, TickState};
+use crate::sweep::Sweep;
 use crate::verdict::{Judge, LOOKAHEAD_S};
 use crate::watchdog::Watchdog;
 use crate::{
@@ -32,6 +33,8 @@ pub struct Monitor {
     intent: Option<ChainState>,
     stopping: Option<StoppingLaw>,
     gaps: Gaps,
+    /// The way here from the tick before.
+    sweep: Sweep,
     presence: Vec<Presence>,
     /// Regions in whose warning zone the robot is.
     warned: Vec<u32>,
@@ -40,6 +43,8 @@ pub struct Monitor {
     log: EventLog,
     /// Switched since the last tick.
     switched: Vec<(RegionId, bool)>,
+    /// Switched on for this tick: they were not there on the way to it.
+    fresh: Vec<RegionId>,
     watchdog: Watchdog,
     source_watch: SourceWatch,
     seat: Option<Seat>,
@@ -76,6 +81,7 @@ impl Monitor {
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
             stopping: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
             gaps: Gaps::new(&config, &now),
+            sweep: Sweep::new(&config),
             presence: vec![Presence::default(); regions],
             warned: Vec::with_capacity(regions),
             warned_before: Vec::with_capacity(regions),
@@ -83,6 +89,7 @@ impl Monitor {
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
             source_watch: SourceWatch::new(config.sources.len()),
+            fresh: Vec::with_capacity(2 * regions + 16),
             watchdog: Watchdog::new(&config.chain, laws),
             last_override: None,
             fault: None,
@@ -106,7 +113,12 @@ impl Monitor {
         if self.fault.take().is_some() {
             self.log.push(None, EventKind::Recovered);
         }
-        self.measure(s);
+        let known = dt_s > 0.0 && dt_s <= self.config.laws.stale_s;
+        if !known {
+            // Nobody saw the way here.
+            self.sweep.forget();
+        }
+        self.measure(s, dt_s);
         if self.stopping.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
             return self.stop(s, Fault::Braking);
         }
@@ -222,7 +234,9 @@ impl Monitor {
 
     fn begin(&mut self) {
         self.log.clear();
+        self.fresh.clear();
         for (region, on) in self.switched.drain(..) {
+            self.fresh.push(region);
             self.log.push(Some(region), if on { EventKind::On } else { EventKind::Off });
         }
         self.gaps.clear();
@@ -274,9 +288,10 @@ impl Monitor {
         }
     }
 
-    fn measure(&mut self, s: &Snapshot) {
-        let Self { config, active, now, soon, intent, stopping, watchdog, gaps, last_override, .. } = self;
+    fn measure(&mut self, s: &Snapshot, dt_s: f64) {
+        let Self { config, active, now, soon, intent, stopping, watchdog, gaps, sweep, last_override, .. } = self;
         now.place(config, s, watchdog.velocity());
+        sweep.tick(config, now, dt_s, s.sources);
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
             match s.intent {
@@ -306,18 +321,24 @@ impl Monitor {
         let last_override = last_override.unwrap_or(0.0);
         let (soon, intent) = (soon.as_ref(), intent.as_ref());
         let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping };
-        gaps.measure(config, active, now, &judge);
+        gaps.measure(config, active, now, &judge, sweep.reach());
     }
 
     fn update_presence(&mut self) {
         std::mem::swap(&mut self.warned, &mut self.warned_before);
         self.warned.clear();
-        let Self { config, gaps, presence, warned, warned_before, outputs, log, .. } = self;
+        let Self { config, gaps, sweep, fresh, presence, warned, warned_before, outputs, log, .. } = self;
         let left = warned_before.iter().filter(|r| gaps.get(**r as usize).is_none());
         for r in gaps.near().iter().chain(left) {
             let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
             let from = presence[id.0];
-            let to = from.next(gaps.get(id.0).map_or(f64::INFINITY, |g| g.distance), region);
+            let mut to = from.next(gaps.get(id.0).map_or(f64::INFINITY, |g| g.distance), region);
+            if let Some(gap) = gaps.get(id.0).filter(|_| !to.inside && !fresh.contains(&id))
+                && let Some(passed_m) = sweep.passed(config, id, [gap.before, gap.distance], to.warned)
+            {
+                // It is told for one tick; the next begins from where the robot is then.
+                to = from.next(passed_m, region);
+            }
             if to != from {
                 outputs.change(id, region, from, to, log);
                 presence[id.0] = to;

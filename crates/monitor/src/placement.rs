@@ -59,6 +59,11 @@ impl Placement {
     /// Places the volumes as they are at these joint values.
     pub(crate) fn place_robot(&mut self, config: &Configuration, q: &[f64]) {
         self.chain.q.copy_from_slice(q);
+        self.place_there(config);
+    }
+
+    /// Places the volumes as they are at the chain's joint values.
+    pub(crate) fn place_there(&mut self, config: &Configuration) {
         config.chain.forward(&mut self.chain);
         self.place_volumes(config);
     }

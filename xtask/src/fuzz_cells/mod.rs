@@ -15,7 +15,6 @@ use elbowroom_cell::{Cell, InputFault, RunOptions, simulate};
 use crate::Failure;
 use generate::{Kind, Places};
 use oracle::{Finding, Opinion};
-use random::Random;
 use spec::CellSpec;
 use summary::Summary;
 
@@ -152,7 +151,7 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
         None => 0..options.count as u64,
     };
     for case in cases {
-        let mut random = Random::of_case(options.seed, case);
+        let mut random = kind.random(options.seed, case);
         let spec = generate::cell(kind, &mut random, places);
         match judged_spec(&spec, places) {
             Ok(judged) => {
@@ -228,7 +227,7 @@ mod tests {
         let cells = root.join("target/fuzz-cells");
         let places = Places { cells: &cells, root: &root, data: None };
         for kind in Kind::ALL {
-            let text = |case| generate::cell(kind, &mut Random::of_case(5, case), &places).to_toml();
+            let text = |case| generate::cell(kind, &mut kind.random(5, case), &places).to_toml();
             assert_eq!(text(3), text(3));
             assert_ne!(text(3), text(4));
         }

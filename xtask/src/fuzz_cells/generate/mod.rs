@@ -34,6 +34,11 @@ impl Kind {
             Self::Faults => "faults",
         }
     }
+
+    /// The random numbers of one case.
+    pub fn random(self, seed: u64, case: u64) -> Random {
+        Random::of_case(seed, case + ((self as u64) << 32))
+    }
 }
 
 /// Where files are that cells name.

@@ -14,6 +14,8 @@ mod presence;
 mod simplex;
 mod solid;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use arm::Arm;
 pub use guarded::Guarded;

@@ -1,0 +1,146 @@
+//! Between two snapshots: judged by looking at many places of the way.
+
+mod common;
+
+use common::{Random, arm, arm_volumes, configuration, joint};
+use elbowroom_kinematics::{Chain, JointKind};
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, EventKind, Guards, Monitor, Region, RegionId, Snapshot, Source, SourceId, Sweep,
+    Volume,
+};
+use elbowroom_proximity::{Shape, separation};
+use elbowroom_spatial::{Motion, Pose, Rotation, Vec3};
+
+/// Least distance over many places of the straight way.
+fn naive(config: &Configuration, from: &[f64; 6], to: &[f64; 6], region: &Region, steps: u32) -> f64 {
+    let mut state = elbowroom_kinematics::ChainState::new(config.chain());
+    let at = region.anchor * region.shape_in_anchor;
+    let mut least = f64::INFINITY;
+    for i in 0..=steps {
+        let u = f64::from(i) / f64::from(steps);
+        let mix = state.q.iter_mut().zip(from.iter().zip(to));
+        mix.for_each(|(q, (a, b))| *q = a + (b - a) * u);
+        config.chain().forward(&mut state);
+        for v in config.volumes().iter().filter(|v| v.part.counts_for(region.guards)) {
+            let pose = state.link_in_root(v.link) * v.in_link;
+            least = least.min(separation(&v.shape, &pose, &region.shape, &at).distance);
+        }
+    }
+    least
+}
+
+fn thin(r: &mut Random) -> Region {
+    let at = r.direction() * r.between(0.3, 1.5) + Vec3::Z * 0.6;
+    let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
+    match r.bits() % 3 {
+        0 => Region::sphere("s", at, r.between(0.001, 0.01)),
+        1 => Region::cylinder("c", at, r.between(0.1, 0.4), 0.002, turn),
+        _ => Region::cuboid("b", at, Vec3::new(0.002, r.between(0.1, 0.6), r.between(0.1, 0.6)), turn),
+    }
+}
+
+#[test]
+fn the_least_distance_on_the_way_is_what_many_looks_find() {
+    let mut r = Random(7);
+    let (mut passed, mut free) = (0, 0);
+    for _ in 0..600 {
+        let region = thin(&mut r).guards(if r.bits() % 2 == 0 { Guards::TCP } else { Guards::ARM });
+        let config = configuration(arm(), arm_volumes(), vec![region.clone()]);
+        let from: [f64; 6] = std::array::from_fn(|_| r.between(-1.5, 1.5));
+        let to = from.map(|q| q + r.between(-0.2, 0.2));
+        let mut sweep = Sweep::new(&config);
+        assert!(sweep.least(&config, RegionId(0), 0.0, 1e-6).is_none(), "nothing is known of the way");
+        sweep.go(&config, &from, &[], 0.01);
+        sweep.go(&config, &to, &[], 0.01);
+        let ends = [naive(&config, &from, &from, &region, 1), naive(&config, &to, &to, &region, 1)];
+        assert!((sweep.distance(&config, RegionId(0), 10.0).unwrap() - ends[1]).abs() < 1e-9);
+        let steps = 400;
+        let seen = naive(&config, &from, &to, &region, steps);
+        let unseen = sweep.travel(RegionId(0)) / f64::from(steps);
+        match sweep.least(&config, RegionId(0), 0.0, 1e-6) {
+            Some(least) => {
+                passed += 1;
+                assert!(least.distance_m <= 0.0 && ends[0].min(ends[1]) >= 0.0, "{least:?}");
+                assert!(seen <= unseen, "touched where nobody sees it: {seen}");
+                let there: [f64; 6] = std::array::from_fn(|i| from[i] + (to[i] - from[i]) * least.share);
+                assert!(naive(&config, &there, &there, &region, 1) <= 0.0);
+            }
+            None => {
+                free += 1;
+                assert!(seen > 0.0 || ends[0].min(ends[1]) <= 0.0, "missed: {seen}, {ends:?}");
+            }
+        }
+    }
+    assert!(passed > 20 && free > 100, "{passed} {free}");
+}
+
+fn rail() -> Chain {
+    let slide = joint("x", JointKind::Prismatic, 0, Vec3::ZERO, Vec3::X, 10.0);
+    Chain::new("rail", vec!["base".into(), "carriage".into()], vec![slide]).unwrap()
+}
+
+fn plate() -> Region {
+    let mut plate = Region::cuboid("plate", Vec3::ZERO, Vec3::new(0.004, 1.0, 1.0), Rotation::IDENTITY);
+    plate.output = Some(7);
+    plate.guards(Guards::TCP).monitored()
+}
+
+fn tick(m: &mut Monitor, i: u32, x: f64) -> (Vec<EventKind>, u64) {
+    let report = m.tick(&Snapshot::still(0.004 * f64::from(i), &[x]));
+    (m.events().iter().map(|e| e.kind).collect(), report.outputs)
+}
+
+#[test]
+fn an_output_pulses_for_one_tick_where_a_plate_was_passed() {
+    let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
+    let mut m = Monitor::new(configuration(rail(), tcp, vec![plate()]), None).unwrap();
+    assert_eq!(tick(&mut m, 0, -0.024), (vec![], 0));
+    assert_eq!(tick(&mut m, 1, -0.008), (vec![], 0));
+    use EventKind::{InsideIn, InsideOut, OutputOff, OutputOn, WarnIn, WarnOut};
+    assert_eq!(tick(&mut m, 2, 0.008), (vec![WarnIn, InsideIn, OutputOn(7)], 1 << 7));
+    assert!(m.is_inside(RegionId(0)));
+    assert_eq!(tick(&mut m, 3, 0.024), (vec![InsideOut, WarnOut, OutputOff(7)], 0));
+    // Back again, and then away for longer than input may be old: nobody knows the way.
+    assert_eq!(tick(&mut m, 4, 0.010), (vec![], 0));
+    let late = m.tick(&Snapshot::still(0.2, &[-0.010]));
+    assert!(m.events().is_empty() && late.outputs == 0);
+}
+
+#[test]
+fn after_a_fault_the_way_is_not_known() {
+    let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
+    let mut m = Monitor::new(configuration(rail(), tcp, vec![plate()]), None).unwrap();
+    tick(&mut m, 0, -0.008);
+    assert_eq!(tick(&mut m, 1, f64::NAN).0, [EventKind::Fault]);
+    assert_eq!(tick(&mut m, 2, 0.008), (vec![EventKind::Recovered], 0));
+}
+
+#[test]
+fn a_region_that_comes_past_is_told_and_one_that_leaps_is_not() {
+    let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
+    let parts = ConfigurationParts {
+        sources: vec!["belt".into()],
+        ..common::parts(rail(), tcp, vec![plate().follow(SourceId(0))])
+    };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
+    let mut at = |i: u32, x: f64, speed: f64| {
+        let now_s = 0.004 * f64::from(i);
+        let motion = Motion { velocity: Vec3::X * speed, ..Motion::REST };
+        let source = Source { pose: Pose::from_translation(Vec3::X * x), motion, stamp_s: now_s };
+        m.tick(&Snapshot { sources: &[source], ..Snapshot::still(now_s, &[0.0]) });
+        m.events().iter().any(|e| e.kind == EventKind::InsideIn)
+    };
+    assert!(!at(0, -0.020, 4.0) && !at(1, -0.004, 4.0) && at(2, 0.012, 4.0) && !at(3, 0.028, 4.0));
+    // From here back to the beginning of the belt.
+    assert!(!at(4, -2.0, 4.0));
+}
+
+#[test]
+fn a_point_that_passes_a_point_is_told() {
+    let point = Shape::Sphere(elbowroom_proximity::Sphere { radius: 0.0 });
+    let region = Region::solid("dot", point, Pose::IDENTITY).guards(Guards::TCP).monitored();
+    let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
+    let mut m = Monitor::new(configuration(rail(), tcp, vec![region]), None).unwrap();
+    tick(&mut m, 0, -0.004);
+    assert!(tick(&mut m, 1, 0.0037).0.contains(&EventKind::InsideIn));
+}
