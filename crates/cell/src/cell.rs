@@ -353,9 +353,10 @@ impl CellRobot {
         state.q.copy_from_slice(&self.start);
         chain.forward(&mut state);
         let in_root = |v: &Volume| state.link_in_root(v.link) * v.in_link;
-        solids.iter().filter(|v| moving(v.link) == with_point).any(|v| {
-            elbowroom_proximity::within(&point.shape, &in_root(point), &v.shape, &in_root(v), ON_SURFACE_M)
-        })
+        solids
+            .iter()
+            .filter(|v| moving(v.link) == with_point)
+            .any(|v| elbowroom_proximity::within(&point.shape, &in_root(point), &v.shape, &in_root(v), ON_SURFACE_M))
     }
 
     /// The robot without tool and load, which are bodies of its flange for collisions.

@@ -58,7 +58,8 @@ fn a_region_that_guards_nothing_is_refused() {
 
 #[test]
 fn one_robot_among_several_counts() {
-    let two = format!("{HEAD}{}{}", ball(""), rail("b", 1000.0).replace("links = [{ sphere = { radius = 50 } }]\n", ""));
+    let two =
+        format!("{HEAD}{}{}", ball(""), rail("b", 1000.0).replace("links = [{ sphere = { radius = 50 } }]\n", ""));
     refused(&format!("{two}{}", region("")), "[region.z]", &["robot \"b\"", "`robots` without \"b\""]);
     parse(&format!("{two}{}", region("robots = [\"a\"]\n")));
     parse(&format!("{two}{}", region("guards = [\"tcp\"]\n")));
@@ -66,7 +67,8 @@ fn one_robot_among_several_counts() {
 
 #[test]
 fn an_output_that_never_rises_is_warned_about() {
-    let text = format!("{HEAD}{}{}{PROGRAM}", ball(""), region("kind = \"monitored\"\noutput = 1\nguards = [\"tool\"]\n"));
+    let text =
+        format!("{HEAD}{}{}{PROGRAM}", ball(""), region("kind = \"monitored\"\noutput = 1\nguards = [\"tool\"]\n"));
     let warnings = parse(&text).warnings;
     assert!(warnings.iter().any(|w| w.what.contains("guards nothing")), "{warnings:?}");
     let tool_only = bare("tool.box = { at = [0, 0, 100], size = [50, 50, 200] }\n");

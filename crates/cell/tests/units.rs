@@ -16,7 +16,17 @@ fn cell(length: &str, k: f64) -> String {
          [object.fence]\nshape = \"box\"\nat = [{}, 0, {2}]\nsize = [{5}, {4}, {4}]\n\
          [region.column]\nshape = \"cylinder\"\nbase = [{}, 0, 0]\nradius = {}\nheight = {}\nwarning = {0}\n\
          [region.table]\nshape = \"plane\"\norigin = [0, 0, {}]\nx = [{0}, 0, {10}]\ny = [0, {0}, {10}]\nwarning = {0}\n",
-        n(250.0), n(125.0), n(250.0), n(-30.0), n(6000.0), n(40.0), n(3500.0), n(1248.0), n(150.0), n(1200.0), n(-500.0),
+        n(250.0),
+        n(125.0),
+        n(250.0),
+        n(-30.0),
+        n(6000.0),
+        n(40.0),
+        n(3500.0),
+        n(1248.0),
+        n(150.0),
+        n(1200.0),
+        n(-500.0),
     )
 }
 
@@ -59,7 +69,9 @@ fn millimetres_under_metres_are_named() {
         assert!(one.contains("units = { length = \"mm\", angle = \"deg\" }"), "{one}");
         one.clone()
     };
-    for what in ["object \"floor\"", "object \"fence\"", "the tool of robot \"a\"", "the tool centre point of robot \"a\""] {
+    for what in
+        ["object \"floor\"", "object \"fence\"", "the tool of robot \"a\"", "the tool centre point of robot \"a\""]
+    {
         of(what);
     }
     let column = of("region \"column\"");
@@ -82,7 +94,8 @@ fn a_region_twelve_hundred_metres_away_says_so() {
 #[test]
 fn metres_under_millimetres_are_named() {
     let all = warnings(&cell("mm", 0.001));
-    for what in ["region \"column\"", "object \"floor\"", "object \"fence\"", "the tool of", "the tool centre point of"] {
+    for what in ["region \"column\"", "object \"floor\"", "object \"fence\"", "the tool of", "the tool centre point of"]
+    {
         let one = all.iter().find(|w| w.contains(what)).unwrap_or_else(|| panic!("nothing on {what}: {all:#?}"));
         assert!(one.contains("units = { length = \"m\", angle = \"deg\" }"), "{one}");
     }
@@ -93,7 +106,9 @@ fn a_region_that_nobody_reaches_is_said_without_a_unit_that_makes_no_sense() {
     let all = warnings(&cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]"));
     assert!(all.len() == 1 && all[0].contains("beyond reach") && !all[0].contains("units ="), "{all:#?}");
     // Its warning zone reaches the robot.
-    let zone = cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]").replace("height = 1200\nwarning = 250", "height = 1200\nwarning = 9900");
+    let zone = cell("mm", 1.0)
+        .replace("base = [1248, 0, 0]", "base = [12480, 0, 0]")
+        .replace("height = 1200\nwarning = 250", "height = 1200\nwarning = 9900");
     assert_eq!(warnings(&zone), Vec::<String>::new());
 }
 

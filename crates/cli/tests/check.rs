@@ -47,7 +47,7 @@ fn run(text: &str) -> Answer {
 #[test]
 fn an_overrun_is_said_before_the_run() {
     let answer = run(OVERRUN).expect(1);
-    for words in ["cell.toml:13: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "254 mm", "50 mm"] {
+    for words in ["cell.toml:12: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "254 mm", "50 mm"] {
         assert!(answer.stderr.contains(words), "{words}: {}", answer.stderr);
     }
     assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 254 in [region.wall]"));
@@ -65,10 +65,7 @@ fn an_overrun_is_said_before_the_run() {
 fn check_says_whether_entry_is_excluded_and_why() {
     let answer = check(OVERRUN).expect(1).json();
     let row = &answer["regions"][0];
-    assert_eq!(
-        keys(row),
-        ["excluded", "kind", "name", "needed_warning_m", "reason", "robot", "warning_m", "write"]
-    );
+    assert_eq!(keys(row), ["excluded", "kind", "name", "needed_warning_m", "reason", "robot", "warning_m", "write"]);
     assert_eq!((row["name"].as_str(), row["robot"].as_str()), (Some("wall"), Some("cart")));
     assert_eq!(row["excluded"], false);
     // 2²/(2·8) + 2·0.002
@@ -81,7 +78,10 @@ fn check_says_whether_entry_is_excluded_and_why() {
     assert!(row["reason"].as_str().unwrap().contains("provided that its joints brake as `stop_time` states"), "{row}");
     let row = &check(&OVERRUN.replace("warning = 50", "warning = 254")).expect(0).json()["regions"][0];
     assert!(row["reason"].as_str().unwrap().contains("thick enough"), "{row}");
-    assert_eq!(check(&OVERRUN.replace("warning = 50", "warning = 253")).expect(1).json()["regions"][0]["excluded"], false);
+    assert_eq!(
+        check(&OVERRUN.replace("warning = 50", "warning = 253")).expect(1).json()["regions"][0]["excluded"],
+        false
+    );
 }
 
 #[test]
@@ -124,7 +124,9 @@ fn a_monitored_region_is_listed_and_no_trouble() {
 
 #[test]
 fn two_that_start_in_one_exchange_region_are_told_apart_from_one() {
-    let shared = OVERRUN.replace("warning = 50", "warning = 300\nkind = \"exchange\"").replace("start = [-2500]", "start = [1500]");
+    let shared = OVERRUN
+        .replace("warning = 50", "warning = 300\nkind = \"exchange\"")
+        .replace("start = [-2500]", "start = [1500]");
     check(&shared).expect(0);
     let second = "[robot.other]\nbase = { at = [0, 400, 0], rpy = [0, 90, 0] }\n\
                   dh = [{ kind = \"prismatic\", min = -3000, max = 3000, speed = 2000 }]\n\
@@ -151,7 +153,10 @@ fn the_examples_stop_in_time() {
         assert!(answer.status < 2 && answer.stderr.is_empty(), "{cell}: {}", answer.stderr);
         for row in answer.json()["regions"].as_array().unwrap() {
             let (reason, kind) = (row["reason"].as_str().unwrap(), row["kind"].as_str().unwrap());
-            assert!(row["excluded"] == true || kind == "monitored" || reason.contains("the region moves"), "{cell}: {row}");
+            assert!(
+                row["excluded"] == true || kind == "monitored" || reason.contains("the region moves"),
+                "{cell}: {row}"
+            );
         }
     }
 }
@@ -161,7 +166,7 @@ fn a_region_that_guards_nothing_is_no_cell() {
     let text = OVERRUN.replace("warning = 50", "warning = 50\nguards = [\"tool\"]");
     for answer in [run(&text), check(&text)] {
         let answer = answer.expect(2);
-        assert!(answer.stderr.contains("cell.toml:18: region \"wall\" guards nothing"), "{}", answer.stderr);
+        assert!(answer.stderr.contains("cell.toml:17: region \"wall\" guards nothing"), "{}", answer.stderr);
         assert!(answer.stderr.contains("write: guards = [\"arm\"]"), "{}", answer.stderr);
     }
 }

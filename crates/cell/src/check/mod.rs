@@ -100,7 +100,15 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
             let Decision { excluded, reason, write_instead, needed_warning_m } = pair.decide();
             let overrun = pair.overrun();
             let robot = *robot;
-            checks.push(EntryCheck { region: index, robot, excluded, reason, write_instead, needed_warning_m, overrun });
+            checks.push(EntryCheck {
+                region: index,
+                robot,
+                excluded,
+                reason,
+                write_instead,
+                needed_warning_m,
+                overrun,
+            });
         }
     }
     Ok(checks)
@@ -131,10 +139,8 @@ impl RobotProgram {
 fn programs(cell: &Cell) -> Result<Vec<RobotProgram>, FormatError> {
     let of = |index: usize| {
         let volumes = cell.robots[index].guarded_volumes();
-        let riders: Vec<_> = volumes
-            .iter()
-            .map(|v| Rider { link: v.link, outline: Outline::new(&v.shape, &v.in_link) })
-            .collect();
+        let riders: Vec<_> =
+            volumes.iter().map(|v| Rider { link: v.link, outline: Outline::new(&v.shape, &v.in_link) }).collect();
         Ok(RobotProgram { profile: Profile::of(cell, index, &riders)?, volumes })
     };
     (0..cell.robots.len()).map(of).collect()

@@ -25,7 +25,9 @@ pub(super) fn fastest(cell: &Cell, region: &CellRegion) -> Result<f64, FormatErr
             let outline = Outline::new(&region.region.shape, &in_source);
             let rates = cell.pose_tracks[p].rates();
             // A half-space that does not turn is nowhere faster than its origin.
-            let of = |(_, speed, turn): (f64, f64, f64)| if turn > 0.0 { speed + turn * outline.farthest_m() } else { speed };
+            let of = |(_, speed, turn): (f64, f64, f64)| {
+                if turn > 0.0 { speed + turn * outline.farthest_m() } else { speed }
+            };
             Ok(rates.map(of).fold(0.0, f64::max))
         }
         Follow::Robot { robot, link, in_link } => {

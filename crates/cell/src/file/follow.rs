@@ -55,8 +55,7 @@ pub(super) fn read(
         }
         "object" => {
             let index = object_index(&source, known)?;
-            if let Some(crate::Drive::Belt(encoder)) =
-                known.movers.iter().find(|m| m.object == index).map(|m| &m.drive)
+            if let Some(crate::Drive::Belt(encoder)) = known.movers.iter().find(|m| m.object == index).map(|m| &m.drive)
             {
                 limits.wrap_m = encoder.wrap_m.map(|travel| encoder.direction * travel);
             }
@@ -91,9 +90,9 @@ fn fastest(robot: &CellRobot, link: LinkId, in_link: Pose) -> SourceLimits {
     let path = chain.path(link);
     let speed = |j: usize| robot.limits[j].velocity * FASTER;
     let bound = motion_bound(chain, link, in_link.translation.length(), &path);
-    let turning = motion_bound(chain, link, 0.0, &path).into_iter().filter(|(j, _)| {
-        chain.joints()[chain.active_joints()[*j].0].kind != JointKind::Prismatic
-    });
+    let turning = motion_bound(chain, link, 0.0, &path)
+        .into_iter()
+        .filter(|(j, _)| chain.joints()[chain.active_joints()[*j].0].kind != JointKind::Prismatic);
     let default = SourceLimits::default();
     SourceLimits {
         speed_m_s: bound.iter().map(|(j, lever)| lever * speed(*j)).sum::<f64>().max(default.speed_m_s),

@@ -91,9 +91,9 @@ impl Gap {
         let name = &robot.name;
         let mut hint = match self {
             Self::Still => format!("`flange` of [robot.{name}]: a link that a joint moves"),
-            Self::Tool => format!(
-                "guards = [\"arm\"], or [robot.{name}.tool] box = {{ at = [0, 0, 125], size = [80, 80, 250] }}"
-            ),
+            Self::Tool => {
+                format!("guards = [\"arm\"], or [robot.{name}.tool] box = {{ at = [0, 0, 125], size = [80, 80, 250] }}")
+            }
             Self::Solids => format!("{solid}; or guards = [\"tcp\"]: the tool centre point alone"),
             Self::Links => return solid.to_owned(),
         };

@@ -189,7 +189,10 @@ impl Plausible<'_> {
         let warning = if sensible {
             let meant = short(value * factor);
             Warning::new(t.file, t.line, format!("{what} {text}; were its numbers in {unit}, it would be {meant} m"))
-                .hint(format!("units = {{ length = \"{unit}\", angle = \"{angle}\" }}, or these numbers in {}", units.length.symbol()))
+                .hint(format!(
+                    "units = {{ length = \"{unit}\", angle = \"{angle}\" }}, or these numbers in {}",
+                    units.length.symbol()
+                ))
         } else {
             let hint = "a place within reach and a size from 1 mm to 100 m, or nothing where it is meant so";
             Warning::new(t.file, t.line, format!("{what} {text}")).hint(hint)

@@ -14,7 +14,8 @@ type Result<T> = std::result::Result<T, FormatError>;
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
-const EXAMPLE: &str = "t_s,x_m,y_m,z_m,qx,qy,qz,qw   (or x,y,z in the cell's unit; roll,pitch,yaw or roll_deg,…; or no rotation)";
+const EXAMPLE: &str =
+    "t_s,x_m,y_m,z_m,qx,qy,qz,qw   (or x,y,z in the cell's unit; roll,pitch,yaw or roll_deg,…; or no rotation)";
 
 /// Which columns hold what.
 struct Columns {
@@ -92,7 +93,11 @@ impl Columns {
 }
 
 /// The columns of these names with one of the suffixes, and what it means.
-fn one_of<const N: usize, U: Copy>(table: &NumberTable, names: &[&str; N], suffixes: &[(&str, U)]) -> Option<([usize; N], U)> {
+fn one_of<const N: usize, U: Copy>(
+    table: &NumberTable,
+    names: &[&str; N],
+    suffixes: &[(&str, U)],
+) -> Option<([usize; N], U)> {
     suffixes.iter().find_map(|(suffix, unit)| Some((all(table, names, suffix)?, *unit)))
 }
 
