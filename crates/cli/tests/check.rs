@@ -47,7 +47,7 @@ fn run(text: &str) -> Answer {
 #[test]
 fn an_overrun_is_said_before_the_run() {
     let answer = run(OVERRUN).expect(1);
-    for words in ["cell.toml:13: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "254 mm", "50 mm"] {
+    for words in ["cell.toml:12: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "254 mm", "50 mm"] {
         assert!(answer.stderr.contains(words), "{words}: {}", answer.stderr);
     }
     assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 254 in [region.wall]"));
@@ -166,7 +166,7 @@ fn a_region_that_guards_nothing_is_no_cell() {
     let text = OVERRUN.replace("warning = 50", "warning = 50\nguards = [\"tool\"]");
     for answer in [run(&text), check(&text)] {
         let answer = answer.expect(2);
-        assert!(answer.stderr.contains("cell.toml:18: region \"wall\" guards nothing"), "{}", answer.stderr);
+        assert!(answer.stderr.contains("cell.toml:17: region \"wall\" guards nothing"), "{}", answer.stderr);
         assert!(answer.stderr.contains("write: guards = [\"arm\"]"), "{}", answer.stderr);
     }
 }

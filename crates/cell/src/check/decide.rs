@@ -12,6 +12,9 @@ use crate::{Cell, CellRegion, CellRobot};
 /// The stopping-distance law aims 0.5 mm short of the border: an override that falls late by less than this (m) stays outside.
 const LATE_AT_MOST_M: f64 = 4e-4;
 
+/// So much (m) is rounding of the speeds and no thickness.
+const ROUNDING_M: f64 = 1e-6;
+
 /// One region and one robot that it concerns.
 pub(super) struct Pair<'a> {
     pub cell: &'a Cell,
@@ -37,12 +40,12 @@ pub(super) struct Decision {
 /// Why the laws do not keep the robot out.
 struct Missing {
     why: String,
-    write: Option<String>,
+    write: String,
 }
 
 impl Missing {
     fn new(why: impl Into<String>, write: impl Into<String>) -> Self {
-        Self { why: why.into(), write: Some(write.into()) }
+        Self { why: why.into(), write: write.into() }
     }
 }
 
@@ -58,7 +61,7 @@ impl Pair<'_> {
         let missing = self.unprovable().or_else(|| self.too_fast());
         match missing {
             Some(Missing { why, write }) => {
-                Decision { excluded: false, reason: why, write_instead: write, needed_warning_m }
+                Decision { excluded: false, reason: why, write_instead: Some(write), needed_warning_m }
             }
             None => Decision { excluded: true, reason: self.proof(), write_instead: None, needed_warning_m },
         }
@@ -72,11 +75,7 @@ impl Pair<'_> {
         let Missing { why, write } = self.too_fast()?;
         let (region, robot) = (&self.region().region.name, &self.robot().name);
         let what = format!("robot \"{robot}\" can overrun the border of region \"{region}\": {why}");
-        let warning = Warning::new(&self.cell.file, self.region().line, what);
-        Some(match write {
-            Some(write) => warning.hint(write),
-            None => warning,
-        })
+        Some(Warning::new(&self.cell.file, self.region().line, what).hint(write))
     }
 
     fn region(&self) -> &CellRegion {
@@ -125,7 +124,9 @@ impl Pair<'_> {
         }
         if self.travel_m_s > 0.0 {
             let why = "the region moves: the laws stop the robot, but the region can come to a robot that stands";
-            return Some(Missing { why: why.into(), write: None });
+            let name = &region.name;
+            let write = format!("warning_output = 1 in [region.{name}], wired to what stops the carrier of the region");
+            return Some(Missing::new(why, write));
         }
         if self.cell.avoidance.get(self.robot).is_some_and(Option::is_some) {
             return Some(Missing::new(
@@ -186,7 +187,7 @@ impl Pair<'_> {
     /// True where the warning zone alone is enough.
     fn thick_enough(&self) -> bool {
         let zone = self.region().region.warning_m;
-        zone >= self.needed_m() && (!self.cell.laws.laws.direction_aware || self.never_comes_back())
+        zone + ROUNDING_M >= self.needed_m() && (!self.cell.laws.laws.direction_aware || self.never_comes_back())
     }
 
     /// True where a guarded point that moves away from the region cannot come back to it without a rest: it goes on straight
@@ -203,7 +204,7 @@ impl Pair<'_> {
     /// Why entry is excluded, with the assumptions.
     fn proof(&self) -> String {
         let units = self.cell.units;
-        let reaction = format!("reaction {} ms", round(self.cell.laws.reaction_s * 1e3));
+        let reaction = format!("it obeys within {} ms", round(self.cell.laws.reaction_s * 1e3));
         let exchange =
             if matches!(self.region().region.kind, Kind::Exchange { .. }) { "without the grant " } else { "" };
         if self.fastest_m_s() <= 0.0 {
@@ -234,6 +235,6 @@ fn round(v: f64) -> f64 {
 }
 
 /// Up to the next whole millimetre.
-fn round_up(metres: f64) -> f64 {
-    ((metres * 1e3 - 1e-6).ceil() / 1e3).max(0.0)
+pub(super) fn round_up(metres: f64) -> f64 {
+    (((metres - ROUNDING_M) * 1e3).ceil() / 1e3).max(0.0)
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use elbowroom_monitor::Kind;
 
 use super::EntryCheck;
+use super::decide::round_up;
 use crate::Cell;
 
 const WIDTH: usize = 100;
@@ -51,7 +52,7 @@ fn row(text: &mut String, cell: &Cell, check: &EntryCheck) {
         (_, true) => "excluded",
         (_, false) => "POSSIBLE",
     };
-    let length = |m: f64| cell.units.show_length((m * 1e3).ceil() / 1e3);
+    let length = |m: f64| cell.units.show_length(round_up(m));
     let _ = writeln!(
         text,
         "  {:NAME$} {:NAME$} {:10} {:9} {:>12} {:>12}",
