@@ -108,7 +108,19 @@ impl Gaps {
             self;
         let bounds = (region_bounds.as_slice(), volume_bounds.as_slice());
         let tick = *tick;
-        let mut measuring = Measuring { config, active, now, law, bounds, witnesses, of_region, near, tick, pairs: 0 };
+        let mut measuring = Measuring {
+            config,
+            active,
+            now,
+            law,
+            bounds,
+            witnesses,
+            of_region,
+            near,
+            tick,
+            pairs: 0,
+            least: f64::INFINITY,
+        };
         for volume in 0..config.volumes.len() {
             let extra_reach = law.extra_reach(volume).max(travel.0);
             tree.visit(&now.volume_box[volume].inflated(extra_reach), |r| measuring.visit(r, volume, extra_reach));
@@ -134,6 +146,8 @@ struct Measuring<'a, L> {
     near: &'a mut Vec<u32>,
     tick: u64,
     pairs: u32,
+    /// The least that any region asks for so far that counts in any case.
+    least: f64,
 }
 
 impl<L: PairLaw> Measuring<'_, L> {
@@ -178,10 +192,14 @@ impl<L: PairLaw> Measuring<'_, L> {
     }
 
     fn note(&mut self, pair: Pair, fresh: bool) {
-        let so_far = if fresh { f64::INFINITY } else { self.of_region[pair.region].asks };
-        let Asked { speed_override: asks, at_once } = self.law.asks(&pair, so_far);
+        let of_region = if fresh { f64::INFINITY } else { self.of_region[pair.region].asks };
+        let Asked { speed_override: asks, at_once } = self.law.asks(&pair, of_region.min(self.least));
         let distance = pair.separation.distance;
         let exchanged = matches!(self.config.regions[pair.region].kind, Kind::Exchange { .. });
+        // An exchange region asks for nothing while this robot holds it.
+        if !exchanged {
+            self.least = self.least.min(asks);
+        }
         let stops = !exchanged || self.law.stops_outside(&pair);
         let gap = &mut self.of_region[pair.region];
         if fresh {
@@ -224,8 +242,8 @@ impl Asked {
 
 /// How a pair is judged while gaps are measured.
 pub(crate) trait PairLaw {
-    /// The override that a pair asks for. Another pair of the same region asks for `so_far`: an answer that is not below that
-    /// need not be exact.
+    /// The override that a pair asks for. Another pair asks for `so_far`, in any case: an answer that is not below that need not
+    /// be exact.
     fn asks(&self, pair: &Pair, so_far: f64) -> Asked;
     /// True where the robot, told to stop from this tick on, is sure to stop before the pair touches.
     fn stops_outside(&self, pair: &Pair) -> bool;

@@ -311,6 +311,7 @@ impl Monitor {
                 program_is_known: s.intent.is_some(),
                 now_s: s.now_s,
                 stamp_s: s.stamp_s,
+                programmed_override: s.programmed_override,
                 uncertain_s: watchdog.velocity_uncertain_s(),
                 unnoticed_s: watchdog.unnoticed_s(),
                 volume_in_world: &now.volume_in_world,

@@ -11,10 +11,12 @@ use crate::verdict::{Judge, LOOKAHEAD_S};
 const LEAST_M: f64 = 5e-6;
 /// Where the program leads along a face, it may lead away from that face by this share of its way: curves of the path.
 const SLOPE: f64 = 2e-3;
+/// A path that leads along a face may leave its straight course by so much (m) over [`LOOKAHEAD_S`].
+const CURVE_M: f64 = 5e-4;
 /// How far ahead (s) the slope is looked at.
 const NEAR_S: f64 = 1e-3;
 /// Looks along the way out.
-const LOOKS: u32 = 32;
+const LOOKS: u32 = 16;
 
 /// True where the program leads out of the region, never deeper on the way: at once by the nearest side, or farther on by
 /// another one. `soon` are the poses of volume and region [`LOOKAHEAD_S`] later.
@@ -26,6 +28,8 @@ pub(crate) fn leads_out(judge: &Judge<'_>, pair: &Pair, intent: &ChainState, soo
     };
     match escape(volume, soon.0, region, soon.1) {
         Some(then) if then.depth + LEAST_M < out.depth => true,
+        // More than the curve of a path explains.
+        Some(then) if then.depth > out.depth + CURVE_M => false,
         Some(_) => leads_out_ahead(judge, pair, intent, &out),
         // At the border there is no depth left to shrink; and whoever is out soon may be so behind a thin plate.
         None => {

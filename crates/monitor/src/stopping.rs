@@ -32,6 +32,8 @@ pub(crate) struct StoppingLaw {
     commands: Commands,
     /// From the snapshot to the start of a stop that is asked for in the next tick, s.
     horizon_s: f64,
+    /// The robot stands after this time at the latest, s.
+    stands_after_s: f64,
     /// Over how long velocities were derived from positions, s.
     uncertain_s: f64,
     /// Program time that may have passed unnoticed, as the joint values have not changed, s.
@@ -62,6 +64,8 @@ struct CarriedVolume {
     center: Vec3,
     /// In any direction.
     anywhere: Approach,
+    /// It comes no farther than this until the robot stands, in any direction, m.
+    reach_m: f64,
 }
 
 /// How a joint moves a volume.
@@ -135,6 +139,7 @@ impl StoppingLaw {
             program_is_known: false,
             commands: Commands::new(stopping.reaction_s),
             horizon_s: 0.0,
+            stands_after_s: 0.0,
             uncertain_s: 0.0,
             unnoticed_s: 0.0,
             pending: Pending::default(),
@@ -204,6 +209,7 @@ impl StoppingLaw {
             volume.anywhere.program_speed = program_speed;
             volume.anywhere.real_speed = real_speed + volume.anywhere.acceleration * tick.uncertain_s;
         }
+        self.find_reach(stopping, tick.programmed_override);
     }
 
     /// How a volume comes nearer along the unit vector `towards` (world), where its points do so no faster than given, m/s.
@@ -251,20 +257,38 @@ impl StoppingLaw {
         self.may_ask(stopping, gap, 0.0, growth)
     }
 
-    /// How far (m) a volume can still go, in any direction, where the program's override is `most`; with the time until then,
-    /// s.
-    pub(crate) fn reach(&self, stopping: &Stopping, volume: usize, most: f64) -> (f64, f64) {
+    /// How far (m) a volume can still go, in any direction; with the time until then, s.
+    pub(crate) fn reach(&self, volume: usize) -> (f64, f64) {
+        (self.volumes[volume].reach_m, self.stands_after_s)
+    }
+
+    /// True where the volume cannot come so far (m), whatever its direction.
+    pub(crate) fn is_out_of_reach(&self, volume: usize, distance_m: f64) -> bool {
+        self.volumes[volume].reach_m < distance_m
+    }
+
+    /// True where the program's speeds are known and not only inferred.
+    pub(crate) fn program_is_known(&self) -> bool {
+        self.program_is_known
+    }
+
+    /// Finds how far each volume can still go where the program's override is `most`.
+    fn find_reach(&mut self, stopping: &Stopping, most: f64) {
         let growth = stop_time(&stopping.joint_acceleration, &stopping.joint_deceleration);
-        let approach = self.volumes[volume].anywhere;
-        let course = self.course(most, growth);
-        let by_program = self.travel(stopping, volume, &approach, &course, &self.program);
+        let courses = [self.course(most, growth), self.pending_course(most, stopping.period_s, growth)];
         let real = self.real_course(growth);
-        let travel = if self.program_is_known {
-            by_program
-        } else {
-            by_program.max(self.travel(stopping, volume, &approach, &real, &self.real))
-        };
-        (travel, self.horizon_s + course.stop_s.max(real.stop_s))
+        let stop_s = courses.iter().fold(real.stop_s, |most: f64, c| most.max(c.stop_s));
+        self.stands_after_s = self.horizon_s + stop_s;
+        for volume in 0..self.volumes.len() {
+            let approach = self.volumes[volume].anywhere;
+            let travel = |course: &Course| self.travel(stopping, volume, &approach, course, &self.program);
+            let mut reach_m = travel(&courses[0]).max(travel(&courses[1]));
+            if !self.program_is_known {
+                let approach = Approach { program_speed: approach.real_speed, ..approach };
+                reach_m = reach_m.max(self.travel(stopping, volume, &approach, &real, &self.real));
+            }
+            self.volumes[volume].reach_m = reach_m;
+        }
     }
 
     /// Where the robot runs at override `c`.
@@ -334,6 +358,7 @@ pub(crate) struct TickState<'a> {
     pub(crate) program_is_known: bool,
     pub(crate) now_s: f64,
     pub(crate) stamp_s: f64,
+    pub(crate) programmed_override: f64,
     pub(crate) uncertain_s: f64,
     pub(crate) unnoticed_s: f64,
     pub(crate) volume_in_world: &'a [Pose],
@@ -348,6 +373,13 @@ pub(crate) struct Gap {
     pub(crate) left_m: f64,
     /// How fast the region comes nearer by itself, m/s.
     pub(crate) region_speed: f64,
+}
+
+impl Gap {
+    /// With so much (m) kept in reserve.
+    pub(crate) fn shorter(self, reserve_m: f64) -> Self {
+        Self { left_m: self.left_m - reserve_m, ..self }
+    }
 }
 
 impl CarriedVolume {
@@ -374,7 +406,15 @@ impl CarriedVolume {
         }
         levers.reverse();
         let anywhere = Approach::default();
-        Self { link: volume.link, center_in_shape, radius, levers, center: Vec3::ZERO, anywhere }
+        Self {
+            link: volume.link,
+            center_in_shape,
+            radius,
+            levers,
+            center: Vec3::ZERO,
+            anywhere,
+            reach_m: f64::INFINITY,
+        }
     }
 
     fn place(&mut self, axes: &[Axis], stopping: &Stopping, in_world: &Pose) {

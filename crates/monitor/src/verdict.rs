@@ -53,44 +53,53 @@ impl Judge<'_> {
         // What a warning zone or another pair asks for is proven to be slow enough more quickly than the limit is found. Where
         // the override falls at a limited rate it may be above what the zone asks for: then the limit itself counts.
         let most = if self.config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
-        let stopping = self.stopping_limit(pair, STOP_SHORT_M, most);
-        let held = Asked { speed_override: warned.min(stopping), at_once: stopping.min(v0) };
+        let law = self.stopping.map(|(stopping, law)| (stopping, law, self.gap(pair, stopping, law)));
+        let limit = |short_m: f64, most: f64| match &law {
+            None => most,
+            Some((stopping, law, gap)) => gap.map_or(0.0, |gap| law.limit(stopping, &gap.shorter(short_m), most)),
+        };
+        let held = match limit(STOP_SHORT_M, most) {
+            stopping if stopping < most => Asked { speed_override: stopping.min(warned), at_once: stopping },
+            _ => Asked::gently(warned, v0),
+        };
         if self.soon.is_none() || held.speed_override >= v0.min(so_far) {
             return held;
         }
         match self.course(pair) {
             Course::Approaching => held,
             Course::Leaving => {
-                Asked::at_once(self.stopping_limit(pair, 0.0, if most < v0 { v0.min(so_far) } else { v0 }))
+                let most = v0.min(so_far);
+                let stopping = limit(0.0, most);
+                Asked::at_once(if stopping < most { stopping } else { v0 })
             }
             Course::Recovering => Asked::at_once(v0 * self.config.laws.recovery),
         }
     }
 
-    /// The largest override up to `most` from which a stop still ends `short_m` (m) before the region; the programmed one where
-    /// the law is off.
-    fn stopping_limit(&self, pair: &Pair, short_m: f64, most: f64) -> f64 {
-        let Some((stopping, law)) = self.stopping else { return self.snapshot.programmed_override };
-        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, most))
-    }
-
-    /// `None` on contact.
-    fn gap(&self, pair: &Pair, stopping: &Stopping, law: &StoppingLaw, short_m: f64) -> Option<Gap> {
+    /// The pair as the stopping-distance law sees it; `None` on contact.
+    fn gap(&self, pair: &Pair, stopping: &Stopping, law: &StoppingLaw) -> Option<Gap> {
         let s = &pair.separation;
-        let distance = s.lower_bound.min(s.distance);
-        let left_m = distance - short_m;
+        let left_m = s.lower_bound.min(s.distance);
+        if !(left_m > 0.0) {
+            return None;
+        }
         let (volume, region) = (pair.volume, &self.config.regions[pair.region]);
-        let intent = self.intent?;
         // Between convex solids stands a plane: only motion across it counts. Others are approached from any side.
         let convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
         if !(convex(&self.config.volumes[volume].shape) && convex(&region.shape)) {
             let approach = law.approach_anywhere(volume);
-            return (distance > 0.0).then(|| Gap { volume, approach, left_m, region_speed: self.region_speed(pair) });
+            return Some(Gap { volume, approach, left_m, region_speed: self.region_speed(pair) });
         }
-        let towards = (s.on_b - s.on_a).try_normalize().filter(|_| distance > 0.0)?;
-        let speeds = [intent, &self.now.chain].map(|state| self.closing_speed(pair, state, towards));
-        let approach = law.approach(stopping, volume, towards, speeds);
-        Some(Gap { volume, approach, left_m, region_speed: self.region_closing_speed(pair, towards) })
+        let towards = (s.on_b - s.on_a).try_normalize()?;
+        let region_speed = self.region_closing_speed(pair, towards);
+        if region_speed == 0.0 && law.is_out_of_reach(volume, left_m - STOP_SHORT_M) {
+            return Some(Gap { volume, approach: law.approach_anywhere(volume), left_m, region_speed });
+        }
+        let program_speed = self.closing_speed(pair, self.intent?, towards);
+        // What the robot really does only counts where the program is not known.
+        let real_speed = if law.program_is_known() { 0.0 } else { self.closing_speed(pair, &self.now.chain, towards) };
+        let approach = law.approach(stopping, volume, towards, [program_speed, real_speed]);
+        Some(Gap { volume, approach, left_m, region_speed })
     }
 
     /// How fast (m/s) the region comes nearer against `towards` by its own motion; never negative.
@@ -131,7 +140,7 @@ impl Judge<'_> {
             return false;
         }
         let Some((stopping, law)) = self.stopping else { return self.is_at_rest(pair) };
-        self.gap(pair, stopping, law, 0.0).is_some_and(|gap| law.stops_outside(stopping, &gap))
+        self.gap(pair, stopping, law).is_some_and(|gap| law.stops_outside(stopping, &gap))
     }
 
     /// True where neither the joints nor the region move, nor are about to.
@@ -214,8 +223,8 @@ impl PairLaw for Judge<'_> {
     }
 
     fn extra_reach(&self, volume: usize) -> f64 {
-        let Some((stopping, law)) = self.stopping else { return 0.0 };
-        let (travel, time_s) = law.reach(stopping, volume, self.snapshot.programmed_override);
+        let Some((_, law)) = self.stopping else { return 0.0 };
+        let (travel, time_s) = law.reach(volume);
         travel + STOP_SHORT_M + source_speed(self.snapshot) * time_s
     }
 
