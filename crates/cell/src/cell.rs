@@ -4,14 +4,17 @@ use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
-use elbowroom_kinematics::LinkId;
-use elbowroom_monitor::{Laws, Region, Volume, VolumeModel, arm_volumes};
+use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
 use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::Mover;
+use crate::{Mover, PoseTrack};
+
+/// A tool centre point so near to a solid (m) lies on its surface: a flange's frame lies on the flange's face.
+const ON_SURFACE_M: f64 = 1e-6;
 
 /// Everything that a cell file says. Read by [`Cell::load`].
 #[derive(Debug, Clone)]
@@ -36,6 +39,8 @@ pub struct Cell {
     pub regions: Vec<CellRegion>,
     /// In file order.
     pub encoders: Vec<Encoder>,
+    /// Files of poses that regions follow.
+    pub pose_tracks: Vec<PoseTrack>,
     /// The laws of all monitors; joint decelerations are filled in per robot.
     pub laws: CellLaws,
     /// One per robot; `None` for a robot that stands at its start.
@@ -127,6 +132,8 @@ pub struct CellRegion {
     pub robots: Vec<usize>,
     /// What carries it.
     pub follow: Option<Follow>,
+    /// The fastest motion of that which the monitors believe.
+    pub source_limits: SourceLimits,
 }
 
 /// What a dynamic region rides on.
@@ -143,6 +150,10 @@ pub enum Follow {
     },
     /// Index of an encoder.
     Encoder(usize),
+    /// Index of an object, which may move or stand.
+    Object(usize),
+    /// Index of a file of poses.
+    Poses(usize),
 }
 
 /// A conveyor or a rail: something that travels along a line.
@@ -181,6 +192,8 @@ pub enum Travel {
 pub struct CellLaws {
     /// As the monitors take them, without stopping distance.
     pub laws: Laws,
+    /// Time from the monitor's answer to the first deceleration, s: `reaction_ms`, or one tick.
+    pub reaction_s: f64,
     /// Reaction time (s) of the stopping-distance law, where that is on.
     pub stopping_reaction_s: Option<f64>,
     /// How late (s) robots obey in simulation: the reaction time that the file gives, 0 where it gives none.
@@ -309,7 +322,7 @@ impl CellRobot {
         chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
     }
 
-    /// What the monitor keeps out of regions: the TCP, tool and load, and the links.
+    /// What the monitor keeps out of regions: the TCP, tool and load, and the links. The TCP is the first.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
         let parts = [("tool", &self.tool), ("load", &self.load)];
@@ -319,11 +332,33 @@ impl CellRobot {
                 Shape::Mesh(_) => self.volumes.of(&body.shape, body.in_link),
                 _ => (body.shape.clone(), body.in_link),
             };
-            let part = elbowroom_monitor::Part::Tool;
-            Some(Volume { name: name.into(), part, link: self.flange, shape, in_link })
+            Some(Volume { name: name.into(), part: Part::Tool, link: self.flange, shape, in_link })
         }));
         volumes.extend(arm_volumes(&self.bare(), self.volumes));
+        if !self.encloses(&volumes[1..], &volumes[0]) {
+            volumes[0].part = Part::TcpOutside;
+        }
         volumes
+    }
+
+    /// True where one of the solids that keep their place relative to the flange contains the point.
+    fn encloses(&self, solids: &[Volume], point: &Volume) -> bool {
+        let chain = &self.robot.chain;
+        let moving = |link: LinkId| {
+            let mut joints = chain.path(link);
+            joints.retain(|j| chain.joints()[j.0].kind.moves());
+            joints
+        };
+        let with_point = moving(point.link);
+        // Whatever the joint values: only links that no joint moves against each other are compared.
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(&self.start);
+        chain.forward(&mut state);
+        let in_root = |v: &Volume| state.link_in_root(v.link) * v.in_link;
+        solids
+            .iter()
+            .filter(|v| moving(v.link) == with_point)
+            .any(|v| elbowroom_proximity::within(&point.shape, &in_root(point), &v.shape, &in_root(v), ON_SURFACE_M))
     }
 
     /// The robot without tool and load, which are bodies of its flange for collisions.

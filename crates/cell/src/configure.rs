@@ -6,7 +6,7 @@ use std::sync::Arc;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{
     Board, ConfigError, Configuration, ConfigurationParts, Kind, Monitor, Region, RobotSlot, SlotId, SourceId,
-    Stopping, group_overlapping,
+    SourceLimits, SourceSpec, Stopping, group_overlapping,
 };
 use sha2::{Digest, Sha256};
 
@@ -42,19 +42,34 @@ pub fn setups(cell: &Cell) -> Result<Vec<Setup>, FormatError> {
 /// # Errors
 /// As for [`setups`].
 pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatError> {
-    let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
-    let slots = slots(cell);
-    let count = slots.iter().flatten().map(|s| s.0 + 1).max().unwrap_or(0);
-    let slot_names: Vec<String> = (0..count).map(|i| format!("slot {i}")).collect();
-    let slot_names: Vec<&str> = slot_names.iter().map(String::as_str).collect();
-    // Five ticks of silence, or the board's own patience where that is longer.
-    let patience_s = (5.0 * cell.tick_s).max(0.1);
-    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names).patience(patience_s)));
+    monitors_at(cell, setups, board(cell).as_ref())
+}
+
+/// The monitors, joined by the cell's [`board`].
+///
+/// # Errors
+/// As for [`setups`].
+pub fn monitors_at(cell: &Cell, setups: &[Setup], board: Option<&Arc<Board>>) -> Result<Vec<Monitor>, FormatError> {
     let monitor = |(i, s): (usize, &Setup)| {
-        Monitor::new(s.configuration.clone(), board.clone().map(|b| (b, RobotSlot(i))))
+        Monitor::new(s.configuration.clone(), board.map(|b| (b.clone(), RobotSlot(i))))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
     };
     setups.iter().enumerate().map(monitor).collect()
+}
+
+/// The board of the cell's exchange regions, its robots in the order of the cell; `None` where there are no such regions.
+/// Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
+pub fn board(cell: &Cell) -> Option<Arc<Board>> {
+    let slots = slots(cell);
+    let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
+    let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+    let members = |slot: usize| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
+    let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = (0..count).map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    // Five ticks of silence, or the board's own patience where that is longer.
+    let patience_s = (5.0 * cell.tick_s).max(0.1);
+    Some(Arc::new(Board::new(&robots, &names).patience(patience_s)))
 }
 
 /// SHA-256 (hex) over the checksums of all monitors' configurations.
@@ -71,7 +86,7 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
 }
 
 /// The lock of each exchange region; zones that overlap share one, so that nobody waits in a circle.
-fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
+pub(crate) fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     let exchange: Vec<usize> =
         (0..cell.regions.len()).filter(|i| matches!(cell.regions[*i].region.kind, Kind::Exchange { .. })).collect();
     // Grouping looks at `follow`, which the cell keeps beside the region.
@@ -91,16 +106,17 @@ fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
 fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<Setup, FormatError> {
     let mut regions = Vec::new();
     let mut indices = Vec::new();
-    let mut sources: Vec<Follow> = Vec::new();
+    let mut sources: Vec<(Follow, SourceLimits)> = Vec::new();
     for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&index)) {
         let mut region = r.region.clone();
         if let Some(slot) = slots[i] {
             region.kind = Kind::Exchange { slot };
         }
         region.follow = r.follow.map(|follow| {
-            let known = sources.iter().position(|s| *s == follow);
+            let source = (follow, r.source_limits);
+            let known = sources.iter().position(|s| *s == source);
             SourceId(known.unwrap_or_else(|| {
-                sources.push(follow);
+                sources.push(source);
                 sources.len() - 1
             }))
         });
@@ -120,16 +136,21 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         chain: robot.robot.chain.clone(),
         volumes: robot.guarded_volumes(),
         regions,
-        sources: sources.iter().map(|s| source_name(cell, s)).collect(),
+        sources: sources.iter().map(|(s, limits)| SourceSpec { name: source_name(cell, s), limits: *limits }).collect(),
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
-    Ok(Setup { configuration, regions: indices, sources })
+    Ok(Setup { configuration, regions: indices, sources: sources.into_iter().map(|s| s.0).collect() })
 }
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {
     match follow {
         Follow::Encoder(i) => format!("encoder {}", cell.encoders[*i].name),
+        Follow::Object(i) => format!("object {}", cell.objects[*i].name),
+        Follow::Poses(i) => {
+            let file = cell.pose_tracks[*i].file.file_name();
+            format!("poses {}", file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+        }
         Follow::Robot { robot, link, .. } => {
             let robot = &cell.robots[*robot];
             format!("{}/{}", robot.name, robot.robot.chain.links()[link.0])

@@ -28,6 +28,7 @@
 //! ```
 
 mod cell;
+pub mod check;
 pub mod configure;
 pub mod csv;
 mod fence;
@@ -38,9 +39,11 @@ pub mod motion;
 mod mover;
 pub mod plan;
 mod png;
+mod poses;
 pub mod query;
 mod recording;
 pub mod report;
+mod resting;
 pub mod run;
 mod summary;
 pub mod watch;
@@ -51,9 +54,10 @@ pub use cell::{
 };
 pub use file::{CellFile, NumberTable};
 pub use mover::{Drive, Leg, Mover, Repeat, Way};
+pub use poses::PoseTrack;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, EventRow, ObjectTrack, Recording, RegionPoses, RegionTrack, RobotTrack,
-    Sample, Span, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, Recording, RegionPoses,
+    RegionTrack, RobotEnding, RobotTrack, Sample, Span, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
 pub use summary::Summary;

@@ -25,6 +25,8 @@ pub struct Recording {
     pub regions: Vec<RegionTrack>,
     /// One per object that moves, in the order of the cell file.
     pub objects: Vec<ObjectTrack>,
+    /// Robots that waited for each other when the run ended.
+    pub deadlocks: Vec<Deadlock>,
     /// In order of time.
     pub events: Vec<EventRow>,
     /// How long the monitor's ticks took on this machine.
@@ -50,6 +52,63 @@ pub struct RobotTrack {
     pub collisions: Vec<Collision>,
     /// How it evaded; `None` for a robot that does not.
     pub avoidance: Option<AvoidanceTrack>,
+    /// How its run ended.
+    pub ending: RobotEnding,
+}
+
+/// How a robot's run ended, and at what.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RobotEnding {
+    /// In one word.
+    pub outcome: Outcome,
+    /// Since when (s) it stands where it ended; `None` for one that finished or was still under way.
+    pub stopped_at_s: Option<f64>,
+    /// The region that kept it, or what it first collided with: an object, or `robot/link`.
+    pub by: Option<String>,
+    /// The link, tool or load that came closest to the region, or collided first.
+    pub part: Option<String>,
+    /// The point of that part that was closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+}
+
+/// How a robot's run ended, in one word.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Outcome {
+    /// Its program came to its end.
+    #[default]
+    Finished,
+    /// It stands, or was still under way, before that.
+    Stopped,
+    /// It waits for an exchange region.
+    Held,
+    /// It touched something.
+    Collided,
+    /// It waits for robots that wait for it.
+    Deadlock,
+}
+
+impl Outcome {
+    /// The word in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Stopped => "stopped",
+            Self::Held => "held",
+            Self::Collided => "collided",
+            Self::Deadlock => "deadlock",
+        }
+    }
+}
+
+/// Robots that wait for each other in a circle, for exchange regions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deadlock {
+    /// Since when all of them stand, s.
+    pub t_s: f64,
+    /// The robots, in the order of the cell file.
+    pub robots: Vec<String>,
+    /// The regions that they wait for.
+    pub regions: Vec<String>,
 }
 
 /// What avoidance did to one robot.

@@ -22,6 +22,8 @@ pub struct Summary {
     pub robots: Vec<RobotSummary>,
     /// Per region.
     pub regions: Vec<RegionSummary>,
+    /// Robots that waited for each other when the run ended.
+    pub deadlocks: Vec<DeadlockSummary>,
 }
 
 /// Wall-clock time of ticks, ns.
@@ -42,6 +44,16 @@ pub struct RobotSummary {
     pub name: String,
     /// True where its program came to its end.
     pub finished: bool,
+    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
+    pub outcome: &'static str,
+    /// Since when it stands where it ended, s; null for one that finished or was still under way.
+    pub stopped_at_s: Option<f64>,
+    /// The region that kept it, or what it first collided with; null where nothing did.
+    pub by: Option<String>,
+    /// The link, tool or load concerned.
+    pub part: Option<String>,
+    /// The point of that part that was closest to the region, in the world, m.
+    pub point_m: Option<[f64; 3]>,
     /// Time it was held, s.
     pub stopped_s: f64,
     /// Smallest override, 0..1.
@@ -90,6 +102,17 @@ impl AvoidanceSummary {
     }
 }
 
+/// Robots that wait for each other in a circle.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DeadlockSummary {
+    /// Since when all of them stand, s.
+    pub t_s: f64,
+    /// The robots.
+    pub robots: Vec<String>,
+    /// The exchange regions that they wait for.
+    pub regions: Vec<String>,
+}
+
 /// A contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CollisionSummary {
@@ -121,6 +144,11 @@ impl From<&Recording> for Summary {
         let robot = |t: &crate::RobotTrack| RobotSummary {
             name: t.name.clone(),
             finished: t.finished,
+            outcome: t.ending.outcome.name(),
+            stopped_at_s: t.ending.stopped_at_s,
+            by: t.ending.by.clone(),
+            part: t.ending.part.clone(),
+            point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
             stopped_s: t.stopped_s,
             min_override: t.min_override,
             collisions: t
@@ -137,7 +165,10 @@ impl From<&Recording> for Summary {
             entered: t.entered,
             warned_s: t.warned_s,
         };
+        let deadlock =
+            |d: &crate::Deadlock| DeadlockSummary { t_s: d.t_s, robots: d.robots.clone(), regions: d.regions.clone() };
         Self {
+            deadlocks: r.deadlocks.iter().map(deadlock).collect(),
             cell: r.cell.clone(),
             checksum: r.checksum.clone(),
             duration_s: r.duration_s,

@@ -24,6 +24,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Run a cell's programs in simulated time under the monitor
     Run(RunArgs),
+    /// Say for every region and robot whether entry is excluded by the laws that are on, and what is missing
+    Check(CheckArgs),
     /// Ask for collisions, distances or tolerances of a cell or a robot, one answer per joint state
     Query(QueryArgs),
     /// Say what is in a robot or mesh file
@@ -94,6 +96,21 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) repeat: u32,
     /// Print one JSON document instead of the summary
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom check cell.toml                   a table with the reasons, and what to write where entry is possible
+  elbowroom check cell.toml --json | jq '.regions[] | select(.excluded | not)'
+
+Nothing is run: the answer comes from the laws, the stopping times and the speeds of the programs (docs/laws.md).
+Exit status: 1 where a region that is meant to keep a robot out does not.")]
+pub(crate) struct CheckArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -368,7 +385,7 @@ pub(crate) struct TeachArgs {
     /// Teach with the flange instead of the TCP
     #[arg(long)]
     pub(crate) flange: bool,
-    /// Height of box3, in the cell file's unit of length
+    /// Height of box3, in the cell file's unit of length: positive goes up from the taught corners, negative down
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
     /// Thickness of the warning zone, in the cell file's unit of length

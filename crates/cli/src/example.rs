@@ -7,7 +7,7 @@ use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
 use crate::output::{Failure, Verdict, cannot_write, color, myself, note, print, width};
-use crate::run::{with_progress, write_files};
+use crate::run::{warn_of_overruns, with_progress, write_files};
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
 /// Where everything goes that was not asked to go elsewhere.
@@ -20,6 +20,7 @@ pub(crate) fn figure_12() -> Result<Verdict, Failure> {
     let dir = out.join("figure12");
     let file = dir.join("cell.toml");
     let cell = Cell::load(&file)?;
+    warn_of_overruns(&cell)?;
     let on = with_progress(&cell, &RunOptions::default())?;
     let off = with_progress(&cell, &RunOptions { monitored: false, ..RunOptions::default() })?;
     on.notes.iter().for_each(note);

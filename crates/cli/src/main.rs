@@ -3,6 +3,7 @@
 //! Exit status: 0 done and free of trouble; 1 the answer is bad news; 2 the input or the call is wrong.
 
 mod args;
+mod check;
 mod convert;
 mod example;
 mod inspect;
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     let answer = match cli.command {
         None => example::figure_12(),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Check(args)) => check::check(&args),
         Some(Command::Query(args)) => query::query(&args),
         Some(Command::Inspect(args)) => inspect::inspect(&args),
         Some(Command::Convert(args)) => convert::convert(&args),

@@ -22,6 +22,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
         repeat: args.repeat,
         ..RunOptions::default()
     };
+    if options.monitored {
+        warn_of_overruns(&cell)?;
+    }
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(note);
     if let Some(dir) = &args.out {
@@ -41,6 +44,12 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
         }
     }
     Ok(if outcome.bad_news() { Verdict::Bad } else { Verdict::Good })
+}
+
+/// Says before a run where robots can come to a border faster than they can stop.
+pub(crate) fn warn_of_overruns(cell: &Cell) -> Result<(), Failure> {
+    elbowroom::cell::check::overruns(cell)?.iter().for_each(|w| note(format_args!("warning: {w}")));
+    Ok(())
 }
 
 /// Runs the cell with a progress bar, which appears only where the run is long.

@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     .warning(0.1)
                     .follow(SourceId(i)),
             );
-            sources.push(format!("neighbour {}", v.name));
+            sources.push(format!("neighbour {}", v.name).into());
         }
         let parts = ConfigurationParts { sources, ..parts(robot.chain.clone(), own.clone(), all) };
         let mut monitor = Monitor::new(Configuration::new(parts)?, None)?;

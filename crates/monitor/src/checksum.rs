@@ -5,7 +5,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use sha2::{Digest, Sha256};
 
-use crate::{Configuration, Kind, Laws, Life, Part, Region, Volume};
+use crate::{Configuration, Kind, Laws, Life, Part, Region, SourceSpec, Volume};
 
 impl Configuration {
     /// SHA-256 (hex) over everything that decides an override: chain, volumes, regions and laws, bit by bit. Equal
@@ -17,7 +17,7 @@ impl Configuration {
         sink.chain(&self.chain);
         sink.list(&self.volumes, Sink::volume);
         sink.list(&self.regions, Sink::region);
-        sink.list(&self.sources, |s, name| s.text(name));
+        sink.list(&self.sources, Sink::source);
         sink.laws(&self.laws);
         let digits = sink.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
         digits.filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
@@ -139,6 +139,7 @@ impl Sink {
             Part::Tcp => 0,
             Part::Tool => 1,
             Part::Arm => 2,
+            Part::TcpOutside => 3,
         });
         self.count(volume.link.0);
         self.pose(&volume.in_link);
@@ -172,6 +173,14 @@ impl Sink {
         self.tag(region.warning_output.unwrap_or(u8::MAX));
     }
 
+    fn source(&mut self, source: &SourceSpec) {
+        self.text(&source.name);
+        self.number(source.limits.speed_m_s);
+        self.number(source.limits.turn_rad_s);
+        self.flag(source.limits.wrap_m.is_some());
+        self.vec3(source.limits.wrap_m.unwrap_or_default());
+    }
+
     fn laws(&mut self, laws: &Laws) {
         self.flag(laws.direction_aware);
         self.number(laws.recovery);
@@ -186,3 +195,6 @@ impl Sink {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

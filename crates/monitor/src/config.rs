@@ -3,7 +3,7 @@
 use elbowroom_kinematics::Chain;
 use elbowroom_spatial::Pose;
 
-use crate::{Kind, Laws, Region, RegionId, Volume};
+use crate::{Kind, Laws, Region, RegionId, SourceSpec, Volume};
 
 /// What a [`Configuration`] is built from: [`Configuration::new`] checks it.
 #[derive(Debug, Clone)]
@@ -18,8 +18,9 @@ pub struct ConfigurationParts {
     pub volumes: Vec<Volume>,
     /// The regions.
     pub regions: Vec<Region>,
-    /// Names of the sources that regions follow; snapshots bring one [`Source`](crate::Source) for each.
-    pub sources: Vec<String>,
+    /// The sources that regions follow; snapshots bring one [`Source`](crate::Source) for each. A name alone has the limits
+    /// that suit most: `sources: vec!["belt".into()]`.
+    pub sources: Vec<SourceSpec>,
     /// The laws.
     pub laws: Laws,
 }
@@ -41,7 +42,7 @@ pub struct Configuration {
     pub(crate) chain: Chain,
     pub(crate) volumes: Vec<Volume>,
     pub(crate) regions: Vec<Region>,
-    pub(crate) sources: Vec<String>,
+    pub(crate) sources: Vec<SourceSpec>,
     pub(crate) laws: Laws,
 }
 
@@ -64,6 +65,14 @@ pub enum ConfigError {
     Volume {
         /// The volume.
         volume: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A source is unusable.
+    #[error("source `{source_name}`: {why}")]
+    Source {
+        /// The source.
+        source_name: String,
         /// What is wrong.
         why: String,
     },
@@ -115,8 +124,8 @@ impl Configuration {
         &self.regions
     }
 
-    /// Names of the sources that regions follow, in the order of [`Snapshot::sources`](crate::Snapshot::sources).
-    pub fn sources(&self) -> &[String] {
+    /// The sources that regions follow, in the order of [`Snapshot::sources`](crate::Snapshot::sources).
+    pub fn sources(&self) -> &[SourceSpec] {
         &self.sources
     }
 
@@ -137,6 +146,11 @@ impl Configuration {
         }
         self.regions.iter().enumerate().try_for_each(|(i, r)| self.validate_region(i, r))?;
         self.volumes.iter().try_for_each(|v| self.validate_volume(v))?;
+        for source in &self.sources {
+            if let Some(why) = source.limits.fault() {
+                return Err(ConfigError::Source { source_name: source.name.clone(), why });
+            }
+        }
         self.validate_laws()
     }
 

@@ -7,7 +7,7 @@ use crate::bound::RoundedBox;
 use crate::broad::RegionTree;
 use crate::placement::Placement;
 use crate::witness::Witnesses;
-use crate::{Configuration, RegionId};
+use crate::{Configuration, Kind, RegionId};
 
 /// A volume near a region.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +32,8 @@ pub(crate) struct Gap {
     pub(crate) at_once: f64,
     /// The pair that asks for it.
     pub(crate) asking: Pair,
+    /// False where a volume may not be able to stop outside. Only asked for exchange regions; true for others.
+    pub(crate) stops: bool,
 }
 
 /// All gaps of a tick.
@@ -64,7 +66,7 @@ impl Gaps {
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
             witnesses: Witnesses::new(config),
             of_region: vec![
-                Gap { tick: 0, distance: 0.0, before: 0.0, asks: 0.0, at_once: 0.0, asking };
+                Gap { tick: 0, distance: 0.0, before: 0.0, asks: 0.0, at_once: 0.0, asking, stops: true };
                 config.regions.len()
             ],
             near: Vec::with_capacity(config.regions.len()),
@@ -176,15 +178,18 @@ impl<L: PairLaw> Measuring<'_, L> {
     }
 
     fn note(&mut self, pair: Pair, fresh: bool) {
-        let Asked { speed_override: asks, at_once } = self.law.asks(&pair);
+        let so_far = if fresh { f64::INFINITY } else { self.of_region[pair.region].asks };
+        let Asked { speed_override: asks, at_once } = self.law.asks(&pair, so_far);
         let distance = pair.separation.distance;
+        let exchanged = matches!(self.config.regions[pair.region].kind, Kind::Exchange { .. });
+        let stops = !exchanged || self.law.stops_outside(&pair);
         let gap = &mut self.of_region[pair.region];
         if fresh {
             self.near.push(pair.region as u32);
             // What was not near then was beyond the reach.
             let before =
                 if gap.tick + 1 == self.tick { gap.distance } else { self.config.regions[pair.region].reach() };
-            *gap = Gap { tick: self.tick, distance, before, asks, at_once, asking: pair };
+            *gap = Gap { tick: self.tick, distance, before, asks, at_once, asking: pair, stops };
             return;
         }
         if asks < gap.asks || (asks == gap.asks && distance < gap.distance) {
@@ -192,6 +197,7 @@ impl<L: PairLaw> Measuring<'_, L> {
         }
         gap.distance = gap.distance.min(distance);
         gap.at_once = gap.at_once.min(at_once);
+        gap.stops &= stops;
     }
 }
 
@@ -218,8 +224,11 @@ impl Asked {
 
 /// How a pair is judged while gaps are measured.
 pub(crate) trait PairLaw {
-    /// The override that a pair asks for.
-    fn asks(&self, pair: &Pair) -> Asked;
+    /// The override that a pair asks for. Another pair of the same region asks for `so_far`: an answer that is not below that
+    /// need not be exact.
+    fn asks(&self, pair: &Pair, so_far: f64) -> Asked;
+    /// True where the robot, told to stop from this tick on, is sure to stop before the pair touches.
+    fn stops_outside(&self, pair: &Pair) -> bool;
     /// How far (m) beyond its warning zone a region can still ask something of this volume.
     fn extra_reach(&self, volume: usize) -> f64;
     /// True where farther pairs never ask for less than closer ones.

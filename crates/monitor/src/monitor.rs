@@ -11,6 +11,7 @@ use crate::laws::rate_limited;
 use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
+use crate::source_watch::{SourceWatch, Trust};
 use crate::stopping::{StoppingLaw, TickState};
 use crate::sweep::Sweep;
 use crate::verdict::{Judge, LOOKAHEAD_S};
@@ -45,6 +46,7 @@ pub struct Monitor {
     /// Switched on for this tick: they were not there on the way to it.
     fresh: Vec<RegionId>,
     watchdog: Watchdog,
+    source_watch: SourceWatch,
     seat: Option<Seat>,
     last_override: Option<f64>,
     fault: Option<Fault>,
@@ -86,6 +88,7 @@ impl Monitor {
             outputs: Outputs::new(),
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
+            source_watch: SourceWatch::new(config.sources.len()),
             fresh: Vec::with_capacity(2 * regions + 16),
             watchdog: Watchdog::new(&config.chain, laws),
             last_override: None,
@@ -121,7 +124,9 @@ impl Monitor {
         }
         self.update_presence();
         if let Some(seat) = &mut self.seat {
-            seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
+            let Self { active, presence, gaps, log, .. } = self;
+            let stops = |r: usize| gaps.get(r).is_none_or(|g| g.stops);
+            seat.update(|r| (active[r.0], presence[r.0], stops(r.0)), s.now_s, log);
         }
         self.conclude(s, dt_s)
     }
@@ -141,6 +146,9 @@ impl Monitor {
         }
         if self.active[region.0] != on {
             self.active[region.0] = on;
+            if let (true, Kind::Exchange { slot }, Some(seat)) = (on, r.kind, &self.seat) {
+                seat.forget(slot);
+            }
             if self.switched.len() < self.switched.capacity() {
                 self.switched.push((region, on));
             }
@@ -234,13 +242,14 @@ impl Monitor {
         self.gaps.clear();
     }
 
-    fn check_sources(&self, s: &Snapshot) -> Result<(), Fault> {
+    fn check_sources(&mut self, s: &Snapshot) -> Result<(), Fault> {
+        self.source_watch.look(&self.config.sources, s.sources, s.now_s, self.config.laws.stale_s);
         for (r, source) in self.now.riders.iter().filter(|(r, _)| self.active[*r]) {
-            let source = &s.sources[*source];
-            let age = s.now_s - source.stamp_s;
-            let fresh = (0.0..=self.config.laws.stale_s).contains(&age);
-            if !(fresh && source.pose.is_finite() && source.motion.is_finite()) {
-                return Err(Fault::Source { region: RegionId(*r) });
+            let region = RegionId(*r);
+            match self.source_watch.trust(*source) {
+                Trust::Believed => {}
+                Trust::Lost => return Err(Fault::Source { region }),
+                Trust::Jumped => return Err(Fault::SourceJump { region }),
             }
         }
         Ok(())
@@ -248,7 +257,10 @@ impl Monitor {
 
     fn stop(&mut self, s: &Snapshot, fault: Fault) -> TickReport {
         if self.fault != Some(fault) {
-            let region = if let Fault::Source { region } = fault { Some(region) } else { None };
+            let region = match fault {
+                Fault::Source { region } | Fault::SourceJump { region } => Some(region),
+                _ => None,
+            };
             self.log.push(region, EventKind::Fault);
         }
         self.fault = Some(fault);
@@ -306,7 +318,9 @@ impl Monitor {
             law.begin(config, stopping, &tick);
             (stopping, &*law)
         });
-        let judge = Judge { config, snapshot: s, now, soon: soon.as_ref(), intent: intent.as_ref(), stopping };
+        let last_override = last_override.unwrap_or(0.0);
+        let (soon, intent) = (soon.as_ref(), intent.as_ref());
+        let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping };
         gaps.measure(config, active, now, &judge, sweep.reach());
     }
 

@@ -116,6 +116,12 @@ pub enum Fault {
         /// The region.
         region: RegionId,
     },
+    /// The source of motion that an active region follows is farther away than it can be by now, or than the motion that it
+    /// states explains.
+    SourceJump {
+        /// The region.
+        region: RegionId,
+    },
 }
 
 impl fmt::Display for Fault {
@@ -132,6 +138,9 @@ impl fmt::Display for Fault {
             Self::Frozen => write!(f, "joint values do not change although the robot is told to move"),
             Self::Braking => write!(f, "the robot brakes less than its stated deceleration"),
             Self::Source { region } => write!(f, "the source that region {} follows is lost", region.0),
+            Self::SourceJump { region } => {
+                write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)
+            }
         }
     }
 }

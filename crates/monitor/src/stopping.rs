@@ -437,10 +437,10 @@ fn bending(levers: &[Lever], by: impl Fn(usize) -> f64) -> f64 {
     sum
 }
 
-/// The largest value below `most` for which `fits` holds, to a part in sixteen millions; it holds for 0.
+/// The largest value below `most` for which `fits` holds, to a part in sixty thousands; it holds for 0.
 fn bisect(most: f64, fits: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, most);
-    for _ in 0..24 {
+    for _ in 0..16 {
         let middle = 0.5 * (low + high);
         if fits(middle) { low = middle } else { high = middle }
     }

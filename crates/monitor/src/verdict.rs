@@ -15,6 +15,8 @@ use crate::{Configuration, Kind, Snapshot};
 pub(crate) const LOOKAHEAD_S: f64 = 0.01;
 /// The stopping law aims this far (m) short of the border, so that rounding never ends inside.
 const STOP_SHORT_M: f64 = 5e-4;
+/// Joints slower than this (rad/s, m/s) are at rest where nothing is known of how they brake.
+const AT_REST: f64 = 1e-3;
 /// A gap must grow by at least this speed (m/s) to count as growing.
 const LEAVING_SPEED: f64 = 5e-4;
 
@@ -27,6 +29,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) soon: Option<&'a Placement>,
     /// The chain at the program's own speed, where that speed is needed.
     pub(crate) intent: Option<&'a ChainState>,
+    /// The override asked for in the last tick: what the robot may still be doing.
+    pub(crate) last_override: f64,
     /// The stopping-distance law, where that is on.
     pub(crate) stopping: Option<(&'a Stopping, &'a StoppingLaw)>,
 }
@@ -43,35 +47,31 @@ enum Course {
 }
 
 impl Judge<'_> {
-    fn forbidden(&self, pair: &Pair) -> Asked {
+    fn forbidden(&self, pair: &Pair, so_far: f64) -> Asked {
         let v0 = self.snapshot.programmed_override;
         let warned = v0 * warning_factor(pair.separation.distance, self.config.regions[pair.region].warning_m);
-        let stopping = self.stopping_limit(pair, STOP_SHORT_M);
-        let held = Asked { speed_override: warned.min(stopping), at_once: stopping };
-        if self.soon.is_none() || held.speed_override >= v0 {
+        // What a warning zone or another pair asks for is proven to be slow enough more quickly than the limit is found. Where
+        // the override falls at a limited rate it may be above what the zone asks for: then the limit itself counts.
+        let most = if self.config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
+        let stopping = self.stopping_limit(pair, STOP_SHORT_M, most);
+        let held = Asked { speed_override: warned.min(stopping), at_once: stopping.min(v0) };
+        if self.soon.is_none() || held.speed_override >= v0.min(so_far) {
             return held;
         }
         match self.course(pair) {
             Course::Approaching => held,
-            Course::Leaving => Asked::at_once(self.stopping_limit(pair, 0.0)),
+            Course::Leaving => {
+                Asked::at_once(self.stopping_limit(pair, 0.0, if most < v0 { v0.min(so_far) } else { v0 }))
+            }
             Course::Recovering => Asked::at_once(v0 * self.config.laws.recovery),
         }
     }
 
-    /// The largest override from which a stop still ends `short_m` (m) before the region; the programmed one where the law is
-    /// off.
-    fn stopping_limit(&self, pair: &Pair, short_m: f64) -> f64 {
-        let v0 = self.snapshot.programmed_override;
-        let Some((stopping, law)) = self.stopping else { return v0 };
-        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, v0))
-    }
-
-    /// True where it is proven that a stop that is asked for in this tick ends before the region: never without the
-    /// stopping-distance law.
-    #[expect(dead_code, reason = "the exchange protocol asks it")]
-    pub(crate) fn stops_outside(&self, pair: &Pair) -> bool {
-        let Some((stopping, law)) = self.stopping else { return false };
-        self.gap(pair, stopping, law, 0.0).is_some_and(|gap| law.stops_outside(stopping, &gap))
+    /// The largest override up to `most` from which a stop still ends `short_m` (m) before the region; the programmed one where
+    /// the law is off.
+    fn stopping_limit(&self, pair: &Pair, short_m: f64, most: f64) -> f64 {
+        let Some((stopping, law)) = self.stopping else { return self.snapshot.programmed_override };
+        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, most))
     }
 
     /// `None` on contact.
@@ -122,6 +122,26 @@ impl Judge<'_> {
         }
         let center = source.motion.velocity_at(boxed.center() - source.pose.translation);
         center.length() + source.motion.angular_velocity.length() * 0.5 * boxed.extent().length()
+    }
+
+    /// True where the robot ends outside the region if it is told override 0 from this tick on: by the stopping-distance law,
+    /// or, where no deceleration is stated, because it is at rest.
+    fn can_stop_outside(&self, pair: &Pair) -> bool {
+        if pair.separation.distance <= 0.0 {
+            return false;
+        }
+        let Some((stopping, law)) = self.stopping else { return self.is_at_rest(pair) };
+        self.gap(pair, stopping, law, 0.0).is_some_and(|gap| law.stops_outside(stopping, &gap))
+    }
+
+    /// True where neither the joints nor the region move, nor are about to.
+    fn is_at_rest(&self, pair: &Pair) -> bool {
+        let told = |v: &f64| (v * self.last_override).abs() <= AT_REST;
+        let region = &self.config.regions[pair.region];
+        let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, pair.separation.on_b);
+        self.now.chain.qd.iter().all(|v| v.abs() <= AT_REST)
+            && self.snapshot.intent.is_none_or(|intent| intent.iter().all(told))
+            && region_velocity.length() <= AT_REST
     }
 
     /// Largest speed (m/s) with which any point of the volume moves along `towards` when the chain moves as in `state`.
@@ -177,16 +197,20 @@ impl Judge<'_> {
 }
 
 impl PairLaw for Judge<'_> {
-    fn asks(&self, pair: &Pair) -> Asked {
+    fn asks(&self, pair: &Pair, so_far: f64) -> Asked {
         let v0 = self.snapshot.programmed_override;
         let region = &self.config.regions[pair.region];
         match region.kind {
-            Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair),
+            Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair, so_far),
             Kind::Monitored { slow_to: None } => Asked::gently(v0, v0),
             Kind::Monitored { slow_to: Some(slow) } => {
                 Asked::gently(speed_zone(pair.separation.distance, region.warning_m, slow, v0), v0)
             }
         }
+    }
+
+    fn stops_outside(&self, pair: &Pair) -> bool {
+        self.can_stop_outside(pair)
     }
 
     fn extra_reach(&self, volume: usize) -> f64 {

@@ -10,8 +10,11 @@ use crate::Guards;
 /// What a volume belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// The tool centre point.
+    /// The tool centre point, where a solid that moves with it encloses it.
     Tcp,
+    /// The tool centre point where no such solid encloses it: a region that guards the tool or the arm must not overlook
+    /// the point that works.
+    TcpOutside,
     /// Tool or load.
     Tool,
     /// A link.
@@ -19,10 +22,12 @@ pub enum Part {
 }
 
 impl Part {
-    /// True where a region with these guards measures this part: `arm` is the links with tool and load.
+    /// True where a region with these guards measures this part: `arm` is the links with tool and load; a tool centre
+    /// point outside of all solids counts for every guard.
     pub fn counts_for(self, guards: Guards) -> bool {
         match self {
             Self::Tcp => guards.tcp,
+            Self::TcpOutside => guards.tcp || guards.tool || guards.arm,
             Self::Tool => guards.tool || guards.arm,
             Self::Arm => guards.arm,
         }

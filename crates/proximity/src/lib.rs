@@ -49,6 +49,7 @@ pub mod facing;
 pub mod fit;
 pub mod impact;
 pub mod mesh;
+mod patch;
 mod project;
 pub mod repair;
 mod separation;

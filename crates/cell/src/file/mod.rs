@@ -1,9 +1,13 @@
 //! The cell file: TOML in, [`Cell`](crate::Cell) out. `docs/cell-file.md` describes every key.
 
 mod avoidance;
+mod follow;
+mod guarding;
 mod models;
 mod node;
 mod object;
+mod plausible;
+mod poses;
 mod program;
 mod read;
 mod region;
@@ -103,7 +107,8 @@ impl CellFile {
             movers: Vec::new(),
             regions: Vec::new(),
             encoders: Vec::new(),
-            laws: laws(&root)?,
+            pose_tracks: Vec::new(),
+            laws: laws(&root, &mut warnings)?,
             programs: Vec::new(),
             avoidance: Vec::new(),
             maps: Vec::new(),
@@ -122,6 +127,7 @@ impl CellFile {
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
         check(&root, &mut cell)?;
+        plausible::check(&root, &cell, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }
@@ -192,8 +198,26 @@ fn tick_ms(v: &Value<'_>) -> Result<f64> {
     Err(v.error(format!("is {ms} ms")).hint("tick_ms = 2   (0.01 to 1000)"))
 }
 
-fn laws(root: &Table<'_>) -> Result<CellLaws> {
-    let Some(v) = root.get("monitor") else { return Ok(CellLaws::default()) };
+/// Age of input from which on it is not trusted: whoever sets it to seconds has no watchdog.
+fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Warning>) -> Result<f64> {
+    let ms = v.positive()?;
+    if ms > 1000.0 {
+        let what = format!("is {ms} ms: for so long a robot would go on by input that nobody has renewed");
+        return Err(v.error(what).hint("stale_ms = 20   (at most 1000)"));
+    }
+    if ms > 100.0 {
+        let what = format!("`{}` is {ms} ms: a robot at 1 m/s goes {ms} mm before lost input stops it", v.name);
+        warnings.push(Warning::new(v.file, v.line, what).hint("stale_ms = 20   (a few ticks)"));
+    }
+    Ok(ms)
+}
+
+fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
+    // By default the reaction is the time until the next tick obeys.
+    let tick_s = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0;
+    let Some(v) = root.get("monitor") else {
+        return Ok(CellLaws { reaction_s: tick_s, ..CellLaws::default() });
+    };
     let t = v.table("[monitor]")?;
     t.only(&["direction_aware", "recovery", "stopping_distance", "reaction_ms", "override_rate", "stale_ms"])?;
     let mut laws = Laws { direction_aware: t.flag_or("direction_aware", false)?, ..Laws::default() };
@@ -204,25 +228,33 @@ fn laws(root: &Table<'_>) -> Result<CellLaws> {
         laws.override_rate = v.not_negative()?;
     }
     if let Some(v) = t.get("stale_ms") {
-        laws.stale_s = v.positive()? / 1000.0;
+        laws.stale_s = stale_ms(&v, warnings)? / 1000.0;
     }
-    let reaction = t.get("reaction_ms").map(|v| v.not_negative()).transpose()?;
+    let reaction_s = t.get("reaction_ms").map_or(Ok(tick_s), |v| v.not_negative().map(|ms| ms / 1000.0))?;
     let stopping = t.flag_or("stopping_distance", false)?;
-    // By default the reaction is the time until the next tick obeys.
-    let tick = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))?;
     Ok(CellLaws {
         laws,
-        stopping_reaction_s: stopping.then_some(reaction.unwrap_or(tick) / 1000.0),
-        obeyed_after_s: reaction.unwrap_or(0.0) / 1000.0,
+        reaction_s,
+        stopping_reaction_s: stopping.then_some(reaction_s),
+        obeyed_after_s: if t.get("reaction_ms").is_some() { reaction_s } else { 0.0 },
     })
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
-    let known = region::Known { robots: &cell.robots, encoders: &cell.encoders };
+    let mut known = region::Known {
+        robots: &cell.robots,
+        encoders: &cell.encoders,
+        objects: &cell.objects,
+        movers: &cell.movers,
+        pose_tracks: Vec::new(),
+    };
     let mut regions = Vec::new();
     for (name, t) in root.named("region")? {
-        regions.push(region::read(name, &t, cell.units, &known, warnings)?);
+        let region = region::read(name, &t, cell.units, &mut known, warnings)?;
+        guarding::check(&t, &region, &cell.robots, warnings)?;
+        regions.push(region);
     }
+    cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;
     Ok(())
 }

@@ -1,14 +1,14 @@
 //! `[region.NAME]` and `[encoder.NAME]`.
 
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_monitor::{Guards, Kind, Life, Region, SlotId};
+use elbowroom_monitor::{Guards, Kind, Life, Region, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_scene::Object;
+use elbowroom_spatial::Vec3;
 
 use super::read::{Table, Value};
-use super::robot::unknown_link;
-use super::{models, suggest};
-use crate::{CellRegion, CellRobot, Encoder, Follow, Travel, Units};
+use super::{follow, models, suggest};
+use crate::{CellRegion, CellRobot, Encoder, Follow, Mover, PoseTrack, Travel, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -27,17 +27,28 @@ const COMMON: &[&str] = &[
     "warning_output",
 ];
 
+/// Thicker warning zones (m) are refused.
+const MOST_WARNING_M: f64 = 100.0;
+/// Thicker warning zones (m) are warned about.
+const LARGE_WARNING_M: f64 = 10.0;
+/// A larger hysteresis (m) is refused.
+const MOST_HYSTERESIS_M: f64 = 1.0;
+
 /// What a region may name.
 pub(super) struct Known<'a> {
     pub robots: &'a [CellRobot],
     pub encoders: &'a [Encoder],
+    pub objects: &'a [Object],
+    pub movers: &'a [Mover],
+    /// Read with the regions that follow them.
+    pub pose_tracks: Vec<PoseTrack>,
 }
 
 pub(super) fn read(
     name: &str,
     t: &Table<'_>,
     units: Units,
-    known: &Known<'_>,
+    known: &mut Known<'_>,
     warnings: &mut Vec<Warning>,
 ) -> Result<CellRegion> {
     let mut region = solid(name, t, units)?;
@@ -45,18 +56,39 @@ pub(super) fn read(
     region.life = t
         .get("life")
         .map_or(Ok(Life::Permanent), |v| v.word(&[("permanent", Life::Permanent), ("temporary", Life::Temporary)]))?;
-    region.warning_m = t.get("warning").map_or(Ok(0.0), |v| units.not_negative_length(&v))?;
+    region.warning_m = t.get("warning").map_or(Ok(0.0), |v| thickness(&v, units, warnings))?;
     region.guards = t.get("guards").map_or(Ok(Guards::ARM), |v| guards(&v))?;
     if let Some(v) = t.get("hysteresis") {
         region.hysteresis_m = units.not_negative_length(&v)?;
+        if region.hysteresis_m > MOST_HYSTERESIS_M {
+            return Err(v
+                .error(format!("is {}: an output would hardly ever fall", units.show_length(region.hysteresis_m)))
+                .hint("hysteresis = 1   (above the noise of an encoder, in the cell's unit of length; at most 1 m)"));
+        }
     }
     let channel = |key: &str| t.get(key).map(|v| v.whole(0, 63).map(|c| c as u8)).transpose();
     region.output = channel("output")?;
     region.warning_output = channel("warning_output")?;
     check_warning(name, t, &region, warnings)?;
-    let follow = t.get("follow").map(|v| follow(&v, known)).transpose()?;
+    let followed = t.get("follow").map(|v| follow::read(&v, units, known, warnings)).transpose()?;
+    let (follow, source_limits) = followed.map_or((None, SourceLimits::default()), |(f, l)| (Some(f), l));
     let robots = robots(t, known, follow)?;
-    Ok(CellRegion { region, line: t.line, robots, follow })
+    Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
+}
+
+/// Thickness of a warning zone: 10 m are more than any robot in a cell needs to stop.
+fn thickness(v: &Value<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<f64> {
+    let metres = units.not_negative_length(v)?;
+    let shown = units.show_length(metres);
+    if metres > MOST_WARNING_M {
+        let what = format!("is {shown}: no cell is so large");
+        return Err(v.error(what).hint(format!("warning = {}   (at most 100 m)", units.in_file_units(0.25))));
+    }
+    if metres > LARGE_WARNING_M {
+        let what = format!("`{}` is {shown}: every robot would be slowed wherever it is", v.name);
+        warnings.push(Warning::new(v.file, v.line, what).hint(format!("warning = {}", units.in_file_units(0.25))));
+    }
+    Ok(metres)
 }
 
 fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
@@ -226,39 +258,6 @@ fn robots(t: &Table<'_>, known: &Known<'_>, follow: Option<Follow>) -> Result<Ve
         robots.push(index);
     }
     Ok(robots)
-}
-
-fn follow(v: &Value<'_>, known: &Known<'_>) -> Result<Follow> {
-    const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: follow = { encoder = \"conveyor\" })";
-    let t = v.table(EXAMPLE)?;
-    t.only(&["robot", "frame", "encoder"])?;
-    match (t.get("robot"), t.get("encoder")) {
-        (Some(_), Some(e)) => Err(e.error("stands beside `robot`: a region follows one thing").hint(EXAMPLE)),
-        (None, None) => Err(v.error("names nothing to follow").hint(EXAMPLE)),
-        (None, Some(e)) => {
-            if let Some(frame) = t.get("frame") {
-                return Err(frame.error("goes with `robot`; an encoder has one frame").hint("leave it out"));
-            }
-            encoder_index(&e, known.encoders).map(Follow::Encoder)
-        }
-        (Some(robot), None) => {
-            let robot = robot_index(&robot, known.robots)?;
-            let (link, in_link) = frame(t.get("frame").as_ref(), &known.robots[robot])?;
-            Ok(Follow::Robot { robot, link, in_link })
-        }
-    }
-}
-
-fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(elbowroom_kinematics::LinkId, Pose)> {
-    let Some(v) = v else { return Ok((robot.flange, Pose::IDENTITY)) };
-    match v.text()? {
-        "flange" => Ok((robot.flange, Pose::IDENTITY)),
-        "tool" | "tcp" => Ok((robot.flange, robot.tcp_in_flange)),
-        name => match robot.robot.chain.link(name) {
-            Some(link) => Ok((link, Pose::IDENTITY)),
-            None => Err(unknown_link(v, name, &robot.robot.chain)),
-        },
-    }
 }
 
 pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder> {

@@ -32,8 +32,12 @@ impl Units {
 
     /// A length in the file's unit, for messages.
     pub(crate) fn show_length(self, metres: f64) -> String {
-        let scale = self.length.to_metres(1.0);
-        format!("{} {}", trim(metres / scale), self.length.symbol())
+        format!("{} {}", self.in_file_units(metres), self.length.symbol())
+    }
+
+    /// A length as the number that stands in the file.
+    pub(crate) fn in_file_units(self, metres: f64) -> String {
+        trim(metres / self.length.to_metres(1.0))
     }
 
     fn angle(self, radians: f64) -> f64 {

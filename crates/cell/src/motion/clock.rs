@@ -87,6 +87,11 @@ impl Clock {
         self.programmed
     }
 
+    /// The step that is under way, and the time in it (s, at override 1; for a wait, time waited).
+    pub fn place(&self) -> (usize, f64) {
+        (self.step, self.time)
+    }
+
     /// True after the last step.
     pub fn finished(&self) -> bool {
         self.step >= self.plan.steps.len()

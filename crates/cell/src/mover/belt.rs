@@ -16,7 +16,7 @@ impl Encoder {
     }
 
     /// Largest speed between two times, m/s.
-    pub(super) fn fastest(&self, from_s: f64, to_s: f64) -> f64 {
+    pub(crate) fn fastest(&self, from_s: f64, to_s: f64) -> f64 {
         match &self.travel {
             Travel::Constant { speed, start_s, end_s, .. } => {
                 if to_s < *start_s || from_s > *end_s {

@@ -72,7 +72,7 @@ impl Way {
     }
 
     /// No point within `radius` m of the origin is ever faster, m/s.
-    pub(super) fn fastest(&self, radius: f64) -> f64 {
+    pub(crate) fn fastest(&self, radius: f64) -> f64 {
         let goes = self.length() > 0.0;
         (if goes { self.speed } else { 0.0 }) + self.turn.length() * radius
     }

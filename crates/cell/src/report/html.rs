@@ -122,6 +122,11 @@ fn facts(runs: &[(&str, &Recording)]) -> String {
             t.count
         );
         let _ = write!(out, "<li>{}</li>", escape(line.trim_start_matches(": ")));
+        for d in &rec.deadlocks {
+            let (robots, regions) = (d.robots.join(", "), d.regions.join(", "));
+            let line = format!("{label}: deadlock since {:.2} s: {robots} wait for each other at {regions}", d.t_s);
+            let _ = write!(out, "<li class=\"bad\">{}</li>", escape(line.trim_start_matches(": ")));
+        }
     }
     let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
     format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::spark::sparkline;
 use super::why::why;
-use crate::recording::{AvoidanceTrack, Recording, RegionTrack, RobotTrack};
+use crate::recording::{AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotTrack};
 use crate::summary::AvoidanceSummary;
 
 /// Regions that are listed; the rest is counted.
@@ -19,7 +19,8 @@ const STANDING_M_S: f64 = 1e-4;
 /// use elbowroom_cell::{Recording, TickTimes, report};
 /// let recording = Recording {
 ///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, monitored: true,
-///     robots: vec![], regions: vec![], objects: vec![], events: vec![], tick_ns: TickTimes::default(),
+///     robots: vec![], regions: vec![], objects: vec![], deadlocks: vec![], events: vec![],
+///     tick_ns: TickTimes::default(),
 /// };
 /// assert!(report::summary(&recording, 80, false).contains("welding column"));
 /// ```
@@ -99,6 +100,10 @@ impl fmt::Display for Summary<'_> {
             lines.push(Line::new());
             lines.extend(region_lines(rec, self.width));
         }
+        if !rec.deadlocks.is_empty() {
+            lines.push(Line::new());
+            lines.extend(rec.deadlocks.iter().flat_map(|d| deadlock_lines(d)));
+        }
         lines.push(Line::new());
         lines.push(ticks(rec));
         for line in &lines {
@@ -139,8 +144,12 @@ fn heading(rec: &Recording) -> Line {
 
 fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) -> Vec<Line> {
     let indent = " ".repeat(names + 4);
-    let style =
-        if robot.collisions.is_empty() { if robot.finished { Style::Good } else { Style::Warn } } else { Style::Bad };
+    let style = match robot.ending.outcome {
+        Outcome::Collided | Outcome::Deadlock => Style::Bad,
+        _ if !robot.collisions.is_empty() => Style::Bad,
+        _ if robot.finished => Style::Good,
+        _ => Style::Warn,
+    };
     let mut lines = vec![vec![(format!("  {}  ", pad(&robot.name, names)), Style::Bold), (outcome(robot, rec), style)]];
     let values: Vec<f64> = robot.samples.iter().map(|s| s.speed_override).collect();
     let numbers = format!("  smallest {:.1} %, still {:.2} s", 100.0 * robot.min_override, robot.stopped_s);
@@ -186,6 +195,10 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         return format!("finished at {t:.2} s");
     }
     let since = robot.samples.iter().rposition(|s| s.tcp_speed > STANDING_M_S).map_or(0.0, |i| robot.samples[i].t_s);
+    if robot.ending.outcome == Outcome::Deadlock {
+        let at = robot.ending.by.as_deref().unwrap_or("an exchange region");
+        return format!("deadlock: stands since {since:.2} s, waiting for {}", clip(at, 20));
+    }
     let p = last.tcp;
     let place = format!("at {since:.2} s, TCP ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z);
     match (last.region.and_then(|i| rec.regions.get(i)), last.distance_m) {
@@ -196,6 +209,13 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         _ if last.tcp_speed > STANDING_M_S => format!("still under way at {:.2} s", last.t_s),
         _ => format!("stopped {place}: {}", why(robot, robot.samples.len() - 1, rec)),
     }
+}
+
+/// Two lines, so that both are read on a narrow screen.
+fn deadlock_lines(deadlock: &Deadlock) -> [Line; 2] {
+    let who = format!("  deadlock since {:.2} s: {} wait for each other", deadlock.t_s, deadlock.robots.join(", "));
+    let what = format!("           at {}; someone has to lead one of them out", deadlock.regions.join(", "));
+    [vec![(who, Style::Bad)], vec![(what, Style::Bad)]]
 }
 
 fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {

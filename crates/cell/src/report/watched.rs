@@ -88,6 +88,7 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
         stopped_s: stood as f64 * log.tick_s,
         collisions: Vec::new(),
         avoidance: None,
+        ending: crate::RobotEnding::default(),
     };
     Recording {
         cell: log.title.clone(),
@@ -98,6 +99,7 @@ fn recording(arm: &WatchedArm, log: &WatchLog, flange: LinkId) -> Recording {
         robots: vec![robot],
         regions: log.truth.iter().map(region).collect(),
         objects: Vec::new(),
+        deadlocks: Vec::new(),
         events: Vec::new(),
         tick_ns: TickTimes::default(),
     }

@@ -30,6 +30,14 @@ impl<'a> Frames<'a> {
                 let motion = Motion { velocity: direction * speed, ..Motion::REST };
                 Source { pose: Pose::from_translation(direction * travel), motion, stamp_s: t_s }
             }
+            Follow::Object(o) => match self.cell.movers.iter().find(|m| m.object == *o) {
+                Some(mover) => Source { pose: mover.pose(t_s), motion: mover.motion(t_s), stamp_s: t_s },
+                None => Source { pose: self.cell.objects[*o].in_world, motion: Motion::REST, stamp_s: t_s },
+            },
+            Follow::Poses(p) => {
+                let track = &self.cell.pose_tracks[*p];
+                Source { pose: track.pose(t_s), motion: track.motion(t_s), stamp_s: t_s }
+            }
             Follow::Robot { robot, link, in_link } => {
                 let base = self.cell.robots[*robot].base_in_world;
                 let link_in_root = states[*robot].link_in_root(*link);
@@ -57,10 +65,13 @@ impl<'a> Frames<'a> {
         ((r.base_in_world * tcp_in_root).translation, speed)
     }
 
-    /// True where an encoder moves that a region follows, or an object moves.
+    /// True where an encoder or a file of poses moves that a region follows, or an object moves.
     pub fn anything_travels(&self, t_s: f64) -> bool {
-        let belt =
-            |f: &Option<Follow>| matches!(f, Some(Follow::Encoder(e)) if self.cell.encoders[*e].at(t_s).1 != 0.0);
-        self.cell.regions.iter().any(|r| belt(&r.follow)) || self.cell.movers.iter().any(|m| m.moving(t_s))
+        let travels = |f: &Option<Follow>| match f {
+            Some(Follow::Encoder(e)) => self.cell.encoders[*e].at(t_s).1 != 0.0,
+            Some(Follow::Poses(p)) => self.cell.pose_tracks[*p].motion(t_s) != Motion::REST,
+            Some(Follow::Robot { .. } | Follow::Object(_)) | None => false,
+        };
+        self.cell.regions.iter().any(|r| travels(&r.follow)) || self.cell.movers.iter().any(|m| m.moving(t_s))
     }
 }

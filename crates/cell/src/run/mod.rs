@@ -1,28 +1,36 @@
 //! A run: programs on one clock, in simulated time, under the monitor.
 
 mod avoid;
+mod deadlock;
 mod delay;
 mod ending;
 mod faults;
 pub(crate) mod frames;
+mod needs;
+mod outcome;
 mod regions;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{AccessClass, EventKind, Kind, Monitor, Reason, Snapshot, Source};
+use elbowroom_monitor::{AccessClass, Board, EventKind, Kind, Monitor, Reason, Snapshot, Source, VirtualTcp};
 use elbowroom_scene::{FirstContact, FirstContacts, Member, ObjectStep};
 
 use crate::configure::{self, Setup};
 use crate::fence::RegionFence;
 use crate::motion::{Clock, plan};
-use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
+use crate::{
+    Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotEnding, RobotTrack, Sample, TickTimes,
+};
 use avoid::Evasive;
+use deadlock::Deadlocks;
 use delay::Delay;
 use ending::{Ending, Halt};
 pub use faults::{InputFault, InputFaultKind};
 use frames::Frames;
+use needs::Needs;
 use regions::Regions;
 
 /// How to run a cell.
@@ -57,11 +65,13 @@ pub struct RunOutcome {
 }
 
 impl RunOutcome {
-    /// True where something collided or a forbidden region was entered: exit status 1.
+    /// True where something collided, a forbidden region was entered, or robots wait for each other for ever: exit
+    /// status 1.
     pub fn bad_news(&self) -> bool {
         let r = &self.recording;
         r.robots.iter().any(|r| !r.collisions.is_empty())
             || r.regions.iter().any(|r| r.entered && r.kind != "monitored")
+            || !r.deadlocks.is_empty()
     }
 }
 
@@ -98,14 +108,23 @@ pub fn simulate_with(
 ) -> Result<RunOutcome, FormatError> {
     let mut notes = Vec::new();
     let mut clocks = Vec::new();
-    for (i, robot) in cell.robots.iter().enumerate() {
-        clocks.push(Clock::new(plan(cell, i, options.repeat, &mut notes)?, robot.limits.clone()));
-    }
     let setups = configure::setups(cell)?;
-    let monitors = configure::monitors(cell, &setups)?;
+    let board = configure::board(cell);
+    let monitors = configure::monitors_at(cell, &setups, board.as_ref())?;
+    let mut needs = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        let plan = plan(cell, i, options.repeat, &mut notes)?;
+        // A robot that evades leaves its program: what it will need is not known.
+        let keeps_to_plan =
+            options.monitored && !(options.evasive && cell.avoidance.get(i).is_some_and(Option::is_some));
+        let board = board.as_deref().filter(|_| keeps_to_plan);
+        needs.push(board.and_then(|board| Needs::of_plan(i, &setups[i], &plan, board)));
+        clocks.push(Clock::new(plan, robot.limits.clone()));
+    }
     let scene = crate::query::Subject::of_cell(cell).scene(false)?;
     let evasive = if options.evasive { Evasive::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
     let mut run = Run::new(cell, options, &setups, monitors, clocks, evasive);
+    (run.board, run.needs) = (board, needs);
     let mut tick = 0_u64;
     loop {
         let t_s = instant(tick, cell.tick_s);
@@ -131,6 +150,13 @@ struct Run<'a> {
     options: &'a RunOptions,
     setups: &'a [Setup],
     monitors: Vec<Monitor>,
+    /// Where exchange regions are granted.
+    board: Option<Arc<Board>>,
+    /// Per robot what its program needs of them; `None` for one that declares nothing.
+    needs: Vec<Option<Needs>>,
+    deadlocks: Deadlocks,
+    /// Per robot the point that asked for the smallest override in the last tick.
+    governing: Vec<Option<VirtualTcp>>,
     clocks: Vec<Clock>,
     /// Per robot; `None` for one that keeps to its program.
     evasive: Vec<Option<Evasive<'a>>>,
@@ -173,8 +199,13 @@ impl<'a> Run<'a> {
             min_override: 1.0,
             collisions: Vec::new(),
             avoidance: None,
+            ending: RobotEnding::default(),
         };
         Self {
+            board: None,
+            needs: Vec::new(),
+            deadlocks: Deadlocks::new(cell.robots.len()),
+            governing: vec![None; cell.robots.len()],
             options,
             setups,
             scratch: states.clone(),
@@ -219,6 +250,7 @@ impl<'a> Run<'a> {
             return;
         }
         self.look_at_robots(0.0);
+        self.declare_needs();
         for i in 0..self.clocks.len() {
             if self.vanished(i, 0.0) {
                 continue;
@@ -246,11 +278,24 @@ impl<'a> Run<'a> {
     fn tick(&mut self, t_s: f64) {
         self.apply_switches(t_s);
         self.look_at_robots(t_s);
+        self.declare_needs();
         for i in 0..self.clocks.len() {
             if self.vanished(i, t_s) { self.record_vanished(i, t_s) } else { self.monitor(i, t_s) }
         }
         self.regions.look(t_s, &self.monitors, &self.states, &self.frames);
+        if let Some(board) = &self.board {
+            self.deadlocks.look(t_s, board, &self.halts);
+        }
         self.collide(t_s);
+    }
+
+    fn declare_needs(&mut self) {
+        let Some(board) = &self.board else { return };
+        for (needs, clock) in self.needs.iter_mut().zip(&self.clocks) {
+            if let Some(needs) = needs {
+                needs.declare(clock, board);
+            }
+        }
     }
 
     fn look_at_robots(&mut self, t_s: f64) {
@@ -311,6 +356,7 @@ impl<'a> Run<'a> {
         // Governing is who makes the robot slower than its program asks.
         let governs = self.options.monitored.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
+        self.governing[i] = report.governing;
         let distance_m = region.and(report.governing).map(|g| g.distance_m);
         let reason = if self.options.monitored { report.reason } else { Reason::Free };
         self.record(i, t_s, obeyed, region, distance_m, reason);
@@ -460,7 +506,14 @@ impl<'a> Run<'a> {
             track.finished = self.finished(i);
             // Those of one tick come in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+            let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
+            let (deadlocked, governing) = (self.deadlocks.holds(i), self.governing[i].as_ref());
+            track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
         }
+        let deadlocks = self
+            .board
+            .as_ref()
+            .map_or_else(Vec::new, |board| self.deadlocks.finish(t_s, board, self.cell, self.setups, &self.monitors));
         for (track, evasive) in robots.iter_mut().zip(self.evasive) {
             track.avoidance = evasive.map(Evasive::finish);
         }
@@ -473,6 +526,7 @@ impl<'a> Run<'a> {
             robots,
             regions: self.regions.finish(t_s),
             objects: self.objects,
+            deadlocks,
             events: self.events,
             tick_ns: tick_times(self.tick_ns),
         }

@@ -157,8 +157,10 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 vec![Collision { t_s: 3.1, a: "ns16/fore".into(), b: "table".into() }]
             },
             avoidance: None,
+            ending: elbowroom_cell::RobotEnding::default(),
         }],
         objects: vec![],
+        deadlocks: vec![],
         regions: vec![
             RegionTrack {
                 name: name.into(),

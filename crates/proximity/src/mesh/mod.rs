@@ -22,6 +22,7 @@ mod probe;
 mod scratch;
 mod search;
 mod swallowed;
+mod ties;
 mod touch;
 mod tree;
 

@@ -4,8 +4,9 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::placement::{Pairing, apart};
 use super::scratch::{Scratch, Visits};
-use super::search::{Start, promising_pair, search};
+use super::search::{Best, Start, promising_pair, search};
 use super::swallowed::swallowed;
+use super::ties::{Sizes, is_flat, steady};
 use super::touch::{Pair, collide};
 use crate::TriMesh;
 
@@ -17,6 +18,10 @@ pub struct Nearest {
     /// Proven: the exact distance is not below this, metres.
     pub lower_bound: f64,
     /// Nearest point of the first mesh, in the world. Inside: a point of the inner mesh, twice.
+    ///
+    /// Where faces or edges are so nearly parallel that many pairs of points are within 2e-8 of the sizes (radii of
+    /// the meshes, together) of the least distance, the pair nearest to a point between the meshes' middles, near that of
+    /// the smaller: it moves steadily where the nearest pair itself would jump.
     pub on_a: Vec3,
     /// Nearest point of the second mesh, in the world.
     pub on_b: Vec3,
@@ -83,7 +88,8 @@ pub fn distance_at(
     let level = scratch.level();
     // Where a limit is known, most meshes are beyond it, and the descent says so soonest.
     let start = if radius < f64::INFINITY { Start::Descent } else { Start::Landmarks(DISTANCE_WIDTH) };
-    let found = search(level, a, b, &pairing, (radius, pairing.slack), (hint, start), scratch);
+    let sizes = Sizes::of(a, b);
+    let found = search(level, a, b, &pairing, (radius, pairing.slack, sizes.grain), (hint, start), scratch);
     if scratch.stack.overflown() {
         return Some(unknown(a_in_world, b_in_world));
     }
@@ -92,12 +98,18 @@ pub fn distance_at(
         let hint = found.map_or(Hint::default(), |f| f.hint);
         return Some(Nearest { distance: 0.0, lower_bound: 0.0, on_a: p, on_b: p, pair: Pair::Inside, hint });
     }
-    let found = found?;
+    let mut found = found?;
+    if !touching && (found.spread > sizes.small || is_flat(a, b, &pairing, &found, sizes)) {
+        let hint = found.hint;
+        if let Some((near, triangles)) = steady(level, a, b, &pairing, &found, scratch) {
+            found = Best { near, triangles, hint, ..found };
+        }
+    }
     let to_world = |p: Vec3| a_in_world.transform_point(p * unit + a.tree.frame.center);
     let measured = if touching { 0.0 } else { found.distance * unit };
     Some(Nearest {
         distance: measured,
-        lower_bound: (measured - 2.0 * pairing.slack * unit).max(0.0),
+        lower_bound: (measured - pairing.slack * unit).max(0.0),
         on_a: to_world(found.near.on_a),
         on_b: to_world(found.near.on_b),
         pair: Pair::Triangles(found.triangles.0, found.triangles.1),
@@ -217,7 +229,7 @@ fn near(
     }
     let radius = tolerance / a.tree.frame.unit + pairing.slack;
     let level = scratch.level();
-    let found = search(level, a, b, &pairing, (radius, radius), (None, start), scratch);
+    let found = search(level, a, b, &pairing, (radius, radius, 0.0), (None, start), scratch);
     match found {
         Some(best) => Some(Pair::Triangles(best.triangles.0, best.triangles.1)),
         None if scratch.stack.overflown() => Some(Pair::Unknown),

@@ -34,6 +34,8 @@ pub(super) struct Best {
     pub near: Near,
     pub triangles: (u32, u32),
     pub hint: Hint,
+    /// Points of pairs as near to within the grain were seen as far from the best's as this, at least.
+    pub spread: f64,
 }
 
 struct Search<'a> {
@@ -45,6 +47,8 @@ struct Search<'a> {
     radius: f64,
     /// Nearer makes no difference: the search ends.
     enough: f64,
+    /// Pairs that are farther than the best by no more are noticed.
+    grain: f64,
     /// Distance of the pair along which gaps are measured.
     seen: f64,
     best: Option<Best>,
@@ -56,17 +60,19 @@ struct Search<'a> {
     visits: &'a mut Visits,
 }
 
-/// Looks for the nearest pair within `radius`, until one is within `enough`.
+/// Looks for the nearest pair within `radius`, until one is within `enough`; tells whether others, elsewhere, are as near to
+/// within `grain`.
 pub(super) fn search(
     level: Level,
     a: &TriMesh,
     b: &TriMesh,
     pairing: &Pairing,
-    (radius, enough): (f64, f64),
+    (radius, enough, grain): (f64, f64, f64),
     (hint, start): (Option<Hint>, Start),
     scratch: &mut Scratch,
 ) -> Option<Best> {
     let (mut s, stack) = Search::new(level, a, b, pairing, (radius, enough), scratch);
+    s.grain = grain;
     stack.push(Entry::root(&a.tree, &b.tree));
     s.begin(hint, start, stack);
     s.prove(stack);
@@ -103,7 +109,27 @@ impl<'a> Search<'a> {
         limit.look_along(pairing.in_a(Vec3::ZERO), pairing);
         let (seen, slots, facing) = (f64::INFINITY, [(0, 0); BATCH], Facing::NOTHING);
         let (best, faced) = (None, None);
-        (Self { level, a, b, pairing, limit, radius, enough, seen, best, queue, facing, faced, slots, visits }, stack)
+        let grain = 0.0;
+        (
+            Self {
+                level,
+                a,
+                b,
+                pairing,
+                limit,
+                radius,
+                enough,
+                grain,
+                seen,
+                best,
+                queue,
+                facing,
+                faced,
+                slots,
+                visits,
+            },
+            stack,
+        )
     }
 }
 
@@ -162,6 +188,13 @@ impl Search<'_> {
 
     /// Keeps the nearer; of equals the one with the smaller numbers, so that no order of tests shows.
     fn offer(&mut self, distance: f64, near: Near, triangles: (u32, u32), hint: Hint) {
+        let mut spread = 0.0;
+        if let Some(best) = &mut self.best
+            && (best.distance - distance).abs() <= self.grain
+        {
+            best.spread += best.near.on_a.distance(near.on_a);
+            spread = best.spread;
+        }
         if !(distance <= self.radius) {
             return;
         }
@@ -171,7 +204,7 @@ impl Search<'_> {
             return;
         }
         let nearer = self.best.is_none_or(|b| distance < b.distance);
-        self.best = Some(Best { distance, near, triangles, hint });
+        self.best = Some(Best { distance, near, triangles, hint, spread });
         if nearer {
             self.radius = distance;
             self.limit.tighten(distance, near.on_a, near.on_b, self.pairing);
@@ -191,7 +224,7 @@ impl Search<'_> {
         if self.best.is_none() {
             self.look(&found, len);
         }
-        while let Some(lane) = least(&found.at_least, len, self.radius) {
+        while let Some(lane) = least(&found.at_least, len, self.radius + self.grain) {
             let triangles = self.queue.triangles[lane];
             let distance = found.distance[lane] as f32;
             let hint = Hint { a: self.slots[lane].0, b: self.slots[lane].1, distance };

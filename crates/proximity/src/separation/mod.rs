@@ -7,6 +7,7 @@ mod half_space;
 mod mesh;
 mod projections;
 mod segment;
+mod steady;
 
 use std::cmp::Ordering;
 
@@ -32,6 +33,10 @@ pub struct Separation {
     pub on_a: Vec3,
     /// Nearest point of the second shape, in the world, `distance` from `on_a` to within 1e-15 of the largest coordinate
     /// involved. On contact: `on_a`.
+    ///
+    /// Where faces or edges of two boxes, hulls or meshes are so nearly parallel that many pairs of points are within 2e-8 of
+    /// the sizes (radii, together) of the least distance, the pair nearest to a point between the shapes' middles, near
+    /// that of the smaller: it moves steadily where the nearest pair itself would jump. It is farther apart by no more than that.
     pub on_b: Vec3,
 }
 
@@ -223,7 +228,20 @@ fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f
             let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius)?;
             Some(world(gap, [0.0, radius], b_in_world).swapped())
         }
-        _ => convex(a, b, &b_in_world.inverse_mul(a_in_world), limit).map(|(gap, radii)| world(gap, radii, b_in_world)),
+        _ => {
+            let a_in_b = b_in_world.inverse_mul(a_in_world);
+            let (gap, radii) = convex(a, b, &a_in_b, limit)?;
+            let gap = if gap.lower > 0.0 { steady_points(a, b, &a_in_b, gap) } else { gap };
+            Some(world(gap, radii, b_in_world))
+        }
+    }
+}
+
+/// Of boxes and hulls the steady ones of several nearest points.
+fn steady_points(a: &Shape, b: &Shape, a_in_b: &Pose, gap: Gap) -> Gap {
+    match (rounded(a), rounded(b)) {
+        (Some((a, _)), Some((b, _))) => steady::steady(&a, &b, a_in_b, gap),
+        _ => gap,
     }
 }
 

@@ -121,6 +121,16 @@ impl ConvexHull {
         &self.planes
     }
 
+    /// Outward unit normals of the triangles.
+    pub(crate) fn normals(&self) -> impl Iterator<Item = Vec3> {
+        self.planes.iter().map(|(normal, _)| *normal)
+    }
+
+    /// The outward normal that points along `dir` most.
+    pub(crate) fn most_along(&self, dir: Vec3) -> Vec3 {
+        self.normals().max_by(|m, n| m.dot(dir).total_cmp(&n.dot(dir))).unwrap_or(dir)
+    }
+
     pub(crate) fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.vertices[i as usize])
     }

@@ -1,0 +1,137 @@
+//! `follow = { … }` of a region: what carries it, and how fast that can be.
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::{JointKind, LinkId};
+use elbowroom_monitor::SourceLimits;
+use elbowroom_scene::pairs::motion_bound;
+use elbowroom_spatial::Pose;
+
+use super::read::{Table, Value};
+use super::region::{Known, encoder_index, robot_index};
+use super::robot::unknown_link;
+use super::{poses, suggest};
+use crate::{CellRobot, Follow, PoseTrack, Units};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: { encoder = \"conveyor\" }, { object = \"cart\" }, \
+                       { poses = \"cart.csv\" })";
+/// What a region can ride on.
+const SOURCES: [&str; 4] = ["robot", "encoder", "object", "poses"];
+/// A joint is believed to be faster than its rated speed by so much: as in the monitor's watchdog.
+const FASTER: f64 = 1.5;
+
+/// Reads the table; a file of poses is added to `known`.
+pub(super) fn read(
+    v: &Value<'_>,
+    units: Units,
+    known: &mut Known<'_>,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Follow, SourceLimits)> {
+    let t = v.table(EXAMPLE)?;
+    t.only(&[&SOURCES[..], &["frame", "max_speed", "max_turn"]].concat())?;
+    let mut named = SOURCES.iter().filter_map(|k| Some((*k, t.get(k)?)));
+    let Some((kind, source)) = named.next() else { return Err(v.error("names nothing to follow").hint(EXAMPLE)) };
+    if let Some((_, other)) = named.next() {
+        return Err(other.error(format!("stands beside `{kind}`: a region follows one thing")).hint(EXAMPLE));
+    }
+    if let Some(frame) = t.get("frame").filter(|_| kind != "robot") {
+        return Err(frame.error(format!("goes with `robot`; `{kind}` has one frame")).hint("leave it out"));
+    }
+    let mut limits = SourceLimits::default();
+    let follow = match kind {
+        "robot" => {
+            let index = robot_index(&source, known.robots)?;
+            let robot = &known.robots[index];
+            let (link, in_link) = frame(t.get("frame").as_ref(), robot)?;
+            limits = fastest(robot, link, in_link);
+            Follow::Robot { robot: index, link, in_link }
+        }
+        "encoder" => {
+            let index = encoder_index(&source, known.encoders)?;
+            let encoder = &known.encoders[index];
+            limits.wrap_m = encoder.wrap_m.map(|travel| encoder.direction * travel);
+            Follow::Encoder(index)
+        }
+        "object" => {
+            let index = object_index(&source, known)?;
+            if let Some(crate::Drive::Belt(encoder)) = known.movers.iter().find(|m| m.object == index).map(|m| &m.drive)
+            {
+                limits.wrap_m = encoder.wrap_m.map(|travel| encoder.direction * travel);
+            }
+            Follow::Object(index)
+        }
+        _ => {
+            known.pose_tracks.push(poses::read(&source, units)?);
+            Follow::Poses(known.pose_tracks.len() - 1)
+        }
+    };
+    given(&t, units, &mut limits)?;
+    if let Follow::Poses(index) = follow {
+        warn_of_jumps(&t, &known.pose_tracks[index], &limits, units, warnings);
+    }
+    Ok((follow, limits))
+}
+
+/// `max_speed` and `max_turn`, where the file states them.
+fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
+    if let Some(v) = t.get("max_speed") {
+        limits.speed_m_s = units.positive_length(&v)?;
+    }
+    if let Some(v) = t.get("max_turn") {
+        limits.turn_rad_s = units.angle.to_radians(v.positive()?);
+    }
+    Ok(())
+}
+
+/// No frame of a robot is faster than its joints allow, but at least the default is believed.
+fn fastest(robot: &CellRobot, link: LinkId, in_link: Pose) -> SourceLimits {
+    let chain = &robot.robot.chain;
+    let path = chain.path(link);
+    let speed = |j: usize| robot.limits[j].velocity * FASTER;
+    let bound = motion_bound(chain, link, in_link.translation.length(), &path);
+    let turning = motion_bound(chain, link, 0.0, &path)
+        .into_iter()
+        .filter(|(j, _)| chain.joints()[chain.active_joints()[*j].0].kind != JointKind::Prismatic);
+    let default = SourceLimits::default();
+    SourceLimits {
+        speed_m_s: bound.iter().map(|(j, lever)| lever * speed(*j)).sum::<f64>().max(default.speed_m_s),
+        turn_rad_s: turning.map(|(j, _)| speed(j)).sum::<f64>().max(default.turn_rad_s),
+        wrap_m: None,
+    }
+}
+
+fn object_index(v: &Value<'_>, known: &Known<'_>) -> Result<usize> {
+    let name = v.text()?;
+    let names = || known.objects.iter().map(|o| o.name.as_str());
+    names().position(|n| n == name).ok_or_else(|| {
+        let what = format!("names the object \"{name}\", which has no table [object.{name}]");
+        v.error(what).hint(suggest::hint(name, names()))
+    })
+}
+
+fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
+    let Some(v) = v else { return Ok((robot.flange, Pose::IDENTITY)) };
+    match v.text()? {
+        "flange" => Ok((robot.flange, Pose::IDENTITY)),
+        "tool" | "tcp" => Ok((robot.flange, robot.tcp_in_flange)),
+        name => match robot.robot.chain.link(name) {
+            Some(link) => Ok((link, Pose::IDENTITY)),
+            None => Err(unknown_link(v, name, &robot.robot.chain)),
+        },
+    }
+}
+
+/// Says before a run where the monitors will take a motion of the file for a jump.
+fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units: Units, warnings: &mut Vec<Warning>) {
+    let too_fast = |(_, speed, turn): &(f64, f64, f64)| *speed > limits.speed_m_s || *turn > limits.turn_rad_s;
+    let Some((t_s, speed, turn)) = track.rates().find(too_fast) else { return };
+    let what = format!(
+        "{}: from t_s = {t_s} on the poses move at {}/s and {:.3} rad/s: the monitor takes that for a jump and stops the robots",
+        track.file.display(),
+        units.show_length(speed),
+        turn,
+    );
+    let hint = "max_speed and max_turn in `follow`, where the source can be so fast";
+    warnings.push(Warning::new(t.file, t.line, what).hint(hint));
+}

@@ -1,0 +1,105 @@
+//! Does a region guard anything of the robots that it concerns?
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{Guards, Kind, Part, Region};
+use elbowroom_spatial::Vec3;
+
+use super::read::Table;
+use crate::{CellRegion, CellRobot};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// Refuses a region that would guard nothing of a robot, and warns where it would overlook the links.
+///
+/// A monitored region that slows nothing is only warned about: its output never rises.
+pub(super) fn check(
+    t: &Table<'_>,
+    region: &CellRegion,
+    robots: &[CellRobot],
+    warnings: &mut Vec<Warning>,
+) -> Result<()> {
+    let line = t.get("guards").map_or(t.line, |v| v.line);
+    for robot in region.robots.iter().map(|r| &robots[*r]) {
+        let Some(gap) = Gap::of(robot, region.region.guards) else { continue };
+        let error = FormatError::new(t.file, line, gap.what(&region.region, robot)).hint(gap.hint(robot, robots.len()));
+        match region.region.kind {
+            _ if gap == Gap::Links => warnings.push(error.into()),
+            Kind::Monitored { slow_to: None } => warnings.push(error.into()),
+            _ => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// What a region asks for and the robot does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Gap {
+    /// The part that is guarded stands still: no joint moves it.
+    Still,
+    /// Neither tool nor load.
+    Tool,
+    /// No solid at all that a joint moves.
+    Solids,
+    /// Tool or load, but no link has a solid.
+    Links,
+}
+
+impl Gap {
+    fn of(robot: &CellRobot, guards: Guards) -> Option<Self> {
+        let moves = |link: LinkId| {
+            let chain = &robot.robot.chain;
+            chain.path(link).iter().any(|j| chain.joints()[j.0].kind.moves())
+        };
+        let flange_moves = moves(robot.flange);
+        if guards.tcp && flange_moves {
+            return None;
+        }
+        let links = robot.bare().bodies.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
+        let carried = flange_moves && robot.carried().next().is_some();
+        // A point is guarded in place of a tool's solid only where the file says that there is a tool.
+        let point_tool = || {
+            let tool = robot.tcp_in_flange.translation != Vec3::ZERO;
+            flange_moves && tool && robot.guarded_volumes().iter().any(|v| v.part == Part::TcpOutside)
+        };
+        match (guards.arm, links, carried) {
+            (true, true, _) | (false, _, true) => None,
+            (true, false, true) => Some(Self::Links),
+            (true, false, false) => Some(Self::Solids),
+            (false, _, false) if guards.tool && point_tool() => None,
+            (false, _, false) => Some(if guards.tool { Self::Tool } else { Self::Still }),
+        }
+    }
+
+    fn what(self, region: &Region, robot: &CellRobot) -> String {
+        let (region, robot) = (&region.name, &robot.name);
+        let why = match self {
+            Self::Still => "no joint moves its tool centre point",
+            Self::Tool => "it has no tool and no load",
+            Self::Solids => "none of its links that move has a solid (a URDF needs <collision>, not only <visual>)",
+            Self::Links => {
+                return format!(
+                    "region \"{region}\" guards only tool and load of robot \"{robot}\": none of its links has a solid"
+                );
+            }
+        };
+        format!("region \"{region}\" guards nothing of robot \"{robot}\": {why}")
+    }
+
+    fn hint(self, robot: &CellRobot, robots: usize) -> String {
+        let solid = "solids for the links: `links = [{ capsule = { … } }, …]` beside `dh`, <collision> in a URDF";
+        let name = &robot.name;
+        let mut hint = match self {
+            Self::Still => format!("`flange` of [robot.{name}]: a link that a joint moves"),
+            Self::Tool => {
+                format!("guards = [\"arm\"], or [robot.{name}.tool] box = {{ at = [0, 0, 125], size = [80, 80, 250] }}")
+            }
+            Self::Solids => format!("{solid}; or guards = [\"tcp\"]: the tool centre point alone"),
+            Self::Links => return solid.to_owned(),
+        };
+        if robots > 1 {
+            hint += &format!("; or `robots` without \"{name}\"");
+        }
+        hint
+    }
+}

@@ -1,0 +1,186 @@
+//! Which exchange regions a program needs without leaving them all between: worked out before anything moves, and told
+//! to the board while the program runs, so that it grants in an order in which everybody can finish.
+
+use std::rc::Rc;
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{Board, Kind, Region, RobotSlot, SlotId, Volume};
+use elbowroom_proximity::within;
+use elbowroom_spatial::{Aabb, Pose};
+
+use super::regions::levers;
+use crate::configure::Setup;
+use crate::motion::{Clock, Plan, PlanStep, Playback, Segment};
+
+/// Programs are looked at in steps of this program time, s.
+const STEP_S: f64 = 0.01;
+/// Moves and recordings that take longer are looked at in as many steps; the motion within a step is allowed for.
+const MOST_STEPS: f64 = 20_000.0;
+/// Added to warning zones and their hysteresis, m: rounding never makes a zone smaller than the monitor's.
+const MARGIN_M: f64 = 1e-3;
+
+/// What a robot may still need, along its program.
+#[derive(Debug)]
+pub(super) struct Needs {
+    robot: RobotSlot,
+    /// In the order of the program: from this step and time in it (s, at override 1) on, these slots, one bit each.
+    stages: Vec<(usize, f64, u64)>,
+    declared: Option<u64>,
+}
+
+impl Needs {
+    /// Of a plan; `None` where there is nothing to put in order, or regions move.
+    pub fn of_plan(robot: usize, setup: &Setup, plan: &Plan, board: &Board) -> Option<Self> {
+        let fixed = |r: &Region| r.follow.is_none();
+        let exchanged = |r: &&Region| matches!(r.kind, Kind::Exchange { .. });
+        let regions = setup.configuration.regions();
+        if board.slots() < 2 || board.slots() > 63 || !regions.iter().filter(exchanged).all(fixed) {
+            return None;
+        }
+        let mut near = Near::new(setup);
+        let mut occupied: Vec<(usize, f64, u64)> = Vec::new();
+        let mut q = plan.start.clone();
+        let mut known: Vec<(*const (), Vec<(f64, u64)>)> = Vec::new();
+        for (step, what) in plan.steps.iter().enumerate() {
+            let (key, duration): (*const (), f64) = match what {
+                PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
+                PlanStep::Play(p) => (Rc::as_ptr(p).cast(), p.duration()),
+                _ => {
+                    occupied.push((step, 0.0, near.slots(&q, 0.0)));
+                    continue;
+                }
+            };
+            let spans = match known.iter().find(|k| k.0 == key) {
+                Some((_, spans)) => spans.clone(),
+                None => {
+                    let spans = near.along(duration, &|t| at(what, t));
+                    known.push((key, spans.clone()));
+                    spans
+                }
+            };
+            occupied.extend(spans.iter().map(|(t, slots)| (step, *t, *slots)));
+            q = at(what, duration);
+        }
+        occupied.push((plan.steps.len(), 0.0, near.slots(&q, 0.0)));
+        Some(Self { robot: RobotSlot(robot), stages: rest_of_stretches(occupied), declared: None })
+    }
+
+    /// Declares what the program needs from where its clock is.
+    pub fn declare(&mut self, clock: &Clock, board: &Board) {
+        let (step, time) = clock.place();
+        let next = self.stages.partition_point(|s| (s.0, s.1) <= (step, time));
+        let slots = next.checked_sub(1).map_or(0, |i| self.stages[i].2);
+        if self.declared != Some(slots) {
+            self.declared = Some(slots);
+            board.declare(self.robot, (0..board.slots()).filter(|s| slots >> s & 1 == 1).map(SlotId));
+        }
+    }
+}
+
+fn at(step: &PlanStep, t: f64) -> Vec<f64> {
+    let of_move = |m: &Segment| m.at(t).q;
+    let of_recording = |p: &Playback| p.q(t);
+    match step {
+        PlanStep::Move(m) => of_move(m),
+        PlanStep::Play(p) => of_recording(p),
+        _ => Vec::new(),
+    }
+}
+
+/// From the slots whose zones the robot is in to those that it may need before it next is in none. Where it is in none,
+/// those of the next stretch: they are declared before it comes to them.
+fn rest_of_stretches(mut stages: Vec<(usize, f64, u64)>) -> Vec<(usize, f64, u64)> {
+    let (mut rest, mut stretch_begins) = (0, true);
+    for stage in stages.iter_mut().rev() {
+        if stage.2 == 0 {
+            stretch_begins = true;
+        } else {
+            rest = if stretch_begins { stage.2 } else { rest | stage.2 };
+            stretch_begins = false;
+        }
+        stage.2 = rest;
+    }
+    stages.dedup_by(|later, earlier| later.2 == earlier.2);
+    stages
+}
+
+/// Tells which warning zones a configuration is in.
+struct Near<'a> {
+    setup: &'a Setup,
+    state: ChainState,
+    levers: Vec<(usize, f64)>,
+    /// Slot, region and where it stands.
+    regions: Vec<(SlotId, &'a Region, Pose, Aabb)>,
+}
+
+impl<'a> Near<'a> {
+    fn new(setup: &'a Setup) -> Self {
+        let place = |r: &'a Region| {
+            let Kind::Exchange { slot } = r.kind else { return None };
+            let pose = r.anchor * r.shape_in_anchor;
+            Some((slot, r, pose, r.shape.aabb(&pose)))
+        };
+        let configuration = &setup.configuration;
+        Self {
+            setup,
+            state: ChainState::new(configuration.chain()),
+            levers: levers(setup),
+            regions: configuration.regions().iter().filter_map(place).collect(),
+        }
+    }
+
+    /// Over a motion of this duration: from when on the robot is in which zones.
+    fn along(&mut self, duration: f64, q: &dyn Fn(f64) -> Vec<f64>) -> Vec<(f64, u64)> {
+        let steps = (duration / STEP_S).ceil().clamp(1.0, MOST_STEPS);
+        let time = |i: usize| duration * i as f64 / steps;
+        let mut spans: Vec<(f64, u64)> = Vec::new();
+        let mut here = q(0.0);
+        for i in 0..steps as usize {
+            let next = q(time(i + 1));
+            let moved: f64 = self.levers.iter().map(|(j, lever)| lever * (next[*j] - here[*j]).abs()).sum();
+            let slots = self.slots(&here, moved);
+            if spans.last().is_none_or(|s| s.1 != slots) {
+                spans.push((time(i), slots));
+            }
+            here = next;
+        }
+        spans
+    }
+
+    /// Slots in whose zones the robot is, or may be after moving by no more than `moved` (m).
+    fn slots(&mut self, q: &[f64], moved: f64) -> u64 {
+        let configuration = &self.setup.configuration;
+        self.state.q.copy_from_slice(q);
+        configuration.chain().forward(&mut self.state);
+        let in_world = |v: &Volume| *configuration.base_in_world() * self.state.link_in_root(v.link) * v.in_link;
+        let volumes: Vec<(&Volume, Pose)> = configuration.volumes().iter().map(|v| (v, in_world(v))).collect();
+        let boxes: Vec<Aabb> = volumes.iter().map(|(v, pose)| v.shape.aabb(pose)).collect();
+        let mut slots = 0;
+        for (slot, region, pose, bounds) in &self.regions {
+            let reach = region.warning_m + region.hysteresis_m + MARGIN_M + moved;
+            let near = |((volume, at), boxed): (&(&Volume, Pose), &Aabb)| {
+                volume.part.counts_for(region.guards)
+                    && bounds.distance(boxed) <= reach
+                    && within(&volume.shape, at, &region.shape, pose, reach)
+            };
+            if slots >> slot.0 & 1 == 0 && volumes.iter().zip(&boxes).any(near) {
+                slots |= 1 << slot.0;
+            }
+        }
+        slots
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rest_of_stretches;
+
+    #[test]
+    fn a_stretch_ends_where_all_zones_are_left() {
+        let (a, b) = (1, 2);
+        let stages = [0, a, a | b, b, 0, b, 0].iter().enumerate().map(|(i, s)| (i, 0.0, *s)).collect();
+        let rest: Vec<(usize, u64)> = rest_of_stretches(stages).iter().map(|s| (s.0, s.2)).collect();
+        // Before each stretch and in it what is left of it; after the last nothing more.
+        assert_eq!(rest, [(0, a | b), (3, b), (6, 0)]);
+    }
+}

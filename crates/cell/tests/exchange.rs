@@ -1,0 +1,185 @@
+//! Regions that robots exchange: never two inside, in whole cells.
+
+mod common;
+
+use common::run;
+use elbowroom_cell::{Outcome, RunOutcome};
+
+/// Two carriages go opposite ways; each carries two balls that reach the regions A and B in opposite order.
+fn opposite(laws: &str, start_b: f64) -> String {
+    let robot = |name: &str, z: f64, start: f64, first: &str, second: &str| {
+        format!(
+            "[robot.{name}]\nbase = {{ at = [0, 0, {z}], rpy = [0, 90, 0] }}\n\
+             dh = [{{ kind = \"prismatic\", min = -5000, max = 5000, speed = 1000, acceleration = 8000 }}]\n\
+             links = [[{{ sphere = {{ at = {first}, radius = 50 }} }}, {{ sphere = {{ at = {second}, radius = 50 }} }}]]\n\
+             stop_time = 0.1\nstart = [{start}]\n"
+        )
+    };
+    let region = |name: &str, y: f64| {
+        format!(
+            "[region.{name}]\nshape = \"box\"\nbase = [0, {y}, -500]\nsize = [200, 200, 1200]\nwarning = 500\n\
+             kind = \"exchange\"\n"
+        )
+    };
+    format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n[monitor]\n{laws}\n{}{}{}{}\
+         [program.a]\nsteps = [{{ move = \"joint\", to = [2500] }}]\n\
+         [program.b]\nsteps = [{{ move = \"joint\", to = [-2500] }}]\n",
+        robot("a", 0.0, -2500.0, "[0, 0, 0]", "[0, 3000, -450]"),
+        robot("b", 150.0, start_b, "[0, 0, 450]", "[0, 3000, 0]"),
+        region("A", 0.0),
+        region("B", 3000.0),
+    )
+}
+
+/// Instants at which two robots are inside one region, by the recorded joint values alone: a ball is inside where its
+/// centre is within its radius of the box, along x.
+fn both_inside(outcome: &RunOutcome, offsets_m: [[f64; 2]; 2]) -> usize {
+    let robots = &outcome.recording.robots;
+    let ticks = robots[0].samples.len();
+    let inside = |robot: usize, region: usize, tick: usize| {
+        let x = robots[robot].samples[tick].q[0] + offsets_m[robot][region];
+        x.abs() < 0.15 - 1e-9
+    };
+    (0..ticks).filter(|t| (0..2).any(|region| inside(0, region, *t) && inside(1, region, *t))).count()
+}
+
+#[test]
+fn a_robot_that_cannot_stop_outside_does_not_give_its_grant_back() {
+    for start_b in [2500.0, 2495.0, 2460.0, 2400.0, 2200.0] {
+        let outcome = run(&opposite("stopping_distance = true", start_b));
+        let together = both_inside(&outcome, [[0.0, -0.45], [0.45, 0.0]]);
+        assert_eq!(together, 0, "b starts at {start_b}: both inside in {together} ticks");
+        let regions = &outcome.recording.regions;
+        assert!(regions.iter().all(|r| !r.entered), "b starts at {start_b}: somebody entered without the grant");
+        assert!(
+            outcome.recording.robots.iter().all(|r| r.finished),
+            "b starts at {start_b}: somebody was left waiting"
+        );
+    }
+}
+
+const LAWS: &str = "[monitor]\nstopping_distance = true\n";
+
+/// A carriage on a rail with a ball at its origin and one `other` mm along the rail.
+fn carriage(name: &str, base: [f64; 3], yaw: f64, other: f64, start: f64, to: f64) -> String {
+    format!(
+        "[robot.{name}]\nbase = {{ at = {base:?}, rpy = [0, 90, {yaw}] }}\n\
+         dh = [{{ kind = \"prismatic\", min = -5000, max = 5000, speed = 1000, acceleration = 8000 }}]\n\
+         links = [[{{ sphere = {{ at = [0, 0, 0], radius = 50 }} }}, {{ sphere = {{ at = [0, 0, {other}], radius = 50 }} }}]]\n\
+         stop_time = 0.1\nstart = [{start}]\n\
+         [program.{name}]\nsteps = [{{ move = \"joint\", to = [{to}] }}]\n"
+    )
+}
+
+fn exchanged(name: &str, at: [f64; 3], width: f64, warning: f64) -> String {
+    format!(
+        "[region.{name}]\nshape = \"box\"\nbase = {at:?}\nsize = [{width}, {width}, 1500]\nwarning = {warning}\n\
+         kind = \"exchange\"\n"
+    )
+}
+
+/// Three robots go around a ring of three regions: each comes to the next one while its tail is in its own.
+fn ring(laws: &str) -> String {
+    let mut text = format!("version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{laws}");
+    for (i, (robot, region)) in [("a", "A"), ("b", "B"), ("c", "C")].into_iter().enumerate() {
+        let angle = 120.0 * i as f64;
+        let [x, y] = [866.025 * angle.to_radians().cos(), 866.025 * angle.to_radians().sin()];
+        text += &carriage(robot, [x, y, 150.0 * i as f64], angle + 150.0, -900.0, -500.0, 4000.0);
+        text += &exchanged(region, [x, y, -300.0], 400.0, 200.0);
+    }
+    text
+}
+
+/// Each of two robots starts inside one region, and needs the other's.
+fn inside_each_other(laws: &str) -> String {
+    format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{laws}{}{}{}{}",
+        carriage("a", [0.0, 0.0, 0.0], 0.0, 350.0, 0.0, 1500.0),
+        carriage("b", [700.0, 0.0, 150.0], 180.0, 350.0, 0.0, 1500.0),
+        exchanged("A", [0.0, 0.0, -300.0], 400.0, 100.0),
+        exchanged("B", [700.0, 0.0, -300.0], 400.0, 100.0),
+    )
+}
+
+#[test]
+fn regions_are_granted_so_that_a_ring_of_robots_gets_through() {
+    for laws in ["", LAWS] {
+        let outcome = run(&ring(laws));
+        let r = &outcome.recording;
+        let left: Vec<&str> = r.robots.iter().filter(|r| !r.finished).map(|r| r.name.as_str()).collect();
+        assert!(left.is_empty(), "{laws}{left:?} stand for ever");
+        assert!(r.deadlocks.is_empty() && !outcome.bad_news());
+        assert!(r.robots.iter().all(|r| r.ending == elbowroom_cell::RobotEnding::default()));
+    }
+}
+
+#[test]
+fn robots_that_wait_for_each_other_are_called_a_deadlock() {
+    for laws in ["", LAWS] {
+        let outcome = run(&inside_each_other(laws));
+        let r = &outcome.recording;
+        assert!(outcome.bad_news(), "{laws}two robots stand for ever, and that is no bad news");
+        let [deadlock] = &r.deadlocks[..] else { panic!("{laws}{:?}", r.deadlocks) };
+        assert_eq!(deadlock.robots, ["a", "b"]);
+        assert_eq!(deadlock.regions, ["B", "A"]);
+        assert!(deadlock.t_s < r.duration_s);
+        for (robot, region) in r.robots.iter().zip(["B", "A"]) {
+            let e = &robot.ending;
+            assert_eq!((e.outcome, e.by.as_deref()), (Outcome::Deadlock, Some(region)), "{laws}{e:?}");
+            assert!(e.part.is_some() && e.point.is_some() && e.stopped_at_s.is_some());
+        }
+        let text = elbowroom_cell::report::summary(r, 80, false);
+        assert!(text.contains("deadlock since") && text.contains("a, b wait for each other"), "{text}");
+    }
+}
+
+#[test]
+fn two_robots_that_start_inside_one_region_are_called_a_deadlock() {
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{}{}{}",
+        carriage("a", [0.0, 0.0, 0.0], 0.0, 100.0, -100.0, 2000.0),
+        carriage("b", [0.0, 400.0, 0.0], 0.0, 100.0, 100.0, 2000.0),
+        exchanged("shared", [0.0, 0.0, -500.0], 1000.0, 300.0),
+    );
+    let outcome = run(&text);
+    let [deadlock] = &outcome.recording.deadlocks[..] else { panic!("{:?}", outcome.recording.deadlocks) };
+    assert_eq!((&deadlock.robots[..], &deadlock.regions[..]), (&["a".into(), "b".into()][..], &["shared".into()][..]));
+}
+
+#[test]
+fn a_robot_that_follows_another_through_two_regions_is_not_kept_until_both_are_free() {
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{LAWS}{}{}{}{}",
+        carriage("first", [0.0, 0.0, 0.0], 0.0, -400.0, -600.0, 3000.0),
+        carriage("second", [0.0, 0.0, 150.0], 0.0, -400.0, -900.0, 3000.0),
+        exchanged("A", [0.0, 0.0, -300.0], 400.0, 100.0),
+        exchanged("B", [650.0, 0.0, -300.0], 400.0, 100.0),
+    );
+    let outcome = run(&text);
+    let r = &outcome.recording;
+    assert!(r.robots.iter().all(|r| r.finished) && !outcome.bad_news());
+    let inside = |robot: usize, tick: usize, at: f64| {
+        [0.0, -0.4].iter().any(|ball| (r.robots[robot].samples[tick].q[0] + ball - at).abs() < 0.25)
+    };
+    let both = (0..r.robots[0].samples.len()).filter(|t| inside(0, *t, 0.65) && inside(1, *t, 0.0)).count();
+    assert!(both > 0, "the second waited until the first had left both regions");
+}
+
+#[test]
+fn a_robot_tells_how_it_ended() {
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{LAWS}{}{}{}\
+         [region.wall]\nshape = \"box\"\nbase = [1000, 0, -500]\nsize = [200, 200, 1000]\nwarning = 100\nrobots = [\"a\"]\n",
+        carriage("a", [0.0, 0.0, 0.0], 0.0, 100.0, 0.0, 2000.0),
+        carriage("b", [0.0, 2000.0, 0.0], 0.0, 100.0, 0.0, 500.0),
+        carriage("c", [0.0, 2000.0, 0.0], 0.0, 100.0, 900.0, 600.0),
+    );
+    let outcome = run(&text);
+    let [a, b, c] = [0, 1, 2].map(|i| &outcome.recording.robots[i].ending);
+    assert_eq!((a.outcome, a.by.as_deref()), (Outcome::Stopped, Some("wall")));
+    let point = a.point.expect("a point");
+    assert!(point.x > 0.8 && point.x < 0.9 && a.part.is_some() && a.stopped_at_s.is_some_and(|t| t > 0.5), "{a:?}");
+    assert_eq!((b.outcome, c.outcome), (Outcome::Collided, Outcome::Collided));
+    assert!(b.by.as_deref().is_some_and(|by| by.starts_with("c/")) && b.part.is_some(), "{b:?}");
+}

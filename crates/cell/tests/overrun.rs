@@ -1,0 +1,105 @@
+//! The thickness that `check` names is enough: whole cells by the bare law, with that thickness, are never entered.
+
+mod common;
+
+use std::fmt::Write;
+
+use elbowroom_cell::check::{check, overruns};
+use elbowroom_cell::{Cell, RunOptions, simulate};
+use proptest::prelude::*;
+
+/// What the robot is and how it brakes.
+#[derive(Debug, Clone)]
+struct Setting {
+    /// Joints: prismatic or not, offset (mm), where to (share of the range, -1..1).
+    joints: Vec<(bool, f64, f64)>,
+    acceleration_s: f64,
+    stop_s: f64,
+    tick_ms: u32,
+    programmed: u32,
+    /// Where on the way of the tip the region stands, and how large it is (mm).
+    met_at: f64,
+    radius: f64,
+    linear: bool,
+}
+
+fn settings() -> impl Strategy<Value = Setting> {
+    let joint = (any::<bool>(), 200.0..600.0, prop_oneof![-1.0..-0.3, 0.3..1.0]);
+    let times = (0.1..0.5_f64, 0.05..1.0_f64, 1..6_u32, 30..=100_u32);
+    (prop::collection::vec(joint, 1..4), times, 0.5..0.95_f64, 40.0..200.0, any::<bool>()).prop_map(
+        |(joints, (acceleration_s, stop_s, tick_ms, programmed), met_at, radius, linear)| Setting {
+            joints,
+            acceleration_s,
+            stop_s,
+            tick_ms,
+            programmed,
+            met_at,
+            radius,
+            linear,
+        },
+    )
+}
+
+impl Setting {
+    /// The cell, with a region at `centre` (m) and a warning zone of `warning` (m).
+    fn text(&self, centre: [f64; 3], warning: f64) -> String {
+        let mut dh = String::new();
+        let (mut speeds, mut accelerations) = (Vec::new(), Vec::new());
+        for (slides, offset, _) in &self.joints {
+            let (kind, min, max, speed) =
+                if *slides { ("prismatic", -1500, 1500, 1500.0) } else { ("revolute", -170, 170, 150.0) };
+            let _ = write!(dh, "{{ kind = \"{kind}\", a = {offset}, alpha = 90, min = {min}, max = {max} }}, ");
+            speeds.push(speed);
+            accelerations.push(speed / self.acceleration_s);
+        }
+        let capsule = |(_, offset, _): &(bool, f64, f64)| {
+            format!("{{ capsule = {{ from = [0, 0, 0], to = [{}, 0, 0], radius = 40 }} }}", -offset)
+        };
+        let links: Vec<String> = self.joints.iter().map(capsule).collect();
+        let to: Vec<f64> =
+            self.joints.iter().map(|(slides, _, share)| share * if *slides { 1400.0 } else { 160.0 }).collect();
+        let kind = if self.linear { "linear" } else { "joint" };
+        // A linear move is asked for more than the joints can do: they then go as fast as they can.
+        let speed = if self.linear { ", speed = 3000" } else { "" };
+        let mm = centre.map(|m| m * 1000.0);
+        format!(
+            "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = {}\nmax_s = 20\n[robot.a]\ndh = [{dh}]\n\
+             links = [{}]\nspeed = {speeds:?}\nacceleration = {accelerations:?}\nstop_time = {}\n\
+             [region.z]\nshape = \"sphere\"\ncentre = {mm:?}\nradius = {}\nwarning = {}\n\
+             [program.a]\noverride = {}\nsteps = [{{ move = \"{kind}\", to = {to:?}{speed} }}]\n",
+            self.tick_ms,
+            links.join(", "),
+            self.stop_s,
+            self.radius,
+            warning * 1000.0,
+            self.programmed,
+        )
+    }
+
+    /// Where the TCP is at `met_at` of its free way; `None` where the program cannot be followed.
+    fn place(&self) -> Option<[f64; 3]> {
+        let cell = Cell::parse("c.toml", &self.text([90.0, 0.0, 0.0], 0.001)).ok()?;
+        let run = simulate(&cell, &RunOptions { monitored: false, ..RunOptions::default() }).ok()?.recording;
+        let samples = &run.robots[0].samples;
+        Some(samples[(samples.len() as f64 * self.met_at) as usize].tcp.to_array())
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_named_thickness_is_enough(setting in settings()) {
+        let Some(centre) = setting.place() else { return Ok(()) };
+        let cell = Cell::parse("c.toml", &setting.text(centre, 0.001)).unwrap();
+        let needed = check(&cell).unwrap()[0].needed_warning_m.unwrap();
+        // Up to the millimetre that the message says.
+        let text = setting.text(centre, (needed * 1e3).ceil() / 1e3);
+        let cell = Cell::parse("c.toml", &text).unwrap();
+        let answer = &check(&cell).unwrap()[0];
+        prop_assume!(!answer.reason.contains("starts inside"));
+        prop_assert!(answer.excluded && overruns(&cell).unwrap().is_empty(), "{}\n{text}", answer.reason);
+        let run = simulate(&cell, &RunOptions::default()).unwrap().recording;
+        prop_assert!(!run.regions[0].entered, "needed {needed} m, but it was entered:\n{text}");
+    }
+}

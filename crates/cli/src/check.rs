@@ -1,0 +1,59 @@
+//! `elbowroom check`: is entry excluded, and what is missing.
+
+use elbowroom::cell::Cell;
+use elbowroom::cell::check::{EntryCheck, check as judge, table};
+use serde::Serialize;
+
+use crate::args::CheckArgs;
+use crate::output::{Failure, Verdict, note, print, print_json};
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    cell: &'a str,
+    checksum: &'a str,
+    regions: Vec<Row<'a>>,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    /// Of the region.
+    name: &'a str,
+    robot: &'a str,
+    kind: &'static str,
+    excluded: bool,
+    reason: &'a str,
+    /// What to write into the cell file, where something is missing.
+    write: Option<&'a str>,
+    warning_m: f64,
+    needed_warning_m: Option<f64>,
+}
+
+pub(crate) fn check(args: &CheckArgs) -> Result<Verdict, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let checks = judge(&cell)?;
+    if args.json {
+        print_json(&Answer {
+            cell: &cell.name,
+            checksum: &cell.checksum,
+            regions: checks.iter().map(|c| row(&cell, c)).collect(),
+        })?;
+    } else {
+        print(&table(&cell, &checks))?;
+    }
+    Ok(if checks.iter().any(|c| c.is_bad(&cell)) { Verdict::Bad } else { Verdict::Good })
+}
+
+fn row<'a>(cell: &'a Cell, check: &'a EntryCheck) -> Row<'a> {
+    let region = &cell.regions[check.region].region;
+    Row {
+        name: &region.name,
+        robot: &cell.robots[check.robot].name,
+        kind: region.kind.name(),
+        excluded: check.excluded,
+        reason: &check.reason,
+        write: check.write_instead.as_deref(),
+        warning_m: region.warning_m,
+        needed_warning_m: check.needed_warning_m,
+    }
+}

@@ -1,0 +1,157 @@
+//! Witness points of parallel faces stay where they are while the faces tilt by nothing to speak of.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::Rng;
+use elbowroom_proximity::mesh::{Scratch, distance};
+use elbowroom_proximity::{ConvexHull, Cuboid, Separation, Shape, TriMesh, separation, tessellate::tessellate};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+const KINDS: [&str; 3] = ["box", "hull", "mesh"];
+
+fn plate(kind: &str, half: Vec3) -> Shape {
+    let plate = Shape::Cuboid(Cuboid { half_extents: half });
+    let (v, t) = tessellate(&plate, 1.0);
+    match kind {
+        "box" => plate,
+        "hull" => Shape::Hull(Arc::new(ConvexHull::from_points(&v).unwrap())),
+        _ => Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap())),
+    }
+}
+
+/// Largest steps of either point over small tilts, metres; every answer's bounds are checked on the way.
+fn steps(a: &Shape, b: &Shape, b_in_a: impl Fn(&mut Rng) -> Pose, a_in_world: &Pose, size: f64) -> Vec<f64> {
+    let mut rng = Rng(16);
+    let mut last: Option<Separation> = None;
+    let mut found = Vec::new();
+    for _ in 0..400 {
+        let there = *a_in_world * b_in_a(&mut rng);
+        let s = separation(a, a_in_world, b, &there);
+        let apart = s.on_a.distance(s.on_b);
+        assert!(
+            s.lower_bound <= s.distance && s.distance <= apart + 1e-12 && apart <= s.distance + 3e-8 * size,
+            "{s:?}"
+        );
+        for (shape, pose, p) in [(a, a_in_world, s.on_a), (b, &there, s.on_b)] {
+            let off = elbowroom_proximity::project_point(shape, pose, p).signed_distance.abs();
+            assert!(off <= 1e-12, "a witness is {off:e} m off its surface: {s:?}");
+        }
+        if let Some(last) = last {
+            found.push(s.on_a.distance(last.on_a).max(s.on_b.distance(last.on_b)));
+        }
+        last = Some(s);
+    }
+    found
+}
+
+fn tilted(rng: &mut Rng, most: f64, at: Vec3) -> Pose {
+    Pose::new(Rotation::from_rpy(rng.range(-most, most), rng.range(-most, most), 0.0), at)
+}
+
+#[test]
+fn parallel_plates_have_steady_points() {
+    let worlds = [Pose::IDENTITY, Pose::new(Rotation::from_rpy(0.3, -0.5, 1.1), Vec3::new(1.0, 2.0, -0.7))];
+    for first in KINDS {
+        for second in KINDS.into_iter().filter(|second| (first == "mesh") == (*second == "mesh")) {
+            let (a, b) = (plate(first, Vec3::new(0.4, 0.3, 0.01)), plate(second, Vec3::new(0.35, 0.3, 0.02)));
+            for gap in [1e-6, 1e-3, 0.1] {
+                for world in &worlds {
+                    let at = Vec3::new(0.12, -0.07, 0.03 + gap);
+                    let found = steps(&a, &b, |rng| tilted(rng, 1e-9, at), world, 1.0);
+                    let worst = found.iter().copied().fold(0.0, f64::max);
+                    assert!(worst < 5e-3, "{first} {second}, {gap} m: a step of {worst} m");
+                }
+            }
+        }
+    }
+}
+
+/// The middle of where the faces face each other, when they are parallel.
+#[test]
+fn the_points_are_in_the_middle_of_the_patch() {
+    for kind in KINDS {
+        let a = plate(kind, Vec3::new(0.4, 0.3, 0.01));
+        let there = Pose::from_translation(Vec3::new(0.2, 0.1, 0.05));
+        let s = separation(&a, &Pose::IDENTITY, &a, &there);
+        assert!(s.on_a.distance(Vec3::new(0.1, 0.05, 0.01)) < 1e-6, "{kind}: {s:?}");
+        assert!(s.on_b.distance(Vec3::new(0.1, 0.05, 0.04)) < 1e-6, "{kind}: {s:?}");
+    }
+}
+
+/// Two edges side by side, and an edge over a face.
+#[test]
+fn parallel_edges_have_steady_points() {
+    let quarter = std::f64::consts::FRAC_PI_4;
+    for kind in KINDS {
+        let (a, b) = (plate(kind, Vec3::new(0.4, 0.1, 0.1)), plate(kind, Vec3::new(0.3, 0.1, 0.1)));
+        let roll = Pose::new(Rotation::from_rpy(quarter, 0.0, 0.0), Vec3::ZERO);
+        for (world, height) in [(roll, 0.2 * 2.0_f64.sqrt()), (Pose::IDENTITY, 0.1 + 0.1 * 2.0_f64.sqrt())] {
+            let at =
+                world.inverse() * Pose::new(Rotation::from_rpy(quarter, 0.0, 0.0), Vec3::new(0.1, 0.0, height + 0.05));
+            let tilt = |rng: &mut Rng| {
+                Pose::new(
+                    at.rotation * Rotation::from_rpy(0.0, rng.range(-1e-9, 1e-9), rng.range(-1e-9, 1e-9)),
+                    at.translation,
+                )
+            };
+            let worst = steps(&a, &b, tilt, &world, 1.0).into_iter().fold(0.0, f64::max);
+            assert!(worst < 5e-3, "{kind}: a step of {worst} m");
+        }
+    }
+}
+
+/// Feet of a table over a floor: one of them, always the same.
+#[test]
+fn several_places_as_near_give_the_same_one() {
+    let mut corners = Vec::new();
+    for (x, y) in [(-0.4, -0.3), (0.4, -0.3), (0.4, 0.3), (-0.4, 0.3)] {
+        let foot = Vec3::new(x, y, 0.0);
+        corners.extend([foot, foot + Vec3::new(0.05, 0.0, 0.5), foot + Vec3::new(0.0, 0.05, 0.5)]);
+    }
+    let faces = (0..4).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let table = Shape::Mesh(Arc::new(TriMesh::new(corners, faces).unwrap()));
+    let floor = plate("mesh", Vec3::new(1.0, 1.0, 0.1));
+    let found = steps(&floor, &table, |rng| tilted(rng, 1e-9, Vec3::new(0.05, 0.02, 0.12)), &Pose::IDENTITY, 2.5);
+    let jumps = found.iter().filter(|step| **step > 5e-3).count();
+    assert_eq!(jumps, 0);
+}
+
+/// Finely cut faces: what is told does not depend on a hint, nor on the order of the two.
+#[test]
+fn cut_faces_have_one_answer() {
+    let mut rng = Rng(161);
+    let cut = |n: u32| {
+        let at = |i: u32, j: u32| Vec3::new(f64::from(i) / f64::from(n) - 0.5, f64::from(j) / f64::from(n) - 0.5, 0.0);
+        let corners = (0..=n).flat_map(|i| (0..=n).map(move |j| at(i, j))).collect();
+        let v = |i, j| i * (n + 1) + j;
+        let quads = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let faces =
+            quads.flat_map(|(i, j)| [[v(i, j), v(i + 1, j), v(i + 1, j + 1)], [v(i, j), v(i + 1, j + 1), v(i, j + 1)]]);
+        TriMesh::new(corners, faces.collect()).unwrap()
+    };
+    let (a, b) = (cut(17), cut(12));
+    let (mut hint, mut last) = (None, None::<Vec3>);
+    for _ in 0..60 {
+        let there = tilted(&mut rng, 1e-9, Vec3::new(0.21, 0.13, 0.02));
+        let fresh = distance(&a, &Pose::IDENTITY, &b, &there, &mut Scratch::new());
+        let warm = elbowroom_proximity::mesh::distance_at(
+            &a,
+            &Pose::IDENTITY,
+            &b,
+            &there,
+            f64::INFINITY,
+            hint,
+            &mut Scratch::new(),
+        )
+        .unwrap();
+        hint = Some(warm.hint);
+        assert_eq!(
+            (fresh.on_a, fresh.on_b, fresh.distance, fresh.pair),
+            (warm.on_a, warm.on_b, warm.distance, warm.pair)
+        );
+        assert!(last.is_none_or(|p| p.distance(fresh.on_a) < 5e-3), "{fresh:?}");
+        last = Some(fresh.on_a);
+    }
+}
