@@ -24,7 +24,7 @@ pub struct Summary {
     stopped: usize,
     watched: usize,
     deadlocks: usize,
-    carried: usize,
+    unforeseen: usize,
     simulated_s: f64,
     /// Cells with at least one, by what was found.
     entries: usize,
@@ -57,7 +57,7 @@ impl Summary {
         self.stopped += judged.stopped;
         self.watched += o.watched;
         self.deadlocks += o.deadlocks;
-        self.carried += o.carried_entries;
+        self.unforeseen += o.unforeseen_entries;
         self.simulated_s += judged.simulated_s;
         self.entries += has(|f| matches!(f, Finding::Entry { .. }));
         self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
@@ -99,7 +99,7 @@ impl Summary {
             ("deadlocks", self.deadlocks.to_string()),
             ("silent deadlocks", self.silent.to_string()),
             ("braked too hard", self.too_hard.to_string()),
-            ("carried regions", self.carried.to_string()),
+            ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
     }
@@ -132,7 +132,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
         let _ = write!(
             text,
             "{comma}{{\"kind\":\"{}\",\"cells\":{},\"refused\":{},\"robots\":{},\"finished\":{},\"slowed\":{},\"stopped\":{},\
-             \"entries\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"carried_entries\":{},\
+             \"entries\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"unforeseen_entries\":{},\
              \"failed\":{},\"simulated_s\":{:.3},\"took_s\":{:.3}}}",
             s.kind,
             s.cells,
@@ -146,7 +146,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
             s.deadlocks,
             s.silent,
             s.too_hard,
-            s.carried,
+            s.unforeseen,
             s.failed,
             s.simulated_s,
             s.took.as_secs_f64()

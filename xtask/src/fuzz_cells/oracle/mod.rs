@@ -42,8 +42,8 @@ pub enum Finding {
 #[derive(Debug, Clone, Default)]
 pub struct Opinion {
     pub findings: Vec<Finding>,
-    /// Entries into regions that ride on another robot: nobody can foresee how that one accelerates.
-    pub carried_entries: usize,
+    /// Entries into regions that ride on another robot, or on a belt that just changed its speed: nobody can foresee that.
+    pub unforeseen_entries: usize,
     /// Sets of robots that wait for one another for ever.
     pub deadlocks: usize,
     /// Pairs of robot and region that were watched for entry.

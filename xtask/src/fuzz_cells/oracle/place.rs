@@ -62,6 +62,16 @@ impl Place {
         matches!(self.carrier, Carrier::Robot { .. })
     }
 
+    /// True where its belt starts, stops or changes its speed between two times.
+    pub fn changes_speed(&self, from_s: f64, to_s: f64) -> bool {
+        let Carrier::Belt(encoder) = &self.carrier else { return false };
+        let within = |t: f64| from_s <= t && t <= to_s;
+        match &encoder.travel {
+            Travel::Constant { start_s, end_s, .. } => (*start_s > 0.0 && within(*start_s)) || within(*end_s),
+            Travel::Table(rows) => rows.iter().any(|r| within(r.0)),
+        }
+    }
+
     /// Travel of its belt at a time (m), and whether it has begun again at 0 how often.
     pub fn travel_at(&self, t_s: f64) -> (f64, f64) {
         let Carrier::Belt(encoder) = &self.carrier else { return (0.0, 0.0) };

@@ -26,15 +26,21 @@ pub fn entries(motion: &Motion<'_>, guarded: &[Vec<Guarded>], opinion: &mut Opin
             if !drove_in(pair, k, u) {
                 continue;
             }
-            if place.is_carried() {
-                opinion.carried_entries += 1;
+            let t_s = motion.times[k] + u * motion.recording.tick_s;
+            if place.is_carried() || place.changes_speed(t_s - stop_s(motion, robot), t_s) {
+                opinion.unforeseen_entries += 1;
                 continue;
             }
-            let t_s = motion.times[k] + u * motion.recording.tick_s;
             let speed = if k + 1 < motion.ticks() { pair.own_travel(k) / motion.recording.tick_s } else { 0.0 };
             opinion.findings.push(Finding::Entry { robot, region, t_s, speed });
         }
     }
+}
+
+/// How long (s) the robot may take to stop from full speed, and to obey.
+fn stop_s(motion: &Motion<'_>, robot: usize) -> f64 {
+    let slowest = motion.cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
+    slowest + motion.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * motion.recording.tick_s
 }
 
 /// The first touch within the times in which the robot may be judged.
