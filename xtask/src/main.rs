@@ -3,6 +3,7 @@
 
 mod contacts;
 mod figures;
+mod fuzz_cells;
 mod judge;
 mod layers;
 mod models;
@@ -35,6 +36,12 @@ cargo xtask COMMAND
         writes the figures of docs/laws.md under docs/figures; --check compares instead
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
+  fuzz cells [--count N] [--kind stop|exchange|faults|all] [--seed S] [--case I] [--no-shrink] [--json]
+        runs N random cells (default 1000) of each kind under the monitor, and judges the recordings by kinematics and
+        distances of its own, between ticks too: nobody enters, never two in an exchange region, no silent deadlock.
+        Failing cells are made smaller and written to target/fuzz-cells
+  fuzz cells --replay FILE
+        runs one cell file under the same judge; lines `# fault: …` in it are injected
   rpq [--states N] [--out DIR] [--json]
         the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
         resolution level, pair matrix and weight matrix; --out writes the figures of docs/rpq.md
@@ -105,6 +112,9 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["models", "--check"] => Ok(models::check(&root)?),
         ["figures"] => Ok(figures::write(&root)?),
         ["figures", "--check"] => Ok(figures::check(&root)?),
+        ["fuzz", "cells", rest @ ..] => {
+            fuzz_cells::run(&root, &fuzz_cells::Options::parse(rest).map_err(Failure::Usage)?)
+        }
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["judge", rest @ ..] => judge::run(&root, rest),

@@ -196,6 +196,8 @@ pub struct CellLaws {
     pub reaction_s: f64,
     /// Reaction time (s) of the stopping-distance law, where that is on.
     pub stopping_reaction_s: Option<f64>,
+    /// How late (s) robots obey in simulation: the reaction time that the file gives, 0 where it gives none.
+    pub obeyed_after_s: f64,
 }
 
 /// What a robot does.

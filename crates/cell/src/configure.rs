@@ -12,6 +12,11 @@ use sha2::{Digest, Sha256};
 
 use crate::{Cell, CellRobot, Follow};
 
+/// Ticks after which a controller that got no answer stops by itself.
+pub const ANSWERS_MISSED: f64 = 2.0;
+/// Linear moves are timed from samples of their course: between those a joint may accelerate by so much more.
+const ACCELERATION_MARGIN: f64 = 1.1;
+
 /// What one robot's monitor is given, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]
 pub struct Setup {
@@ -37,19 +42,34 @@ pub fn setups(cell: &Cell) -> Result<Vec<Setup>, FormatError> {
 /// # Errors
 /// As for [`setups`].
 pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatError> {
-    let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
-    let slots = slots(cell);
-    let count = slots.iter().flatten().map(|s| s.0 + 1).max().unwrap_or(0);
-    let slot_names: Vec<String> = (0..count).map(|i| format!("slot {i}")).collect();
-    let slot_names: Vec<&str> = slot_names.iter().map(String::as_str).collect();
-    // Five ticks of silence, or the board's own patience where that is longer.
-    let patience_s = (5.0 * cell.tick_s).max(0.1);
-    let board = (count > 0).then(|| Arc::new(Board::new(&names, &slot_names).patience(patience_s)));
+    monitors_at(cell, setups, board(cell).as_ref())
+}
+
+/// The monitors, joined by the cell's [`board`].
+///
+/// # Errors
+/// As for [`setups`].
+pub fn monitors_at(cell: &Cell, setups: &[Setup], board: Option<&Arc<Board>>) -> Result<Vec<Monitor>, FormatError> {
     let monitor = |(i, s): (usize, &Setup)| {
-        Monitor::new(s.configuration.clone(), board.clone().map(|b| (b, RobotSlot(i))))
+        Monitor::new(s.configuration.clone(), board.map(|b| (b.clone(), RobotSlot(i))))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
     };
     setups.iter().enumerate().map(monitor).collect()
+}
+
+/// The board of the cell's exchange regions, its robots in the order of the cell; `None` where there are no such regions.
+/// Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
+pub fn board(cell: &Cell) -> Option<Arc<Board>> {
+    let slots = slots(cell);
+    let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
+    let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+    let members = |slot: usize| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
+    let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = (0..count).map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    // Five ticks of silence, or the board's own patience where that is longer.
+    let patience_s = (5.0 * cell.tick_s).max(0.1);
+    Some(Arc::new(Board::new(&robots, &names).patience(patience_s)))
 }
 
 /// SHA-256 (hex) over the checksums of all monitors' configurations.
@@ -103,10 +123,13 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         regions.push(region);
         indices.push(i);
     }
-    let stopping_distance = cell
-        .laws
-        .stopping_reaction_s
-        .map(|reaction_s| Stopping { reaction_s, joint_deceleration: robot.limits.iter().map(|l| l.stop).collect() });
+    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
+        reaction_s,
+        // A simulated controller stops by itself where an answer is missing for longer.
+        period_s: ANSWERS_MISSED * cell.tick_s,
+        joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
+        joint_acceleration: robot.limits.iter().map(|l| ACCELERATION_MARGIN * l.acceleration).collect(),
+    });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,

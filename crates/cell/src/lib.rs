@@ -43,6 +43,7 @@ mod poses;
 pub mod query;
 mod recording;
 pub mod report;
+mod resting;
 pub mod run;
 mod summary;
 pub mod watch;

@@ -385,7 +385,7 @@ pub(crate) struct TeachArgs {
     /// Teach with the flange instead of the TCP
     #[arg(long)]
     pub(crate) flange: bool,
-    /// Height of box3, in the cell file's unit of length
+    /// Height of box3, in the cell file's unit of length: positive goes up from the taught corners, negative down
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
     /// Thickness of the warning zone, in the cell file's unit of length

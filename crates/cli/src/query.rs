@@ -51,7 +51,9 @@ fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
         };
         let loaded = robot::load(urdf, &options)?;
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        return Ok(Subject::of_robot(urdf, loaded.robot));
+        let subject = Subject::of_robot(urdf, loaded.robot);
+        subject.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
+        return Ok(subject);
     }
     // clap asks for one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));

@@ -5,12 +5,13 @@ use std::fmt::Write;
 use elbowroom::cell::csv::read_states;
 use elbowroom::cell::{Cell, CellRobot};
 use elbowroom::kinematics::ChainState;
-use elbowroom::monitor::{Region, teach as taught};
+use elbowroom::monitor::Region;
+use elbowroom::monitor::teach::{self as taught, HeightDirection};
 use elbowroom::proximity::Shape;
 use elbowroom::spatial::Vec3;
 
 use crate::args::{TaughtShape, TeachArgs};
-use crate::output::{Failure, Verdict, print};
+use crate::output::{Failure, Verdict, note, print};
 
 pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
     let cell = Cell::load(&args.cell)?;
@@ -23,8 +24,16 @@ pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
     let angle = |radians: f64| radians / cell.units.angle.to_radians(1.0);
     let height = args.height.map(|h| cell.units.length.to_metres(h));
     let region = region(args, &points, height)?;
-    let text = toml(&region, args.warning, &length, &angle);
+    let built = match (&points[..], height) {
+        ([corner, along, across], Some(height)) => {
+            box_built(&region, &height_direction(*corner, *along, *across, height, args)?, &cell)
+        }
+        _ => Vec::new(),
+    };
+    let comments: String = built.iter().map(|line| format!("# {line}\n")).collect();
+    let text = format!("\n{comments}{}", toml(&region, args.warning, &length, &angle));
     accepted(&text, &cell, args)?;
+    built.iter().for_each(note);
     print(&text)?;
     Ok(Verdict::Good)
 }
@@ -82,6 +91,62 @@ fn region(args: &TeachArgs, points: &[Vec3], height: Option<f64>) -> Result<Regi
     result.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
 }
 
+fn height_direction(
+    corner: Vec3,
+    along: Vec3,
+    across: Vec3,
+    height: f64,
+    args: &TeachArgs,
+) -> Result<HeightDirection, Failure> {
+    let found = taught::height_direction(corner, along, across, height);
+    found.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
+}
+
+/// What was built of three corners and a height, in words: nobody should have to load the cell to see on which side it is.
+fn box_built(region: &Region, height: &HeightDirection, cell: &Cell) -> Vec<String> {
+    let unit = cell.units.length.symbol();
+    let number = |metres: f64| shown(metres / cell.units.length.to_metres(1.0));
+    let list = |v: Vec3| format!("[{}]", v.to_array().map(number).join(", "));
+    let box_in_world = region.anchor * region.shape_in_anchor;
+    let size = match &region.shape {
+        Shape::Cuboid(c) => c.half_extents * 2.0,
+        _ => Vec3::ZERO,
+    };
+    let direction = height.direction;
+    let lean = direction.z.abs().min(1.0).acos().to_degrees();
+    let vector = format!("[{}]", direction.to_array().map(shown).join(", "));
+    let tilted = if lean < 0.05 { String::new() } else { format!(", {lean:.1} deg from the vertical") };
+    let goes = match (height.upright_base, direction.z > 0.0) {
+        (true, _) => format!("to the side, towards {vector} in the world"),
+        (false, true) => format!("upwards (against gravity{tilted})"),
+        (false, false) => format!("downwards (with gravity{tilted})"),
+    };
+    let all = region.shape.aabb(&box_in_world);
+    let mut lines = vec![
+        format!("built {goes}, {} {unit} high on the taught corners", number(size.z)),
+        format!(
+            "centre {} {unit}, size {} {unit} (first edge, second edge, height), z from {} to {} {unit}",
+            list(box_in_world.translation),
+            list(size),
+            number(all.min.z),
+            number(all.max.z)
+        ),
+    ];
+    if height.upright_base {
+        lines.push(
+            "the taught base stands upright and has no upper side: the side is that of first edge x second edge; for the \
+             other one, --height with the other sign"
+                .to_owned(),
+        );
+    }
+    lines
+}
+
+/// At most four digits behind the point.
+fn shown(v: f64) -> String {
+    format!("{}", (v * 1e4).round() / 1e4 + 0.0)
+}
+
 /// Nothing is printed that the cell file's reader would refuse.
 fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
@@ -93,7 +158,7 @@ fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
 
 /// The region as it stands in a cell file.
 fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn Fn(f64) -> f64) -> String {
-    let mut text = format!("\n[region.{}]\n", key(&region.name));
+    let mut text = format!("[region.{}]\n", key(&region.name));
     let mut line = |key: &str, value: String| {
         let _ = writeln!(text, "{key} = {value}");
     };

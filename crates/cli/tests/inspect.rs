@@ -279,3 +279,105 @@ fn every_table_multiplies_out_to_the_tip_and_classical_is_refused_with_b() {
     let refused = elbowroom(dir.path(), &["inspect", "straight.urdf", "--dh", "craig"]).expect(2);
     assert!(refused.stderr.contains("modified"), "{}", refused.stderr);
 }
+
+/// The NS16 with all meshes `scale` times as large; `edit` changes the text further.
+fn scaled_ns16(dir: &std::path::Path, scale: f64, edit: impl Fn(String) -> String) -> common::Answer {
+    let models = std::path::PathBuf::from(ns16());
+    let folder = models.parent().unwrap().display().to_string();
+    let text = std::fs::read_to_string(&models).unwrap();
+    let text =
+        text.replace("<mesh filename=\"", &format!("<mesh scale=\"{scale} {scale} {scale}\" filename=\"{folder}/"));
+    std::fs::write(dir.join("scaled.urdf"), edit(text)).unwrap();
+    elbowroom(dir, &["inspect", "scaled.urdf", "--brief", "--json"]).expect(0)
+}
+
+#[test]
+fn text_and_json_name_the_same_unit() {
+    let dir = tempfile::tempdir().unwrap();
+    for (factor, looks_like, words) in [
+        (1000.0, "mm", "look like mm, read as metres"),
+        (100.0, "cm", "look like cm, read as metres"),
+        (39.37, "in", "look like inches (in)"),
+        (25.4, "in", "look like inches (in)"),
+        (10.0, "mm", "look like mm, read as cm"),
+        (0.1, "cm", "look like cm, read as mm"),
+        (0.0254, "applied twice", "looks like inches (in) applied twice"),
+        (0.001, "applied twice", "looks like mm applied twice"),
+    ] {
+        let json = scaled_ns16(dir.path(), factor, |text| text).json();
+        let doubts = json["unit_doubts"].as_array().unwrap();
+        assert_eq!((doubts.len(), doubts[0]["looks_like"].as_str()), (1, Some(looks_like)), "{factor}: {doubts:?}");
+        let said: Vec<&str> = json["warnings"].as_array().unwrap().iter().filter_map(|w| w.as_str()).collect();
+        let about_units: Vec<_> = said.iter().filter(|w| w.contains("look")).collect();
+        assert!(about_units.len() == 1 && about_units[0].contains(words), "{factor}: {said:?}");
+    }
+    let right = scaled_ns16(dir.path(), 1.0, |text| text).json();
+    assert_eq!(right["unit_doubts"], serde_json::json!([]));
+}
+
+#[test]
+fn limits_in_degrees_are_doubted() {
+    let dir = tempfile::tempdir().unwrap();
+    let degrees = |text: String| {
+        let mut out = String::new();
+        for (i, part) in text.split("<limit lower=\"").enumerate() {
+            if i > 0 {
+                out += "<limit lower=\"-170\" upper=\"170\" ";
+                out += &part[part.find("velocity").unwrap()..];
+            } else {
+                out += part;
+            }
+        }
+        out
+    };
+    let json = scaled_ns16(dir.path(), 1.0, degrees).json();
+    assert_eq!(json["unit_doubts"][0]["looks_like"], "deg", "{}", json["unit_doubts"]);
+    assert!(json["warnings"].to_string().contains("look like degrees (deg), read as radians"), "{}", json["warnings"]);
+}
+
+/// A ball as a file in single precision may have it: every triangle with corners of its own, a hair off.
+fn seamed_ball() -> String {
+    use std::f64::consts::{PI, TAU};
+    use std::fmt::Write;
+    let point = |i: u32, j: u32, hair: f64| {
+        let (u, v) = (f64::from(i) / 12.0 * PI, f64::from(j % 24) / 24.0 * TAU);
+        [u.sin() * v.cos() + hair, u.sin() * v.sin() - hair, u.cos() + hair]
+    };
+    let (mut obj, mut count) = (String::new(), 0_u32);
+    for i in 0..12 {
+        for j in 0..24 {
+            for face in [[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i + 1, j + 1), (i, j + 1)]] {
+                for (i, j) in face {
+                    count += 1;
+                    let [x, y, z] = point(i, j, f64::from(count % 7) * 1e-9);
+                    writeln!(obj, "v {x} {y} {z}").unwrap();
+                }
+                writeln!(obj, "f {} {} {count}", count - 2, count - 1).unwrap();
+            }
+        }
+    }
+    obj
+}
+
+#[test]
+fn hairline_seams_are_closed_said_and_simplified() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("ball.obj"), seamed_ball()).unwrap();
+    std::fs::write(
+        dir.path().join("ball.urdf"),
+        "<robot name=\"ball\"><link name=\"ball\"><collision><geometry><mesh filename=\"ball.obj\"/></geometry></collision></link></robot>",
+    )
+    .unwrap();
+    let json = elbowroom(dir.path(), &["inspect", "ball.urdf", "--json"]).expect(0).json();
+    let mesh = &json["meshes"][0];
+    assert_eq!((mesh["closed"].as_bool(), mesh["open_edges"].as_u64()), (Some(true), Some(0)), "{mesh}");
+    assert!(mesh["welded_vertices"].as_u64() > Some(1000), "{mesh}");
+    let tolerance = mesh["weld_tolerance_m"].as_f64().unwrap();
+    assert!((1.9e-6..2.1e-6).contains(&tolerance), "a millionth of the extent: {tolerance}");
+    let level = &json["resolution"][0];
+    let count = |name: &str| level[name]["triangles"].as_u64().unwrap_or(0);
+    assert!(count("middle") > 0 && count("middle") <= count("fine") / 3, "{level}");
+    assert!(level["middle"]["deviation_m"].as_f64() < Some(0.1), "{level}");
+    let text = elbowroom(dir.path(), &["inspect", "ball.urdf"]).expect(0).stdout;
+    assert!(text.contains("vertices on seams within 2.0e-6 m of another count as one"), "{text}");
+}

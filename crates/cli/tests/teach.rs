@@ -62,6 +62,58 @@ fn every_shape_that_the_plane_can_teach_loads() {
     }
 }
 
+/// Three slides: the TCP is where its joint values say, in metres, along the world's axes.
+const GANTRY: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.g]
+base = { at = [0, 0, 0], rpy = [0, 90, 0] }
+dh = [
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000, alpha = -90, theta = 0 },
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000, alpha = 90, theta = -90 },
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000 },
+]
+links = [[], [], { sphere = { radius = 30 } }]
+"#;
+
+/// A box of the corners (joint values) taught on the gantry: its centre in the world, m, and what was said.
+fn gantry_box(corners: &str, height: &str) -> (elbowroom::spatial::Vec3, common::Answer) {
+    let dir = with_cell(GANTRY);
+    std::fs::write(dir.path().join("taught.csv"), format!("joint_1,joint_2,joint_3\n{corners}")).unwrap();
+    let args = ["teach", "cell.toml", "--shape", "box3", "--name", "t", "--states", "taught.csv", "--height", height];
+    let answer = elbowroom(dir.path(), &args).expect(0);
+    let cell = elbowroom::cell::Cell::parse("t.toml", &format!("{GANTRY}{}", answer.stdout)).unwrap();
+    let region = &cell.regions[0].region;
+    ((region.anchor * region.shape_in_anchor).translation, answer)
+}
+
+#[test]
+fn a_positive_height_goes_up_whatever_the_order_of_corners() {
+    // In the world: (0, 0, 200), 500 mm along one level axis, 1000 mm along the other.
+    for corners in ["0,0,0.2\n0,0.5,0.2\n1,0,0.2\n", "0,0,0.2\n1,0,0.2\n0,0.5,0.2\n"] {
+        for (height, z, word) in [("400", 0.4, "upwards (against gravity)"), ("-400", 0.0, "downwards (with gravity)")]
+        {
+            let (centre, answer) = gantry_box(corners, height);
+            assert!((centre.z - z).abs() < 1e-9, "{corners} {height}: {}", answer.stdout);
+            for text in [&answer.stdout, &answer.stderr] {
+                assert!(text.contains(&format!("built {word}, 400 mm high")), "{text}");
+                assert!(text.contains(", 400] mm (first edge, second edge, height)"), "{text}");
+                assert!(text.contains(&format!("z from {} to {} mm", z * 1e3 - 200.0, z * 1e3 + 200.0)), "{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_a_base_that_stands_upright_the_side_is_told_and_can_be_chosen() {
+    let corners = "0,0,0.2\n1,0,0.2\n0,0,0.8\n";
+    let (one, answer) = gantry_box(corners, "400");
+    assert!(answer.stderr.contains("to the side, towards ["), "{}", answer.stderr);
+    assert!(answer.stderr.contains("--height with the other sign"), "{}", answer.stderr);
+    let (other, _) = gantry_box(corners, "-400");
+    assert!((one.distance(other) - 0.4).abs() < 1e-9 && (one.z - 0.5).abs() < 1e-9, "{one:?} {other:?}");
+}
+
 #[test]
 fn points_that_determine_nothing_are_refused() {
     let straight = "0,0\n0,0\n0,0\n";

@@ -213,14 +213,14 @@ fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError
 pub fn units_suspicion(extent: Vec3) -> Option<Warning> {
     let largest = extent.max_element();
     if largest > 20.0 {
-        return Some(
-            Warning::new("", None, format!("is {largest:.4} m large: looks like millimetres"))
-                .hint("--unit mm, or in a URDF <mesh filename=\"…\" scale=\"0.001 0.001 0.001\"/>"),
-        );
+        return Some(Warning::new("", None, format!("is {largest:.4} m large: is its unit right?")).hint(
+            "--unit mm (cm, in), or in a URDF <mesh filename=\"…\" scale=\"0.001 0.001 0.001\"/>; `elbowroom inspect` \
+                 says which unit fits",
+        ));
     }
     (largest < 0.005).then(|| {
-        Warning::new("", None, format!("is only {largest:.3e} m large: looks like a unit applied twice"))
-            .hint("--unit m, or in a URDF a mesh without scale=\"0.001 0.001 0.001\"")
+        Warning::new("", None, format!("is only {largest:.3e} m large: is its unit right?"))
+            .hint("--unit m, or in a URDF a mesh without scale=\"0.001 0.001 0.001\", where a unit was applied twice")
     })
 }
 

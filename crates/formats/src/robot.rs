@@ -97,6 +97,16 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatErr
     Ok(LoadedRobot { robot, warnings: warnings.finish(path) })
 }
 
+/// Adds the pairs that an SRDF disables to a robot that came from elsewhere. Returns what the user should know.
+///
+/// # Errors
+/// [`FormatError`] where the file cannot be read or is no SRDF.
+pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Warning>, FormatError> {
+    let mut warnings = Warnings::default();
+    disable_pairs(robot, path, &mut warnings)?;
+    Ok(warnings.finish(path))
+}
+
 /// Whether [`load`] takes a file for a 3DS or glTF model, and for which.
 pub fn tree_format(bytes: &[u8], file: &Path) -> Option<Format> {
     let head = bytes[..bytes.len().min(64)].trim_ascii_start();
@@ -290,8 +300,7 @@ impl Loader<'_> {
         }
         if let Some(far) = model.joints.iter().find(|j| j.origin.translation.length() > 20.0) {
             let metres = far.origin.translation.length();
-            let what =
-                format!("the joint `{}` is {metres:.4} m away from its parent: looks like millimetres", far.name);
+            let what = format!("the joint `{}` is {metres:.4} m away from its parent: are these metres?", far.name);
             self.warnings.push(Warning::new(self.urdf_path, far.line, what).hint("<origin xyz=\"…\"/> in metres"));
         }
     }

@@ -189,7 +189,12 @@ impl Sink {
         self.flag(laws.stopping_distance.is_some());
         if let Some(stopping) = &laws.stopping_distance {
             self.number(stopping.reaction_s);
+            self.number(stopping.period_s);
             self.list(&stopping.joint_deceleration, |s, a| s.number(*a));
+            self.list(&stopping.joint_acceleration, |s, a| s.number(*a));
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -197,14 +197,23 @@ impl Configuration {
         if !(stopping.reaction_s.is_finite() && stopping.reaction_s >= 0.0) {
             return bad(format!("the reaction time must be 0 or more, not {} s", stopping.reaction_s));
         }
-        let given = stopping.joint_deceleration.len();
-        if given != self.chain.dof() {
-            return bad(format!("{given} joint decelerations for {} joints", self.chain.dof()));
+        if !(stopping.period_s.is_finite() && stopping.period_s > 0.0) {
+            return bad(format!("the time between two answers must be positive, not {} s", stopping.period_s));
         }
-        if let Some(a) = stopping.joint_deceleration.iter().find(|a| !(a.is_finite() && **a > 0.0)) {
-            return bad(format!("a joint deceleration must be positive, not {a}"));
-        }
+        self.validate_per_joint("deceleration", &stopping.joint_deceleration)?;
+        self.validate_per_joint("acceleration", &stopping.joint_acceleration)?;
         Ok(())
+    }
+
+    fn validate_per_joint(&self, what: &str, values: &[f64]) -> Result<(), ConfigError> {
+        let bad = |why: String| Err(ConfigError::Laws(why));
+        if values.len() != self.chain.dof() {
+            return bad(format!("{} joint {what}s for {} joints", values.len(), self.chain.dof()));
+        }
+        values
+            .iter()
+            .find(|a| !(a.is_finite() && **a > 0.0))
+            .map_or(Ok(()), |a| bad(format!("a joint {what} must be positive, not {a}")))
     }
 
     pub(crate) fn first_exchange(&self) -> Option<&Region> {

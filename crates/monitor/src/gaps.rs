@@ -7,7 +7,7 @@ use crate::bound::RoundedBox;
 use crate::broad::RegionTree;
 use crate::placement::Placement;
 use crate::witness::Witnesses;
-use crate::{Configuration, RegionId};
+use crate::{Configuration, Kind, RegionId};
 
 /// A volume near a region.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,12 @@ pub(crate) struct Gap {
     pub(crate) distance: f64,
     /// The override that the region asks for.
     pub(crate) asks: f64,
+    /// The override above which a stop would not end before the region: no limit of the override's rate delays it.
+    pub(crate) at_once: f64,
     /// The pair that asks for it.
     pub(crate) asking: Pair,
+    /// False where a volume may not be able to stop outside. Only asked for exchange regions; true for others.
+    pub(crate) stops: bool,
 }
 
 /// All gaps of a tick.
@@ -59,7 +63,10 @@ impl Gaps {
             volume_bounds: config.volumes.iter().map(|v| RoundedBox::around(&v.shape)).collect(),
             roaming: roaming.into_iter().map(|r| r as u32).collect(),
             witnesses: Witnesses::new(config),
-            of_region: vec![Gap { tick: 0, distance: 0.0, asks: 0.0, asking }; config.regions.len()],
+            of_region: vec![
+                Gap { tick: 0, distance: 0.0, asks: 0.0, at_once: 0.0, asking, stops: true };
+                config.regions.len()
+            ],
             near: Vec::with_capacity(config.regions.len()),
             tick: 0,
             measured_pairs: 0,
@@ -160,24 +167,52 @@ impl<L: PairLaw> Measuring<'_, L> {
     }
 
     fn note(&mut self, pair: Pair, fresh: bool) {
-        let (asks, distance) = (self.law.asks(&pair), pair.separation.distance);
+        let Asked { speed_override: asks, at_once } = self.law.asks(&pair);
+        let distance = pair.separation.distance;
+        let exchanged = matches!(self.config.regions[pair.region].kind, Kind::Exchange { .. });
+        let stops = !exchanged || self.law.stops_outside(&pair);
         let gap = &mut self.of_region[pair.region];
         if fresh {
             self.near.push(pair.region as u32);
-            *gap = Gap { tick: self.tick, distance, asks, asking: pair };
+            *gap = Gap { tick: self.tick, distance, asks, at_once, asking: pair, stops };
             return;
         }
         if asks < gap.asks || (asks == gap.asks && distance < gap.distance) {
             (gap.asks, gap.asking) = (asks, pair);
         }
         gap.distance = gap.distance.min(distance);
+        gap.at_once = gap.at_once.min(at_once);
+        gap.stops &= stops;
+    }
+}
+
+/// What a pair asks for, 0..1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked {
+    /// The override.
+    pub(crate) speed_override: f64,
+    /// The override that it must not be above in this very tick.
+    pub(crate) at_once: f64,
+}
+
+impl Asked {
+    /// An override that must be obeyed in this very tick.
+    pub(crate) fn at_once(speed_override: f64) -> Self {
+        Self { speed_override, at_once: speed_override }
+    }
+
+    /// An override that may be approached at a limited rate from at most `programmed`.
+    pub(crate) fn gently(speed_override: f64, programmed: f64) -> Self {
+        Self { speed_override, at_once: programmed }
     }
 }
 
 /// How a pair is judged while gaps are measured.
 pub(crate) trait PairLaw {
-    /// The override that a pair asks for, 0..1.
-    fn asks(&self, pair: &Pair) -> f64;
+    /// The override that a pair asks for.
+    fn asks(&self, pair: &Pair) -> Asked;
+    /// True where the robot, told to stop from this tick on, is sure to stop before the pair touches.
+    fn stops_outside(&self, pair: &Pair) -> bool;
     /// How far (m) beyond its warning zone a region can still ask something of this volume.
     fn extra_reach(&self, volume: usize) -> f64;
     /// True where farther pairs never ask for less than closer ones.

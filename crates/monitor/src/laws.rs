@@ -22,13 +22,23 @@ impl Default for Laws {
     }
 }
 
-/// How a robot stops: for the stopping-distance law.
+/// How a robot stops, and how its programs accelerate: what the stopping-distance law assumes.
+///
+/// The robot stops along its programmed path. Its **stop time** is the longest that any joint needs by itself,
+/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`Stopping::joint_deceleration`]. It is assumed that while the robot runs faster than the
+/// override that it was told, at the latest [`Stopping::reaction_s`] after it was told, `n` falls by at least one second per
+/// second, whatever the program does meanwhile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stopping {
-    /// Time (s) from the monitor's answer to the first deceleration.
+    /// Time (s) from the monitor's answer to the first deceleration, at most.
     pub reaction_s: f64,
+    /// Longest time (s) from one answer to the next. A controller that waits longer for an answer must stop by itself.
+    pub period_s: f64,
     /// Deceleration that each joint can be trusted to reach, rad/s² or m/s².
     pub joint_deceleration: Vec<f64>,
+    /// Acceleration that no program asks of a joint more than, at override 1, rad/s² or m/s²: with it the law knows how fast a
+    /// path can bend towards a region.
+    pub joint_acceleration: Vec<f64>,
 }
 
 /// The warning zone's law, `clamp(d / δ, 0, 1)` (S1, eqs. 1-3 in one line); with δ = 0 it is 0 inside and 1 outside.
@@ -63,98 +73,38 @@ pub fn speed_zone(distance_m: f64, warning_m: f64, slow_to: f64, programmed: f64
     inside + (programmed - inside) * warning_factor(distance_m, warning_m)
 }
 
-/// The largest override σ from which a stop still ends before the border (after the speed-and-separation idea of
-/// ISO 13855: reaction distance plus braking distance).
-///
-/// At override σ the point closes at `σ·v`; it does so for the reaction time `t` and then brakes with the override
-/// falling at `rate` per second, which takes `σ²·v / (2·rate)` more. The largest σ with
-/// `σ·v·t + σ²·v / (2·rate) ≤ d` is `rate·(√(t² + 2d / (v·rate)) − t)`.
-///
-/// `closing_speed` is v at override 1 in m/s (not positive: no limit), `rate` in 1/s.
+/// The stop time (s) of these joint velocities: the longest that any joint needs to come to rest by itself,
+/// `max |q̇ᵢ| / aᵢ`.
 ///
 /// ```
-/// use elbowroom_monitor::laws::stopping_factor;
-/// let sigma = stopping_factor(0.1, 1.0, 2.0, 0.05);
-/// assert!((sigma * 0.05 + sigma * sigma / 4.0 - 0.1).abs() < 1e-12);
-/// assert_eq!(stopping_factor(0.1, -1.0, 2.0, 0.05), f64::INFINITY);
+/// use elbowroom_monitor::laws::stop_time;
+/// assert_eq!(stop_time(&[2.0, -1.0], &[10.0, 2.0]), 0.5);
 /// ```
 #[inline]
-pub fn stopping_factor(distance_m: f64, closing_speed: f64, rate: f64, reaction_s: f64) -> f64 {
-    if closing_speed <= 0.0 {
-        return f64::INFINITY;
+pub fn stop_time(velocity: &[f64], deceleration: &[f64]) -> f64 {
+    velocity.iter().zip(deceleration).fold(0.0, |most: f64, (v, a)| most.max(v.abs() / a))
+}
+
+/// How much of the program's time (s, at override 1) passes at most while a robot comes to rest from the override `sigma`.
+///
+/// `full_stop_s` is the stop time m of the program's own velocities, and `growth` bounds how fast m can change by the
+/// program's time, `α = max Aᵢ / aᵢ` with the program's accelerations Aᵢ and the joints' decelerations aᵢ. While the stop
+/// time `n = σ·m` falls by a second per second, `∫ m du = n²/2` over the program's time u; with `m(u) ≥ m − α·u` that gives
+/// `u ≤ (m/α) · (1 − √(1 − α·σ²))`, and `σ²·m` bounds it in every case: a stop takes no longer than n, at no more than σ.
+///
+/// ```
+/// use elbowroom_monitor::laws::stopping_program_time;
+/// assert_eq!(stopping_program_time(1.0, 0.5, 0.0), 0.25); // no acceleration: half of the stop time
+/// assert_eq!(stopping_program_time(1.0, 0.5, 4.0), 0.5); // the program may slow down as fast as the robot brakes
+/// ```
+#[inline]
+pub fn stopping_program_time(sigma: f64, full_stop_s: f64, growth: f64) -> f64 {
+    let (square, share) = (sigma * sigma, growth * sigma * sigma);
+    if share >= 1.0 {
+        return square * full_stop_s;
     }
-    let d = distance_m.max(0.0);
-    let sigma = rate * ((reaction_s * reaction_s + 2.0 * d / (closing_speed * rate)).sqrt() - reaction_s);
-    if sigma.is_nan() { 0.0 } else { sigma }
-}
-
-/// The largest override from which braking alone still ends within `distance_m`: `σ²·v / (2·rate) ≤ d`. For a robot
-/// that obeys late, d is what is left once it obeys.
-///
-/// ```
-/// use elbowroom_monitor::laws::braking_factor;
-/// assert_eq!(braking_factor(0.1, 1.0, 5.0), 1.0);
-/// assert_eq!(braking_factor(-0.1, 1.0, 5.0), 0.0);
-/// ```
-#[inline]
-pub fn braking_factor(distance_m: f64, closing_speed: f64, rate: f64) -> f64 {
-    if closing_speed <= 0.0 {
-        return f64::INFINITY;
-    }
-    let sigma = (2.0 * rate * distance_m.max(0.0) / closing_speed).sqrt();
-    if sigma.is_nan() { 0.0 } else { sigma }
-}
-
-/// Time (s, at override 1) until a gap of `distance_m` may be closed by something that closes at `closing_speed` (m/s,
-/// negative for leaving) and whose points accelerate by no more than `acceleration` (m/s², in any direction):
-/// the largest τ with `v·τ + a·τ²/2 ≤ d`.
-///
-/// ```
-/// use elbowroom_monitor::laws::time_to_close;
-/// assert_eq!(time_to_close(0.1, 2.0, 0.0), 0.05);
-/// assert_eq!(time_to_close(0.1, -2.0, 0.0), f64::INFINITY);
-/// let tau = time_to_close(0.1, -0.2, 3.0);
-/// assert!((-0.2 * tau + 1.5 * tau * tau - 0.1).abs() < 1e-12);
-/// ```
-#[inline]
-pub fn time_to_close(distance_m: f64, closing_speed: f64, acceleration: f64) -> f64 {
-    let (d, v, a) = (distance_m.max(0.0), closing_speed, acceleration.max(0.0));
-    if a < 1e-9 {
-        return if v > 0.0 { d / v } else { f64::INFINITY };
-    }
-    let root = (v * v + 2.0 * a * d).sqrt();
-    // Each form where it does not cancel.
-    let time = if v > 0.0 { 2.0 * d / (v + root) } else { (root - v) / a };
-    if time.is_nan() { 0.0 } else { time }
-}
-
-/// How fast the override can fall (1/s) when no joint may decelerate beyond its limit: `min aᵢ / |q̇ᵢ|` over the
-/// joints, q̇ being the joint velocities at override 1.
-///
-/// ```
-/// use elbowroom_monitor::laws::override_deceleration;
-/// assert_eq!(override_deceleration(&[2.0, -1.0], &[10.0, 3.0]), 3.0);
-/// ```
-#[inline]
-pub fn override_deceleration(intent: &[f64], joint_deceleration: &[f64]) -> f64 {
-    intent
-        .iter()
-        .zip(joint_deceleration)
-        .filter(|(v, _)| **v != 0.0)
-        .fold(f64::INFINITY, |rate, (v, a)| rate.min(a / v.abs()))
-}
-
-/// [`override_deceleration`] along a program that accelerates by itself: what following it takes is not left for the
-/// stop, `min (aᵢ − |q̈ᵢ|) / |q̇ᵢ|`, but at least a tenth of aᵢ is.
-///
-/// ```
-/// use elbowroom_monitor::laws::deceleration_left;
-/// assert_eq!(deceleration_left(&[2.0, -1.0], &[0.0, -1.0], &[10.0, 3.0]), 2.0);
-/// ```
-#[inline]
-pub fn deceleration_left(velocity: &[f64], acceleration: &[f64], joint_deceleration: &[f64]) -> f64 {
-    let moving = velocity.iter().zip(acceleration).zip(joint_deceleration).filter(|((v, _), _)| **v != 0.0);
-    moving.fold(f64::INFINITY, |rate, ((v, q), a)| rate.min((a - q.abs()).max(0.1 * a) / v.abs()))
+    // (1 − √(1 − y)) / y without cancellation.
+    square * full_stop_s / (1.0 + (1.0 - share).sqrt())
 }
 
 /// The override moved from `previous` towards `wanted` by at most `rate` per second; `rate` 0 is unlimited.
@@ -186,11 +136,18 @@ mod tests {
     #[test]
     fn nan_reads_as_contact() {
         assert_eq!(warning_factor(f64::NAN, 0.2), 0.0);
-        assert_eq!(stopping_factor(f64::NAN, 1.0, 1.0, 0.1), 0.0);
     }
 
     #[test]
-    fn no_joint_moving_means_an_immediate_stop() {
-        assert_eq!(override_deceleration(&[0.0, 0.0], &[1.0, 1.0]), f64::INFINITY);
+    fn the_program_time_of_a_stop_is_continuous_and_grows_with_override_and_acceleration() {
+        for growth in [0.0, 1e-12, 0.3, 1.0, 2.0, 50.0] {
+            let time = |sigma: f64| stopping_program_time(sigma, 0.4, growth);
+            for i in 0..1000 {
+                let sigma = f64::from(i) / 1000.0;
+                let (a, b) = (time(sigma), time(sigma + 0.001));
+                assert!(a <= b && b - a < 0.03, "{growth} {sigma}: {a} {b}");
+                assert!(a >= sigma * sigma * 0.2 - 1e-15 && a <= sigma * sigma * 0.4 + 1e-15);
+            }
+        }
     }
 }

@@ -44,8 +44,10 @@
 
 mod access;
 mod bound;
+mod brake_watch;
 mod broad;
 mod checksum;
+mod commands;
 mod config;
 mod events;
 mod gaps;
@@ -55,11 +57,13 @@ pub mod laws;
 mod monitor;
 mod placement;
 mod presence;
+mod recovery;
 mod region;
 mod report;
 mod seat;
 mod snapshot;
 mod source_watch;
+mod stopping;
 pub mod teach;
 mod verdict;
 mod volume;

@@ -12,6 +12,7 @@ use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
 use crate::seat::Seat;
 use crate::source_watch::{SourceWatch, Trust};
+use crate::stopping::{StoppingLaw, TickState};
 use crate::verdict::{Judge, LOOKAHEAD_S};
 use crate::watchdog::Watchdog;
 use crate::{
@@ -29,8 +30,7 @@ pub struct Monitor {
     soon: Option<Placement>,
     /// At the program's own speed, for the laws that need it.
     intent: Option<ChainState>,
-    /// Joint velocities of the last intent.
-    intent_before: Vec<f64>,
+    stopping: Option<StoppingLaw>,
     gaps: Gaps,
     presence: Vec<Presence>,
     /// Regions in whose warning zone the robot is.
@@ -50,6 +50,8 @@ pub struct Monitor {
 /// The smallest override asked for, and by whom.
 struct Verdict<'a> {
     speed_override: f64,
+    /// The override that no limit of its rate may keep it above.
+    at_once: f64,
     reason: Reason,
     gap: Option<&'a Gap>,
 }
@@ -72,7 +74,7 @@ impl Monitor {
             active: config.regions.iter().map(|r| r.life == Life::Permanent).collect(),
             soon: laws.direction_aware.then(|| Placement::new(&config)),
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
-            intent_before: vec![0.0; config.chain.dof()],
+            stopping: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
             gaps: Gaps::new(&config, &now),
             presence: vec![Presence::default(); regions],
             warned: Vec::with_capacity(regions),
@@ -81,7 +83,7 @@ impl Monitor {
             log: EventLog::with_capacity(8 * regions + 16),
             switched: Vec::with_capacity(2 * regions + 16),
             source_watch: SourceWatch::new(config.sources.len()),
-            watchdog: Watchdog::new(&config.chain, laws.stale_s),
+            watchdog: Watchdog::new(&config.chain, laws),
             last_override: None,
             fault: None,
             now,
@@ -94,7 +96,8 @@ impl Monitor {
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
         let since_last_s = self.watchdog.since_last(s);
-        let trusted = self.watchdog.check(s, self.config.sources.len()).and_then(|()| self.check_sources(s));
+        let trusted =
+            self.watchdog.check(s, self.config.sources.len(), self.told()).and_then(|()| self.check_sources(s));
         if let Err(fault) = trusted {
             return self.stop(s, fault);
         }
@@ -103,10 +106,15 @@ impl Monitor {
         if self.fault.take().is_some() {
             self.log.push(None, EventKind::Recovered);
         }
-        self.measure(s, dt_s);
+        self.measure(s);
+        if self.stopping.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
+            return self.stop(s, Fault::Braking);
+        }
         self.update_presence();
         if let Some(seat) = &mut self.seat {
-            seat.update(&self.active, &self.presence, s.now_s, &mut self.log);
+            let Self { active, presence, gaps, log, .. } = self;
+            let stops = |r: usize| gaps.get(r).is_none_or(|g| g.stops);
+            seat.update(|r| (active[r.0], presence[r.0], stops(r.0)), s.now_s, log);
         }
         self.conclude(s, dt_s)
     }
@@ -126,6 +134,9 @@ impl Monitor {
         }
         if self.active[region.0] != on {
             self.active[region.0] = on;
+            if let (true, Kind::Exchange { slot }, Some(seat)) = (on, r.kind, &self.seat) {
+                seat.forget(slot);
+            }
             if self.switched.len() < self.switched.capacity() {
                 self.switched.push((region, on));
             }
@@ -239,7 +250,7 @@ impl Monitor {
             self.log.push(region, EventKind::Fault);
         }
         self.fault = Some(fault);
-        self.last_override = Some(0.0);
+        self.answer(s, 0.0);
         TickReport {
             stamp_s: s.stamp_s,
             speed_override: 0.0,
@@ -250,36 +261,51 @@ impl Monitor {
         }
     }
 
-    fn measure(&mut self, s: &Snapshot, dt_s: f64) {
-        let Self { config, active, now, soon, intent, gaps, last_override, .. } = self;
-        now.place(config, s);
-        let mut deceleration = f64::INFINITY;
+    /// The largest override that the robot may be obeying.
+    fn told(&self) -> f64 {
+        self.stopping.as_ref().map_or(0.0, StoppingLaw::largest_told)
+    }
+
+    /// Takes note of an answer.
+    fn answer(&mut self, s: &Snapshot, speed_override: f64) {
+        self.last_override = Some(speed_override);
+        if let Some(law) = &mut self.stopping {
+            law.told(s.now_s, speed_override);
+        }
+    }
+
+    fn measure(&mut self, s: &Snapshot) {
+        let Self { config, active, now, soon, intent, stopping, watchdog, gaps, last_override, .. } = self;
+        now.place(config, s, watchdog.velocity());
         if let Some(state) = intent {
             state.q.copy_from_slice(s.q);
-            let before = &mut self.intent_before;
-            before.copy_from_slice(&state.qd);
             match s.intent {
                 Some(wanted) => state.qd.copy_from_slice(wanted),
                 None => at_full_override(&mut state.qd, &now.chain.qd, last_override.unwrap_or(1.0)),
             }
-            if let Some(stopping) = &config.laws.stopping_distance {
-                guess_acceleration(state, before, dt_s * last_override.unwrap_or(0.0), &stopping.joint_deceleration);
-            }
             config.chain.forward_motion(state);
-            deceleration = Judge::override_deceleration(config, state);
             if let Some(soon) = soon {
                 soon.place_ahead(config, s, &state.qd, LOOKAHEAD_S);
             }
         }
-        let judge = Judge {
-            config,
-            snapshot: s,
-            now,
-            soon: soon.as_ref(),
-            intent: intent.as_ref(),
-            deceleration,
-            last_override: last_override.unwrap_or(0.0),
-        };
+        let law = config.laws.stopping_distance.as_ref().zip(stopping.as_mut()).zip(intent.as_ref());
+        let stopping = law.map(|((stopping, law), intent)| {
+            let tick = TickState {
+                now: &now.chain,
+                intent,
+                program_is_known: s.intent.is_some(),
+                now_s: s.now_s,
+                stamp_s: s.stamp_s,
+                uncertain_s: watchdog.velocity_uncertain_s(),
+                unnoticed_s: watchdog.unnoticed_s(),
+                volume_in_world: &now.volume_in_world,
+            };
+            law.begin(config, stopping, &tick);
+            (stopping, &*law)
+        });
+        let last_override = last_override.unwrap_or(0.0);
+        let (soon, intent) = (soon.as_ref(), intent.as_ref());
+        let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping };
         gaps.measure(config, active, now, &judge);
     }
 
@@ -312,10 +338,11 @@ impl Monitor {
             speed_override = speed_override.min(wanted);
         }
         speed_override = speed_override.min(s.programmed_override);
+        speed_override = speed_override.min(verdict.at_once);
         if speed_override < wanted {
             reason = Reason::Rate;
         }
-        self.last_override = Some(speed_override);
+        self.answer(s, speed_override);
         TickReport {
             stamp_s: s.stamp_s,
             speed_override,
@@ -328,12 +355,17 @@ impl Monitor {
 
     /// The minimum over all regions (S1, eq. 4); the region of lowest index where several ask for the same.
     fn verdict(&self, s: &Snapshot) -> Verdict<'_> {
-        let mut verdict = Verdict { speed_override: s.programmed_override, reason: Reason::Free, gap: None };
+        let v0 = s.programmed_override;
+        let mut verdict = Verdict { speed_override: v0, at_once: v0, reason: Reason::Free, gap: None };
         for r in self.gaps.near() {
             let Some(gap) = self.gaps.get(*r as usize) else { continue };
             let id = RegionId(*r as usize);
+            if self.holds(id) {
+                continue;
+            }
+            verdict.at_once = verdict.at_once.min(gap.at_once);
             let tie = gap.asks == verdict.speed_override && verdict.gap.is_some_and(|g| id.0 < g.asking.region);
-            if !(gap.asks < verdict.speed_override || tie) || self.holds(id) {
+            if !(gap.asks < verdict.speed_override || tie) {
                 continue;
             }
             let reason = match self.config.regions[id.0].kind {
@@ -341,7 +373,7 @@ impl Monitor {
                 Kind::Monitored { .. } => Reason::SpeedZone(id),
                 Kind::Exchange { .. } => Reason::Waiting(id),
             };
-            verdict = Verdict { speed_override: gap.asks, reason, gap: Some(gap) };
+            (verdict.speed_override, verdict.reason, verdict.gap) = (gap.asks, reason, Some(gap));
         }
         verdict
     }
@@ -369,18 +401,6 @@ impl Monitor {
 fn at_full_override(full: &mut [f64], real: &[f64], last_override: f64) {
     let scale = 1.0 / last_override.max(0.01);
     full.iter_mut().zip(real).for_each(|(f, v)| *f = v * scale);
-}
-
-/// How the program's velocities change by its own time, from one tick to the next. Where the program stood still, what
-/// was known last stays true. A jump between two moves counts as the most that a joint can do.
-fn guess_acceleration(intent: &mut ChainState, before: &[f64], program_s: f64, most: &[f64]) {
-    if program_s < 1e-6 {
-        return;
-    }
-    let (qd, qdd) = (&intent.qd, &mut intent.qdd);
-    for (((guess, v), before), most) in qdd.iter_mut().zip(qd).zip(before).zip(most) {
-        *guess = ((v - before) / program_s).clamp(-most.abs(), most.abs());
-    }
 }
 
 impl Configuration {

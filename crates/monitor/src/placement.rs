@@ -31,10 +31,10 @@ impl Placement {
         }
     }
 
-    /// Places everything as the snapshot says.
-    pub(crate) fn place(&mut self, config: &Configuration, s: &Snapshot) {
+    /// Places everything as the snapshot says, at these joint velocities (empty for at rest).
+    pub(crate) fn place(&mut self, config: &Configuration, s: &Snapshot, velocity: &[f64]) {
         fill(&mut self.chain.q, s.q);
-        fill(&mut self.chain.qd, s.qd);
+        fill(&mut self.chain.qd, if s.qd.is_empty() { velocity } else { s.qd });
         fill(&mut self.chain.qdd, s.qdd);
         config.chain.forward_motion(&mut self.chain);
         self.place_volumes(config);

@@ -12,11 +12,13 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    pub(crate) fn stay(self) -> Stay {
-        match (self.inside, self.warned) {
-            (true, _) => Stay::Inside,
-            (false, true) => Stay::Warning,
-            (false, false) => Stay::Outside,
+    /// What the robot says of itself to the others; `stops` where it can stop outside the region.
+    pub(crate) fn stay(self, stops: bool) -> Stay {
+        match (self.inside, stops, self.warned) {
+            (true, ..) => Stay::Inside,
+            (false, false, _) => Stay::Committed,
+            (false, true, true) => Stay::Warning,
+            (false, true, false) => Stay::Outside,
         }
     }
 

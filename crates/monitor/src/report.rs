@@ -105,6 +105,12 @@ pub enum Fault {
         /// Index of the joint in `q`.
         joint: usize,
     },
+    /// The stopping-distance law is on, and no velocity is known yet: none was given, and this is the first position.
+    NoVelocity,
+    /// The joint values have not changed by a bit although the robot was told to move: the reading is frozen.
+    Frozen,
+    /// The robot brakes less than was stated ([`Stopping`](crate::Stopping)).
+    Braking,
     /// The source of motion that an active region follows is stale or not finite.
     Source {
         /// The region.
@@ -128,6 +134,9 @@ impl fmt::Display for Fault {
             Self::ProgrammedOverride => write!(f, "the programmed override is not within 0..1"),
             Self::BeyondLimits { joint } => write!(f, "joint {joint} is beyond its limits"),
             Self::TooFast { joint } => write!(f, "joint {joint} moves faster than it can"),
+            Self::NoVelocity => write!(f, "no joint velocities are known yet"),
+            Self::Frozen => write!(f, "joint values do not change although the robot is told to move"),
+            Self::Braking => write!(f, "the robot brakes less than its stated deceleration"),
             Self::Source { region } => write!(f, "the source that region {} follows is lost", region.0),
             Self::SourceJump { region } => {
                 write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)

@@ -13,12 +13,16 @@ pub(crate) struct Seat {
     board: Arc<Board>,
     robot: RobotSlot,
     slots: Vec<SlotUse>,
+    /// True where it can be proven that the robot stops outside while it moves: how it brakes is stated.
+    proves_stops: bool,
 }
 
 #[derive(Debug)]
 struct SlotUse {
     slot: SlotId,
     regions: Vec<RegionId>,
+    stay: Stay,
+    answer: Option<Grant>,
     state: SlotState,
 }
 
@@ -41,28 +45,31 @@ impl Seat {
             }
             match slots.iter_mut().find(|u| u.slot == slot) {
                 Some(known) => known.regions.push(RegionId(r)),
-                None => slots.push(SlotUse { slot, regions: vec![RegionId(r)], state: SlotState::Away }),
+                None => slots.push(SlotUse::new(slot, RegionId(r))),
             }
             board.expect(slot, robot);
         }
-        Some(Self { board, robot, slots })
+        Some(Self { board, robot, slots, proves_stops: config.laws.stopping_distance.is_some() })
     }
 
-    /// Publishes where the robot is and asks for the slots it is near. Nothing is published in a tick whose input is
-    /// not trusted: the robot's place then stays what it was, and what it holds stays held.
-    pub(crate) fn update(&mut self, active: &[bool], presence: &[Presence], now_s: f64, log: &mut EventLog) {
+    /// Publishes where the robot is and asks for the slots it is near; `at` says of a region whether it is active, where
+    /// the robot is, and whether it can stop outside. Nothing is published in a tick whose input is not trusted: the
+    /// robot's place then stays what it was, and what it holds stays held.
+    pub(crate) fn update(&mut self, at: impl Fn(RegionId) -> (bool, Presence, bool), now_s: f64, log: &mut EventLog) {
         for u in &mut self.slots {
-            let live = u.regions.iter().filter(|r| active[r.0]);
-            let stay = live.map(|r| presence[r.0].stay()).max().unwrap_or(Stay::Outside);
-            self.board.publish(u.slot, self.robot, stay, now_s);
-            let state = match stay {
-                Stay::Outside | Stay::Unknown => SlotState::Away,
-                Stay::Warning | Stay::Inside => match self.board.request(u.slot, self.robot, now_s) {
-                    Grant::Held => SlotState::Held,
-                    Grant::Waiting(_) | Grant::Unknown(_) => SlotState::Waiting,
-                    Grant::Deadlock => SlotState::Deadlock,
-                },
+            // Without a stated deceleration nothing is proven for a robot that moves. It is then taken to be kept out by
+            // the warning law, until it is let in.
+            let held = u.state == SlotState::Held;
+            let stay = |(_, presence, stops): (bool, Presence, bool)| {
+                let stops = stops || !(self.proves_stops || held && presence.warned);
+                presence.stay(stops)
             };
+            let active = u.regions.iter().map(|r| at(*r)).filter(|a| a.0);
+            u.stay = active.map(stay).max().unwrap_or(Stay::Outside);
+        }
+        self.exchange(now_s);
+        for u in &mut self.slots {
+            let state = u.state_now(&self.board, self.robot);
             if state != u.state {
                 u.log_change(state, log);
                 u.state = state;
@@ -70,12 +77,29 @@ impl Seat {
         }
     }
 
-    /// True where another robot holds the slot, or is in its regions.
+    /// Where the robot is goes to the board for all slots before it asks for the first: others may be granted, and the
+    /// robot may be asked to yield, by what it said.
+    fn exchange(&mut self, now_s: f64) {
+        for u in &self.slots {
+            self.board.publish(u.slot, self.robot, u.stay, now_s);
+        }
+        for u in &mut self.slots {
+            let near = u.stay > Stay::Outside;
+            u.answer = near.then(|| self.board.request(u.slot, self.robot, now_s));
+        }
+    }
+
+    /// One of the slot's regions was switched on: what the robot said without it counts no more.
+    pub(crate) fn forget(&self, slot: SlotId) {
+        self.board.forget(slot, self.robot);
+    }
+
+    /// True where another robot holds the slot, or occupies it.
     pub(crate) fn is_taken(&self, slot: SlotId) -> bool {
-        let inside = |r: &RobotSlot| self.board.stay(slot, *r) == Stay::Inside;
+        let others = || (0..self.board.robots()).map(RobotSlot).filter(|r| *r != self.robot);
         match self.board.holder(slot) {
             Some(holder) => holder != self.robot,
-            None => (0..self.board.robots()).map(RobotSlot).filter(|r| *r != self.robot).any(|r| inside(&r)),
+            None => others().any(|r| self.board.stay(slot, r).occupies()),
         }
     }
 
@@ -85,6 +109,20 @@ impl Seat {
 }
 
 impl SlotUse {
+    fn new(slot: SlotId, region: RegionId) -> Self {
+        Self { slot, regions: vec![region], stay: Stay::Unknown, answer: None, state: SlotState::Away }
+    }
+
+    /// A slot that was granted may have been given back in the same tick, by yielding.
+    fn state_now(&self, board: &Board, robot: RobotSlot) -> SlotState {
+        match self.answer {
+            None => SlotState::Away,
+            Some(Grant::Held) if board.holder(self.slot) == Some(robot) => SlotState::Held,
+            Some(Grant::Held | Grant::Waiting(_) | Grant::Unknown(_)) => SlotState::Waiting,
+            Some(Grant::Deadlock) => SlotState::Deadlock,
+        }
+    }
+
     fn log_change(&self, to: SlotState, log: &mut EventLog) {
         for region in &self.regions {
             if self.state == SlotState::Held {

@@ -13,7 +13,8 @@ pub struct Snapshot<'a> {
     pub stamp_s: f64,
     /// Joint positions.
     pub q: &'a [f64],
-    /// Joint velocities; empty for a robot known to stand still.
+    /// Joint velocities. Empty where they are not known: the stopping-distance law then derives them from one position to the
+    /// next, and asks for override 0 on the first; the other laws take the robot to stand.
     pub qd: &'a [f64],
     /// Joint accelerations; empty for none known.
     pub qdd: &'a [f64],
@@ -27,7 +28,7 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// A robot that stands still at `q`, full override, no sources.
+    /// A robot at `q` of which no more is known, full override, no sources.
     pub fn still(now_s: f64, q: &'a [f64]) -> Self {
         Self { now_s, stamp_s: now_s, q, qd: &[], qdd: &[], programmed_override: 1.0, intent: None, sources: &[] }
     }

@@ -10,6 +10,8 @@ use crate::Region;
 const SAME_POINT_M: f64 = 1e-4;
 /// Directions within this sine of each other count as parallel.
 const PARALLEL: f64 = 1e-3;
+/// A base whose normal is so near to level (sine of 5°) has no upper side: taught by hand, it may lean to either.
+const UPRIGHT: f64 = 0.087;
 
 /// Why taught points were refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -121,10 +123,24 @@ pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, T
 }
 
 /// A box of any orientation from three corners of its base (the first is shared by both edges) and a height (m).
-/// The second edge is squared up to the first; a negative height builds downwards.
+/// The second edge is squared up to the first. The height goes where [`height_direction`] says: up where it is positive, down
+/// where it is negative, whatever the order of the corners.
 ///
 /// # Errors
 /// [`TeachError`] where the corners lie on a line or the height is zero.
+///
+/// ```
+/// use elbowroom_monitor::teach;
+/// use elbowroom_spatial::Vec3;
+/// let [corner, x, y] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// for (along, across) in [(x, y), (y, x)] {
+///     let above = teach::cuboid_from_base("above", corner, along, across, 0.4)?;
+///     assert_eq!((above.anchor * above.shape_in_anchor).translation.z, 0.2);
+///     let below = teach::cuboid_from_base("below", corner, along, across, -0.4)?;
+///     assert_eq!((below.anchor * below.shape_in_anchor).translation.z, -0.2);
+/// }
+/// # Ok::<(), teach::TeachError>(())
+/// ```
 pub fn cuboid_from_base(
     name: &str,
     corner: Vec3,
@@ -132,18 +148,50 @@ pub fn cuboid_from_base(
     across: Vec3,
     height: f64,
 ) -> Result<Region, TeachError> {
-    distinct([("the first corner", corner), ("the second corner", along), ("the third corner", across)])?;
     positive("height", height.abs())?;
-    off_line(along - corner, across - corner, "the three base corners")?;
+    let direction = height_direction(corner, along, across, height)?.direction;
     let collinear = TeachError::Collinear { what: "the three base corners" };
-    let rotation = Rotation::from_x_and_xy(along - corner, across - corner).ok_or(collinear)?;
+    let taught = Rotation::from_x_and_xy(along - corner, across - corner).ok_or(collinear)?;
     let length = corner.distance(along);
-    let width = rotation.y_axis().dot(across - corner);
+    let width = taught.y_axis().dot(across - corner);
     positive("width", width)?;
-    let below = if height < 0.0 { height } else { 0.0 };
-    let base_center =
-        corner + rotation.x_axis() * (length / 2.0) + rotation.y_axis() * (width / 2.0) + rotation.z_axis() * below;
-    Ok(Region::cuboid(name, base_center, Vec3::new(length, width, height.abs()), rotation))
+    let middle = corner + taught.x_axis() * (length / 2.0) + taught.y_axis() * (width / 2.0);
+    // The box stands on its lower side, and its z axis is up. Where it has no up, it stands on what was taught.
+    let lower = if direction.z < 0.0 { middle + direction * height.abs() } else { middle };
+    let up = if direction.z < 0.0 { -direction } else { direction };
+    let rotation = if taught.z_axis().dot(up) > 0.0 {
+        taught
+    } else {
+        // Turned over about the first edge.
+        Rotation::from_x_and_xy(taught.x_axis(), -taught.y_axis())
+            .ok_or(TeachError::Collinear { what: "the three base corners" })?
+    };
+    Ok(Region::cuboid(name, lower, Vec3::new(length, width, height.abs()), rotation))
+}
+
+/// Where the height of a taught box goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeightDirection {
+    /// Unit vector in the world, from the taught base into the box, at a right angle to the base.
+    pub direction: Vec3,
+    /// True where the base stands upright, within 5°: it has no upper side, and the order of the corners decides.
+    pub upright_base: bool,
+}
+
+/// The direction in which [`cuboid_from_base`] builds: at a right angle to the base, against gravity (the world's -z) where
+/// the height is positive and with it where it is negative. A base that stands upright has no upper side. There a positive
+/// height goes along the first edge (corner to `along`) × the second (corner to `across`), a negative one the other way.
+///
+/// # Errors
+/// [`TeachError`] where the corners coincide or lie on a line.
+pub fn height_direction(corner: Vec3, along: Vec3, across: Vec3, height: f64) -> Result<HeightDirection, TeachError> {
+    distinct([("the first corner", corner), ("the second corner", along), ("the third corner", across)])?;
+    let what = "the three base corners";
+    off_line(along - corner, across - corner, what)?;
+    let normal = (along - corner).cross(across - corner).try_normalize().ok_or(TeachError::Collinear { what })?;
+    let upright_base = normal.z.abs() < UPRIGHT;
+    let positive = if normal.z < 0.0 && !upright_base { -normal } else { normal };
+    Ok(HeightDirection { direction: if height < 0.0 { -positive } else { positive }, upright_base })
 }
 
 pub(crate) fn plane_rotation(origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Rotation, TeachError> {
@@ -200,6 +248,46 @@ mod tests {
             let region = cuboid_from_base("b", corners[0], corners[1], corners[2], height).unwrap();
             assert!(on_surface(&region, corners[0]) < 1e-12 && on_surface(&region, corners[1]) < 1e-12);
         }
+    }
+
+    #[test]
+    fn the_order_of_corners_does_not_turn_a_box_over() {
+        // Level, and leaning by up to 80 degrees in several directions.
+        for k in 0..40 {
+            let (lean, round) = (f64::from(k % 8) * 11.0_f64.to_radians(), f64::from(k) * 0.7);
+            let turn = Rotation::from_axis_angle(Vec3::new(round.cos(), round.sin(), 0.0), lean);
+            let corner = Vec3::new(0.6, -0.2, 0.3);
+            let (x, y) = (turn.x_axis() * 0.4, turn.y_axis() * 0.3);
+            let middle = corner + (x + y) * 0.5;
+            for (along, across) in [(x, y), (y, x)] {
+                for height in [0.25, -0.25] {
+                    let region = cuboid_from_base("b", corner, corner + along, corner + across, height).unwrap();
+                    let centre = (region.anchor * region.shape_in_anchor).translation;
+                    // The normal that points up is that of the turned z axis: it leans by less than a right angle.
+                    let wanted = middle + turn.z_axis() * (height / 2.0);
+                    assert!(centre.distance(wanted) < 1e-12, "{lean} {height} {centre:?} {wanted:?}");
+                    for p in [corner, corner + along, corner + across] {
+                        assert!(on_surface(&region, p) < 1e-12);
+                    }
+                    assert!(region.anchor.rotation.z_axis().z > 0.0, "it stands on its bottom");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_upright_base_has_two_sides_and_the_corners_choose() {
+        let side = |along, across, height| height_direction(Vec3::ZERO, along, across, height).unwrap();
+        for lean in [-0.06, 0.0, 0.06] {
+            let up = Vec3::new(0.0, lean, 1.0);
+            let (one, other) = (side(Vec3::X, up, 1.0), side(up, Vec3::X, 1.0));
+            assert!(one.upright_base && other.upright_base);
+            assert!(one.direction.y < -0.9 && other.direction.y > 0.9, "{one:?} {other:?}");
+            assert!(side(Vec3::X, up, -1.0).direction.y > 0.9);
+            let region = cuboid_from_base("b", Vec3::ZERO, Vec3::X, up, 1.0).unwrap();
+            assert!(((region.anchor * region.shape_in_anchor).translation.y + 0.5).abs() < 0.1);
+        }
+        assert!(!side(Vec3::X, Vec3::new(0.0, 0.2, 1.0), 1.0).upright_base);
     }
 
     #[test]

@@ -1,20 +1,22 @@
 //! What a volume near a region may do: the laws applied to one pair.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::escape;
+use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
 
-use crate::gaps::{Pair, PairLaw};
-use crate::laws::{braking_factor, deceleration_left, speed_zone, stopping_factor, time_to_close, warning_factor};
+use crate::gaps::{Asked, Pair, PairLaw};
+use crate::laws::{Stopping, speed_zone, warning_factor};
 use crate::placement::{Placement, region_point_motion};
+use crate::recovery::leads_out;
+use crate::stopping::{Gap, StoppingLaw};
 use crate::{Configuration, Kind, Snapshot};
 
 /// How far (s) the direction-aware law looks along the program's intent.
 pub(crate) const LOOKAHEAD_S: f64 = 0.01;
 /// The stopping law aims this far (m) short of the border, so that rounding never ends inside.
 const STOP_SHORT_M: f64 = 5e-4;
-/// Accelerations are taken this much larger than they are now: they may grow while the robot brakes.
-const ACCELERATION_MARGIN: f64 = 1.2;
+/// Joints slower than this (rad/s, m/s) are at rest where nothing is known of how they brake.
+const AT_REST: f64 = 1e-3;
 /// A gap must grow by at least this speed (m/s) to count as growing.
 const LEAVING_SPEED: f64 = 5e-4;
 
@@ -27,72 +29,115 @@ pub(crate) struct Judge<'a> {
     pub(crate) soon: Option<&'a Placement>,
     /// The chain at the program's own speed, where that speed is needed.
     pub(crate) intent: Option<&'a ChainState>,
-    /// How fast the override can fall, 1/s.
-    pub(crate) deceleration: f64,
     /// The override asked for in the last tick: what the robot may still be doing.
     pub(crate) last_override: f64,
+    /// The stopping-distance law, where that is on.
+    pub(crate) stopping: Option<(&'a Stopping, &'a StoppingLaw)>,
+}
+
+/// Which way a pair goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Course {
+    /// Nearer, or not known to be going away.
+    Approaching,
+    /// The gap grows.
+    Leaving,
+    /// It is inside, and the program leads out.
+    Recovering,
 }
 
 impl Judge<'_> {
-    /// How fast the override can fall without asking more of a joint than it can give, 1/s.
-    pub(crate) fn override_deceleration(config: &Configuration, intent: &ChainState) -> f64 {
-        let stopping = config.laws.stopping_distance.as_ref();
-        stopping.map_or(f64::INFINITY, |s| deceleration_left(&intent.qd, &intent.qdd, &s.joint_deceleration))
-    }
-
-    fn forbidden(&self, pair: &Pair) -> f64 {
+    fn forbidden(&self, pair: &Pair) -> Asked {
         let v0 = self.snapshot.programmed_override;
-        let region = &self.config.regions[pair.region];
-        let d = pair.separation.distance;
-        let held = (v0 * warning_factor(d, region.warning_m)).min(self.stopping(pair));
-        if self.soon.is_none() || held >= v0 {
-            return held.min(v0);
+        let warned = v0 * warning_factor(pair.separation.distance, self.config.regions[pair.region].warning_m);
+        let stopping = self.stopping_limit(pair, STOP_SHORT_M);
+        let held = Asked { speed_override: warned.min(stopping), at_once: stopping };
+        if self.soon.is_none() || held.speed_override >= v0 {
+            return held;
         }
-        match self.is_leaving(pair) {
-            false => held,
-            true if d > 0.0 => v0,
-            true => v0 * self.config.laws.recovery,
+        match self.course(pair) {
+            Course::Approaching => held,
+            Course::Leaving => Asked::at_once(self.stopping_limit(pair, 0.0)),
+            Course::Recovering => Asked::at_once(v0 * self.config.laws.recovery),
         }
     }
 
-    /// The override from which a stop still ends before the region.
-    fn stopping(&self, pair: &Pair) -> f64 {
-        let (Some(stopping), Some(intent)) = (&self.config.laws.stopping_distance, self.intent) else {
-            return f64::INFINITY;
-        };
+    /// The largest override from which a stop still ends `short_m` (m) before the region; the programmed one where the law is
+    /// off.
+    fn stopping_limit(&self, pair: &Pair, short_m: f64) -> f64 {
+        let v0 = self.snapshot.programmed_override;
+        let Some((stopping, law)) = self.stopping else { return v0 };
+        self.gap(pair, stopping, law, short_m).map_or(0.0, |gap| law.limit(stopping, &gap, v0))
+    }
+
+    /// `None` on contact.
+    fn gap(&self, pair: &Pair, stopping: &Stopping, law: &StoppingLaw, short_m: f64) -> Option<Gap> {
         let s = &pair.separation;
-        if Self::is_still(intent) {
-            return f64::INFINITY;
+        let distance = s.lower_bound.min(s.distance);
+        let left_m = distance - short_m;
+        let (volume, region) = (pair.volume, &self.config.regions[pair.region]);
+        let intent = self.intent?;
+        // Between convex solids stands a plane: only motion across it counts. Others are approached from any side.
+        let convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
+        if !(convex(&self.config.volumes[volume].shape) && convex(&region.shape)) {
+            let approach = law.approach_anywhere(volume);
+            return (distance > 0.0).then(|| Gap { volume, approach, left_m, region_speed: self.region_speed(pair) });
         }
-        let Some(towards) = (s.on_b - s.on_a).try_normalize() else { return 0.0 };
+        let towards = (s.on_b - s.on_a).try_normalize().filter(|_| distance > 0.0)?;
+        let speeds = [intent, &self.now.chain].map(|state| self.closing_speed(pair, state, towards));
+        let approach = law.approach(stopping, volume, towards, speeds);
+        Some(Gap { volume, approach, left_m, region_speed: self.region_closing_speed(pair, towards) })
+    }
+
+    /// How fast (m/s) the region comes nearer against `towards` by its own motion; never negative.
+    fn region_closing_speed(&self, pair: &Pair, towards: Vec3) -> f64 {
         let region = &self.config.regions[pair.region];
-        let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, s.on_b);
-        let approach = (-region_velocity.dot(towards)).max(0.0);
-        let reaction_s = stopping.reaction_s;
-        let left = s.distance - STOP_SHORT_M - approach * (reaction_s + self.braking_s());
-        let at_full = self.closing_speed(pair, intent, towards);
-        // A path that bends towards the region closes faster and faster.
-        let bend = ACCELERATION_MARGIN * boxed_acceleration(self, intent, pair.volume);
-        // Until it obeys, the robot goes on as it does now, or as it was last told to.
-        let now = self.closing_speed(pair, &self.now.chain, towards).max(at_full * self.last_override);
-        let moved_s = self.last_override * reaction_s;
-        let left_then = left - now.max(0.0) * reaction_s - 0.5 * bend * moved_s * moved_s;
-        let time_s = time_to_close(left, at_full, bend);
-        let time_then_s = time_to_close(left_then, at_full, bend);
-        stopping_factor(time_s, 1.0, self.deceleration, reaction_s).min(braking_factor(
-            time_then_s,
-            1.0,
-            self.deceleration,
-        ))
+        let Some(source) = region.follow.and_then(|s| self.snapshot.sources.get(s.0)) else { return 0.0 };
+        let turning = source.motion.angular_velocity;
+        let (at, in_world) = (pair.separation.on_b, &self.now.region_in_world[pair.region]);
+        if matches!(region.shape, Shape::HalfSpace(_)) {
+            // Of a plane only what lies across from the volume counts.
+            let across = self.now.volume_box[pair.volume].extent().length() + pair.separation.distance;
+            let speed = source.motion.velocity_at(at - source.pose.translation).dot(-towards);
+            return (speed + turning.length() * across).max(0.0);
+        }
+        let lever = (-towards).cross(turning);
+        let farthest = in_world.transform_point(region.shape.support(in_world.inverse_transform_vector(lever)));
+        source.motion.velocity_at(farthest - source.pose.translation).dot(-towards).max(0.0)
     }
 
-    /// From full override to rest, s.
-    fn braking_s(&self) -> f64 {
-        if self.deceleration.is_finite() { 1.0 / self.deceleration } else { 0.0 }
+    /// No point of the region moves faster, m/s.
+    fn region_speed(&self, pair: &Pair) -> f64 {
+        let Some(source) = self.config.regions[pair.region].follow.and_then(|s| self.snapshot.sources.get(s.0)) else {
+            return 0.0;
+        };
+        let boxed = &self.now.region_box[pair.region];
+        if !boxed.extent().is_finite() {
+            let towards = (pair.separation.on_b - pair.separation.on_a).try_normalize();
+            return towards.map_or(f64::INFINITY, |towards| self.region_closing_speed(pair, towards));
+        }
+        let center = source.motion.velocity_at(boxed.center() - source.pose.translation);
+        center.length() + source.motion.angular_velocity.length() * 0.5 * boxed.extent().length()
     }
 
-    fn is_still(intent: &ChainState) -> bool {
-        intent.qd.iter().all(|v| *v == 0.0)
+    /// True where the robot ends outside the region if it is told override 0 from this tick on: by the stopping-distance law,
+    /// or, where no deceleration is stated, because it is at rest.
+    fn can_stop_outside(&self, pair: &Pair) -> bool {
+        if pair.separation.distance <= 0.0 {
+            return false;
+        }
+        let Some((stopping, law)) = self.stopping else { return self.is_at_rest(pair) };
+        self.gap(pair, stopping, law, 0.0).is_some_and(|gap| law.stops_outside(stopping, &gap))
+    }
+
+    /// True where neither the joints nor the region move, nor are about to.
+    fn is_at_rest(&self, pair: &Pair) -> bool {
+        let told = |v: &f64| (v * self.last_override).abs() <= AT_REST;
+        let region = &self.config.regions[pair.region];
+        let (region_velocity, _) = region_point_motion(region, self.snapshot.sources, pair.separation.on_b);
+        self.now.chain.qd.iter().all(|v| v.abs() <= AT_REST)
+            && self.snapshot.intent.is_none_or(|intent| intent.iter().all(told))
+            && region_velocity.length() <= AT_REST
     }
 
     /// Largest speed (m/s) with which any point of the volume moves along `towards` when the chain moves as in `state`.
@@ -110,33 +155,26 @@ impl Judge<'_> {
         velocity.dot(towards) - lever.dot(link_in_world.translation - farthest)
     }
 
-    /// True where the gap of this pair grows, now and over the next moment, in the direction the program asks for,
-    /// and does not shrink by what the robot really does. A gap that shrinks never clears an alarm.
-    fn is_leaving(&self, pair: &Pair) -> bool {
-        let (Some(soon), Some(intent)) = (self.soon, self.intent) else { return false };
+    /// Leaving: the gap of this pair grows, now and over the next moment, in the direction the program asks for, and does not
+    /// shrink by what the robot really does. A gap that shrinks never clears an alarm.
+    fn course(&self, pair: &Pair) -> Course {
+        let (Some(soon), Some(intent)) = (self.soon, self.intent) else { return Course::Approaching };
         let (v, r) = (pair.volume, pair.region);
         let (volume, region) = (&self.config.volumes[v].shape, &self.config.regions[r].shape);
         let (volume_soon, region_soon) = (&soon.volume_in_world[v], &soon.region_in_world[r]);
-        let least = LEAVING_SPEED * LOOKAHEAD_S;
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
-            let Some(out) = escape(volume, &self.now.volume_in_world[v], region, &self.now.region_in_world[r]) else {
-                return false;
-            };
-            if let Some(out_soon) = escape(volume, volume_soon, region, region_soon) {
-                return out_soon.depth + least < out.depth;
-            }
-            // At the border there is no depth left to shrink; and whoever is out soon may be so behind a thin plate.
-            let gap = (least - out.depth).max(0.0);
-            return self.moves_along(pair, intent, out.direction)
-                && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, gap);
+            let out = leads_out(self, pair, intent, (volume_soon, region_soon));
+            return if out { Course::Recovering } else { Course::Approaching };
         };
-        self.moves_along(pair, intent, away)
-            && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, pair.separation.distance + least)
+        let grown = pair.separation.distance + LEAVING_SPEED * LOOKAHEAD_S;
+        let leaves = self.moves_along(pair, intent, away)
+            && !elbowroom_proximity::within(volume, volume_soon, region, region_soon, grown);
+        if leaves { Course::Leaving } else { Course::Approaching }
     }
 
     /// True where the program wants to leave the region in this direction, and the robot does not really move against it.
-    fn moves_along(&self, pair: &Pair, intent: &ChainState, away: Vec3) -> bool {
+    pub(crate) fn moves_along(&self, pair: &Pair, intent: &ChainState, away: Vec3) -> bool {
         let (v, r) = (pair.volume, pair.region);
         let region_velocity =
             region_point_motion(&self.config.regions[r], self.snapshot.sources, pair.separation.on_b).0;
@@ -145,7 +183,7 @@ impl Judge<'_> {
         intended.dot(away) > LEAVING_SPEED && real.dot(away) >= 0.0
     }
 
-    fn velocity_of(&self, state: &ChainState, volume: usize, point: Vec3) -> Vec3 {
+    pub(crate) fn velocity_of(&self, state: &ChainState, volume: usize, point: Vec3) -> Vec3 {
         let base = &self.config.base_in_world;
         let link = self.config.volumes[volume].link;
         let origin = base.transform_point(state.link_in_root(link).translation);
@@ -155,22 +193,26 @@ impl Judge<'_> {
 }
 
 impl PairLaw for Judge<'_> {
-    fn asks(&self, pair: &Pair) -> f64 {
+    fn asks(&self, pair: &Pair) -> Asked {
         let v0 = self.snapshot.programmed_override;
         let region = &self.config.regions[pair.region];
         match region.kind {
             Kind::Forbidden | Kind::Exchange { .. } => self.forbidden(pair),
-            Kind::Monitored { slow_to: None } => v0,
-            Kind::Monitored { slow_to: Some(slow) } => speed_zone(pair.separation.distance, region.warning_m, slow, v0),
+            Kind::Monitored { slow_to: None } => Asked::gently(v0, v0),
+            Kind::Monitored { slow_to: Some(slow) } => {
+                Asked::gently(speed_zone(pair.separation.distance, region.warning_m, slow, v0), v0)
+            }
         }
     }
 
+    fn stops_outside(&self, pair: &Pair) -> bool {
+        self.can_stop_outside(pair)
+    }
+
     fn extra_reach(&self, volume: usize) -> f64 {
-        let (Some(stopping), Some(intent)) = (&self.config.laws.stopping_distance, self.intent) else { return 0.0 };
-        let boxed = &self.now.volume_box[volume];
-        let fastest = boxed_speed(self, intent, volume, boxed.center()) + region_speed(self.snapshot);
-        let stop_s = stopping.reaction_s + self.braking_s();
-        (fastest + 0.5 * ACCELERATION_MARGIN * boxed_acceleration(self, intent, volume) * stop_s) * stop_s
+        let Some((stopping, law)) = self.stopping else { return 0.0 };
+        let (travel, time_s) = law.reach(stopping, volume, self.snapshot.programmed_override);
+        travel + STOP_SHORT_M + source_speed(self.snapshot) * time_s
     }
 
     fn only_closest_matters(&self) -> bool {
@@ -178,26 +220,7 @@ impl PairLaw for Judge<'_> {
     }
 }
 
-/// Bound on the speed of every point of a volume at override 1, m/s.
-fn boxed_speed(judge: &Judge, intent: &ChainState, volume: usize, center: Vec3) -> f64 {
-    let link = judge.config.volumes[volume].link;
-    let radius = judge.now.volume_box[volume].extent().length() * 0.5;
-    judge.velocity_of(intent, volume, center).length() + intent.link_motion(link).angular_velocity.length() * radius
-}
-
-/// Bound on the acceleration of every point of a volume at override 1, m/s².
-fn boxed_acceleration(judge: &Judge, intent: &ChainState, volume: usize) -> f64 {
-    let link = judge.config.volumes[volume].link;
-    let boxed = &judge.now.volume_box[volume];
-    let base = &judge.config.base_in_world;
-    let motion = intent.link_motion(link);
-    let origin = base.transform_point(intent.link_in_root(link).translation);
-    let offset = base.inverse_transform_vector(boxed.center() - origin);
-    let turning = motion.angular_velocity.length_squared() + motion.angular_acceleration.length();
-    motion.acceleration_at(offset).length() + turning * boxed.extent().length() * 0.5
-}
-
 /// Speed of the fastest source, m/s; regions are near their sources, so their turning is left to the warning zone.
-fn region_speed(snapshot: &Snapshot) -> f64 {
+fn source_speed(snapshot: &Snapshot) -> f64 {
     snapshot.sources.iter().fold(0.0, |v, s| s.motion.velocity.length().max(v))
 }

@@ -4,10 +4,12 @@
 mod common;
 
 use std::alloc::System;
+use std::sync::Arc;
 
 use common::{Random, arm, arm_volumes, parts};
 use elbowroom_monitor::{
-    AccessClass, Configuration, ConfigurationParts, Kind, Laws, Life, Monitor, Region, Snapshot, Stopping,
+    AccessClass, Board, Configuration, ConfigurationParts, EventKind, Kind, Laws, Life, Monitor, Reason, Region,
+    RobotSlot, SlotId, Snapshot, Stopping,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
@@ -28,25 +30,77 @@ fn main() {
         let region = region.warning(0.1).life(if i % 2 == 0 { Life::Permanent } else { Life::Temporary });
         if i % 5 == 0 { region.kind(Kind::Monitored { slow_to: Some(0.5) }) } else { region }
     });
-    let stopping = Stopping { reaction_s: 0.01, joint_deceleration: vec![10.0; 6] };
-    let all = Laws { direction_aware: true, stopping_distance: Some(stopping), override_rate: 5.0, ..Laws::default() };
+    let all =
+        Laws { direction_aware: true, stopping_distance: Some(stopping()), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
         let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions.clone()) };
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
-        let mut pairs = 0;
+        let (mut pairs, mut obeyed, mut t) = (0, 0.0, 0.0_f64);
         for i in 0..5000 {
-            let t = 0.002 * f64::from(i);
+            let now_s = 0.002 * f64::from(i);
             let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
-            let intent = [1.0, -0.5, 0.3, 0.0, 0.2, 0.1];
+            let speed = [t.cos(), 0.65 * (1.3 * t).cos(), -0.7 * (0.7 * t).sin(), 0.2 * t.cos(), -t.sin(), 0.0];
+            let qd = speed.map(|v| v * obeyed);
             m.switch(switchable, i % 7 < 3, AccessClass::Programmer).unwrap();
-            pairs += m.tick(&Snapshot { intent: Some(&intent), ..Snapshot::still(t, &q) }).measured_pairs;
+            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::still(now_s, &q) });
+            assert!(!matches!(report.reason, Reason::Fault(_)), "{}", report.reason);
+            pairs += report.measured_pairs;
+            // It obeys, but creeps unnoticed where it should stop.
+            obeyed = report.speed_override;
+            t += 0.002 * obeyed.max(0.1);
             assert!(m.events().len() < 8000);
         }
         let change = counter.change();
         assert!(pairs > 5000);
         assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
     }
+    exchange();
+}
+
+fn stopping() -> Stopping {
+    Stopping { reaction_s: 0.01, period_s: 0.002, joint_deceleration: vec![10.0; 6], joint_acceleration: vec![5.0; 6] }
+}
+
+/// Two arms that come and go through two regions that they exchange: granted, waiting, yielding, in a circle.
+fn exchange() {
+    let slots = [SlotId(0), SlotId(1)];
+    let board = Arc::new(Board::new(&["a", "b"], &["left", "right"]));
+    let region = |i: usize, y: f64| {
+        Region::sphere(format!("{i}"), Vec3::new(0.9, y, 0.9), 0.2).warning(0.3).kind(Kind::Exchange { slot: slots[i] })
+    };
+    let stopping = stopping();
+    let mut monitors: Vec<Monitor> = (0..2)
+        .map(|robot| {
+            let laws = Laws { stopping_distance: Some(stopping.clone()), ..Laws::default() };
+            let regions = vec![region(0, 0.6), region(1, -0.6)];
+            let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
+            Monitor::new(Configuration::new(parts).unwrap(), Some((board.clone(), RobotSlot(robot)))).unwrap()
+        })
+        .collect();
+    let counter = Counter::new(ALLOCATOR);
+    let (mut granted, mut waiting) = (0, 0);
+    // Each obeys, but creeps unnoticed where it should stop.
+    let mut robots = [(0.0_f64, 0.0), (2.0, 0.0)];
+    for i in 0..20_000 {
+        if i == 10_000 {
+            (0..2).for_each(|robot| board.declare(RobotSlot(robot), slots));
+        }
+        for (monitor, (t, obeyed)) in monitors.iter_mut().zip(&mut robots) {
+            let q = [t.sin(), 0.9, 0.4, 0.0, 0.2, 0.0];
+            let intent = [t.cos(), 0.0, 0.0, 0.0, 0.0, 0.0];
+            let qd = intent.map(|v| v * *obeyed);
+            let still = Snapshot::still(0.002 * f64::from(i), &q);
+            let report = monitor.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
+            *obeyed = report.speed_override;
+            *t += 0.002 * obeyed.max(0.1);
+            granted += monitor.events().iter().filter(|e| e.kind == EventKind::Granted).count();
+            waiting += monitor.events().iter().filter(|e| e.kind == EventKind::Waiting).count();
+        }
+    }
+    let change = counter.change();
+    assert!(granted > 5 && waiting > 5, "granted {granted}, waiting {waiting}");
+    assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
 }

@@ -123,7 +123,12 @@ fn papers_distance(m: &mut Monitor, now_s: f64, q: &[f64; 6]) -> f64 {
 
 #[test]
 fn the_stopping_law_leaves_room_to_stop() {
-    let stopping = Stopping { reaction_s: 0.05, joint_deceleration: vec![2.0; 6] };
+    let stopping = Stopping {
+        reaction_s: 0.048,
+        period_s: 0.002,
+        joint_deceleration: vec![2.0; 6],
+        joint_acceleration: vec![2.0; 6],
+    };
     let laws = Laws { stopping_distance: Some(stopping), ..Laws::default() };
     // No warning zone at all: the stopping law alone must keep the point outside.
     let mut m = point_monitor(vec![Region::sphere("ball", Vec3::ZERO, 0.5)], laws);

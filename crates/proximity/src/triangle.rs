@@ -1,6 +1,11 @@
 //! Triangles and segments in a common frame: the leaf tests of meshes.
+//!
+//! Rounding leaves the normal of a slender triangle (height 1/100 of the longest edge, or less) with too few digits to tell
+//! on which side a point lies. There the signs come from exact arithmetic (Shewchuk, *Adaptive precision floating-point
+//! arithmetic and fast robust geometric predicates*, 1997); elsewhere f64 is right to far less than what meshes call contact.
 
 use elbowroom_spatial::Vec3;
+use robust::{Coord3D, orient3d};
 
 /// Two points and the square of their distance.
 #[derive(Debug, Clone, Copy)]
@@ -51,8 +56,19 @@ pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let wc = n.dot((a - p).cross(b - a));
     if wa > 0.0 && wb > 0.0 && wc > 0.0 {
         let sum = wa + wb + wc;
-        return a + (b - a) * (wb / sum) + (c - a) * (wc / sum);
+        let foot = a + (b - a) * (wb / sum) + (c - a) * (wc / sum);
+        if !is_slender(&[a, b, c], n) {
+            return foot;
+        }
+        // The plane's normal may be off by so much that an edge is nearer.
+        let edge = nearest_on_edges(p, [a, b, c]);
+        return if (edge - p).length_squared() < (foot - p).length_squared() { edge } else { foot };
     }
+    nearest_on_edges(p, [a, b, c])
+}
+
+#[inline]
+fn nearest_on_edges(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let candidates = [nearest_on_segment(p, a, b), nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)];
     let squared = candidates.map(|q| (q - p).length_squared());
     let first = usize::from(squared[1] < squared[0]);
@@ -96,9 +112,30 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
     finish(lo + (hi - lo) * (g_lo / (g_lo - g_hi)))
 }
 
-/// True where the segment passes through the triangle (its border included, up to rounding).
-pub(crate) fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
-    let n = (b - a).cross(c - a);
+/// Squared ratio of height to longest edge up to which a triangle is slender.
+const SLENDER: f64 = 1e-4;
+
+/// True where f64 does not know the triangle's plane well enough; `normal` is the product of two edges.
+#[inline]
+fn is_slender([a, b, c]: &[Vec3; 3], normal: Vec3) -> bool {
+    let longest = (*b - *a).length_squared().max((*c - *b).length_squared()).max((*a - *c).length_squared());
+    !(normal.length_squared() > longest * longest * SLENDER)
+}
+
+fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
+    (*b - *a).cross(*c - *a)
+}
+
+/// Where the segment passes through the triangle (its border included): up to rounding for most triangles, exactly for
+/// slender ones.
+pub(crate) fn segment_crosses(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Option<Vec3> {
+    if is_slender(&t, normal(&t)) { crosses_exactly(p, q, &t) } else { crosses_by_signs(p, q, &t) }
+}
+
+/// By f64 signs alone.
+fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
+    let [a, b, c] = *t;
+    let n = normal(t);
     let (hp, hq) = (n.dot(p - a), n.dot(q - a));
     if (hp > 0.0) == (hq > 0.0) || hp == hq {
         return None;
@@ -109,11 +146,48 @@ pub(crate) fn segment_crosses(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<
     inside.then_some(x)
 }
 
-/// True where an edge of one passes through the other, by f64 signs alone: nearly touching ones may go either way.
+/// The ends lie on different sides of the plane, and the segment's line passes all edges on the same side. A segment in
+/// the triangle's plane, or a triangle that is exactly a line, does not count: edges and corners meet there.
+#[cold]
+fn crosses_exactly(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
+    let at = |v: Vec3| Coord3D { x: v.x, y: v.y, z: v.z };
+    let turn = |a: Vec3, b: Vec3, c: Vec3, d: Vec3| orient3d(at(a), at(b), at(c), at(d));
+    let [a, b, c] = *t;
+    let (hp, hq) = (turn(a, b, c, p), turn(a, b, c, q));
+    if !((hp <= 0.0 && hq > 0.0) || (hq <= 0.0 && hp > 0.0)) {
+        return None;
+    }
+    let turns = [turn(p, q, a, b), turn(p, q, b, c), turn(p, q, c, a)];
+    let passes = turns.iter().all(|x| *x >= 0.0) || turns.iter().all(|x| *x <= 0.0);
+    passes.then(|| passage(p, q, t))
+}
+
+/// The point of the segment nearest to a slender triangle that it passes through. The product that gives it loses its
+/// digits as the triangle gets thinner, and the nearest points of its edges get better: the best of them.
+fn passage(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
+    let n = normal(t);
+    let (hp, hq) = (n.dot(p - t[0]), n.dot(q - t[0]));
+    let share = hp / (hp - hq);
+    let by_product = if (0.0..=1.0).contains(&share) { p + (q - p) * share } else { p };
+    let off = |x: &Vec3| (nearest_on_triangle(*x, *t) - *x).length_squared();
+    let by_edge = |k: usize| segment_segment(p, q, t[k], t[(k + 1) % 3]).on_a;
+    let candidates = [by_product, by_edge(0), by_edge(1), by_edge(2)];
+    candidates.into_iter().min_by(|x, y| off(x).total_cmp(&off(y))).unwrap_or(p)
+}
+
+/// True where an edge of one passes through the other. Nearly touching ones may go either way by rounding, unless one is
+/// slender: then yes is exact, and no may be wrong.
 pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
     // Each must have corners on both sides of the other's plane.
     let (Some(of_s), Some(of_t)) = (sides(&s, &t), sides(&t, &s)) else { return false };
-    edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)
+    (edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)) && confirmed(&s, &t)
+}
+
+/// False where signs of no worth said that slender triangles cross.
+fn confirmed(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
+    let slender = is_slender(s, normal(s)) || is_slender(t, normal(t));
+    let passes = |s: &[Vec3; 3], t: &[Vec3; 3]| (0..3).any(|k| crosses_exactly(s[k], s[(k + 1) % 3], t).is_some());
+    !slender || passes(s, t) || passes(t, s)
 }
 
 /// Which corners of `s` are above `t`'s plane; `None` where all are on one side.
@@ -126,7 +200,7 @@ fn sides(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<[bool; 3]> {
 
 #[inline]
 fn edges_cross(s: &[Vec3; 3], above: [bool; 3], t: &[Vec3; 3]) -> bool {
-    (0..3).any(|k| above[k] != above[(k + 1) % 3] && segment_crosses(s[k], s[(k + 1) % 3], *t).is_some())
+    (0..3).any(|k| above[k] != above[(k + 1) % 3] && crosses_by_signs(s[k], s[(k + 1) % 3], t).is_some())
 }
 
 /// Nearest points of a segment (first) and a triangle.

@@ -113,7 +113,7 @@ impl SceneBuilder {
         }
         let members: Vec<Member> = models.iter().map(|m| m.member).collect();
         let padding = |m| self.padding.get(&m).copied().unwrap_or(0.0);
-        let pairs = matrix::by_law(&self.robots, &members, &padding);
+        let pairs = matrix::by_law(&self.robots, &self.objects, &members, &padding);
         let Self { robots, objects, edits, reach, .. } = self;
         let model_pairs = pairs.clone();
         let mut scene = Scene { robots, objects, models, link_model, first_object, names, pairs, model_pairs };

@@ -35,6 +35,15 @@ impl PerLevel {
         self.l1 + self.l2 + self.capsule + self.hull + self.l3
     }
 
+    /// Adds each number.
+    fn sum(&mut self, other: &Self) {
+        self.l1 += other.l1;
+        self.l2 += other.l2;
+        self.capsule += other.capsule;
+        self.hull += other.hull;
+        self.l3 += other.l3;
+    }
+
     pub(crate) fn add(&mut self, level: Level, n: u64) {
         match level {
             Level::Auto => {}
@@ -68,5 +77,16 @@ impl Counts {
     pub(crate) fn meshes(&mut self, visits: elbowroom_proximity::mesh::Visits) {
         self.mesh_boxes += u64::from(visits.boxes);
         self.mesh_triangles += u64::from(visits.triangles);
+    }
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.answered.sum(&other.answered);
+        self.pairs_cleared.sum(&other.pairs_cleared);
+        self.pairs_tested.sum(&other.pairs_tested);
+        self.pairs_skipped += other.pairs_skipped;
+        self.mesh_boxes += other.mesh_boxes;
+        self.mesh_triangles += other.mesh_triangles;
     }
 }

@@ -42,7 +42,7 @@ impl Scene {
         }
         let members: Vec<Member> = models.iter().map(|m| m.member).collect();
         let padding = |member| models.iter().find(|m| m.member == member).map_or(0.0, |m| m.padding_m);
-        let by_law = || matrix::by_law(&self.robots, &members, &padding);
+        let by_law = || matrix::by_law(&self.robots, &objects, &members, &padding);
         let [mut model_pairs, mut pairs] = [by_law(), by_law()];
         for (new, old) in [(&mut model_pairs, &self.model_pairs), (&mut pairs, &self.pairs)] {
             for entry in new.entries_mut() {

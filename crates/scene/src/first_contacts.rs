@@ -5,7 +5,7 @@ use elbowroom_proximity::impact::Path;
 use elbowroom_proximity::{collides, separation_within};
 use elbowroom_spatial::{Aabb, Pose};
 
-use crate::pairs::{is_moved, joints_between, motion_bound, pairs, radius};
+use crate::pairs::{is_moved, joined_without_solids, joints_between, motion_bound, pairs, radius};
 use crate::{Body, Member, Object, Robot};
 
 /// Looks for the first contact of each pair while robots and objects move in small steps.
@@ -14,6 +14,9 @@ use crate::{Body, Member, Object, Robot};
 /// `d` apart is not looked at again before its members can have moved by `d`; where they have, the time between the
 /// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm and lasts longer than a
 /// thousandth of that time, is found.
+///
+/// Links of one robot with no solid between them that touch at the first look do not begin to touch: such a contact counts
+/// once they have been apart. [`resting_contacts`](crate::pairs::resting_contacts) tells which they are.
 #[derive(Debug)]
 pub struct FirstContacts<'a> {
     robots: Vec<(&'a Robot, Pose)>,
@@ -63,6 +66,10 @@ struct Watched {
     /// Nothing can happen before the members have moved by this, m. Negative: never measured.
     clear: f64,
     touched: bool,
+    /// No solid stands between the two: they may be built to overlap.
+    joined: bool,
+    /// In contact since the first look.
+    resting: bool,
 }
 
 #[derive(Debug)]
@@ -141,11 +148,17 @@ impl<'a> FirstContacts<'a> {
             let travel = step.map_or(0.0, |(s, radius)| s.path.speed(radius, 0.0, 1.0));
             let jumped = step.is_some_and(|(s, _)| s.jumps);
             pair.travel += travel;
+            let moved = pair.moved(|l| states[l.robot].q[l.joint]);
             // NaN (an unlimited stroke that did not move) must look again.
-            if !jumped && pair.moved(|l| states[l.robot].q[l.joint]) + pair.travel < pair.clear {
+            if !jumped && (moved + pair.travel < pair.clear || (pair.resting && moved == 0.0)) {
                 continue;
             }
             let gap = world.gap(pair.a, pair.b);
+            if pair.resting || (last.is_empty() && pair.joined) {
+                pair.resting = gap.is_none();
+                pair.measured(states, gap);
+                continue;
+            }
             let first =
                 if jumped || last.is_empty() { gap.is_none().then_some(1.0) } else { between.first(pair, travel, gap) };
             pair.measured(states, gap);
@@ -248,7 +261,13 @@ fn watched(robots: &[(&Robot, Pose)], a: Member, b: Member) -> Watched {
     };
     levers.extend(side(a, b));
     levers.extend(side(b, a));
-    Watched { a, b, levers, free: None, travel: 0.0, clear: -1.0, touched: false }
+    let joined = match (a, b) {
+        (Member::Link { robot, link }, Member::Link { robot: same, link: other }) if robot == same => {
+            joined_without_solids(robots[robot].0, link, other)
+        }
+        _ => false,
+    };
+    Watched { a, b, levers, free: None, travel: 0.0, clear: -1.0, touched: false, joined, resting: false }
 }
 
 /// Everything at one instant.

@@ -35,6 +35,7 @@ mod motion;
 mod obb;
 mod object;
 pub mod pairs;
+mod rest;
 mod robot;
 mod scale;
 mod scene;

@@ -7,11 +7,12 @@ use crate::{Body, Reason, Robot};
 
 pub use crate::first_contacts::FirstContacts;
 pub use crate::member::Member;
+pub use crate::rest::{RestingContact, resting_contacts};
 
 /// All pairs that a collision query has to look at, in a fixed order.
 ///
-/// Links of one robot are a pair unless they are adjacent (joined directly, or through links without solids), disabled
-/// by the SRDF, or not moved against each other by any joint. Links of different robots, and link and object, are a
+/// Links of one robot are a pair unless they are adjacent (at most one moving joint between them, directly or through
+/// fixed joints and links without solids), disabled by the SRDF, or not moved against each other by any joint. Links of different robots, and link and object, are a
 /// pair where a joint moves one of them. Two objects are none.
 pub fn pairs(robots: &[&Robot], objects: usize) -> Vec<(Member, Member)> {
     let mut list = Vec::new();
@@ -49,17 +50,25 @@ pub fn links_can_meet(robot: &Robot, a: LinkId, b: LinkId) -> bool {
 pub(crate) fn why_no_pair(robot: &Robot, a: LinkId, b: LinkId) -> Option<Reason> {
     let chain = &robot.chain;
     let between = joints_between(chain, a, b);
-    if !between.iter().any(|j| chain.joints()[j.0].kind.moves()) {
-        return Some(Reason::NoJointBetween);
-    }
-    let ends = |l: &LinkId| *l == a || *l == b;
-    let mut inner =
-        between.iter().flat_map(|j| [chain.joints()[j.0].parent, chain.joints()[j.0].child]).filter(|l| !ends(l));
-    if !inner.any(|l| !robot.bodies[l.0].is_empty()) {
-        return Some(Reason::Adjacent);
+    match between.iter().filter(|j| chain.joints()[j.0].kind.moves()).count() {
+        0 => return Some(Reason::NoJointBetween),
+        1 if nothing_between(robot, a, b, &between) => return Some(Reason::Adjacent),
+        _ => {}
     }
     let same = |p: &&(LinkId, LinkId, String)| (p.0, p.1) == (a, b) || (p.0, p.1) == (b, a);
     robot.disabled_pairs.iter().find(same).map(|p| Reason::Srdf(p.2.clone()))
+}
+
+/// True where two links have no link with solids between them, however many joints there are: what they overlap by may be
+/// how the robot is built.
+pub(crate) fn joined_without_solids(robot: &Robot, a: LinkId, b: LinkId) -> bool {
+    nothing_between(robot, a, b, &joints_between(&robot.chain, a, b))
+}
+
+/// True where no link with solids stands between two links that `between` joins.
+fn nothing_between(robot: &Robot, a: LinkId, b: LinkId, between: &[JointId]) -> bool {
+    let links = between.iter().flat_map(|j| [robot.chain.joints()[j.0].parent, robot.chain.joints()[j.0].child]);
+    links.filter(|l| *l != a && *l != b).all(|l| robot.bodies[l.0].is_empty())
 }
 
 pub(crate) fn is_moved(chain: &Chain, link: LinkId) -> bool {

@@ -2,8 +2,8 @@
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::impact::{Path, Steady};
-use elbowroom_proximity::{Capsule, Shape, Sphere, collides};
-use elbowroom_scene::pairs::{FirstContacts, Member, links_can_meet, pairs};
+use elbowroom_proximity::{Capsule, Cuboid, Shape, Sphere, collides};
+use elbowroom_scene::pairs::{FirstContacts, Member, links_can_meet, pairs, resting_contacts};
 use elbowroom_scene::{Body, Object, ObjectStep, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -29,15 +29,70 @@ fn snake() -> Robot {
 }
 
 #[test]
-fn neighbours_are_no_pair_not_even_across_a_link_without_solids() {
+fn neighbours_are_no_pair_and_two_moving_joints_make_one() {
     let mut robot = snake();
     let meet = |r: &Robot, a, b| links_can_meet(r, LinkId(a), LinkId(b));
-    assert!(!meet(&robot, 0, 1) && !meet(&robot, 1, 3) && !meet(&robot, 3, 4));
+    assert!(!meet(&robot, 0, 1) && !meet(&robot, 3, 4));
+    assert!(meet(&robot, 1, 3), "two joints with a link without solids between them");
     assert!(meet(&robot, 0, 3) && meet(&robot, 0, 4) && meet(&robot, 1, 4));
     robot.disabled_pairs.push((LinkId(4), LinkId(0), "never".into()));
     assert!(!meet(&robot, 0, 4));
-    // Two snakes and two objects: 2 · 2 within, 4 · 4 − 1 between (both feet stand still), 2 · 3 · 2 with objects.
-    assert_eq!(pairs(&[&robot, &robot], 2).len(), 4 + 15 + 12);
+    // Two snakes and two objects: 2 · 3 within, 4 · 4 − 1 between (both feet stand still), 2 · 3 · 2 with objects.
+    assert_eq!(pairs(&[&robot, &robot], 2).len(), 6 + 15 + 12);
+    // Across a fixed joint and a link without solids there is one moving joint: neighbours.
+    let mut joints = robot.chain.joints().to_vec();
+    joints[1].kind = JointKind::Fixed;
+    robot.chain = Chain::new("stiff", robot.chain.links().to_vec(), joints).unwrap();
+    assert!(!meet(&robot, 1, 3) && meet(&robot, 0, 3));
+}
+
+/// Two fingers that slide along x on a palm without solids, boxes of 20 mm, 40 mm apart at 0.
+fn gripper() -> Robot {
+    let finger = |i: usize| Joint {
+        name: format!("f{i}"),
+        kind: JointKind::Prismatic,
+        parent: LinkId(0),
+        child: LinkId(i),
+        origin: Pose::from_translation(Vec3::X * if i == 1 { 0.02 } else { -0.02 }),
+        axis: if i == 1 { Vec3::X } else { -Vec3::X },
+        limits: Limits::range(-0.05, 0.05),
+        mimic: None,
+    };
+    let links = ["palm", "one", "two"].map(String::from).to_vec();
+    let mut robot = Robot::new(Chain::new("gripper", links, vec![finger(1), finger(2)]).unwrap());
+    for i in [1, 2] {
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.01) });
+        robot.bodies[i].push(Body { name: String::new(), shape, in_link: Pose::IDENTITY });
+    }
+    robot
+}
+
+/// The looks at which the fingers begin to touch, while both go through `q` together.
+fn touches(q: &[f64]) -> Vec<usize> {
+    let robot = gripper();
+    let mut checker = FirstContacts::new(vec![(&robot, Pose::IDENTITY)], &[]);
+    let mut state = ChainState::new(&robot.chain);
+    let mut found = Vec::new();
+    for (look, q) in q.iter().enumerate() {
+        state.q.fill(*q);
+        robot.chain.forward(&mut state);
+        checker.check(&[&state], &[], |_| found.push(look));
+    }
+    found
+}
+
+#[test]
+fn fingers_on_an_empty_palm_collide_and_a_contact_at_rest_counts_once_they_were_apart() {
+    assert_eq!(touches(&[0.0, -0.005, -0.01, -0.02, -0.03]), [2]);
+    // Closed at the start: no event, until they have been open.
+    assert_eq!(touches(&[-0.01, -0.012, -0.02, -0.012]), [0; 0]);
+    assert_eq!(touches(&[-0.02, -0.01, 0.0, 0.01, -0.02, -0.03]), [4]);
+    let robot = gripper();
+    let at = |q: f64| resting_contacts(&robot, &[q; 2]);
+    assert!(at(0.0).is_empty());
+    let closed = at(-0.01);
+    assert_eq!((closed[0].a, closed[0].b, closed.len()), (LinkId(1), LinkId(2), 1));
+    assert!(closed[0].contacts > 10 && !closed[0].always(), "{closed:?}");
 }
 
 /// Two snakes beside each other, and a ball that passes.

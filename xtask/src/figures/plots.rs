@@ -1,7 +1,7 @@
 //! What the figures show.
 
-use elbowroom_monitor::Laws;
-use elbowroom_monitor::laws::{override_deceleration, rate_limited, speed_zone, stopping_factor, warning_factor};
+use elbowroom_monitor::laws::{rate_limited, speed_zone, warning_factor};
+use elbowroom_monitor::{Laws, Stopping};
 
 use super::rail::{Rail, TICK_S};
 use super::svg::{Axis, Curve, Dash, Plot};
@@ -215,9 +215,16 @@ fn hysteresis() -> Result<Plot, String> {
 
 fn stopping() -> Plot {
     let (deceleration, reaction_s) = (2.0, 0.05);
+    let law = Stopping {
+        reaction_s,
+        period_s: TICK_S,
+        joint_deceleration: vec![deceleration],
+        joint_acceleration: vec![deceleration],
+    };
+    let laws = Laws { stopping_distance: Some(law), ..Laws::default() };
     let allowed = |speed: f64| {
-        let rate = override_deceleration(&[speed], &[deceleration]);
-        move |d: f64| 100.0 * stopping_factor(d / MM, speed, rate, reaction_s).min(1.0)
+        let laws = laws.clone();
+        move |d: f64| Rail::new(laws.clone(), 0.0, 0.001, d / MM).map_or(0.0, |mut rail| 100.0 * rail.ask(speed))
     };
     let mut curves: Vec<Curve> = [0.25, 0.5, 1.0, 2.0]
         .iter()

@@ -55,6 +55,13 @@ impl Rail {
         f64::from(self.ticks) * TICK_S
     }
 
+    /// The override that a standing robot is asked for whose program goes at `intent` (m/s) at override 1.
+    pub fn ask(&mut self, intent: f64) -> f64 {
+        let (q, intent) = ([BORDER_M - self.distance_m], [intent]);
+        let still = Snapshot::still(self.time_s(), &q);
+        self.monitor.tick(&Snapshot { qd: &[0.0], intent: Some(&intent), ..still }).speed_override
+    }
+
     /// One tick, then one step of the program, which asks for `intent` (m/s, positive towards the ball) at override 1.
     pub fn step(&mut self, intent: f64) -> TickReport {
         let (q, intent) = ([BORDER_M - self.distance_m], [intent]);

@@ -232,7 +232,12 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
     }
     let reaction_s = t.get("reaction_ms").map_or(Ok(tick_s), |v| v.not_negative().map(|ms| ms / 1000.0))?;
     let stopping = t.flag_or("stopping_distance", false)?;
-    Ok(CellLaws { laws, reaction_s, stopping_reaction_s: stopping.then_some(reaction_s) })
+    Ok(CellLaws {
+        laws,
+        reaction_s,
+        stopping_reaction_s: stopping.then_some(reaction_s),
+        obeyed_after_s: if t.get("reaction_ms").is_some() { reaction_s } else { 0.0 },
+    })
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {

@@ -54,6 +54,12 @@ pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -
     Ok(loaded.robot)
 }
 
+/// The pairs that the file of `srdf` disables.
+pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Warning>) -> Result<()> {
+    warnings.extend(robot_file::apply_srdf(robot, &path(v)?)?);
+    Ok(())
+}
+
 pub(super) fn mesh(v: &Value<'_>, unit: LengthUnit) -> Result<Shape> {
     let path = path(v)?;
     let loaded = mesh_file::load(&path, Some(unit))?;

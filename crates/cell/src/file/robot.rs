@@ -10,7 +10,7 @@ use elbowroom_spatial::Pose;
 
 use super::read::{Table, Value};
 use super::{models, suggest};
-use crate::{CellRobot, JointLimits, Units};
+use crate::{CellRobot, JointLimits, Units, resting};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -55,6 +55,9 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     robot.bodies[flange.0].extend(tool.iter().chain(&load).cloned());
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
+    warnings.extend(
+        resting::warnings(&robot, &start, Some(name)).map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
+    );
     if t.get("speed").is_some() {
         robot.chain = with_speeds(t, &robot.chain, &limits)?;
     }
@@ -86,10 +89,14 @@ fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Rob
             models::robot(&file, t, warnings)
         }
         (None, Some(dh)) => {
-            if let Some(v) = ["srdf", "joints", "unit"].iter().find_map(|key| t.get(key)) {
+            if let Some(v) = ["joints", "unit"].iter().find_map(|key| t.get(key)) {
                 return Err(v.error("goes with `model`, not with `dh`").hint("leave it out"));
             }
-            dh_robot(t, &dh, units)
+            let mut robot = dh_robot(t, &dh, units)?;
+            if let Some(srdf) = t.get("srdf") {
+                models::srdf(&srdf, &mut robot, warnings)?;
+            }
+            Ok(robot)
         }
         (None, None) => Err(t.need("model", example).err().unwrap_or_else(|| t.error("no model"))),
     }

@@ -4,17 +4,9 @@ use std::collections::HashMap;
 
 use elbowroom_proximity::TriMesh;
 
-/// Edges of one face alone, and edges of more than two. Corners of equal coordinates are one, as where a mesh is judged
-/// to be closed; faces of fewer than three corners have no edges.
+/// Edges of one face alone, and edges of more than two. Corners are joined as where a mesh is judged to be closed; faces of fewer than three corners have no edges.
 pub(super) fn count(mesh: &TriMesh) -> (usize, usize) {
-    let mut first = HashMap::with_capacity(mesh.vertices().len());
-    let weld: Vec<u32> = mesh
-        .vertices()
-        .iter()
-        .enumerate()
-        // Adding 0 makes -0 the same as 0.
-        .map(|(i, v)| *first.entry(v.to_array().map(|c| (c + 0.0).to_bits())).or_insert(i as u32))
-        .collect();
+    let weld = mesh.joined();
     let mut uses: HashMap<(u32, u32), u32> = HashMap::with_capacity(mesh.triangles().len() * 3 / 2);
     for corners in mesh.triangles() {
         let [a, b, c] = corners.map(|i| weld[i as usize]);

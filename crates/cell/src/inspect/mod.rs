@@ -29,8 +29,9 @@ pub use levels::Level2;
 pub use pairs::PairRow;
 pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
 pub use rows::{JointRow, MeshRow};
-pub use units::UnitDoubt;
+pub use units::{UnitDoubt, unit_doubts};
 
+use crate::resting;
 use rows::{joint_row, mesh_row, mesh_rows};
 
 /// How to look at a model.
@@ -152,7 +153,7 @@ impl Inspection {
         if !options.dh.is_empty() {
             inspection.dh_shown.clone_from(&options.dh);
         }
-        inspection.doubt_units(units::of_robot(&loaded.robot));
+        inspection.doubt_units(unit_doubts(&loaded.robot));
         inspection.doubt_meshes();
         if !options.brief {
             inspection.levels = levels::of_robot(&loaded.robot);
@@ -179,7 +180,7 @@ impl Inspection {
             let name = object.name.clone();
             let solid = object.into_trimesh(path)?;
             inspection.meshes.push(mesh_row(&name, &name, &solid));
-            inspection.doubt_units(units::of_mesh(&name, solid.aabb().extent().max_element(), format));
+            inspection.doubt_units(units::of_mesh(&name, solid.aabb().extent(), format));
             let body = Body { name: name.clone(), shape: Shape::Mesh(solid.into()), in_link: Pose::IDENTITY };
             solids.push((name.clone(), vec![body]));
             inspection.links.push(name);
@@ -221,24 +222,21 @@ impl Inspection {
     }
 
     fn doubt_units(&mut self, doubts: impl IntoIterator<Item = UnitDoubt>) {
-        // The reader doubts what is large beyond any chain, at the line of the file.
-        let said = self.warnings.iter().any(|w| w.contains("looks like"));
         for doubt in doubts {
-            if !said {
-                self.warnings.push(doubt.reason.clone());
-            }
+            self.warnings.push(doubt.reason.clone());
             self.unit_doubts.push(doubt);
         }
     }
 
-    /// Pairs that would make every state a collision.
+    /// Pairs that would make every state a collision, or the state at rest.
     fn doubt_pairs(&mut self) {
-        for p in self.pairs.iter().filter(|p| p.tested && p.always) {
-            self.warnings.push(format!(
-                "links `{}` and `{}` touch in every state that was looked at: every query answers collision\n  write: \
-                 <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"Default\"/> in an SRDF, and --srdf",
-                p.a, p.b, p.a, p.b
-            ));
+        for p in self.pairs.iter().filter(|p| p.tested && (p.always || p.at_rest)) {
+            let often = match &p.suggestion {
+                Some(reason) if p.at_rest => format!("are {reason}: a query at rest answers collision"),
+                _ => "touch in every state that was looked at: every query answers collision".to_owned(),
+            };
+            let hint = resting::disable(&p.a, &p.b, "--srdf FILE");
+            self.warnings.push(format!("links `{}` and `{}` {often}\n  write: {hint}", p.a, p.b));
         }
     }
 

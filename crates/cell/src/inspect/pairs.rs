@@ -17,7 +17,7 @@ pub struct PairRow {
     pub tested: bool,
     /// Why.
     pub reason: String,
-    /// What samples of the joint space suggest where the pair is tested: that it never touches, or always does.
+    /// What samples of the joint space suggest where the pair is tested: that it never touches, always does, or does at rest.
     pub suggestion: Option<String>,
     /// Pairs of larger weight are looked at first.
     pub weight: f64,
@@ -29,6 +29,9 @@ pub struct PairRow {
     /// Samples found it in contact each time.
     #[serde(skip)]
     pub always: bool,
+    /// In contact at rest, with no solid between.
+    #[serde(skip)]
+    pub at_rest: bool,
 }
 
 /// States of the joint space that are looked at for suggestions.
@@ -46,6 +49,7 @@ pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<Pair
         weight: e.weight,
         margin_m: e.margin_m,
         kind: kind(&e.reason),
+        at_rest: matches!(e.suggestion, Some(Reason::TouchesAtRest { .. })),
         always: matches!(e.suggestion, Some(Reason::AlwaysInContact { .. })),
     };
     Ok(scene.pairs().sampled(&scene, SAMPLES).entries().iter().map(row).collect())
@@ -60,6 +64,7 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::OutOfReach { .. } => "out of reach of each other: proven",
         Reason::NeverInSamples { .. } => "never in samples",
         Reason::AlwaysInContact { .. } => "always in contact",
+        Reason::TouchesAtRest { .. } => "in contact at rest",
         Reason::ByHand(_) => "by hand",
         Reason::Attached(_) | Reason::MayTouch(_) => "attached",
     }

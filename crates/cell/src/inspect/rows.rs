@@ -40,8 +40,12 @@ pub struct MeshRow {
     pub triangles: usize,
     /// Number of distinct vertices.
     pub vertices: usize,
-    /// True where every edge is shared by two faces of opposite direction.
+    /// True where every edge is shared by two faces of opposite direction, hairline seams closed.
     pub closed: bool,
+    /// Vertices on hairline seams that count as another one within `weld_tolerance_m`; distances are to the faces as drawn.
+    pub welded_vertices: usize,
+    /// 0 where nothing was welded.
+    pub weld_tolerance_m: f64,
     /// Faces without area.
     pub degenerate: usize,
     /// Faces that are there twice.
@@ -97,6 +101,8 @@ pub(super) fn mesh_row(link: &str, name: &str, solid: &TriMesh) -> MeshRow {
         triangles: report.triangles,
         vertices: report.vertices,
         closed: report.closed,
+        welded_vertices: report.welded,
+        weld_tolerance_m: report.weld_tolerance,
         degenerate: report.degenerate,
         duplicate: report.duplicate,
         open_edges,

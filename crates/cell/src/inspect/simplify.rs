@@ -94,7 +94,7 @@ struct Work {
 impl Work {
     fn new(mesh: &TriMesh) -> Self {
         let at = mesh.vertices().to_vec();
-        let became = weld(&at);
+        let became = mesh.joined();
         let faces: Vec<Option<[u32; 3]>> = mesh
             .triangles()
             .iter()
@@ -255,11 +255,4 @@ impl Work {
         let became = self.became.iter().map(|v| place[*v as usize]).collect();
         Simplified { vertices, triangles, became }
     }
-}
-
-/// The first vertex of the same coordinates, for each vertex.
-fn weld(at: &[Vec3]) -> Vec<u32> {
-    let mut first = HashMap::with_capacity(at.len());
-    let key = |v: &Vec3| v.to_array().map(|c| (c + 0.0).to_bits());
-    at.iter().enumerate().map(|(i, v)| *first.entry(key(v)).or_insert(i as u32)).collect()
 }

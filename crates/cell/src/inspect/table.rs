@@ -65,6 +65,14 @@ impl Inspection {
             let (link, n, bad) = (shortened(&m.link, 24), m.triangles, m.degenerate);
             writeln!(f, "{link:24} {n:>9} {closed:>10} {bad:>10}  {x:.3} x {y:.3} x {z:.3}")?;
         }
+        for m in self.meshes.iter().filter(|m| m.welded_vertices > 0) {
+            writeln!(
+                f,
+                "  `{}`: {} vertices on seams within {:.1e} m of another count as one: inside and outside are judged so, \
+                 distances are to the faces as drawn",
+                m.name, m.welded_vertices, m.weld_tolerance_m
+            )?;
+        }
         Ok(())
     }
 

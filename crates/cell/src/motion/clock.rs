@@ -3,8 +3,10 @@
 use super::{Geometry, Plan, PlanStep, Point};
 use crate::JointLimits;
 
-/// Deceleration left for a stop even where following the curve takes more, as a share of it.
+/// Acceleration left for speeding up again even where following the curve takes more, as a share of it.
 const RESERVE: f64 = 0.1;
+/// How often the end of a tick is looked at while the robot brakes.
+const LOOKS: u32 = 4;
 /// In the first moments of a move its direction is taken from this time, s: at rest there is none.
 const AHEAD_S: f64 = 0.05;
 
@@ -123,8 +125,9 @@ impl Clock {
 
     /// Goes on for `dt` seconds under the override `wanted`.
     pub fn advance(&mut self, dt: f64, wanted: f64) {
-        let (fall, rise) = self.rate_limits();
-        let next = wanted.clamp((self.rate - fall * dt).max(0.0), self.rate + rise * dt).clamp(0.0, 1.0);
+        let wanted = wanted.clamp(0.0, 1.0);
+        let next =
+            if wanted < self.rate { self.braked(dt, wanted) } else { wanted.min(self.rate + self.largest_rise() * dt) };
         let mean = f64::midpoint(self.rate, next);
         self.rate_change = (next - self.rate) / dt;
         self.rate = next;
@@ -168,22 +171,57 @@ impl Clock {
         self.pass_instants();
     }
 
-    /// How fast the rate may fall and rise now, 1/s.
+    /// The rate after braking for `dt` seconds, not below `wanted`.
+    ///
+    /// The robot brakes along its path: its stop time, the longest that any joint needs to come to rest by itself, falls by a
+    /// second per second. A program that speeds up meanwhile makes its time fall faster; one that slows down harder by itself
+    /// is followed.
+    fn braked(&self, dt: f64, wanted: f64) -> f64 {
+        let left = self.stop_time(&self.here.first) * self.rate - dt;
+        if left <= 0.0 {
+            return wanted;
+        }
+        let mut rate = self.rate;
+        for _ in 0..LOOKS {
+            let ahead = self.point_at(self.time + dt * f64::midpoint(self.rate, rate));
+            let stop_time = ahead.map_or(0.0, |p| self.stop_time(&p.first));
+            let fits = if stop_time * rate > left { left / stop_time } else { rate };
+            if fits >= rate {
+                break;
+            }
+            rate = fits;
+        }
+        rate.max(wanted)
+    }
+
+    /// The longest time that any joint needs to come to rest from these velocities, s.
+    fn stop_time(&self, velocity: &[f64]) -> f64 {
+        velocity.iter().zip(&self.limits).fold(0.0, |most, (v, l)| f64::max(most, v.abs() / l.stop))
+    }
+
+    /// Where a time (s) of the step under way is; `None` where nothing moves.
+    fn point_at(&self, time: f64) -> Option<Point> {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => Some(m.at(time)),
+            Some(PlanStep::Play(p)) => Some(p.at(time)),
+            _ => None,
+        }
+    }
+
+    /// How fast the rate may rise now, 1/s.
     ///
     /// With `q̇ = q′σ` and `q̈ = q″σ² + q′σ̇`, `|q̈| ≤ a` leaves `σ̇ ≤ (a − |q″|σ²) / |q′|` per joint.
-    fn rate_limits(&self) -> (f64, f64) {
+    fn largest_rise(&self) -> f64 {
         let square = self.rate * self.rate;
-        let mut limits = (f64::INFINITY, f64::INFINITY);
+        let mut rise = f64::INFINITY;
         for ((first, second), l) in self.here.first.iter().zip(&self.here.second).zip(&self.limits) {
             let speed = first.abs();
-            if speed < 1e-12 {
-                continue;
+            if speed >= 1e-12 {
+                rise = rise.min((l.acceleration - second.abs() * square).max(RESERVE * l.acceleration) / speed);
             }
-            let left = |a: f64| (a - second.abs() * square).max(RESERVE * a) / speed;
-            limits = (limits.0.min(left(l.stop)), limits.1.min(left(l.acceleration)));
         }
         // A finite rate keeps 0 · ∞ out of the products.
-        (limits.0.min(1e9), limits.1.min(1e9))
+        rise.min(1e9)
     }
 
     /// Does the steps that take no time.
@@ -201,26 +239,24 @@ impl Clock {
     }
 
     fn look(&mut self) {
-        match self.plan.steps.get(self.step) {
-            Some(PlanStep::Move(m)) => self.here = m.at(self.time),
-            Some(PlanStep::Play(p)) => self.here = p.at(self.time),
-            _ => {
+        let point = self.point_at(self.time);
+        let moves = point.is_some();
+        match point {
+            Some(point) => self.here = point,
+            None => {
                 self.here.first.fill(0.0);
                 self.here.second.fill(0.0);
             }
         }
-        let (duration, ahead) = match self.plan.steps.get(self.step) {
-            Some(PlanStep::Move(m)) => (m.duration(), AHEAD_S.min(m.duration() / 2.0)),
-            Some(PlanStep::Play(p)) => (p.duration(), AHEAD_S.min(p.duration() / 2.0)),
-            _ => (0.0, 0.0),
-        };
         self.intent.clone_from(&self.here.first);
-        if self.time < ahead && duration > 0.0 {
-            match self.plan.steps.get(self.step) {
-                Some(PlanStep::Move(m)) => self.intent = m.at(ahead).first,
-                Some(PlanStep::Play(p)) => self.intent = p.at(ahead).first,
-                _ => {}
-            }
+        let duration = match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => m.duration(),
+            Some(PlanStep::Play(p)) => p.duration(),
+            _ => 0.0,
+        };
+        let ahead = AHEAD_S.min(duration / 2.0);
+        if moves && self.time < ahead {
+            self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.first);
         }
     }
 }

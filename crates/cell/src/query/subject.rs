@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, Warning};
 use elbowroom_scene::{Member, Object, Robot, Scene};
 use elbowroom_spatial::Pose;
 
-use crate::Cell;
+use crate::{Cell, resting};
 
 /// Robots and objects with the states that they are in unless told otherwise.
 #[derive(Debug, Clone)]
@@ -74,6 +74,33 @@ impl Subject {
             builder.object(o.clone());
         }
         builder.build().map_err(|e| FormatError::new(&self.file, None, e.to_string()))
+    }
+
+    /// Links of its robots that touch in the state without [`States`](super::States) and have no solid between them: what to
+    /// write in an SRDF where the robot is built so. Reading a cell warns of these by itself.
+    ///
+    /// ```
+    /// # use elbowroom_cell::query::Subject;
+    /// # use elbowroom_formats::robot::{LoadOptions, load};
+    /// # let dir = tempfile::tempdir()?;
+    /// # let path = dir.path().join("grip.urdf");
+    /// # let finger = |name: &str| format!("<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>\
+    /// #   <joint name=\"to_{name}\" type=\"prismatic\"><parent link=\"palm\"/><child link=\"{name}\"/><limit lower=\"0\" upper=\"1\" \
+    /// #   velocity=\"1\" effort=\"1\"/></joint>");
+    /// # std::fs::write(&path, format!("<robot name=\"g\"><link name=\"palm\"/>{}{}</robot>", finger("left"), finger("right")))?;
+    /// let robot = load(&path, &LoadOptions::default())?.robot;
+    /// let warnings = Subject::of_robot(&path, robot).touching_at_rest();
+    /// assert!(warnings[0].what.contains("`left` and `right` touch"));
+    /// assert!(warnings[0].write_instead.as_ref().unwrap().contains("<disable_collisions link1=\"left\" link2=\"right\""));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn touching_at_rest(&self) -> Vec<Warning> {
+        let of_robot = |r: &SubjectRobot| {
+            let name = (!self.alone).then_some(r.name.as_str());
+            let warnings = resting::warnings(&r.robot, &r.start, name);
+            warnings.map(|(what, hint)| Warning::new(&self.file, None, what).hint(hint)).collect::<Vec<_>>()
+        };
+        self.robots.iter().flat_map(of_robot).collect()
     }
 
     /// `robot/link` or the object's name; the link's name alone where the robot is.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use elbowroom_formats::FormatError;
-use elbowroom_scene::{Checker, Contact, Level, Options, Scene, SceneError, SceneState};
+use elbowroom_scene::{Checker, Contact, Counts, Level, Options, Scene, SceneError, SceneState};
 use elbowroom_spatial::Vec3;
 
 use super::{Ask, Row, States};
@@ -17,6 +17,7 @@ pub const BLOCK: usize = 256;
 const WAITING: usize = 8;
 
 /// Answers a question about every state. `take` is given the rows, in order and block by block; it says whether to go on.
+/// Returns what was done for the rows that were taken: how many pairs were tested, and so on.
 ///
 /// # Errors
 /// [`FormatError`] where a state does not fit the scene; states that were read for its subject do.
@@ -26,17 +27,20 @@ pub fn answer(
     ask: Ask,
     level: Level,
     take: &mut dyn FnMut(&[Row]) -> bool,
-) -> Result<(), FormatError> {
+) -> Result<Counts, FormatError> {
     let blocks = states.len().div_ceil(BLOCK);
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
     let wrong = |e: SceneError| FormatError::new(&states.file, None, e.to_string());
+    let mut done = Counts::default();
     if cores <= 1 {
         for block in 0..blocks {
-            if !take(&of_block(scene, states, ask, level, block).map_err(wrong)?) {
+            let (rows, counts) = of_block(scene, states, ask, level, block).map_err(wrong)?;
+            done += counts;
+            if !take(&rows) {
                 break;
             }
         }
-        return Ok(());
+        return Ok(done);
     }
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     std::thread::scope(|threads| {
@@ -61,7 +65,10 @@ pub fn answer(
             while let Some(rows) = waiting.remove(&due) {
                 due += 1;
                 let goes_on = match rows {
-                    Ok(rows) => take(&rows),
+                    Ok((rows, counts)) => {
+                        done += counts;
+                        take(&rows)
+                    }
                     Err(e) => {
                         stop.store(true, Ordering::Relaxed);
                         return Err(wrong(e));
@@ -69,27 +76,32 @@ pub fn answer(
                 };
                 if !goes_on {
                     stop.store(true, Ordering::Relaxed);
-                    return Ok(());
+                    return Ok(done);
                 }
             }
         }
-        Ok(())
+        Ok(done)
     })
 }
 
-fn of_block(scene: &Scene, states: &States, ask: Ask, level: Level, block: usize) -> Result<Vec<Row>, SceneError> {
-    // Without weights the pair told is the first of the hierarchy, whatever was asked before.
-    let options = Options { level, weights: ask == Ask::Distance, ..Options::default() };
-    let mut checker = Checker::new(scene, options);
+/// The rows of a block: likely pairs first, and what one state tells counts for the next.
+fn of_block(
+    scene: &Scene,
+    states: &States,
+    ask: Ask,
+    level: Level,
+    block: usize,
+) -> Result<(Vec<Row>, Counts), SceneError> {
+    let mut checker = Checker::new(scene, Options { level, ..Options::default() });
     let mut state = SceneState::new(scene);
     let rows = block * BLOCK..states.len().min((block + 1) * BLOCK);
-    rows.map(|index| {
+    let rows = rows.map(|index| {
         for (robot, q) in states.of(index) {
             state.set_q(scene, robot, q)?;
         }
         Ok(Row { index, ..one(&mut checker, &state, ask) })
-    })
-    .collect()
+    });
+    Ok((rows.collect::<Result<_, SceneError>>()?, checker.counts()))
 }
 
 fn one(checker: &mut Checker<'_>, state: &SceneState, ask: Ask) -> Row {

@@ -40,6 +40,8 @@ pub(super) struct Evasive<'s> {
     spec: &'s AvoidanceSpec,
     robot: usize,
     advice: Advice,
+    /// No velocity of any joint.
+    rest: Vec<f64>,
     not_before_s: f64,
     /// Plans in a row that found nothing.
     failed: u64,
@@ -72,6 +74,7 @@ impl<'s> Evasive<'s> {
             spec,
             robot,
             advice: Advice { rate: 1.0, nearest_m: f64::INFINITY, ..Advice::default() },
+            rest: vec![0.0; q.len()],
             not_before_s: 0.0,
             failed: 0,
             step_ns: Vec::new(),
@@ -87,9 +90,13 @@ impl<'s> Evasive<'s> {
         state.qdd.copy_from_slice(self.avoider.qdd());
     }
 
-    /// Joint velocities that it would have at override 1.
+    /// Joint velocities that it would have at override 1; none while it waits for what comes, whatever its program asks for.
     pub fn intent<'a>(&'a self, clock: &'a Clock) -> &'a [f64] {
-        if self.is_on_path() { clock.intent() } else { self.avoider.intent() }
+        match (self.is_on_path(), self.advice.rate == 0.0) {
+            (true, true) => &self.rest,
+            (true, false) => clock.intent(),
+            (false, _) => self.avoider.intent(),
+        }
     }
 
     /// True where the robot is where its program has it.

@@ -1,6 +1,7 @@
 //! A run: programs on one clock, in simulated time, under the monitor.
 
 mod avoid;
+mod delay;
 mod ending;
 mod faults;
 pub(crate) mod frames;
@@ -18,6 +19,7 @@ use crate::fence::RegionFence;
 use crate::motion::{Clock, plan};
 use crate::{Cell, Collision, EventRow, Leg, Mover, ObjectTrack, Recording, RobotTrack, Sample, TickTimes};
 use avoid::Evasive;
+use delay::Delay;
 use ending::{Ending, Halt};
 pub use faults::{InputFault, InputFaultKind};
 use frames::Frames;
@@ -145,6 +147,7 @@ struct Run<'a> {
     halts: Vec<Halt>,
     /// Override that each robot obeys until the next tick.
     obeyed: Vec<f64>,
+    delays: Vec<Delay>,
     events: Vec<EventRow>,
     ending: Ending,
     tick_ns: Vec<u64>,
@@ -189,6 +192,7 @@ impl<'a> Run<'a> {
             looked_s: 0.0,
             halts: vec![Halt::default(); cell.robots.len()],
             obeyed: vec![0.0; cell.robots.len()],
+            delays: cell.robots.iter().map(|_| Delay::new(cell.laws.obeyed_after_s)).collect(),
             events: Vec::new(),
             ending: Ending::new(cell),
             tick_ns: Vec::new(),
@@ -434,9 +438,10 @@ impl<'a> Run<'a> {
             if self.vanished(i, t_s) {
                 continue;
             }
-            let Self { cell, clocks, evasive, states, obeyed, monitors, frames, setups, .. } = self;
+            let Self { cell, clocks, evasive, states, obeyed, delays, monitors, frames, setups, .. } = self;
             let Some(evasive) = &mut evasive[i] else {
-                clocks[i].advance(dt, obeyed[i]);
+                delays[i].tell(t_s, obeyed[i]);
+                delays[i].advance(&mut clocks[i], t_s, dt);
                 continue;
             };
             let regions = |share: f64| {

@@ -97,7 +97,7 @@ pub fn distance_at(
     let measured = if touching { 0.0 } else { found.distance * unit };
     Some(Nearest {
         distance: measured,
-        lower_bound: (measured - 2.0 * pairing.slack * unit).max(0.0),
+        lower_bound: (measured - pairing.slack * unit).max(0.0),
         on_a: to_world(found.near.on_a),
         on_b: to_world(found.near.on_b),
         pair: Pair::Triangles(found.triangles.0, found.triangles.1),

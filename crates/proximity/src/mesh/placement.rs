@@ -44,8 +44,7 @@ impl Pairing {
             std::array::from_fn(|i| -(columns[i][0] * t[0] + columns[i][1] * t[1] + columns[i][2] * t[2]) / scale);
         // Bounds every coordinate in units of A, up to √3.
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
-        let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
-        let far = (reach(a_in_world, &a.frame) + reach(b_in_world, &b.frame)) / a.frame.unit;
+        let lost = lost_in_world(&a.frame, a_in_world, &b.frame, b_in_world) / a.frame.unit;
         Self {
             ab: placement(rows, t, scale),
             ba: placement(columns, back, 1.0 / scale),
@@ -53,7 +52,7 @@ impl Pairing {
             frame_a: a.frame,
             frame_b: b.frame,
             doubt: extent * F32_DOUBT,
-            slack: extent * F64_SLACK + far * 16.0 * f64::EPSILON,
+            slack: extent * F64_SLACK + lost,
         }
     }
 
@@ -83,12 +82,21 @@ fn offset(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> Vec3 {
     apart + b_in_world.rotation * b.center - a_in_world.rotation * a.center
 }
 
-/// True where the balls around two meshes are certainly farther apart than `limit` metres.
+/// What rounding of positions in the world, and of the frames' places in their meshes, may be worth, metres.
+#[inline]
+fn lost_in_world(a: &Frame, a_in_world: &Pose, b: &Frame, b_in_world: &Pose) -> f64 {
+    let reach = |p: &Pose, f: &Frame| p.translation.abs().max_element() + f.center.abs().max_element();
+    16.0 * f64::EPSILON * (reach(a_in_world, a) + reach(b_in_world, b))
+}
+
+/// True where the balls around two meshes are so much farther apart than `limit` metres that triangles would be, too,
+/// however they are rounded: at least twice [`Pairing::slack`].
 #[inline]
 pub(super) fn apart(a: &Tree, a_in_world: &Pose, b: &Tree, b_in_world: &Pose, limit: f64) -> bool {
     let between = offset(&a.frame, a_in_world, &b.frame, b_in_world);
-    let far = between.abs().max_element() + a_in_world.translation.abs().max_element();
-    let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + far * 1e-12;
+    let extent = a.frame.unit + b.frame.unit + between.x.abs() + between.y.abs() + between.z.abs();
+    let slack = extent * F64_SLACK + lost_in_world(&a.frame, a_in_world, &b.frame, b_in_world);
+    let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + 2.0 * slack;
     // Infinite and NaN are left to those who can say so.
     let squared = between.length_squared();
     squared.is_finite() && squared > reach * reach && a_in_world.is_finite() && b_in_world.is_finite()

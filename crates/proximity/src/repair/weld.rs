@@ -1,11 +1,9 @@
 //! Corners that are meant to be one.
 
-use std::collections::HashMap;
-
 use elbowroom_spatial::Vec3;
 
 use super::{RepairError, check};
-use crate::shape::topology::{Edges, first_of_equal, is_degenerate, is_proper};
+use crate::shape::topology::{Edges, first_of_equal, is_degenerate, is_proper, merge_near};
 
 /// What [`weld`] made of the triangles.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +49,7 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
     check(vertices.len(), triangles)?;
     let mut target = first_of_equal(vertices);
     if tolerance > 0.0 {
-        merge_near(vertices, &mut target, tolerance);
+        merge_near(vertices, &mut target, tolerance, |_| true);
     }
     let merged = target.iter().enumerate().filter(|&(i, &t)| t as usize != i).count();
     let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| target[i as usize])).collect();
@@ -60,54 +58,6 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
     let (vertices, triangles) = compact(vertices, &kept);
     report.unused = target.len() - merged - vertices.len();
     Ok(Welded { vertices, triangles, report })
-}
-
-/// Cells are twice as wide as the tolerance, so that what is near lies in the 27 around, rounding included.
-fn merge_near(vertices: &[Vec3], target: &mut [u32], tolerance: f64) {
-    let width = (2.0 * tolerance).max(1e-290);
-    let mut kept: HashMap<[u64; 3], Vec<u32>> = HashMap::with_capacity(vertices.len());
-    for i in 0..vertices.len() {
-        let v = vertices[i];
-        if target[i] as usize != i {
-            // The first of the same coordinates has been decided already.
-            target[i] = target[target[i] as usize];
-            continue;
-        }
-        if !v.is_finite() {
-            continue;
-        }
-        let cell = v.to_array().map(|c| (c / width).floor());
-        match nearest_kept(vertices, &kept, cell, v, tolerance) {
-            Some(first) => target[i] = first,
-            None => kept.entry(cell.map(key)).or_default().push(i as u32),
-        }
-    }
-}
-
-/// Cells are numbered by whole f64: an i64 would end where a tolerance is tiny beside a coordinate.
-fn key(cell: f64) -> u64 {
-    (cell + 0.0).to_bits()
-}
-
-fn nearest_kept(
-    vertices: &[Vec3],
-    kept: &HashMap<[u64; 3], Vec<u32>>,
-    cell: [f64; 3],
-    v: Vec3,
-    tolerance: f64,
-) -> Option<u32> {
-    let mut best: Option<(f64, u32)> = None;
-    for n in 0..27 {
-        let step = [n % 3, n / 3 % 3, n / 9].map(|s| f64::from(s) - 1.0);
-        let neighbour = std::array::from_fn(|k| key(cell[k] + step[k]));
-        for &k in kept.get(&neighbour).into_iter().flatten() {
-            let found = (vertices[k as usize].distance(v), k);
-            if found.0 <= tolerance && best.is_none_or(|b| found < b) {
-                best = Some(found);
-            }
-        }
-    }
-    best.map(|(_, k)| k)
 }
 
 /// Leaves out triangles without area. One with three different corners toggles whether its edges are matched, so it

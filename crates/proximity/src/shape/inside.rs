@@ -24,7 +24,8 @@ struct Crossings {
 }
 
 impl TriMesh {
-    /// True where the point (local frame) is inside a closed part of the surface; always false for an open mesh.
+    /// True where the point (local frame) is inside a closed part of the surface; always false for an open mesh. Hairline
+    /// seams count as closed ([`MeshReport::welded`](super::MeshReport::welded)).
     ///
     /// An odd number of crossings or a winding number other than zero counts as inside: parts that overlap stay solid,
     /// a cavity of the opposite orientation is free, and triangles that face both ways are judged by parity.
@@ -53,7 +54,7 @@ impl TriMesh {
         let mut found = Crossings { count: 0, signed: 0, unsure: false };
         self.tree.visit(&Ray::new(&self.tree, p, direction), 0.0, &mut |triangle| {
             if self.in_closed_part[triangle] {
-                cross(self.corners(triangle), p, direction, &mut found);
+                cross(self.closed_corners(triangle), p, direction, &mut found);
             }
             if found.unsure { f32::NEG_INFINITY } else { 0.0 }
         });
@@ -69,7 +70,7 @@ impl TriMesh {
             2.0 * across.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
         };
         let closed = (0..self.triangles().len()).filter(|&t| self.in_closed_part[t]);
-        closed.map(|t| angle(self.corners(t))).sum::<f64>() / (4.0 * std::f64::consts::PI)
+        closed.map(|t| angle(self.closed_corners(t))).sum::<f64>() / (4.0 * std::f64::consts::PI)
     }
 }
 

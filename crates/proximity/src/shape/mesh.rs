@@ -33,6 +33,8 @@ pub struct TriMesh {
     pub(crate) parts: Vec<Vec3>,
     /// Triangles that belong to a closed part, by index.
     pub(crate) in_closed_part: Vec<bool>,
+    /// The vertex that stands for each, where seams had to be closed by a tolerance.
+    joined: Option<Vec<u32>>,
     hull: OnceLock<Option<ConvexHull>>,
 }
 
@@ -43,9 +45,14 @@ pub struct MeshReport {
     pub triangles: usize,
     /// Number of vertices as given.
     pub vertices: usize,
-    /// Every edge is shared by an even number of triangles (vertices of equal coordinates count as one): the mesh has
-    /// an inside.
+    /// Every edge is shared by two triangles (vertices of equal coordinates count as one, and so do those that were
+    /// [`welded`](Self::welded)): the mesh has an inside.
     pub closed: bool,
+    /// Vertices on open rims that were taken for another one within [`weld_tolerance`](Self::weld_tolerance), so that
+    /// hairline seams are closed. What is inside is judged with them; distances are to the triangles as given.
+    pub welded: usize,
+    /// Metres: a millionth of the largest extent where seams were closed; 0 where none were.
+    pub weld_tolerance: f64,
     /// Triangles without area.
     pub degenerate: usize,
     /// Triangles whose three corners another triangle has already.
@@ -101,6 +108,7 @@ impl TriMesh {
             report: topology.report,
             parts: topology.parts,
             in_closed_part: topology.in_closed_part,
+            joined: topology.joined,
             hull: OnceLock::new(),
             vertices,
             triangles,
@@ -139,6 +147,33 @@ impl TriMesh {
 
     pub(crate) fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.vertices[i as usize])
+    }
+
+    /// Corners of a triangle after hairline seams were closed.
+    pub(crate) fn closed_corners(&self, triangle: usize) -> [Vec3; 3] {
+        match &self.joined {
+            Some(joined) => self.triangles[triangle].map(|i| self.vertices[joined[i as usize] as usize]),
+            None => self.corners(triangle),
+        }
+    }
+
+    /// For each vertex the one that stands for it when the surface is judged: the first of equal coordinates, and across
+    /// hairline seams the first of those within [`MeshReport::weld_tolerance`].
+    ///
+    /// ```
+    /// use elbowroom_proximity::TriMesh;
+    /// use elbowroom_spatial::Vec3;
+    /// // A tetrahedron whose last face has corners of its own, a little off.
+    /// let [o, x, y, z] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    /// let off = Vec3::new(1e-9, 0.0, -1e-9);
+    /// let corners = vec![o, x, y, z, x + off, y - off, z + off];
+    /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [4, 5, 6]])?;
+    /// assert_eq!(mesh.joined(), [0, 1, 2, 3, 1, 2, 3]);
+    /// assert!(mesh.report().closed && mesh.report().welded == 3 && mesh.contains(Vec3::splat(0.2)));
+    /// # Ok::<(), elbowroom_proximity::MeshError>(())
+    /// ```
+    pub fn joined(&self) -> Vec<u32> {
+        self.joined.clone().unwrap_or_else(|| topology::first_of_equal(&self.vertices))
     }
 
     /// A vertex of each connected part.

@@ -2,7 +2,9 @@
 
 mod edges;
 mod equal;
+mod near;
 mod parts;
+mod seams;
 #[cfg(test)]
 mod tests;
 
@@ -13,38 +15,67 @@ use super::mesh::MeshReport;
 
 pub(crate) use edges::{Edges, is_proper};
 pub(crate) use equal::first_of_equal;
+pub(crate) use near::merge_near;
 pub(crate) use parts::parts;
 
 pub(super) struct Topology {
     pub report: MeshReport,
     pub parts: Vec<Vec3>,
     pub in_closed_part: Vec<bool>,
+    /// For each vertex the one that stands for it, where seams had to be closed by a tolerance.
+    pub joined: Option<Vec<u32>>,
 }
 
 pub(super) fn examine(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
-    let welded = first_of_equal(vertices);
-    let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| welded[i as usize])).collect();
-    let part_of = parts(vertices.len(), &faces);
-    let edges = examine_edges(vertices.len(), &faces, &part_of);
+    let first = first_of_equal(vertices);
+    let mut surface = Surface::new(vertices, seams::faces(triangles, &first));
+    let mut seams = None;
+    if surface.edges.odd > 0
+        && let Some(found) = seams::close(vertices, triangles, &first)
+    {
+        surface = Surface::new(vertices, seams::faces(triangles, &found.joined));
+        seams = Some(found);
+    }
+    let Surface { faces, part_of, edges } = surface;
     let in_closed_part: Vec<bool> = faces.iter().map(|f| !edges.open[part_of[f[0] as usize] as usize]).collect();
     let encloses = in_closed_part.iter().all(|&c| c);
-    let signed = if encloses { enclosed_volume(vertices, triangles) } else { 0.0 };
+    let signed = if encloses { enclosed_volume(vertices, &faces) } else { 0.0 };
     let report = MeshReport {
         triangles: triangles.len(),
         vertices: vertices.len(),
         closed: encloses && edges.all_twice,
+        welded: seams.as_ref().map_or(0, |s| s.welded),
+        weld_tolerance: seams.as_ref().map_or(0.0, |s| s.tolerance),
         degenerate: triangles.iter().filter(|t| is_degenerate(t.map(|i| vertices[i as usize]))).count(),
         duplicate: edges.duplicates + repeated(&faces),
         inside_out: signed < 0.0,
         volume: signed.abs(),
     };
-    Topology { report, parts: representatives(vertices, &faces, &part_of), in_closed_part }
+    let parts = representatives(vertices, &faces, &part_of);
+    Topology { report, parts, in_closed_part, joined: seams.map(|s| s.joined) }
+}
+
+/// How faces of joined corners hang together.
+struct Surface {
+    faces: Vec<[u32; 3]>,
+    part_of: Vec<u32>,
+    edges: EdgeReport,
+}
+
+impl Surface {
+    fn new(vertices: &[Vec3], faces: Vec<[u32; 3]>) -> Self {
+        let part_of = parts(vertices.len(), &faces);
+        let edges = examine_edges(vertices.len(), &faces, &part_of);
+        Self { faces, part_of, edges }
+    }
 }
 
 struct EdgeReport {
     /// Per part: true where some edge is used by an odd number of triangles, or where no triangle has three corners.
     /// A part whose edges are used two or four times still has an inside.
     open: Vec<bool>,
+    /// Edges used by an odd number of triangles.
+    odd: usize,
     /// Every edge has two uses.
     all_twice: bool,
     /// Triangles of three corners that another has already.
@@ -52,7 +83,7 @@ struct EdgeReport {
 }
 
 fn examine_edges(vertices: usize, faces: &[[u32; 3]], part_of: &[u32]) -> EdgeReport {
-    let mut report = EdgeReport { open: vec![true; vertices], all_twice: true, duplicates: 0 };
+    let mut report = EdgeReport { open: vec![true; vertices], odd: 0, all_twice: true, duplicates: 0 };
     for f in faces.iter().filter(|f| is_proper(f)) {
         report.open[part_of[f[0] as usize] as usize] = false;
     }
@@ -61,6 +92,7 @@ fn examine_edges(vertices: usize, faces: &[[u32; 3]], part_of: &[u32]) -> EdgeRe
     edges.for_each(|low, high, uses| {
         report.all_twice &= uses.len() == 2;
         if uses.len() % 2 == 1 {
+            report.odd += 1;
             report.open[part_of[low as usize] as usize] = true;
         }
         // Counted at one of its three edges, that between its two smaller corners.

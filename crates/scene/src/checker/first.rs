@@ -5,7 +5,7 @@ use super::list::{Pair, PairList};
 use super::narrow::Placed;
 use super::{Candidate, Core};
 use crate::world_box::round_up;
-use crate::{Level, SceneState, weight};
+use crate::{Level, SceneState};
 
 /// More than the rounding of a sum of two f32 that are not negative.
 const ROUND_UP: f32 = 1.0 + 4.0 * f32::EPSILON;
@@ -23,12 +23,11 @@ impl<'s> Core<'s> {
         let mut found = None;
         for i in 0..self.candidates.len() {
             let pair = &mut list.pairs[self.candidates[i].index as usize];
-            let hit = self.hit(pair, state, tolerance);
-            if self.options.weights {
-                pair.weight = weight::learned(pair.weight, hit.is_some());
-            }
-            if hit.is_some() {
-                found = hit;
+            found = self.hit(pair, state, tolerance);
+            if found.is_some() {
+                if self.options.weights {
+                    list.learn(self.candidates[i].index as usize);
+                }
                 break;
             }
         }

@@ -98,6 +98,13 @@ impl PairList {
         (holds(one, a) && holds(other, b)) || (holds(one, b) && holds(other, a))
     }
 
+    /// A pair was told to be in contact.
+    pub fn learn(&mut self, contact: usize) {
+        let told = self.pairs[contact].weight;
+        self.pairs.iter_mut().for_each(|p| p.weight = weight::lowered(p.weight));
+        self.pairs[contact].weight = weight::raised(told);
+    }
+
     fn of_matrix(&mut self, scene: &Scene, state: &SceneState) {
         for e in scene.pairs.entries() {
             if !self.selects(state, e.a, e.b) {

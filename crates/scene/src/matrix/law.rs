@@ -1,13 +1,20 @@
 //! What the models themselves say about each pair, before anything is measured.
 
 use crate::pairs::{is_moved, why_no_pair};
-use crate::{Member, PairEntry, PairMatrix, PairState, Reason, SceneRobot, weight};
+use crate::weight::Prior;
+use crate::{Member, Object, PairEntry, PairMatrix, PairState, Reason, SceneRobot};
 
 /// The matrix by the rule of [`pairs`](crate::pairs::pairs); `solid` members only, `padding` in metres.
-pub(crate) fn by_law(robots: &[SceneRobot], members: &[Member], padding: &dyn Fn(Member) -> f64) -> PairMatrix {
+pub(crate) fn by_law(
+    robots: &[SceneRobot],
+    objects: &[Object],
+    members: &[Member],
+    padding: &dyn Fn(Member) -> f64,
+) -> PairMatrix {
+    let priors: Vec<Prior> = members.iter().map(|m| Prior::of(robots, objects, *m)).collect();
     let mut entries = Vec::new();
     for (i, &a) in members.iter().enumerate() {
-        for &b in &members[i + 1..] {
+        for (k, &b) in members.iter().enumerate().skip(i + 1) {
             let Some(why_not) = why_skipped(robots, a, b) else { continue };
             let state = if why_not.is_some() { PairState::Skipped } else { PairState::Tested };
             entries.push(PairEntry {
@@ -15,7 +22,7 @@ pub(crate) fn by_law(robots: &[SceneRobot], members: &[Member], padding: &dyn Fn
                 b,
                 state,
                 margin_m: padding(a) + padding(b),
-                weight: weight::prior(robots, a, b),
+                weight: priors[i].weight(&priors[k]),
                 reason: why_not.unwrap_or(Reason::Default),
                 suggestion: None,
             });

@@ -14,6 +14,7 @@ pub use reason::Reason;
 
 pub(crate) use law::by_law;
 pub(crate) use reach::prove;
+pub(crate) use sample::RSequence;
 
 /// Whether a pair counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

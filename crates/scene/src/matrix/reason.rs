@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Reason {
     /// Nothing speaks against it: tested.
     Default,
-    /// One joint between them, or a chain through links without solids.
+    /// At most one moving joint between them, directly or through fixed joints and links without solids.
     Adjacent,
     /// No joint moves one against the other.
     NoJointBetween,
@@ -32,6 +32,14 @@ pub enum Reason {
     AlwaysInContact {
         /// How many states were looked at.
         samples: u64,
+    },
+    /// In contact where the robot rests (all joints at 0, or at the limit nearest to it), with no solid between them: built
+    /// so, or a fault.
+    TouchesAtRest {
+        /// In how many of the samples they were in contact.
+        contacts: u32,
+        /// How many states were looked at.
+        samples: u32,
     },
     /// Somebody decided, with this note.
     ByHand(String),
@@ -56,6 +64,9 @@ impl fmt::Display for Reason {
                 confidence * 100.0
             ),
             Self::AlwaysInContact { samples } => write!(f, "always in contact, in {samples} samples"),
+            Self::TouchesAtRest { contacts, samples } => {
+                write!(f, "in contact at rest, and in {contacts} of {samples} samples, with no solid between")
+            }
             Self::ByHand(note) => write!(f, "by hand: {note}"),
             Self::Attached(link) => write!(f, "part of {link}"),
             Self::MayTouch(link) => write!(f, "held, may touch {link}"),

@@ -1,10 +1,10 @@
 //! What a fixed sequence of states suggests about the pairs.
 
-use elbowroom_kinematics::Chain;
+use elbowroom_kinematics::{Chain, ChainState};
 
 use super::{PairEntry, PairMatrix, Reason};
 use crate::checker::narrow::{Narrow, Placed};
-use crate::{Level, Scene, SceneState};
+use crate::{Level, Member, Scene, SceneState, pairs};
 
 /// The rule of three: with N samples and no contact, P(contact) < 3 / N at this confidence.
 const CONFIDENCE: f64 = 0.95;
@@ -14,8 +14,8 @@ impl PairMatrix {
     ///
     /// The states are Roberts' R-sequence over the joint limits (±π where a joint has none, ±1 m where a slide has
     /// none): the same ones each time. Objects stand where the scene has them. Pairs never in contact get
-    /// [`Reason::NeverInSamples`] as their suggestion, pairs always in contact [`Reason::AlwaysInContact`]; nothing is
-    /// skipped before [`PairMatrix::accept_suggestions`]. The confidence is that of independent draws; the sequence is
+    /// [`Reason::NeverInSamples`] as their suggestion, pairs always in contact [`Reason::AlwaysInContact`], others that are in
+    /// contact at rest with no solid between them [`Reason::TouchesAtRest`]; nothing is skipped before [`PairMatrix::accept_suggestions`]. The confidence is that of independent draws; the sequence is
     /// more even than those.
     ///
     /// ```
@@ -52,7 +52,25 @@ impl PairMatrix {
             let suggestion = if pair.hit { Reason::AlwaysInContact { samples } } else { never };
             matrix.entries_mut()[pair.entry].suggestion = Some(suggestion);
         }
+        matrix.suggest_at_rest(scene);
         matrix
+    }
+}
+
+impl PairMatrix {
+    /// Pairs that touch at rest and come apart elsewhere.
+    fn suggest_at_rest(&mut self, scene: &Scene) {
+        for (robot, r) in scene.robots.iter().enumerate() {
+            let (lower, upper) = (r.robot.chain.lower(), r.robot.chain.upper());
+            let rest: Vec<f64> =
+                lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
+            for found in pairs::resting_contacts(&r.robot, &rest) {
+                let link = |link| Member::Link { robot, link };
+                let Some(at) = self.position(link(found.a), link(found.b)) else { continue };
+                let reason = Reason::TouchesAtRest { contacts: found.contacts, samples: found.samples };
+                self.entries_mut()[at].suggestion.get_or_insert(reason);
+            }
+        }
     }
 }
 
@@ -79,13 +97,8 @@ impl Open {
 fn put(scene: &Scene, state: &mut SceneState, sequence: &RSequence, n: u64) {
     let mut axis = 0;
     for (robot, r) in scene.robots.iter().enumerate() {
-        let chain = &r.robot.chain;
-        for i in 0..chain.dof() {
-            let (lower, upper) = range(chain, i);
-            state.chains[robot].q[i] = lower + (upper - lower) * sequence.at(n, axis);
-            axis += 1;
-        }
-        chain.forward(&mut state.chains[robot]);
+        sequence.put(&r.robot.chain, &mut state.chains[robot], n, axis);
+        axis += r.robot.chain.dof();
         state.moved(scene, robot);
     }
 }
@@ -100,12 +113,12 @@ fn range(chain: &Chain, index: usize) -> (f64, f64) {
 
 /// Evenly spread points of the unit cube in any dimension: multiples of powers of the generalized golden ratio
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
-struct RSequence {
+pub(crate) struct RSequence {
     steps: Vec<f64>,
 }
 
 impl RSequence {
-    fn new(dimensions: usize) -> Self {
+    pub(crate) fn new(dimensions: usize) -> Self {
         // The positive root of x^(d+1) = x + 1 by Newton's method, in plain arithmetic: equal on every machine.
         let mut phi = 2.0_f64;
         for _ in 0..64 {
@@ -118,6 +131,15 @@ impl RSequence {
             step
         };
         Self { steps: (0..dimensions).map(|_| next()).collect() }
+    }
+
+    /// Moves a chain to point `n`, whose coordinates for it begin at `axis`.
+    pub(crate) fn put(&self, chain: &Chain, state: &mut ChainState, n: u64, axis: usize) {
+        for i in 0..chain.dof() {
+            let (lower, upper) = range(chain, i);
+            state.q[i] = lower + (upper - lower) * self.at(n, axis + i);
+        }
+        chain.forward(state);
     }
 
     /// Coordinate `axis` of point `n`, 0 ≤ x < 1.

@@ -127,7 +127,9 @@ fn agrees(model: &PairEntry, state: PairState, reason: &Reason, margin_m: f64) -
     match reason {
         Reason::ByHand(_) => true,
         Reason::Default => tested && free,
-        Reason::NeverInSamples { .. } | Reason::AlwaysInContact { .. } => !tested && free,
+        Reason::NeverInSamples { .. } | Reason::AlwaysInContact { .. } | Reason::TouchesAtRest { .. } => {
+            !tested && free
+        }
         Reason::OutOfReach { .. } => {
             !tested && matches!(model.reason, Reason::OutOfReach { least_m } if least_m > margin_m)
         }

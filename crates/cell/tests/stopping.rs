@@ -1,0 +1,147 @@
+//! The stopping-distance law in whole cells: robots that brake more softly than their programs accelerate, obey late, and
+//! bend towards regions.
+
+mod common;
+
+use common::{ARM, HEAD, run};
+
+fn carriage(stop_time: f64, reaction_ms: f64, to: f64) -> String {
+    format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n\
+         [monitor]\nstopping_distance = true\nreaction_ms = {reaction_ms}\n\
+         [robot.a]\nbase = {{ at = [0, 0, 0], rpy = [0, 90, 0] }}\n\
+         dh = [{{ kind = \"prismatic\", min = -5000, max = 5000, speed = 2000, acceleration = 8000 }}]\n\
+         links = [[{{ sphere = {{ radius = 50 }} }}]]\nstop_time = {stop_time}\nstart = [0]\n\
+         [region.wall]\nshape = \"box\"\nbase = [{to}, 0, -500]\nsize = [1000, 1000, 1000]\nwarning = 1\n\
+         [program.a]\nsteps = [{{ move = \"joint\", to = [4000] }}]\n"
+    )
+}
+
+#[test]
+fn a_carriage_stops_before_a_wall_however_softly_it_brakes_and_however_late_it_obeys() {
+    for stop_time in [0.05, 0.1, 0.25, 0.5, 1.0, 1.5] {
+        for reaction_ms in [2.0, 20.0, 60.0] {
+            // 300 mm from the wall at the start, where it is still speeding up; and far away.
+            for to in [850.0, 2550.0] {
+                let region = &run(&carriage(stop_time, reaction_ms, to)).recording.regions[0];
+                let least = region.min_distance_m.unwrap();
+                let what = format!("stop time {stop_time} s, reaction {reaction_ms} ms, wall at {to} mm: {least} m");
+                assert!(!region.entered && least > 0.0, "{what}");
+                assert!(least < 0.002, "it goes up to the border, {what}");
+            }
+        }
+    }
+}
+
+/// What the law assumes is what the simulation does: once slowed down, the time that the carriage needs to stop falls by a
+/// second per second at least, also while its program speeds up; and it is not braked harder than stated.
+#[test]
+fn a_program_that_speeds_up_is_braked_no_less() {
+    // The bare law, whose zone is too thin for it: while its program still speeds up it is told to stop.
+    let bare = carriage(0.5, 2.0, 850.0).replace("stopping_distance = true", "stopping_distance = false");
+    let outcome = run(&bare.replace("warning = 1\n", "warning = 200\n"));
+    let samples = &outcome.recording.robots[0].samples;
+    let (tick_s, deceleration) = (0.002, 2.0 / 0.5);
+    let speed = |i: usize| (samples[i + 1].q[0] - samples[i].q[0]) / tick_s;
+    let mut braked = 0;
+    for i in 1..samples.len() - 2 {
+        let change = (speed(i + 1) - speed(i)) / tick_s;
+        assert!(change > -deceleration * 1.02 || speed(i + 1) < 0.02, "{change} m/s² at {} s", samples[i].t_s);
+        // Where it runs faster than it is told, it brakes.
+        // An answer counts one tick later.
+        let told = |i: usize| samples[i.saturating_sub(1)].speed_override * samples[i].programmed_speed;
+        if (i - 1..=i + 1).all(|k| speed(k) > told(k) + 0.02 && samples[k].programmed_speed > 0.1) {
+            braked += 1;
+            assert!(change < -deceleration * 0.98, "{change} m/s² at {} s", samples[i].t_s);
+        }
+    }
+    assert!(braked > 20, "{braked}");
+}
+
+#[test]
+fn an_override_counts_after_the_reaction_time() {
+    let outcome = run(&carriage(0.1, 60.0, 2550.0));
+    let samples = &outcome.recording.robots[0].samples;
+    let begins = samples.iter().position(|s| s.t_s > 0.5 && s.speed_override < 1.0).unwrap();
+    let speed = |i: usize| (samples[i + 1].q[0] - samples[i].q[0]) / 0.002;
+    let cruising = speed(begins);
+    assert!(cruising > 1.9);
+    for i in begins..begins + 29 {
+        assert!((speed(i) - cruising).abs() < 1e-6, "it obeyed {} ms after", (i - begins) * 2);
+    }
+    assert!(speed(begins + 45) < 0.98 * cruising);
+}
+
+#[test]
+fn six_axis_arms_that_brake_softly_stay_outside() {
+    let mut random = fastrand(7);
+    let (mut slowed, mut cells) = (0, 0);
+    for case in 0..60 {
+        let stop_time = [0.3, 0.5][case % 2];
+        let angle = |r: &mut dyn FnMut() -> f64, range: f64| (r() * 2.0 - 1.0) * range;
+        let ranges = [150.0, 60.0, 60.0, 120.0, 90.0, 180.0];
+        let [from, to]: [Vec<String>; 2] =
+            std::array::from_fn(|_| ranges.iter().map(|r| format!("{:.2}", angle(&mut random, *r))).collect());
+        let at: Vec<String> =
+            [1000.0, 1000.0, 700.0].iter().map(|r| format!("{:.1}", angle(&mut random, *r))).collect();
+        let text = format!(
+            "{HEAD}[monitor]\nstopping_distance = true\n[robot.r]\n{ARM}stop_time = {stop_time}\nstart = [{}]\n\
+             [region.ball]\nshape = \"sphere\"\ncentre = [{}]\nradius = 200\nwarning = 10\n\
+             [program.r]\nsteps = [{{ move = \"joint\", to = [{}] }}]\n",
+            from.join(", "),
+            at.join(", "),
+            to.join(", ")
+        );
+        let outcome = run(&text);
+        let region = &outcome.recording.regions[0];
+        if region.inside_spans.iter().any(|s| s.from_s == 0.0) {
+            continue;
+        }
+        cells += 1;
+        slowed += usize::from(outcome.recording.robots[0].min_override < 0.9);
+        assert!(!region.entered, "entered:\n{text}");
+    }
+    assert!(cells > 30 && slowed > 8, "{cells} cells, {slowed} slowed");
+}
+
+/// xorshift64*, 0..1.
+fn fastrand(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        (state.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A carriage inside a box: 30 mm deep from a face beside it, and the program leads out ahead.
+fn inside(to: f64, box_at: [f64; 3]) -> String {
+    let [x, y, z] = box_at;
+    format!(
+        "{HEAD}[monitor]\ndirection_aware = true\nstopping_distance = true\n\
+         [robot.a]\nbase = {{ at = [0, 0, 0], rpy = [0, 90, 0] }}\n\
+         dh = [{{ kind = \"prismatic\", min = -5000, max = 5000, speed = 1000, acceleration = 4000 }}]\n\
+         links = [[{{ sphere = {{ radius = 50 }} }}]]\nstart = [0]\n\
+         [region.box]\nshape = \"box\"\nbase = [{x}, {y}, {z}]\nsize = [600, 600, 600]\nwarning = 100\n\
+         [program.a]\nsteps = [{{ move = \"joint\", to = [{to}] }}]\n"
+    )
+}
+
+#[test]
+fn a_robot_inside_goes_out_ahead_though_the_nearest_face_is_beside_it() {
+    // The ball (50 mm) around the origin reaches 30 mm into the box across its face y = 20; the end of the box is 300 mm ahead.
+    let outcome = run(&inside(1000.0, [0.0, 320.0, -300.0]));
+    assert!(outcome.recording.robots[0].finished, "held inside");
+    // It goes at 10 % there, and at full speed outside.
+    assert!(outcome.recording.duration_s > 3.0 && outcome.recording.duration_s < 12.0);
+}
+
+#[test]
+fn a_robot_inside_is_held_where_its_program_leads_deeper() {
+    // The nearest face is 20 mm behind; the program leads through the box.
+    let outcome = run(&inside(1000.0, [280.0, 0.0, -300.0]));
+    assert!(!outcome.recording.robots[0].finished);
+    let last = outcome.recording.robots[0].samples.last().unwrap();
+    assert!(last.q[0].abs() < 1e-6, "it went {} m deeper", last.q[0]);
+}

@@ -1,0 +1,122 @@
+//! What the stopping-distance law does with input that says little, or lies: positions only, frozen readings, jumps, brakes
+//! that fail.
+
+mod common;
+
+use common::{gantry, parts};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, Reason, Region, Snapshot, Stopping, Volume,
+};
+use elbowroom_spatial::{Rotation, Vec3};
+
+const TICK_S: f64 = 0.002;
+const BRAKES: f64 = 4.0;
+
+fn monitor() -> Monitor {
+    let stopping = Stopping {
+        reaction_s: TICK_S,
+        period_s: TICK_S,
+        joint_deceleration: vec![BRAKES; 6],
+        joint_acceleration: vec![8.0; 6],
+    };
+    let laws = Laws { stopping_distance: Some(stopping), ..Laws::default() };
+    let size = Vec3::new(1.0, 4.0, 4.0);
+    let wall = Region::cuboid("wall", Vec3::new(2.5, 0.0, -2.0), size, Rotation::IDENTITY).guards(Guards::TCP);
+    let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
+    let parts = ConfigurationParts { laws, ..parts(gantry(), volumes, vec![wall]) };
+    Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
+}
+
+/// A point on the x axis whose program goes at 2 m/s towards the wall at x = 2. It speeds up at 8 m/s² and brakes at 4.
+struct Robot {
+    x: f64,
+    speed: f64,
+}
+
+impl Robot {
+    fn obey(&mut self, speed_override: f64, brakes: f64) {
+        let wanted = 2.0 * speed_override;
+        let next = wanted.clamp((self.speed - brakes * TICK_S).max(0.0), self.speed + 8.0 * TICK_S);
+        self.x += 0.5 * (self.speed + next) * TICK_S;
+        self.speed = next;
+    }
+}
+
+#[test]
+fn with_positions_alone_the_robot_stops_outside() {
+    for intent in [None, Some([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])] {
+        let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
+        let mut fastest = 0.0_f64;
+        for tick in 0..6000 {
+            let q = [robot.x, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let s =
+                Snapshot { intent: intent.as_ref().map(|i| &i[..]), ..Snapshot::still(TICK_S * f64::from(tick), &q) };
+            let report = m.tick(&s);
+            assert_eq!(matches!(report.reason, Reason::Fault(Fault::NoVelocity)), tick == 0, "{}", report.reason);
+            robot.obey(report.speed_override, BRAKES);
+            fastest = fastest.max(robot.speed);
+            assert!(robot.x < 2.0, "inside at tick {tick}");
+        }
+        assert!(fastest > 1.0 && robot.x > 1.98, "{fastest} m/s, at {} m", robot.x);
+    }
+}
+
+#[test]
+fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
+    for frozen_at in [0.0, 0.3, 0.9, 1.5, 1.9, 1.97] {
+        for all in [true, false] {
+            let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
+            let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let mut frozen = None;
+            let mut found = false;
+            for tick in 0..4000 {
+                if robot.x >= frozen_at {
+                    frozen.get_or_insert((robot.x, robot.speed));
+                }
+                let (x, then) = frozen.unwrap_or((robot.x, robot.speed));
+                let speed = if all { then } else { robot.speed };
+                let (q, qd) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
+                let still = Snapshot::still(TICK_S * f64::from(tick), &q);
+                let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
+                found |= matches!(report.reason, Reason::Fault(Fault::Frozen | Fault::Braking));
+                robot.obey(report.speed_override, BRAKES);
+                assert!(robot.x < 2.0, "inside, frozen at {frozen_at}");
+            }
+            assert!(robot.speed < 1e-3 && (found || frozen_at > 1.8), "frozen at {frozen_at}: {} m/s", robot.speed);
+        }
+    }
+}
+
+#[test]
+fn a_reading_that_has_jumped_stays_untrusted_until_it_is_back() {
+    let mut m = monitor();
+    let at = |m: &mut Monitor, tick: u32, x: f64| {
+        let q = [x, 0.0, 0.0, 0.0, 0.0, 0.0];
+        m.tick(&Snapshot { qd: &[0.0; 6], ..Snapshot::still(TICK_S * f64::from(tick), &q) }).reason
+    };
+    assert_eq!(at(&mut m, 0, 0.5), Reason::Free);
+    for tick in 1..5000 {
+        assert_eq!(at(&mut m, tick, 0.4), Reason::Fault(Fault::TooFast { joint: 0 }), "tick {tick}");
+    }
+    assert_eq!(at(&mut m, 5000, 0.5), Reason::Free);
+}
+
+#[test]
+fn a_robot_that_brakes_less_than_stated_is_a_fault() {
+    for (brakes, fails) in [(BRAKES, false), (0.8 * BRAKES, true)] {
+        let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
+        let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let mut found = false;
+        for tick in 0..6000 {
+            let (q, qd) = ([robot.x, 0.0, 0.0, 0.0, 0.0, 0.0], [robot.speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let still = Snapshot::still(TICK_S * f64::from(tick), &q);
+            // The operator stops it on its way.
+            let programmed_override = if robot.x > 0.9 { 0.0 } else { 1.0 };
+            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), programmed_override, ..still });
+            found |= matches!(report.reason, Reason::Fault(Fault::Braking));
+            robot.obey(report.speed_override, brakes);
+        }
+        assert_eq!(found, fails, "{brakes} m/s²");
+    }
+}

@@ -1,0 +1,123 @@
+//! Random regions where a robot will come.
+
+use elbowroom_cell::Cell;
+use elbowroom_spatial::Vec3;
+
+use crate::fuzz_cells::oracle::{self, Guarded};
+use crate::fuzz_cells::random::{Random, rounded};
+use crate::fuzz_cells::spec::{CellSpec, RegionSpec, StepSpec, Vector, list};
+
+/// Tries to find a place that is in the way, but not at the start.
+const TRIES: usize = 6;
+/// What the start must be away from a region, m.
+const START_M: f64 = 0.005;
+
+/// A forbidden region on the way of one of the robots; `None` where none was found that its start is outside of.
+pub fn in_the_way(spec: &CellSpec, cell: &Cell, name: String, random: &mut Random) -> Option<RegionSpec> {
+    let robot = random.whole(0, spec.robots.len() - 1);
+    for _ in 0..TRIES {
+        let at = point_on_the_way(spec, cell, robot, random)?;
+        let region = RegionSpec {
+            name: name.clone(),
+            shape: shape(random, at),
+            kind: "forbidden",
+            warning: warning(random),
+            guards: guards(spec, robot, random),
+            robots: if random.percent(50) { vec![robot] } else { Vec::new() },
+            temporary: false,
+            follow: None,
+        };
+        if starts_outside(spec, &region, cell) {
+            return Some(region);
+        }
+    }
+    None
+}
+
+/// A point on or near a guarded solid, somewhere on the program's way.
+fn point_on_the_way(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
+    let r = &spec.robots[robot];
+    let ends: Vec<&Vec<f64>> = std::iter::once(&r.start)
+        .chain(r.steps.iter().filter_map(|s| match s {
+            StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } => Some(to),
+            _ => None,
+        }))
+        .collect();
+    if ends.len() < 2 {
+        return None;
+    }
+    let leg = random.whole(0, ends.len() - 2);
+    let u = random.between(0.2, 1.1);
+    let q: Vec<f64> = ends[leg].iter().zip(ends[leg + 1]).map(|(a, b)| a + (b - a) * u).collect();
+    let guarded = Guarded::all(&cell.robots[robot]);
+    let one = &guarded[random.whole(0, guarded.len() - 1)];
+    let at = one.center(&oracle::Arm::new(&cell.robots[robot]).frames(&q)) + vector(random.vector(0.15));
+    Some([at.x, at.y, at.z].map(rounded))
+}
+
+fn vector(v: Vector) -> Vec3 {
+    Vec3::new(v[0], v[1], v[2])
+}
+
+fn starts_outside(spec: &CellSpec, region: &RegionSpec, cell: &Cell) -> bool {
+    let with = CellSpec { regions: vec![region.clone()], ..spec.clone() };
+    let Ok(with) = Cell::parse(&cell.file, &with.to_toml()) else { return true };
+    oracle::start_distance(&with, 0) > START_M
+}
+
+/// None, thin and thick.
+fn warning(random: &mut Random) -> f64 {
+    match random.whole(0, 9) {
+        0..=2 => 0.0,
+        3..=5 => random.between(0.001, 0.03),
+        _ => random.between(0.05, 0.5),
+    }
+}
+
+fn guards(spec: &CellSpec, robot: usize, random: &mut Random) -> Vec<&'static str> {
+    let carries = |i: usize| spec.robots[i].tool_box.is_some() || spec.robots[i].load.is_some();
+    match random.whole(0, 9) {
+        0..=1 => vec!["tcp"],
+        2 if (0..spec.robots.len()).all(carries) => vec!["tool"],
+        3 if carries(robot) => vec!["tcp", "arm"],
+        _ => vec!["arm"],
+    }
+}
+
+/// Any shape near a point: big ones, small ones and thin plates.
+fn shape(random: &mut Random, at: Vector) -> String {
+    let size = random.scaled(0.02, 0.6);
+    let rpy = list(&random.vector(3.0));
+    let at_text = list(&at);
+    match random.whole(0, 9) {
+        0..=1 => format!("shape = \"sphere\"\ncentre = {at_text}\nradius = {size}\n"),
+        2 => {
+            let height = random.scaled(0.01, 1.0);
+            format!("shape = \"cylinder\"\nbase = {at_text}\nrpy = {rpy}\nradius = {size}\nheight = {height}\n")
+        }
+        3 => format!("shape = \"capsule\"\nat = {at_text}\nrpy = {rpy}\nradius = {size}\nheight = {size}\n"),
+        4 => {
+            let [x, y] =
+                [random.vector(1.0), random.vector(1.0)].map(|v| std::array::from_fn(|i| rounded(at[i] + v[i])));
+            let [x, y]: [Vector; 2] = [x, y];
+            format!("shape = \"plane\"\norigin = {at_text}\nx = {}\ny = {}\n", list(&x), list(&y))
+        }
+        5 => {
+            let to: Vector = std::array::from_fn(|i| rounded(at[i] + random.scaled(0.005, 0.5)));
+            format!("shape = \"box\"\nfrom = {at_text}\nto = {}\n", list(&to))
+        }
+        6 | 7 => {
+            let thickness = random.scaled(0.001, 0.01);
+            let size = list(&[thickness, random.between(0.2, 2.0), random.between(0.2, 2.0)]);
+            format!("shape = \"box\"\nbase = {at_text}\nrpy = {rpy}\nsize = {size}\n")
+        }
+        8 => {
+            let size = list(&[size, random.scaled(0.02, 0.6), random.scaled(0.02, 0.6)]);
+            format!("shape = \"box\"\nbase = {at_text}\nrpy = {rpy}\nsize = {size}\n")
+        }
+        _ => {
+            let kind = random.one(&["mesh", "convex"]);
+            format!("shape = \"{kind}\"\nat = {at_text}\nrpy = {rpy}\nmesh = \"corner.obj\"\n")
+        }
+    }
+}

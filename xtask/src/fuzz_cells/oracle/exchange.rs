@@ -1,0 +1,102 @@
+//! Exchange regions: never two inside, and no deadlock in silence.
+
+use elbowroom_monitor::Kind;
+
+use super::guarded::Guarded;
+use super::motion::Motion;
+use super::sweep::Pair;
+use super::{Finding, Opinion};
+
+/// A tick in which both of two robots are inside at some time is looked at in so many parts.
+const PARTS: usize = 64;
+/// A robot that has not moved for so long (s) at the end stands for ever: a run goes on for a second without motion.
+const STANDS_S: f64 = 0.5;
+/// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
+const STILL: f64 = 1e-4;
+
+/// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
+type Stay<'a> = (usize, Vec<Pair<'a>>, Vec<bool>);
+
+/// `bad_news`: the run said that something went wrong.
+pub fn judge(motion: &Motion<'_>, guarded: &[Vec<Guarded>], bad_news: bool, opinion: &mut Opinion) {
+    let mut in_zone = vec![vec![false; motion.places.len()]; guarded.len()];
+    for (region, place) in motion.places.iter().enumerate() {
+        if !matches!(place.kind, Kind::Exchange { .. }) {
+            continue;
+        }
+        let stays: Vec<Stay<'_>> = place
+            .robots
+            .iter()
+            .map(|&robot| {
+                let counting = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
+                let pairs: Vec<Pair<'_>> = counting.map(|g| Pair::new(motion, g, robot, region)).collect();
+                let mut during = vec![false; motion.ticks()];
+                pairs.iter().for_each(|p| mark_inside(p, &mut during));
+                (robot, pairs, during)
+            })
+            .collect();
+        for (i, a) in stays.iter().enumerate() {
+            for b in &stays[i + 1..] {
+                two_inside(motion, region, a, b, opinion);
+            }
+        }
+        let last = motion.ticks().saturating_sub(1);
+        let zone = motion.cell.regions[region].region.warning_m;
+        for (robot, pairs, _) in &stays {
+            in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone);
+        }
+    }
+    deadlock(motion, &in_zone, bad_news, opinion);
+}
+
+/// Marks the ticks from which to the next the solid touches the region at some time.
+fn mark_inside(pair: &Pair<'_>, during: &mut [bool]) {
+    let mut k = 0;
+    while let Some((at, _)) = pair.first_touch(k, pair.motion.ticks()) {
+        during[at] = true;
+        k = at + 1;
+    }
+}
+
+fn two_inside(motion: &Motion<'_>, region: usize, a: &Stay<'_>, b: &Stay<'_>, opinion: &mut Opinion) {
+    let both = |k: &usize| motion.is_active(region, *k) && a.2[*k] && b.2[*k];
+    // Whoever starts inside is not brought there by the protocol: counted once one of the two has been out.
+    let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
+    let inside = |s: &Stay<'_>, k: usize, u: f64| s.1.iter().any(|p| p.distance(k, u).upper <= 0.0);
+    for k in (apart..motion.ticks()).filter(both) {
+        let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
+        if let Some(u) = at_once {
+            let t_s = motion.times[k] + u * motion.recording.tick_s;
+            opinion.findings.push(Finding::TwoInside { region, robots: [a.0, b.0], t_s });
+            return;
+        }
+    }
+}
+
+/// Robots that stand unfinished at the end, each in a zone of which another of them is, in a circle. A robot that waits for
+/// one that has finished, or stands for another reason, is in no circle.
+fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion: &mut Opinion) {
+    let ticks = motion.ticks();
+    let held = (STANDS_S / motion.recording.tick_s).ceil() as usize;
+    if ticks <= held + 1 {
+        return;
+    }
+    let stands = |robot: usize| {
+        let track = &motion.recording.robots[robot];
+        let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
+        !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < STILL)
+    };
+    let robots: Vec<usize> = (0..in_zone.len()).filter(|r| stands(*r) && in_zone[*r].contains(&true)).collect();
+    let meet = |a: usize, b: usize| a != b && in_zone[a].iter().zip(&in_zone[b]).any(|(a, b)| *a && *b);
+    let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
+    // Whoever has finished, or left, and is still in the zone blocks the others for good: they wait, but not in a circle.
+    let parked = |a: usize| (0..in_zone.len()).any(|b| motion.recording.robots[b].finished && meet(a, b));
+    if circle.len() < 2 || circle.iter().any(|a| parked(*a)) {
+        return;
+    }
+    opinion.deadlocks += 1;
+    let told = motion.recording.events.iter().any(|e| e.event == "deadlock");
+    if !(told && bad_news) {
+        opinion.findings.push(Finding::SilentDeadlock { robots: circle });
+    }
+}

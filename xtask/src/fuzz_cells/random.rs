@@ -1,0 +1,62 @@
+//! Random numbers from a seed, the same on every machine (SplitMix64).
+
+/// A stream of random numbers.
+#[derive(Debug, Clone)]
+pub struct Random(u64);
+
+impl Random {
+    /// The stream of one case of a run.
+    pub fn of_case(seed: u64, case: u64) -> Self {
+        let mut stream = Self(seed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        stream.bits();
+        stream
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In 0..1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// In `low..high`, with four digits behind the point, so that cells can be read.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        rounded(low + (high - low) * self.unit())
+    }
+
+    /// In `low..high`, each factor as likely as any other; both positive.
+    pub fn scaled(&mut self, low: f64, high: f64) -> f64 {
+        rounded(low * (high / low).powf(self.unit()))
+    }
+
+    /// A whole number of `low..=high`.
+    pub fn whole(&mut self, low: usize, high: usize) -> usize {
+        low + (self.bits() % (high - low + 1) as u64) as usize
+    }
+
+    /// True in so many of 100 cases.
+    pub fn percent(&mut self, share: u32) -> bool {
+        self.unit() * 100.0 < f64::from(share)
+    }
+
+    /// One of these.
+    pub fn one<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.whole(0, of.len() - 1)]
+    }
+
+    /// Each coordinate within `most` of 0.
+    pub fn vector(&mut self, most: f64) -> [f64; 3] {
+        std::array::from_fn(|_| self.between(-most, most))
+    }
+}
+
+/// To four digits behind the point.
+pub fn rounded(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
