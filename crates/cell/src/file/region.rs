@@ -5,6 +5,7 @@ use elbowroom_monitor::{Guards, Kind, Life, Region, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
 use elbowroom_scene::Object;
 use elbowroom_spatial::Vec3;
+use elbowroom_spatial::units::LengthUnit;
 
 use super::read::{Table, Value};
 use super::{follow, models, suggest};
@@ -27,12 +28,12 @@ const COMMON: &[&str] = &[
     "warning_output",
 ];
 
-/// Thicker warning zones (m) are refused.
-const MOST_WARNING_M: f64 = 100.0;
-/// Thicker warning zones (m) are warned about.
+/// Thicker warning zones, and a larger hysteresis, are refused, m.
+const MOST_M: f64 = 10_000.0;
+/// Thicker warning zones are warned about, m.
 const LARGE_WARNING_M: f64 = 10.0;
-/// A larger hysteresis (m) is refused.
-const MOST_HYSTERESIS_M: f64 = 1.0;
+/// A larger hysteresis is warned about, m.
+const LARGE_HYSTERESIS_M: f64 = 1.0;
 
 /// What a region may name.
 pub(super) struct Known<'a> {
@@ -56,15 +57,10 @@ pub(super) fn read(
     region.life = t
         .get("life")
         .map_or(Ok(Life::Permanent), |v| v.word(&[("permanent", Life::Permanent), ("temporary", Life::Temporary)]))?;
-    region.warning_m = t.get("warning").map_or(Ok(0.0), |v| thickness(&v, units, warnings))?;
+    region.warning_m = t.get("warning").map_or(Ok(0.0), |v| thickness(&v, units, LARGE_WARNING_M, warnings))?;
     region.guards = t.get("guards").map_or(Ok(Guards::ARM), |v| guards(&v))?;
     if let Some(v) = t.get("hysteresis") {
-        region.hysteresis_m = units.not_negative_length(&v)?;
-        if region.hysteresis_m > MOST_HYSTERESIS_M {
-            return Err(v
-                .error(format!("is {}: an output would hardly ever fall", units.show_length(region.hysteresis_m)))
-                .hint("hysteresis = 1   (above the noise of an encoder, in the cell's unit of length; at most 1 m)"));
-        }
+        region.hysteresis_m = thickness(&v, units, LARGE_HYSTERESIS_M, warnings)?;
     }
     let channel = |key: &str| t.get(key).map(|v| v.whole(0, 63).map(|c| c as u8)).transpose();
     region.output = channel("output")?;
@@ -76,17 +72,23 @@ pub(super) fn read(
     Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
 }
 
-/// Thickness of a warning zone: 10 m are more than any robot in a cell needs to stop.
-fn thickness(v: &Value<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<f64> {
+/// A thickness or a hysteresis: one beyond `plausible` metres is warned about, one beyond [`MOST_M`] refused.
+fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Warning>) -> Result<f64> {
     let metres = units.not_negative_length(v)?;
     let shown = units.show_length(metres);
-    if metres > MOST_WARNING_M {
+    if metres > MOST_M {
         let what = format!("is {shown}: no cell is so large");
-        return Err(v.error(what).hint(format!("warning = {}   (at most 100 m)", units.in_file_units(0.25))));
+        return Err(v.error(what).hint(format!("a length up to {}", units.show_length(plausible))));
     }
-    if metres > LARGE_WARNING_M {
-        let what = format!("`{}` is {shown}: every robot would be slowed wherever it is", v.name);
-        warnings.push(Warning::new(v.file, v.line, what).hint(format!("warning = {}", units.in_file_units(0.25))));
+    if metres > plausible {
+        let meant = if units.length == LengthUnit::Metre && metres < MOST_M {
+            format!("; in mm it would be {} m", metres / 1000.0)
+        } else {
+            String::new()
+        };
+        let what = format!("`{}` is {shown}, more than any robot needs{meant}", v.name);
+        let hint = format!("units = {{ length = \"mm\", … }}, or a length up to {}", units.show_length(plausible));
+        warnings.push(Warning::new(v.file, v.line, what).hint(hint));
     }
     Ok(metres)
 }
