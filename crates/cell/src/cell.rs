@@ -12,6 +12,7 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::Mover;
+use crate::seal::Seal;
 
 /// Everything that a cell file says. Read by [`Cell::load`].
 #[derive(Debug, Clone)]
@@ -46,6 +47,8 @@ pub struct Cell {
     pub maps: Vec<MapSpec>,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
+    /// Who sealed it last; `None` where it is not sealed.
+    pub seal: Option<Seal>,
     /// What a user should know about the file, none of it fatal.
     pub warnings: Vec<Warning>,
 }

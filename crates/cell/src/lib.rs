@@ -42,6 +42,7 @@ pub mod query;
 mod recording;
 pub mod report;
 pub mod run;
+pub mod seal;
 mod summary;
 pub mod watch;
 
