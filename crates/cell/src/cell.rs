@@ -11,6 +11,7 @@ use elbowroom_scene::{Body, Object, Robot};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::seal::Seal;
 use crate::{Mover, PoseTrack};
 
 /// A tool centre point so near to a solid (m) lies on its surface: a flange's frame lies on the flange's face.
@@ -51,6 +52,8 @@ pub struct Cell {
     pub maps: Vec<MapSpec>,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
+    /// Who sealed it last; `None` where it is not sealed.
+    pub seal: Option<Seal>,
     /// What a user should know about the file, none of it fatal.
     pub warnings: Vec<Warning>,
 }

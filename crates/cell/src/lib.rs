@@ -45,6 +45,7 @@ mod recording;
 pub mod report;
 mod resting;
 pub mod run;
+pub mod seal;
 mod summary;
 pub mod watch;
 

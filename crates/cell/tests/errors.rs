@@ -52,7 +52,7 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("tick_ms = 4", "tick_ms = -4", "above 0", "tick_ms"),
     ("tick_ms = 4", "tick_ms = nan", "NaN", "finite"),
     ("tick_ms = 4", "tick_ms = ", "not TOML", "key = value"),
-    ("tick_ms = 4", "checksum = \"00\"", "is 00, but the configuration in this file has", "checksum ="),
+    ("tick_ms = 4", "checksum = \"00\"", "is 00, but the configuration in this file has another", "approved"),
     (
         "units = { length = \"mm\", angle = \"deg\" }",
         "units = { length = \"feet\", angle = \"deg\" }",

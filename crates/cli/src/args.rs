@@ -40,6 +40,9 @@ pub(crate) enum Command {
     Rules(RulesArgs),
     /// Turn points that the robot was driven to into a region for the cell file
     Teach(TeachArgs),
+    /// Change regions and laws of a sealed cell on behalf of a class, seal it, and show who changed what
+    #[command(subcommand)]
+    Region(crate::region::args::RegionCommand),
     /// List the example cells, or copy them to a folder to start from
     Example(ExampleArgs),
     /// Print a completion script for a shell

@@ -11,6 +11,7 @@ mod map;
 mod output;
 mod plan;
 mod query;
+mod region;
 mod rules;
 mod run;
 mod teach;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
+        Some(Command::Region(command)) => region::region(&command),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),
     };

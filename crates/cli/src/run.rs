@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use elbowroom::cell::report::{self, ReportScene};
 use elbowroom::cell::run::{Progress, simulate_with};
+use elbowroom::cell::seal::Seal;
 use elbowroom::cell::{Cell, Recording, RunOptions, RunOutcome, Summary, csv};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -36,9 +37,12 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
         write_files(dir, &cell, &outcome.recording, without.as_ref())?;
     }
     if args.json {
-        print_json(&Summary::from(&outcome.recording))?;
+        print_json(&Document { summary: Summary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
     } else {
         print(&report::summary(&outcome.recording, width(), color()))?;
+        if let Some(seal) = &cell.seal {
+            print(&format!("\nSealed by {} ({}, key {}), {}\n", seal.name, seal.class, seal.key, seal.time))?;
+        }
         if let Some(dir) = &args.out {
             print(&format!("\nFiles: {}\n", dir.join("{report.html,trace.csv,events.csv}").display()))?;
         }
@@ -50,6 +54,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
 pub(crate) fn warn_of_overruns(cell: &Cell) -> Result<(), Failure> {
     elbowroom::cell::check::overruns(cell)?.iter().for_each(|w| note(format_args!("warning: {w}")));
     Ok(())
+}
+
+/// What a run amounted to, and of a sealed cell who sealed it.
+#[derive(serde::Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    summary: Summary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seal: Option<&'a Seal>,
 }
 
 /// Runs the cell with a progress bar, which appears only where the run is long.

@@ -24,6 +24,15 @@ impl AccessClass {
         })
     }
 
+    /// Its word, as [`parse`](Self::parse) reads it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Operator => "operator",
+            Self::Programmer => "programmer",
+            Self::Integrator => "integrator",
+        }
+    }
+
     /// The class that an edit of a region of this life needs.
     pub fn needed_for(life: Life) -> Self {
         match life {

@@ -12,15 +12,28 @@ impl Configuration {
     /// configurations have equal checksums on every machine; any change of a number changes it.
     pub fn checksum(&self) -> String {
         let mut sink = Sink(Sha256::new());
-        sink.text(&self.robot);
-        sink.pose(&self.base_in_world);
-        sink.chain(&self.chain);
-        sink.list(&self.volumes, Sink::volume);
+        sink.robot(self);
         sink.list(&self.regions, Sink::region);
         sink.list(&self.sources, Sink::source);
         sink.laws(&self.laws);
-        let digits = sink.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
-        digits.filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+        sink.hex()
+    }
+
+    /// SHA-256 (hex) over what the checksum covers besides regions and what they follow: chain, volumes and laws.
+    pub fn robot_checksum(&self) -> String {
+        let mut sink = Sink(Sha256::new());
+        sink.robot(self);
+        sink.laws(&self.laws);
+        sink.hex()
+    }
+}
+
+impl Region {
+    /// SHA-256 (hex) over everything that the region is, bit by bit.
+    pub fn checksum(&self) -> String {
+        let mut sink = Sink(Sha256::new());
+        sink.region(self);
+        sink.hex()
     }
 }
 
@@ -28,6 +41,11 @@ impl Configuration {
 struct Sink(Sha256);
 
 impl Sink {
+    fn hex(self) -> String {
+        let digits = self.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        digits.filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+    }
+
     fn tag(&mut self, tag: u8) {
         self.0.update([tag]);
     }
@@ -105,6 +123,13 @@ impl Sink {
                 self.mesh(m.vertices(), m.triangles());
             }
         }
+    }
+
+    fn robot(&mut self, config: &Configuration) {
+        self.text(&config.robot);
+        self.pose(&config.base_in_world);
+        self.chain(&config.chain);
+        self.list(&config.volumes, Self::volume);
     }
 
     fn chain(&mut self, chain: &Chain) {

@@ -4,12 +4,12 @@ mod avoidance;
 mod follow;
 mod guarding;
 mod models;
-mod node;
+pub(crate) mod node;
 mod object;
 mod plausible;
 mod poses;
 mod program;
-mod read;
+pub(crate) mod read;
 mod region;
 pub(crate) mod robot;
 pub(crate) mod suggest;
@@ -23,7 +23,7 @@ use elbowroom_monitor::Laws;
 pub use models::NumberTable;
 use read::{Table, Value};
 
-use crate::{Cell, CellLaws, CellRobot, MapSpec, Units, configure};
+use crate::{Cell, CellLaws, CellRobot, MapSpec, Units, configure, seal};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -50,8 +50,10 @@ const KEYS: &[&str] = &[
 /// A cell file, parsed but not yet resolved: every key and value with its line.
 #[derive(Debug, Clone)]
 pub struct CellFile {
-    file: std::path::PathBuf,
-    entries: Vec<node::Entry>,
+    pub(crate) file: std::path::PathBuf,
+    pub(crate) entries: Vec<node::Entry>,
+    /// True where it was read from the disk, and so must be what was sealed there.
+    on_disk: bool,
 }
 
 impl CellFile {
@@ -73,23 +75,34 @@ impl CellFile {
             let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
             FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
         })?;
-        Self::parse(path, &text)
+        Ok(Self { on_disk: true, ..Self::parse(path, &text)? })
     }
 
-    /// Parses text as if it stood in the file `path`; files it names are relative to that.
+    /// Parses text as if it stood in the file `path`; files it names are relative to that. What is sealed is the file on the
+    /// disk, not this text: no seal is asked for.
     ///
     /// # Errors
     /// [`FormatError`] where it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref().to_owned();
         let entries = node::parse(&file, text)?;
-        Ok(Self { file, entries })
+        Ok(Self { file, entries, on_disk: false })
     }
 
-    /// Looks everything up, reads the files it names, converts to SI.
+    /// Names of the regions, in file order.
+    pub(crate) fn region_names(&self) -> Vec<String> {
+        let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {
+            node::Data::Table(tables) => Some(tables),
+            _ => None,
+        });
+        tables.flatten().map(|e| e.key.clone()).collect()
+    }
+
+    /// Looks everything up, reads the files it names, converts to SI. A file that was read from the disk must be as it was
+    /// sealed, where it was sealed or has to be: see [`seal`](crate::seal).
     ///
     /// # Errors
-    /// [`FormatError`] at the first line that is wrong.
+    /// [`FormatError`] at the first line that is wrong, or that is not as it was sealed.
     pub fn resolve(&self) -> Result<Cell> {
         let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
         root.only(KEYS)?;
@@ -113,6 +126,7 @@ impl CellFile {
             avoidance: Vec::new(),
             maps: Vec::new(),
             checksum: String::new(),
+            seal: None,
             warnings: Vec::new(),
         };
         for (name, t) in root.named("robot")? {
@@ -126,23 +140,32 @@ impl CellFile {
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
-        check(&root, &mut cell)?;
+        // Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
+        cell.checksum = configure::checksum(&cell)?;
+        if self.on_disk {
+            // Before the checksum: a seal tells what differs.
+            cell.seal = seal::verify(self, &cell)?;
+        }
+        check(&root, &cell)?;
         plausible::check(&root, &cell, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }
 }
 
-/// Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
-fn check(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
-    cell.checksum = configure::checksum(cell)?;
+/// Compares the checksum with the one that was approved, where the file names one.
+fn check(root: &Table<'_>, cell: &Cell) -> Result<()> {
     let Some(v) = root.get("checksum") else { return Ok(()) };
     let expected = v.text()?;
     if expected.eq_ignore_ascii_case(&cell.checksum) {
         return Ok(());
     }
-    let what = format!("is {expected}, but the configuration in this file has {}", cell.checksum);
-    Err(v.error(what).hint(format!("checksum = \"{}\", once the change has been checked", cell.checksum)))
+    // The checksum of what stands here is not told: whoever changed the file would only have to copy it.
+    let what =
+        format!("is {expected}, but the configuration in this file has another: it was changed since it was approved");
+    Err(v.error(what).hint(
+        "what was approved; or whoever answers for the change takes the line out, checks the cell and approves it anew",
+    ))
 }
 
 impl Cell {

@@ -1,0 +1,388 @@
+//! Edits of a sealed cell file. What they do not concern stays as it was written, comments too.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::AccessClass;
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use super::authorize::authorize;
+use super::change::Change;
+use super::entry::Entry;
+use super::keys::PrivateKey;
+use super::log::Log;
+use super::state::{State, least_class, without_consequences};
+use super::trust::{self, TrustedKeys};
+use super::{Result, log_of, text, time};
+use crate::{Cell, CellFile};
+
+/// What is to be changed. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`; what is no TOML is taken as a text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Edit {
+    /// Adds regions: tables `[region.NAME]`, as they are to stand in the cell file.
+    Add {
+        /// The tables.
+        toml: String,
+        /// Where they come from, for messages.
+        from: PathBuf,
+    },
+    /// Sets keys of a region and takes others out.
+    Change {
+        /// The region.
+        region: String,
+        /// Keys and their values.
+        set: Vec<(String, String)>,
+        /// Keys.
+        unset: Vec<String>,
+    },
+    /// Removes a region.
+    Remove {
+        /// The region.
+        region: String,
+    },
+    /// Sets keys of `[monitor]` and takes others out.
+    Laws {
+        /// Keys and their values.
+        set: Vec<(String, String)>,
+        /// Keys.
+        unset: Vec<String>,
+    },
+}
+
+/// Who edits.
+#[derive(Debug, Clone, Copy)]
+pub struct Signer<'a> {
+    /// The class on whose behalf.
+    pub class: AccessClass,
+    /// The key that proves it.
+    pub key: &'a PrivateKey,
+    /// Why, for the log.
+    pub note: Option<&'a str>,
+}
+
+/// Edits a sealed cell file, and logs it.
+///
+/// # Errors
+/// [`FormatError`] where the cell is not as it was sealed, the class or the key may not, or the result is no sound cell. Then
+/// nothing is changed.
+pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &Edit) -> Result<Entry> {
+    let trusted = trusted(cell)?;
+    signer.check(cell, &trusted)?;
+    let path = log_of(cell);
+    if !path.exists() {
+        let what = "is not sealed yet: no class guards it";
+        let hint = format!("elbowroom region seal {} --as integrator --key FILE", cell.display());
+        return Err(FormatError::new(cell, None, what).hint(hint));
+    }
+    let held = hold(&path)?;
+    let before = CellFile::read(cell)?.resolve()?;
+    let log = Log::read(&path, &trusted)?;
+    let new = edited(cell, &text::read(cell)?, edit)?;
+    let draft = Draft::new(cell, new)?;
+    let changes = log.state.changes_to(&draft.state);
+    let only = edit.items(&draft)?;
+    if let Some(c) = changes.iter().find(|c| !only.contains(&c.item)) {
+        return Err(FormatError::new(cell, draft.state.line(c), format!("the edit would also change this: {c}"))
+            .hint("tables [region.NAME] with the keys of a region, and nothing else"));
+    }
+    signer.authorize(cell, &before, &draft, &log, &changes)?;
+    draft.commit(cell, signer, edit.action(&only), changes, log, held)
+}
+
+/// Seals a cell file as it stands, and logs what was changed since it was sealed last.
+///
+/// # Errors
+/// [`FormatError`] where the class or the key may not, the cell is not sound, or the log is not as it was written.
+pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<Entry> {
+    let trusted = trusted(cell)?;
+    signer.check(cell, &trusted)?;
+    let path = log_of(cell);
+    let draft = Draft::new(cell, text::read(cell)?)?;
+    // Where writing the first line failed, an empty log was left.
+    let first = !std::fs::metadata(&path).is_ok_and(|m| m.len() > 0);
+    if first && signer.class < AccessClass::Integrator {
+        let what = format!("was never sealed: its first seal is the integrator's, not the {}'s", signer.class.name());
+        return Err(FormatError::new(cell, None, what).hint("--as integrator, with the key of an integrator"));
+    }
+    let held = hold(&path)?;
+    let log = if first { Log::new(&path) } else { Log::read_to_continue(&path, &trusted)? };
+    signer.check_sealed(cell, &trusted, &log)?;
+    let changes = log.state.changes_to(&draft.state);
+    let least = least_class(&log.state, &draft.state, &changes);
+    if signer.class < least {
+        return Err(signer.refusal(cell, &log, &draft.state, &changes));
+    }
+    draft.commit(cell, signer, "seal".into(), changes, log, held)
+}
+
+fn trusted(cell: &Path) -> Result<TrustedKeys> {
+    if !cell.exists() {
+        return Err(
+            FormatError::new(cell, None, "does not exist").hint("the path of a cell file (see docs/cell-file.md)")
+        );
+    }
+    TrustedKeys::find(cell)?.ok_or_else(|| {
+        let what = format!("there is no {} that says whose keys count", trust::FILE);
+        FormatError::new(cell, None, what).hint(
+            "elbowroom region keygen --as integrator --name \"A. Meyer\" --out integrator.key >> trusted-keys.toml   \
+             (beside the cell file; docs/roles.md)",
+        )
+    })
+}
+
+/// Keeps others from editing at the same time; makes the log where there is none.
+fn hold(log: &Path) -> Result<File> {
+    let file = File::options().append(true).create(true).open(log).map_err(text::unwritable(log))?;
+    file.lock().map_err(text::unwritable(log))?;
+    Ok(file)
+}
+
+impl Signer<'_> {
+    /// The key must be one that counts, for this class.
+    fn check(&self, cell: &Path, trusted: &TrustedKeys) -> Result<()> {
+        let class = self.class.name();
+        let wrong = |what: String, hint: &str| Err(FormatError::new(cell, None, what).hint(hint));
+        if self.class == AccessClass::Operator {
+            return wrong(
+                "an operator changes no regions and no laws".into(),
+                "--as programmer or --as integrator, with a key of that class",
+            );
+        }
+        let id = self.key.public().id();
+        let file = trusted.file.display();
+        match trusted.get(&id) {
+            None => wrong(
+                format!("the key {id} of \"{}\" does not count here: {file} does not name it", self.key.name()),
+                "a key that it names; or the integrator adds this one there, and seals the cell",
+            ),
+            Some(key) if key.retired => {
+                wrong(format!("the key {id} of \"{}\" is retired in {file}", key.name), "a key that is not")
+            }
+            Some(key) if key.class < self.class => wrong(
+                format!("the key {id} of \"{}\" may act as {}, not as {class}", key.name, key.class.name()),
+                &format!("--as {}; or the key of an {class}", key.class.name()),
+            ),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// Keys beside the cell: only those that were sealed with it.
+    fn check_sealed(&self, cell: &Path, trusted: &TrustedKeys, log: &Log) -> Result<()> {
+        let id = self.key.public().id();
+        let sealed = log.state.sealed_key(&id).is_some_and(|k| trust::may_sign(k, self.class));
+        if sealed || !trusted.beside || log.entries.is_empty() {
+            return Ok(());
+        }
+        let what = format!(
+            "the key {id} of \"{}\" was not sealed with the cell as one that may act as {}, though {} names it",
+            self.key.name(),
+            self.class.name(),
+            trusted.file.display()
+        );
+        Err(FormatError::new(cell, None, what).hint("with the key of an integrator that was: elbowroom region seal"))
+    }
+
+    fn authorize(&self, cell: &Path, before: &Cell, draft: &Draft, log: &Log, changes: &[Change]) -> Result<()> {
+        let least = least_class(&log.state, &draft.state, changes);
+        if let Err(e) = authorize(self.class, before, &draft.cell)? {
+            let refused = FormatError::new(cell, first_line(&draft.state, changes), e.to_string());
+            return Err(refused.hint(format!("--as {}, with a key of that class", least.name())));
+        }
+        if self.class < least { Err(self.refusal(cell, log, &draft.state, changes)) } else { Ok(()) }
+    }
+
+    /// Names a change that this class may not make.
+    fn refusal(&self, cell: &Path, log: &Log, now: &State, changes: &[Change]) -> FormatError {
+        let least = |c: &Change| least_class(&log.state, now, std::slice::from_ref(c));
+        let shown = without_consequences(changes);
+        let Some(change) = shown.into_iter().find(|c| least(c) > self.class) else {
+            return FormatError::new(cell, None, "needs another class")
+                .hint("--as integrator, with a key of that class");
+        };
+        let needed = least(change).name();
+        let what = format!("{change}: that needs the {needed} class, not {}", self.class.name());
+        FormatError::new(cell, now.line(change), what).hint(format!("--as {needed}, with a key of that class"))
+    }
+}
+
+fn first_line(now: &State, changes: &[Change]) -> Option<usize> {
+    without_consequences(changes).first().and_then(|c| now.line(c))
+}
+
+/// A cell file that is not written yet.
+struct Draft {
+    text: String,
+    cell: Cell,
+    state: State,
+}
+
+impl Draft {
+    /// A checksum in the file becomes that of the draft.
+    fn new(path: &Path, text: String) -> Result<Self> {
+        let mut file = CellFile::parse(path, &text)?;
+        let mut text = text;
+        let cell = if file.entries.iter().any(|e| e.key == "checksum") {
+            file.entries.retain(|e| e.key != "checksum");
+            let cell = file.resolve()?;
+            let mut document = document(path, &text)?;
+            put(document.as_table_mut(), "checksum", Value::from(cell.checksum.as_str()));
+            text = document.to_string();
+            file = CellFile::parse(path, &text)?;
+            cell
+        } else {
+            file.resolve()?
+        };
+        let state = State::of(&file, &cell)?;
+        Ok(Self { text, cell, state })
+    }
+
+    fn commit(
+        self,
+        path: &Path,
+        signer: &Signer<'_>,
+        action: String,
+        changes: Vec<Change>,
+        log: Log,
+        mut held: File,
+    ) -> Result<Entry> {
+        let entry = Entry {
+            sequence: log.entries.len() as u64 + 1,
+            time: time::now(),
+            class: signer.class.name().into(),
+            key: signer.key.public().id(),
+            program: concat!("elbowroom ", env!("CARGO_PKG_VERSION")).into(),
+            action,
+            note: signer.note.map(Into::into),
+            changes,
+            state: self.state.digest(),
+            checksum: self.cell.checksum.clone(),
+            previous: log.head,
+            signature: String::new(),
+        }
+        .signed(signer.key);
+        let line = entry.line() + "\n";
+        let written =
+            || held.write_all(line.as_bytes()).and_then(|()| held.sync_all()).map_err(text::unwritable(&log.file));
+        text::replace(path, &self.text, written)?;
+        Ok(entry)
+    }
+}
+
+impl Edit {
+    /// The tables that it may change.
+    fn items(&self, draft: &Draft) -> Result<Vec<String>> {
+        Ok(match self {
+            Self::Add { toml, from } => {
+                let names = CellFile::parse(from, toml)?.region_names();
+                names.into_iter().map(|name| format!("region.{name}")).collect()
+            }
+            Self::Change { region, .. } | Self::Remove { region } => vec![format!("region.{region}")],
+            // What the laws need of each robot is filled in per robot.
+            Self::Laws { .. } => {
+                let robots = draft.cell.robots.iter().map(|r| format!("robot.{}", r.name));
+                std::iter::once("monitor".to_owned()).chain(robots).collect()
+            }
+        })
+    }
+
+    fn action(&self, items: &[String]) -> String {
+        match self {
+            Self::Add { .. } => format!("add {}", items.join(", ")),
+            Self::Change { .. } => format!("change {}", items.join(", ")),
+            Self::Remove { .. } => format!("remove {}", items.join(", ")),
+            Self::Laws { .. } => "change monitor".into(),
+        }
+    }
+}
+
+/// The text of the cell file after the edit.
+fn edited(cell: &Path, text: &str, edit: &Edit) -> Result<String> {
+    let mut document = document(cell, text)?;
+    match edit {
+        Edit::Add { toml, from } => {
+            return added(cell, &document, text, toml, from);
+        }
+        Edit::Change { region, set, unset } => {
+            let table = regions(&mut document).and_then(|r| r.get_mut(region)).and_then(Item::as_table_like_mut);
+            change(cell, table.ok_or_else(|| unknown(cell, text, region))?, &format!("region.{region}"), set, unset)?;
+        }
+        Edit::Remove { region } => {
+            regions(&mut document).and_then(|r| r.remove(region)).ok_or_else(|| unknown(cell, text, region))?;
+        }
+        Edit::Laws { set, unset } => {
+            let item = document.as_table_mut().entry("monitor").or_insert_with(toml_edit::table);
+            let what = || FormatError::new(cell, None, "`monitor` is no table").hint("[monitor]");
+            change(cell, item.as_table_like_mut().ok_or_else(what)?, "monitor", set, unset)?;
+        }
+    }
+    Ok(document.to_string())
+}
+
+fn document(path: &Path, text: &str) -> Result<DocumentMut> {
+    // What is no TOML was refused with its line when the file was read.
+    text.parse().map_err(|e: toml_edit::TomlError| FormatError::new(path, None, e.message().to_owned()))
+}
+
+fn regions(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
+    document.get_mut("region").and_then(Item::as_table_like_mut)
+}
+
+fn unknown(cell: &Path, text: &str, region: &str) -> FormatError {
+    let names: Vec<String> = CellFile::parse(cell, text).map(|f| f.region_names()).unwrap_or_default();
+    FormatError::new(cell, None, format!("there is no region `{region}`"))
+        .hint(crate::file::suggest::hint(region, names.iter().map(String::as_str)))
+}
+
+/// The tables stand at the end, as they were written.
+fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Path) -> Result<String> {
+    let new = CellFile::parse(from, toml)?;
+    let wrong = |line: Option<usize>, what: String| {
+        FormatError::new(from, line, what).hint("[region.NAME] and its keys, as `elbowroom teach` prints them")
+    };
+    let first = toml.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#'));
+    if !first.is_some_and(|l| l.starts_with('[')) {
+        return Err(wrong(None, "holds no region, or keys outside of [region.NAME]".into()));
+    }
+    if let Some(e) = new.entries.iter().find(|e| e.key != "region") {
+        return Err(wrong(Some(e.line), format!("`{}` is no region", e.key)));
+    }
+    let names = new.region_names();
+    let known = document.get("region").and_then(Item::as_table_like);
+    if let Some(name) = names.iter().find(|n| known.is_some_and(|k| k.contains_key(n))) {
+        let what = format!("there is a region `{name}` already");
+        let hint = format!("elbowroom region change {} {name} KEY=VALUE --as CLASS --key FILE", cell.display());
+        return Err(FormatError::new(cell, None, what).hint(hint));
+    }
+    let gap = if toml.starts_with('\n') { "" } else { "\n" };
+    Ok(format!("{}\n{gap}{}\n", text.trim_end_matches('\n'), toml.trim_end_matches('\n')))
+}
+
+fn change(
+    cell: &Path,
+    table: &mut dyn TableLike,
+    name: &str,
+    set: &[(String, String)],
+    unset: &[String],
+) -> Result<()> {
+    for key in unset {
+        if table.remove(key).is_none() {
+            return Err(FormatError::new(cell, None, format!("`{name}` has no key `{key}` to take out")));
+        }
+    }
+    for (key, value) in set {
+        put(table, key, value.parse().unwrap_or_else(|_| Value::from(value.as_str())));
+    }
+    Ok(())
+}
+
+/// Sets a key; blanks and comments around a value that was there stay.
+fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
+    if let Some(old) = table.get_mut(key).and_then(Item::as_value_mut) {
+        *value.decor_mut() = old.decor().clone();
+        *old = value;
+    } else {
+        table.insert(key, Item::Value(value));
+    }
+}

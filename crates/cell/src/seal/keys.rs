@@ -1,0 +1,186 @@
+//! Keys: the private one of whoever signs, the public one of whoever checks.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+
+use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::AccessClass;
+
+use super::{Result, hex, text};
+use crate::file::node;
+use crate::file::read::{Table, Value};
+
+/// Written before what is signed, so that a signature for something else is none for an edit.
+const CONTEXT: &[u8] = b"elbowroom edit 1\n";
+
+/// Whoever has it signs on behalf of its class.
+#[derive(Debug)]
+pub struct PrivateKey {
+    class: AccessClass,
+    name: String,
+    key: SigningKey,
+}
+
+/// Tells whether the private key signed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PublicKey(VerifyingKey);
+
+impl PrivateKey {
+    /// A new key, of random numbers of the operating system.
+    ///
+    /// # Errors
+    /// [`io::Error`] where the system has none to give.
+    pub fn generate(class: AccessClass, name: &str) -> io::Result<Self> {
+        let mut secret = [0; 32];
+        getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
+        Ok(Self { class, name: name.into(), key: SigningKey::from_bytes(&secret) })
+    }
+
+    /// Writes it to a new file that only its owner may read (mode 0600).
+    ///
+    /// # Errors
+    /// [`io::Error`] where there is such a file already, or it cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut file = create(path)?;
+        write!(
+            file,
+            "# An elbowroom private key. Whoever has it can act for its class: keep it to yourself.\n\
+             class = \"{}\"\nname = {}\nprivate = \"{}\"\n",
+            self.class.name(),
+            serde_json::Value::from(self.name.as_str()),
+            hex::encode(&self.key.to_bytes())
+        )?;
+        file.sync_all()
+    }
+
+    /// Reads what [`write`](Self::write) wrote.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it cannot be read, is no key, or others than its owner may read it.
+    pub fn read(path: &Path) -> Result<Self> {
+        kept_to_oneself(path)?;
+        let text = text::read(path)?;
+        let entries = node::parse(path, &text)?;
+        let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
+        table.only(&["class", "name", "private"])?;
+        let secret = table.need("private", "the key that `elbowroom region keygen` writes")?;
+        let bytes = hex::decode(secret.text()?).ok_or_else(|| {
+            secret.error("is no key").hint("64 hexadecimal digits, as `elbowroom region keygen` writes them")
+        })?;
+        let class = class(&table.need("class", "class = \"programmer\"")?)?;
+        let name = table.need("name", "name = \"A. Meyer\"")?.text()?.to_owned();
+        Ok(Self { class, name, key: SigningKey::from_bytes(&bytes) })
+    }
+
+    /// The class that it was made for.
+    pub fn class(&self) -> AccessClass {
+        self.class
+    }
+
+    /// Its owner.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The public key that belongs to it.
+    pub fn public(&self) -> PublicKey {
+        PublicKey(self.key.verifying_key())
+    }
+
+    pub(super) fn sign(&self, message: &[u8]) -> String {
+        hex::encode(&self.key.sign(&[CONTEXT, message].concat()).to_bytes())
+    }
+}
+
+impl PublicKey {
+    /// From the 64 hexadecimal digits of [`to_hex`](Self::to_hex); `None` where they are no key.
+    pub fn from_hex(digits: &str) -> Option<Self> {
+        let key = VerifyingKey::from_bytes(&hex::decode(digits)?).ok()?;
+        // A weak key accepts signatures that nobody made.
+        (!key.is_weak()).then_some(Self(key))
+    }
+
+    /// 64 hexadecimal digits.
+    pub fn to_hex(&self) -> String {
+        hex::encode(self.0.as_bytes())
+    }
+
+    /// Its short name: the first 16 hexadecimal digits of its hash.
+    pub fn id(&self) -> String {
+        hex::hash(self.0.as_bytes()).chars().take(16).collect()
+    }
+
+    pub(super) fn has_signed(&self, message: &[u8], signature: &str) -> bool {
+        let Some(bytes) = hex::decode(signature) else { return false };
+        self.0.verify_strict(&[CONTEXT, message].concat(), &Signature::from_bytes(&bytes)).is_ok()
+    }
+}
+
+/// One of the classes that may sign.
+pub(super) fn class(value: &Value<'_>) -> Result<AccessClass> {
+    value.word(&[("programmer", AccessClass::Programmer), ("integrator", AccessClass::Integrator)])
+}
+
+#[cfg(unix)]
+fn create(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    File::options().write(true).create_new(true).mode(0o600).open(path)
+}
+
+#[cfg(not(unix))]
+fn create(path: &Path) -> io::Result<File> {
+    File::options().write(true).create_new(true).open(path)
+}
+
+#[cfg(unix)]
+fn kept_to_oneself(path: &Path) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
+    let mode = about.permissions().mode() & 0o777;
+    if mode & 0o077 == 0 {
+        return Ok(());
+    }
+    let what = format!("is a private key that others may read or write (mode {mode:03o})");
+    Err(FormatError::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
+}
+
+#[cfg(not(unix))]
+fn kept_to_oneself(_: &Path) -> Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_was_signed_is_signed() {
+        let key = PrivateKey::generate(AccessClass::Programmer, "P").unwrap();
+        let signature = key.sign(b"move the wall");
+        let public = PublicKey::from_hex(&key.public().to_hex()).unwrap();
+        assert!(public.has_signed(b"move the wall", &signature));
+        assert!(!public.has_signed(b"move the door", &signature));
+        let other = PrivateKey::generate(AccessClass::Programmer, "P").unwrap();
+        assert!(!other.public().has_signed(b"move the wall", &signature));
+        assert!(!public.has_signed(b"move the wall", "") && !public.has_signed(b"move the wall", &signature[2..]));
+    }
+
+    /// RFC 8032, section 7.1, test 2: the key pair, for what is signed here has a context before it.
+    #[test]
+    fn the_public_key_is_that_of_ed25519() {
+        let secret = hex::decode("4ccd089b28ff96da9db6c346ec114e0f5b8a319f35aba624da8cf6ed4fb8a6fb").unwrap();
+        let key =
+            PrivateKey { class: AccessClass::Integrator, name: String::new(), key: SigningKey::from_bytes(&secret) };
+        assert_eq!(key.public().to_hex(), "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c");
+    }
+
+    #[test]
+    fn what_is_no_public_key_is_none() {
+        assert_eq!(PublicKey::from_hex(""), None);
+        assert_eq!(PublicKey::from_hex(&"00".repeat(32)), None, "a weak key");
+        let identity = format!("01{}", "00".repeat(31));
+        assert_eq!(PublicKey::from_hex(&identity), None, "a weak key");
+    }
+}

@@ -1,0 +1,119 @@
+//! The log of edits, verified from its first line to its last.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::AccessClass;
+
+use super::entry::Entry;
+use super::state::{State, least_class};
+use super::trust::{self, TrustedKey, TrustedKeys};
+use super::{Result, Seal, hex, text};
+
+/// A log, and the state that its edits lead to.
+#[derive(Debug)]
+pub(super) struct Log {
+    pub file: PathBuf,
+    pub entries: Vec<Entry>,
+    pub state: State,
+    /// Hash of the last line.
+    pub head: String,
+}
+
+impl Log {
+    /// One without entries.
+    pub fn new(file: &Path) -> Self {
+        Self { file: file.to_owned(), entries: Vec::new(), state: State::default(), head: "0".repeat(64) }
+    }
+
+    /// Reads a log and checks every entry: chain, signature, class, and that it leads to the state it names.
+    pub fn read(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
+        let log = Self::read_to_continue(file, trusted)?;
+        log.check_retired(trusted)?;
+        Ok(log)
+    }
+
+    /// As [`read`](Self::read), for an entry that approves what retired keys have signed.
+    pub fn read_to_continue(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
+        let text = text::read(file)?;
+        let mut log = Self::new(file);
+        for line in text.lines() {
+            log.take(line, trusted)?;
+        }
+        if log.entries.is_empty() {
+            return Err(FormatError::new(file, None, "is empty: whoever emptied it took the seal away").hint(RESTORE));
+        }
+        Ok(log)
+    }
+
+    fn take(&mut self, line: &str, trusted: &TrustedKeys) -> Result<()> {
+        let number = self.entries.len() + 1;
+        let wrong = |what: String| FormatError::new(&self.file, number, what).hint(RESTORE);
+        let entry =
+            Entry::parse(line).ok_or_else(|| wrong("is no entry of an edit log, or not as it was written".into()))?;
+        if entry.sequence != number as u64 || entry.previous != self.head {
+            return Err(wrong(format!("entry {} does not follow the one before it", entry.sequence)));
+        }
+        let key = self.signer(&entry, trusted)?;
+        if !entry.is_signed_by(&key.public) {
+            return Err(wrong(format!("is not what \"{}\" (key {}) signed", key.name, entry.key)));
+        }
+        let class = AccessClass::parse(&entry.class).unwrap_or(AccessClass::Operator);
+        if trusted.beside && number > 1 && !self.state.sealed_key(&entry.key).is_some_and(|k| trust::may_sign(k, class))
+        {
+            let what = format!(
+                "was signed with the key {} of \"{}\", which was not sealed with the cell",
+                entry.key, key.name
+            );
+            return Err(wrong(what + ": somebody added it, and sealed with it"));
+        }
+        let state = self
+            .state
+            .with(&entry.changes)
+            .filter(|state| state.digest() == entry.state)
+            .ok_or_else(|| wrong("does not lead to the state that it names".into()))?;
+        let least =
+            if number == 1 { AccessClass::Integrator } else { least_class(&self.state, &state, &entry.changes) };
+        if class < least || class > key.class {
+            let what = format!("\"{}\" ({}) was not allowed to {}", key.name, key.class.name(), entry.action);
+            return Err(wrong(what));
+        }
+        self.state = state;
+        self.head = hex::hash(line.as_bytes());
+        self.entries.push(entry);
+        Ok(())
+    }
+
+    fn signer<'a>(&self, entry: &Entry, trusted: &'a TrustedKeys) -> Result<&'a TrustedKey> {
+        trusted.get(&entry.key).ok_or_else(|| {
+            let what = format!("was signed with the key {}, which {} does not name", entry.key, trusted.file.display());
+            FormatError::new(&self.file, self.entries.len() + 1, what)
+                .hint("a key that is no longer used stays there with `retired = true`; a key that nobody knows is a forged log")
+        })
+    }
+
+    /// What a key signed before it was retired counts by an integrator's entry that follows.
+    fn check_retired(&self, trusted: &TrustedKeys) -> Result<()> {
+        let active = |e: &Entry| trusted.get(&e.key).is_some_and(|k| !k.retired);
+        let approved = self.entries.iter().rposition(|e| active(e) && e.class == AccessClass::Integrator.name());
+        let rest = approved.map_or(0, |at| at + 1);
+        let Some(at) = self.entries[rest..].iter().position(|e| !active(e)) else { return Ok(()) };
+        let key = &self.entries[rest + at].key;
+        let what =
+            format!("was signed with the key {key}, which is retired, and no integrator has sealed the cell since");
+        Err(FormatError::new(&self.file, rest + at + 1, what)
+            .hint("elbowroom region seal CELL --as integrator --key FILE"))
+    }
+
+    /// The last entry as what `run` shows.
+    pub fn seal(&self, trusted: &TrustedKeys) -> Seal {
+        let last = self.entries.last();
+        let text = |field: fn(&Entry) -> &String| last.map(field).cloned().unwrap_or_default();
+        let key = text(|e| &e.key);
+        let name = trusted.get(&key).map(|k| k.name.clone()).unwrap_or_default();
+        Seal { class: text(|e| &e.class), name, key, time: text(|e| &e.time), entries: self.entries.len() as u64 }
+    }
+}
+
+const RESTORE: &str = "the log as it was, from a backup; where there is none, the integrator keeps this one as evidence \
+                       under another name, checks every region, and seals the cell anew";

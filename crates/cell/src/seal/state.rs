@@ -1,0 +1,201 @@
+//! What a seal covers: every key of the cell file that the monitors go by, as text.
+
+use std::collections::BTreeMap;
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::{AccessClass, Life};
+
+use super::change::{Change, RESOLVED};
+use super::{hex, trust};
+use crate::file::node::{Data, Entry, Node};
+use crate::{Cell, CellFile, configure};
+
+/// Tables and keys that no monitor goes by: user programs, what they plan with, and words. All else is sealed.
+const FREE: &[&str] = &["version", "name", "max_s", "checksum", "object", "map", "avoidance", "program"];
+/// Tables of which each has a name: `[robot.NAME]`.
+const NAMED: &[&str] = &["robot", "region", "encoder"];
+/// Where a robot stands when a simulation starts.
+const START: &str = "start";
+
+/// Values by table and key.
+#[derive(Debug, Clone, Default)]
+pub(super) struct State {
+    values: BTreeMap<(String, String), String>,
+    /// Line of each value; none in a state that a log tells.
+    lines: BTreeMap<(String, String), usize>,
+}
+
+impl State {
+    /// What a cell file says, and what its files amount to.
+    pub fn of(file: &CellFile, cell: &Cell) -> Result<Self, FormatError> {
+        let mut state = Self::default();
+        for e in file.entries.iter().filter(|e| !FREE.contains(&e.key.as_str())) {
+            match &e.node.data {
+                Data::Table(entries) if NAMED.contains(&e.key.as_str()) => {
+                    entries.iter().for_each(|named| state.add_item(&format!("{}.{}", e.key, named.key), named));
+                }
+                Data::Table(_) => state.add_item(&e.key, e),
+                _ => state.add("cell", &e.key, &e.node),
+            }
+        }
+        for (robot, setup) in cell.robots.iter().zip(configure::setups(cell)?) {
+            state.resolved(format!("robot.{}", robot.name), Some(robot.line), setup.configuration.robot_checksum());
+        }
+        for r in &cell.regions {
+            state.resolved(format!("region.{}", r.region.name), Some(r.line), r.region.checksum());
+        }
+        for (id, key) in trust::beside(&file.file)? {
+            state.values.insert((trust::FILE.into(), id), key);
+        }
+        Ok(state)
+    }
+
+    fn resolved(&mut self, item: String, line: Option<usize>, checksum: String) {
+        let at = (item, RESOLVED.to_owned());
+        line.map(|line| self.lines.insert(at.clone(), line));
+        self.values.insert(at, checksum);
+    }
+
+    fn add_item(&mut self, item: &str, entry: &Entry) {
+        match &entry.node.data {
+            Data::Table(entries) => {
+                let robot = item.starts_with("robot.");
+                entries
+                    .iter()
+                    .filter(|e| !(robot && e.key == START))
+                    .for_each(|e| self.add(item, &key(&e.key), &e.node));
+            }
+            _ => self.add(item, "", &entry.node),
+        }
+    }
+
+    /// A table within adds a value for each of its keys.
+    fn add(&mut self, item: &str, field: &str, node: &Node) {
+        match &node.data {
+            Data::Table(entries) if !entries.is_empty() => {
+                entries.iter().for_each(|e| self.add(item, &format!("{field}.{}", key(&e.key)), &e.node));
+            }
+            _ => {
+                let at = (item.to_owned(), field.to_owned());
+                self.lines.insert(at.clone(), node.line);
+                self.values.insert(at, text(node));
+            }
+        }
+    }
+
+    /// The line of a change in the cell file; for what was removed, that of its table.
+    pub fn line(&self, change: &Change) -> Option<usize> {
+        let at = |field: &str| self.lines.get(&(change.item.clone(), field.to_owned())).copied();
+        at(&change.field).or_else(|| at(RESOLVED))
+    }
+
+    /// All that differs.
+    pub fn changes_to(&self, after: &Self) -> Vec<Change> {
+        let mut all: Vec<_> = self.values.keys().chain(after.values.keys()).collect();
+        all.sort_unstable();
+        all.dedup();
+        let change = |at: &(String, String)| Change {
+            item: at.0.clone(),
+            field: at.1.clone(),
+            before: self.values.get(at).cloned(),
+            after: after.values.get(at).cloned(),
+        };
+        all.into_iter().filter(|at| self.values.get(at) != after.values.get(at)).map(change).collect()
+    }
+
+    /// This state with the changes; `None` where it does not have what they change.
+    pub fn with(&self, changes: &[Change]) -> Option<Self> {
+        let mut state = Self { values: self.values.clone(), lines: BTreeMap::new() };
+        for c in changes {
+            let at = (c.item.clone(), c.field.clone());
+            let before = match &c.after {
+                Some(after) => state.values.insert(at, after.clone()),
+                None => state.values.remove(&at),
+            };
+            if before != c.before || c.before == c.after {
+                return None;
+            }
+        }
+        Some(state)
+    }
+
+    /// SHA-256 over everything, each text with its length.
+    pub fn digest(&self) -> String {
+        let mut bytes = Vec::new();
+        for ((item, field), value) in &self.values {
+            for text in [item, field, value] {
+                bytes.extend((text.len() as u64).to_le_bytes());
+                bytes.extend(text.as_bytes());
+            }
+        }
+        hex::hash(&bytes)
+    }
+
+    /// What was sealed of a key beside the cell.
+    pub fn sealed_key(&self, id: &str) -> Option<&str> {
+        self.values.get(&(trust::FILE.to_owned(), id.to_owned())).map(String::as_str)
+    }
+
+    /// The life of a region; `None` where there is no such region.
+    fn life(&self, item: &str) -> Option<Life> {
+        let value = |field: &str| self.values.get(&(item.to_owned(), field.to_owned()));
+        value(RESOLVED)?;
+        Some(if value("life").is_some_and(|l| l == "\"temporary\"") { Life::Temporary } else { Life::Permanent })
+    }
+}
+
+/// The least class that may make these changes: the programmer where all of them concern regions that are temporary before
+/// and after.
+pub(super) fn least_class(before: &State, after: &State, changes: &[Change]) -> AccessClass {
+    let of = |change: &Change| {
+        if !change.item.starts_with("region.") {
+            return AccessClass::Integrator;
+        }
+        let lives = [before.life(&change.item), after.life(&change.item)];
+        lives.into_iter().flatten().map(AccessClass::needed_for).max().unwrap_or(AccessClass::Integrator)
+    };
+    changes.iter().map(of).max().unwrap_or(AccessClass::Programmer)
+}
+
+/// The changes that were made: not that a checksum changed where a key that it covers did.
+pub(super) fn without_consequences(changes: &[Change]) -> Vec<&Change> {
+    let made = |c: &&Change| c.field != RESOLVED;
+    // Units and laws count for all.
+    let everywhere = changes.iter().filter(made).any(|c| !NAMED.iter().any(|n| c.item.starts_with(&format!("{n}."))));
+    let whole = |c: &Change| c.before.is_none() || c.after.is_none();
+    let news = |item: &str| changes.iter().any(|c| c.item == item && c.field == RESOLVED && whole(c));
+    let shown = |c: &&Change| {
+        if news(&c.item) {
+            return c.field == RESOLVED;
+        }
+        c.field != RESOLVED || !(everywhere || changes.iter().filter(made).any(|other| other.item == c.item))
+    };
+    changes.iter().filter(shown).collect()
+}
+
+/// A key as TOML writes it.
+fn key(name: &str) -> String {
+    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare { name.to_owned() } else { quoted(name) }
+}
+
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// A value as TOML writes it, the same however the file does: tables in the order of their keys.
+fn text(node: &Node) -> String {
+    match &node.data {
+        Data::Text(t) => quoted(t),
+        // -0 and 0 are one number.
+        Data::Number(v) => format!("{}", v + 0.0),
+        Data::Flag(b) => b.to_string(),
+        Data::Date => "date".into(),
+        Data::List(nodes) => format!("[{}]", nodes.iter().map(text).collect::<Vec<_>>().join(", ")),
+        Data::Table(entries) => {
+            let sorted: BTreeMap<_, _> = entries.iter().map(|e| (key(&e.key), text(&e.node))).collect();
+            let pairs: Vec<_> = sorted.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+            if pairs.is_empty() { "{}".into() } else { format!("{{ {} }}", pairs.join(", ")) }
+        }
+    }
+}

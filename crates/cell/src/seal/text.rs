@@ -1,0 +1,46 @@
+//! Files read whole, and replaced whole.
+
+use std::fs;
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+
+use super::Result;
+
+/// Largest file that is read, bytes.
+const MOST_BYTES: u64 = 64 << 20;
+
+pub(super) fn read(path: &Path) -> Result<String> {
+    let unreadable = |e: std::io::Error| FormatError::new(path, None, format!("cannot be read: {e}"));
+    if fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
+        return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
+    }
+    fs::read_to_string(path).map_err(unreadable)
+}
+
+/// Where a file cannot be written.
+pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
+    move |e| {
+        FormatError::new(path, None, format!("cannot be written: {e}"))
+            .hint("a file and a folder that you may write to")
+    }
+}
+
+/// Puts a text in the place of a file's: first into a new file beside it, with its permissions, so that there is never half a
+/// one, and so that `before_last_step` runs only where the text could be written.
+pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
+    let path = &path.canonicalize().map_err(unwritable(path))?;
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".new");
+    let new = path.with_file_name(name);
+    let written = fs::write(&new, text)
+        .and_then(|()| fs::set_permissions(&new, fs::metadata(path)?.permissions()))
+        .map_err(unwritable(&new))
+        .and_then(|()| before_last_step())
+        .and_then(|()| fs::rename(&new, path).map_err(unwritable(path)));
+    if written.is_err() {
+        // The first error is the one to tell.
+        let _ = fs::remove_file(&new);
+    }
+    written
+}

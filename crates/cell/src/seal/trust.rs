@@ -1,0 +1,159 @@
+//! `trusted-keys.toml`: whose keys count, and for which class.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::AccessClass;
+
+use super::keys::{PublicKey, class};
+use super::{Result, text};
+use crate::file::node;
+use crate::file::read::{Table, Value};
+
+/// Its name, and that of its entry in what is sealed.
+pub(super) const FILE: &str = "trusted-keys.toml";
+/// The keys of a machine: they count for every cell there, and users cannot name others.
+const MACHINE: &str = "/etc/elbowroom/trusted-keys.toml";
+/// Behind the name in quotes.
+const RETIRED: &str = ", retired";
+/// Names a file of keys where the machine has none.
+const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
+
+/// The public keys that count, as a file names them:
+///
+/// ```toml
+/// [[key]]
+/// class = "integrator"
+/// name = "A. Meyer"
+/// public = "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c"
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrustedKeys {
+    /// The file that names them.
+    pub file: PathBuf,
+    /// In file order.
+    pub keys: Vec<TrustedKey>,
+    /// True where they stand beside the cell: whoever may write there could add his own. Then only those count that were
+    /// sealed with the cell.
+    pub beside: bool,
+}
+
+/// One of them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrustedKey {
+    /// The highest class that it may act for.
+    pub class: AccessClass,
+    /// Its owner.
+    pub name: String,
+    /// The key.
+    pub public: PublicKey,
+    /// True where it signs nothing any more. What it signed counts where another integrator's entry follows.
+    pub retired: bool,
+}
+
+impl TrustedKeys {
+    /// Those that count for a cell file: `/etc/elbowroom/trusted-keys.toml`; where there is none, the file that the
+    /// environment variable `ELBOWROOM_TRUSTED_KEYS` names; where it names none, `trusted-keys.toml` beside the cell file.
+    /// `None` where none of them is there: then cells need no seal.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the file cannot be read, or at the line that is wrong.
+    pub fn find(cell: &Path) -> Result<Option<Self>> {
+        let named = std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
+        let beside = cell.with_file_name(FILE);
+        let Some(file) = locate(Path::new(MACHINE), named, &beside) else { return Ok(None) };
+        Ok(Some(Self { beside: file == beside, ..Self::read(&file)? }))
+    }
+
+    /// Reads a file of keys.
+    ///
+    /// # Errors
+    /// As for [`find`](Self::find).
+    pub fn read(file: &Path) -> Result<Self> {
+        let text = text::read(file)?;
+        let entries = node::parse(file, &text)?;
+        let table = Table { file, name: String::new(), line: 1, entries: &entries };
+        table.only(&["key"])?;
+        let mut keys: Vec<TrustedKey> = Vec::new();
+        for value in table.need("key", "[[key]]")?.list("[[key]]")? {
+            let key = trusted(&value)?;
+            if let Some(other) = keys.iter().find(|k| k.public == key.public) {
+                return Err(value.error(format!("is the key of \"{}\" once more", other.name)).hint("each key once"));
+            }
+            keys.push(key);
+        }
+        Ok(Self { file: file.to_owned(), keys, beside: false })
+    }
+
+    /// The key of this short name.
+    pub fn get(&self, id: &str) -> Option<&TrustedKey> {
+        self.keys.iter().find(|k| k.public.id() == id)
+    }
+}
+
+fn trusted(value: &Value<'_>) -> Result<TrustedKey> {
+    let t = value.table("[[key]]")?;
+    t.only(&["class", "name", "public", "retired"])?;
+    let public = t.need("public", "public = \"…\"   (the 64 digits that `elbowroom region keygen` prints)")?;
+    let key = PublicKey::from_hex(public.text()?).ok_or_else(|| {
+        public.error("is no key").hint("public = \"…\"   (the 64 digits that `elbowroom region keygen` prints)")
+    })?;
+    Ok(TrustedKey {
+        class: class(&t.need("class", "class = \"programmer\"   (or integrator)")?)?,
+        name: t.need("name", "name = \"A. Meyer\"   (the owner of the key)")?.text()?.to_owned(),
+        public: key,
+        retired: t.flag_or("retired", false)?,
+    })
+}
+
+/// The machine's before all: a user who could name another file could trust a key of his own.
+fn locate(machine: &Path, named: Option<PathBuf>, beside: &Path) -> Option<PathBuf> {
+    if machine.exists() {
+        return Some(machine.to_owned());
+    }
+    named.or_else(|| beside.exists().then(|| beside.to_owned()))
+}
+
+/// The keys beside a cell, as they are sealed with it: short name, and what it may do; [`may_sign`] reads that.
+pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
+    let file = cell.with_file_name(FILE);
+    if !file.exists() {
+        return Ok(Vec::new());
+    }
+    let value = |k: TrustedKey| {
+        let retired = if k.retired { RETIRED } else { "" };
+        (k.public.id(), format!("{} {:?}{retired}", k.class.name(), k.name))
+    };
+    Ok(TrustedKeys::read(&file)?.keys.into_iter().map(value).collect())
+}
+
+/// True where what was sealed of a key lets it sign on behalf of a class.
+pub(super) fn may_sign(sealed: &str, who: AccessClass) -> bool {
+    let class = sealed.split(' ').next().and_then(AccessClass::parse);
+    class.is_some_and(|c| c >= who) && !sealed.ends_with(RETIRED)
+}
+
+/// There is a seal, and nobody says whose keys count.
+pub(super) fn missing(cell: &Path, log: &Path) -> FormatError {
+    let what = format!("is sealed by {}, but there is no file that says whose keys count", log.display());
+    FormatError::new(cell, None, what).hint(format!(
+        "the integrator's {FILE} beside the cell file, or at {MACHINE}, or {VARIABLE}=FILE (docs/roles.md)"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keys_of_the_machine_come_first_and_those_beside_the_cell_last() {
+        let dir = tempfile::tempdir().unwrap();
+        let [machine, named, beside] = ["machine", "named", "beside"].map(|n| dir.path().join(n));
+        assert_eq!(locate(&machine, None, &beside), None);
+        std::fs::write(&beside, "").unwrap();
+        assert_eq!(locate(&machine, None, &beside), Some(beside.clone()));
+        assert_eq!(locate(&machine, Some(named.clone()), &beside), Some(named.clone()));
+        std::fs::write(&machine, "").unwrap();
+        assert_eq!(locate(&machine, Some(named), &beside), Some(machine));
+    }
+}

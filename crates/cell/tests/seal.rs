@@ -1,0 +1,97 @@
+//! A seal covers whatever the monitors go by: every number and word of a cell that its checksum depends on.
+
+mod common;
+
+use std::path::Path;
+
+use common::{ARM, HEAD, rail};
+use elbowroom_cell::Cell;
+use elbowroom_cell::seal::{PrivateKey, Signer, history, seal};
+use elbowroom_monitor::AccessClass;
+
+/// Every kind of table that counts for a monitor.
+fn text() -> String {
+    format!(
+        "{HEAD}{}[robot.c]\n{ARM}base = {{ at = [0, 3000, 0] }}\nstart = [0, 0, 0, 0, 40, 0]\nvolumes = \"capsule\"\nstop_time = 0.2\n\
+         [robot.c.tool]\ntcp = {{ at = [0, 0, 250], rpy = [0, 0, 0] }}\nbox = {{ at = [0, 0, 125], size = [80, 80, 250] }}\n\
+         [encoder.belt]\ndirection = [1, 0, 0]\nspeed = 100\n\
+         [region.column]\nshape = \"cylinder\"\nbase = [900, 0, 0]\nradius = 150\nheight = 1200\nwarning = 250\n\
+         guards = [\"tool\"]\nrobots = [\"c\"]\n\
+         [region.gate]\nshape = \"box\"\nfrom = [0, 5000, 0]\nto = [100, 5100, 100]\nlife = \"temporary\"\nwarning = 10\n\
+         [region.share]\nshape = \"box\"\nfrom = [0, 7000, 0]\nto = [100, 7100, 100]\nkind = \"exchange\"\nwarning = 10\n\
+         [region.ride]\nshape = \"sphere\"\ncentre = [0, 9000, 0]\nradius = 100\nwarning = 10\nkind = \"monitored\"\nslow_to = 30\n\
+         hysteresis = 2\noutput = 3\nwarning_output = 4\nfollow = {{ encoder = \"belt\" }}\n\
+         [monitor]\nstale_ms = 20\nrecovery = 5\noverride_rate = 7\nstopping_distance = true\nreaction_ms = 6\n\
+         [program.a]\nsteps = [{{ move = \"joint\", to = [500], speed = 50 }}, {{ wait = 0.1 }}]\n",
+        rail("a", 0.0),
+    )
+}
+
+fn sealed(dir: &Path, text: &str) {
+    let key = PrivateKey::generate(AccessClass::Integrator, "I").unwrap();
+    let public = key.public().to_hex();
+    let trusted = format!("[[key]]\nclass = \"integrator\"\nname = \"I\"\npublic = \"{public}\"\n");
+    std::fs::write(dir.join("trusted-keys.toml"), trusted).unwrap();
+    std::fs::write(dir.join("cell.toml"), text).unwrap();
+    let signer = Signer { class: AccessClass::Integrator, key: &key, note: None };
+    seal(&dir.join("cell.toml"), &signer).unwrap_or_else(|e| panic!("{e}"));
+}
+
+/// The text with each of its numbers one larger, and each of its words in quotes replaced by others.
+fn mutations(text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let length = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+        if length > 0 {
+            let number: u64 = rest[..length].parse().unwrap();
+            all.push(format!("{}{}{}", &text[..at], number + 1, &rest[length..]));
+        }
+        at += length.max(1);
+    }
+    let words = [
+        ("\"tool\"", "\"arm\""),
+        ("\"temporary\"", "\"permanent\""),
+        ("\"exchange\"", "\"forbidden\""),
+        ("true", "false"),
+    ];
+    all.extend(words.map(|(from, to)| text.replacen(from, to, 1)));
+    all.extend(text.lines().map(|line| text.replacen(&format!("{line}\n"), "", 1)));
+    all
+}
+
+#[test]
+fn whatever_changes_the_checksum_breaks_the_seal() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("cell.toml");
+    sealed(dir.path(), &text());
+    let checksum = Cell::load(&file).unwrap_or_else(|e| panic!("{e}")).checksum;
+    let (mut tried, mut free) = (0, 0);
+    for mutated in mutations(&text()) {
+        let Ok(cell) = Cell::parse(&file, &mutated) else { continue };
+        std::fs::write(&file, &mutated).unwrap();
+        match Cell::load(&file) {
+            Err(e) => {
+                assert!(e.what.contains("is not as it was sealed"), "{e}");
+                assert!(!history(&file).unwrap().unsealed.is_empty());
+            }
+            Ok(_) => {
+                assert_eq!(cell.checksum, checksum, "not noticed:\n{mutated}");
+                free += 1;
+            }
+        }
+        tried += 1;
+    }
+    assert!(tried > 150 && free > 5 && free < 40, "{tried} tried, {free} of no concern to a monitor");
+}
+
+#[test]
+fn a_text_is_no_file_and_asks_for_no_seal() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("cell.toml");
+    sealed(dir.path(), &text());
+    let seal = Cell::load(&file).unwrap().seal.expect("sealed");
+    assert_eq!((seal.class.as_str(), seal.name.as_str(), seal.entries), ("integrator", "I", 1));
+    assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().seal.is_none());
+}

@@ -1,0 +1,165 @@
+//! What can be typed after `elbowroom region`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use elbowroom::monitor::AccessClass;
+
+/// Verbs of sealed cells (docs/roles.md).
+#[derive(Debug, Subcommand)]
+pub(crate) enum RegionCommand {
+    /// Add regions: tables [region.NAME] from a file, or from standard input
+    Add(AddArgs),
+    /// Set keys of a region, or take them out
+    Change(ChangeArgs),
+    /// Remove a region
+    Remove(RemoveArgs),
+    /// Set keys of [monitor], the laws, or take them out
+    Laws(LawsArgs),
+    /// Seal a cell file as it stands now
+    Seal(SealArgs),
+    /// Verify the seal and show every edit: when, by whom, what
+    Log(LogArgs),
+    /// Make a key: the private one goes to a file, the public one to standard output
+    Keygen(KeygenArgs),
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Class {
+    /// Looks; changes nothing
+    Operator,
+    /// Changes temporary regions
+    Programmer,
+    /// Changes everything
+    Integrator,
+}
+
+impl From<Class> for AccessClass {
+    fn from(class: Class) -> Self {
+        match class {
+            Class::Operator => Self::Operator,
+            Class::Programmer => Self::Programmer,
+            Class::Integrator => Self::Integrator,
+        }
+    }
+}
+
+/// Who edits.
+#[derive(Debug, Args)]
+pub(crate) struct SignArgs {
+    /// The class on whose behalf
+    #[arg(long = "as", value_name = "CLASS", value_enum)]
+    pub(crate) class: Class,
+    /// The private key that proves it; default: the file that the environment variable ELBOWROOM_KEY names
+    #[arg(long, value_name = "FILE")]
+    pub(crate) key: Option<PathBuf>,
+    /// Why, for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom region add cell.toml new.toml --as programmer --key p.key
+  elbowroom teach cell.toml ... | elbowroom region add cell.toml - --as integrator --key i.key")]
+pub(crate) struct AddArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The file with the tables; - reads standard input
+    pub(crate) regions: PathBuf,
+    #[command(flatten)]
+    pub(crate) sign: SignArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom region change cell.toml cart radius=200 warning=300 --as programmer --key p.key
+  elbowroom region change cell.toml cart 'base=[900, 0, 0]' --unset slow_to --as programmer --key p.key")]
+pub(crate) struct ChangeArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The region
+    pub(crate) region: String,
+    #[command(flatten)]
+    pub(crate) keys: KeysArgs,
+    #[command(flatten)]
+    pub(crate) sign: SignArgs,
+}
+
+/// Keys to set and to take out.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
+pub(crate) struct KeysArgs {
+    /// Keys and their values as they stand in the cell file
+    #[arg(value_name = "KEY=VALUE", value_parser = key_value)]
+    pub(crate) set: Vec<(String, String)>,
+    /// A key to take out; may be repeated
+    #[arg(long, value_name = "KEY")]
+    pub(crate) unset: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  elbowroom region remove cell.toml cart --as programmer --key p.key --note 'no cart any more'")]
+pub(crate) struct RemoveArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The region
+    pub(crate) region: String,
+    #[command(flatten)]
+    pub(crate) sign: SignArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  elbowroom region laws cell.toml stopping_distance=true reaction_ms=8 --as integrator --key i.key")]
+pub(crate) struct LawsArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    #[command(flatten)]
+    pub(crate) keys: KeysArgs,
+    #[command(flatten)]
+    pub(crate) sign: SignArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  elbowroom region seal cell.toml --as integrator --key i.key --note 'after commissioning'")]
+pub(crate) struct SealArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    #[command(flatten)]
+    pub(crate) sign: SignArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit status: 0 where the cell is as it was sealed; 1 where it is not; 2 where the log is not as it was signed."
+)]
+pub(crate) struct LogArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// Print one JSON document instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  elbowroom region keygen --as integrator --name 'A. Meyer' --out meyer.key >> trusted-keys.toml")]
+pub(crate) struct KeygenArgs {
+    /// The class it is for
+    #[arg(long = "as", value_name = "CLASS", value_enum)]
+    pub(crate) class: Class,
+    /// Its owner
+    #[arg(long, value_name = "NAME")]
+    pub(crate) name: String,
+    /// The new file for the private key
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE, as radius=150")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
