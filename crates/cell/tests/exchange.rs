@@ -85,8 +85,8 @@ fn ring(laws: &str) -> String {
     for (i, (robot, region)) in [("a", "A"), ("b", "B"), ("c", "C")].into_iter().enumerate() {
         let angle = 120.0 * i as f64;
         let [x, y] = [866.025 * angle.to_radians().cos(), 866.025 * angle.to_radians().sin()];
-        text += &carriage(robot, [x, y, 150.0 * i as f64], angle + 150.0, -900.0, -500.0, 4000.0);
-        text += &exchanged(region, [x, y, -300.0], 400.0, 200.0);
+        text += &carriage(robot, [x, y, 150.0 * i as f64], angle + 150.0, -1000.0, -500.0, 4000.0);
+        text += &exchanged(region, [x, y, -300.0], 450.0, 200.0);
     }
     text
 }

@@ -182,3 +182,42 @@ fn every_example_runs_free_of_trouble() {
         assert_eq!(finished, name != "figure12", "{name}: {json}");
     }
 }
+
+#[test]
+fn robots_that_wait_for_each_other_are_bad_news() {
+    let carriage = |name: &str, x: f64, z: f64, yaw: f64| {
+        format!(
+            "[robot.{name}]\nbase = {{ at = [{x}, 0, {z}], rpy = [0, 90, {yaw}] }}\n\
+             dh = [{{ kind = \"prismatic\", min = -2000, max = 2000, speed = 1000 }}]\n\
+             links = [[{{ sphere = {{ at = [0, 0, 0], radius = 50 }} }}, {{ sphere = {{ at = [0, 0, 350], radius = 50 }} }}]]\n\
+             [program.{name}]\nsteps = [{{ move = \"joint\", to = [1500] }}]\n"
+        )
+    };
+    let region = |name: &str, x: f64| {
+        format!(
+            "[region.{name}]\nshape = \"box\"\nbase = [{x}, 0, -300]\nsize = [400, 400, 600]\nwarning = 100\n\
+             kind = \"exchange\"\n"
+        )
+    };
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 4\n{}{}{}{}",
+        carriage("a", 0.0, 0.0, 0.0),
+        carriage("b", 700.0, 150.0, 180.0),
+        region("A", 0.0),
+        region("B", 700.0)
+    );
+    let dir = with_cell(&text);
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "o"]).expect(1).json();
+    let [deadlock] = &json["deadlocks"].as_array().unwrap()[..] else { panic!("{json}") };
+    assert_eq!(deadlock["robots"], serde_json::json!(["a", "b"]));
+    assert_eq!(deadlock["regions"], serde_json::json!(["B", "A"]));
+    assert!(deadlock["t_s"].is_f64());
+    for robot in json["robots"].as_array().unwrap() {
+        assert_eq!(robot["outcome"], "deadlock");
+        assert!(robot["by"].is_string() && robot["part"].is_string() && robot["point_m"][2].is_f64(), "{robot}");
+    }
+    let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(1).stdout;
+    assert!(text.contains("deadlock since"), "{text}");
+    let html = std::fs::read_to_string(dir.path().join("o/report.html")).unwrap();
+    assert!(html.contains("wait for each other at B, A"));
+}

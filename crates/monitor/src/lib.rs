@@ -80,6 +80,7 @@ pub use laws::{Laws, Stopping};
 pub use monitor::Monitor;
 pub use region::{Guards, Kind, Life, Region, RegionId, SourceId};
 pub use report::{Fault, Reason, TickReport, VirtualTcp};
+pub use seat::ExchangeState;
 pub use snapshot::{Snapshot, Source};
 pub use source_watch::{SourceLimits, SourceSpec};
 pub use sweep::{Least, Sweep};

@@ -10,7 +10,7 @@ use crate::gaps::{self, Gap, Gaps};
 use crate::laws::rate_limited;
 use crate::placement::{Placement, region_point_motion};
 use crate::presence::{Outputs, Presence};
-use crate::seat::Seat;
+use crate::seat::{ExchangeState, Seat};
 use crate::source_watch::{SourceWatch, Trust};
 use crate::stopping::{StoppingLaw, TickState};
 use crate::sweep::Sweep;
@@ -203,6 +203,14 @@ impl Monitor {
         match self.config.regions[region.0].kind {
             Kind::Exchange { slot } => self.seat.as_ref().is_some_and(|seat| seat.holds(slot)),
             Kind::Forbidden | Kind::Monitored { .. } => false,
+        }
+    }
+
+    /// How the robot stood to an exchange region in the last tick; `None` for any other region.
+    pub fn exchange_state(&self, region: RegionId) -> Option<ExchangeState> {
+        match self.config.regions[region.0].kind {
+            Kind::Exchange { slot } => self.seat.as_ref().map(|seat| seat.state(slot)),
+            Kind::Forbidden | Kind::Monitored { .. } => None,
         }
     }
 

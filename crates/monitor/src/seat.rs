@@ -7,6 +7,34 @@ use crate::interlock::Stay;
 use crate::presence::Presence;
 use crate::{Board, Configuration, EventKind, Grant, Kind, RegionId, RobotSlot, SlotId};
 
+/// How a robot stands to an exchange region and those that share its slot (`docs/laws.md`, section 11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExchangeState {
+    /// Beyond the warning zone.
+    Outside,
+    /// In the warning zone, without the grant.
+    Waiting,
+    /// It has the grant, and can still stop outside.
+    Granted,
+    /// Not inside, but it may not be able to stop outside any more.
+    Committed,
+    /// Inside.
+    Inside,
+}
+
+impl ExchangeState {
+    /// The word in files and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Outside => "outside",
+            Self::Waiting => "waiting",
+            Self::Granted => "granted",
+            Self::Committed => "committed",
+            Self::Inside => "inside",
+        }
+    }
+}
+
 /// One robot's dealings with the board.
 #[derive(Debug)]
 pub(crate) struct Seat {
@@ -100,6 +128,17 @@ impl Seat {
         match self.board.holder(slot) {
             Some(holder) => holder != self.robot,
             None => others().any(|r| self.board.stay(slot, r).occupies()),
+        }
+    }
+
+    pub(crate) fn state(&self, slot: SlotId) -> ExchangeState {
+        let Some(u) = self.slots.iter().find(|u| u.slot == slot) else { return ExchangeState::Outside };
+        match (u.stay, u.state) {
+            (Stay::Inside, _) => ExchangeState::Inside,
+            (Stay::Committed, _) => ExchangeState::Committed,
+            (_, SlotState::Held) => ExchangeState::Granted,
+            (_, SlotState::Waiting | SlotState::Deadlock) => ExchangeState::Waiting,
+            (_, SlotState::Away) => ExchangeState::Outside,
         }
     }
 

@@ -19,6 +19,9 @@ const MOST_STEPS: f64 = 20_000.0;
 /// Added to warning zones and their hysteresis, m: rounding never makes a zone smaller than the monitor's.
 const MARGIN_M: f64 = 1e-3;
 
+/// From this time on (s, at override 1) in the zones of these slots.
+type Spans = Vec<(f64, u64)>;
+
 /// What a robot may still need, along its program.
 #[derive(Debug)]
 pub(super) struct Needs {
@@ -39,29 +42,27 @@ impl Needs {
         }
         let mut near = Near::new(setup);
         let mut occupied: Vec<(usize, f64, u64)> = Vec::new();
-        let mut q = plan.start.clone();
-        let mut known: Vec<(*const (), Vec<(f64, u64)>)> = Vec::new();
+        let mut here = near.slots(&plan.start, 0.0);
+        let mut known: Vec<(*const (), Spans, u64)> = Vec::new();
         for (step, what) in plan.steps.iter().enumerate() {
             let (key, duration): (*const (), f64) = match what {
                 PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
                 PlanStep::Play(p) => (Rc::as_ptr(p).cast(), p.duration()),
                 _ => {
-                    occupied.push((step, 0.0, near.slots(&q, 0.0)));
+                    occupied.push((step, 0.0, here));
                     continue;
                 }
             };
-            let spans = match known.iter().find(|k| k.0 == key) {
-                Some((_, spans)) => spans.clone(),
-                None => {
-                    let spans = near.along(duration, &|t| at(what, t));
-                    known.push((key, spans.clone()));
-                    spans
-                }
-            };
+            let index = known.iter().position(|k| k.0 == key).unwrap_or_else(|| {
+                let spans = near.along(duration, &|t| at(what, t));
+                known.push((key, spans, near.slots(&at(what, duration), 0.0)));
+                known.len() - 1
+            });
+            let (_, spans, end) = &known[index];
             occupied.extend(spans.iter().map(|(t, slots)| (step, *t, *slots)));
-            q = at(what, duration);
+            here = *end;
         }
-        occupied.push((plan.steps.len(), 0.0, near.slots(&q, 0.0)));
+        occupied.push((plan.steps.len(), 0.0, here));
         Some(Self { robot: RobotSlot(robot), stages: rest_of_stretches(occupied), declared: None })
     }
 
@@ -130,10 +131,10 @@ impl<'a> Near<'a> {
     }
 
     /// Over a motion of this duration: from when on the robot is in which zones.
-    fn along(&mut self, duration: f64, q: &dyn Fn(f64) -> Vec<f64>) -> Vec<(f64, u64)> {
+    fn along(&mut self, duration: f64, q: &dyn Fn(f64) -> Vec<f64>) -> Spans {
         let steps = (duration / STEP_S).ceil().clamp(1.0, MOST_STEPS);
         let time = |i: usize| duration * i as f64 / steps;
-        let mut spans: Vec<(f64, u64)> = Vec::new();
+        let mut spans = Spans::new();
         let mut here = q(0.0);
         for i in 0..steps as usize {
             let next = q(time(i + 1));
