@@ -134,6 +134,19 @@ fn a_source_that_jumps_stops_the_robot() {
 }
 
 #[test]
+fn an_encoder_that_jumps_stops_the_robot() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("belt.csv"), "t_s,travel_m\n0,0\n1.0,0\n1.01,3.9\n3,3.9\n").unwrap();
+    let belt = "[encoder.belt]\ndirection = [0, 1, 0]\nfile = \"belt.csv\"\n\
+                [region.ride]\nshape = \"box\"\nbase = [0, -3500, -200]\nsize = [200, 200, 400]\nwarning = 200\n\
+                follow = { encoder = \"belt\" }\n";
+    let outcome = run_at(dir.path(), &cell(belt));
+    assert!(outcome.recording.events.iter().any(|e| e.event == "fault" && e.region == "ride"));
+    let cell = Cell::parse(dir.path().join("cell.toml"), &cell(belt)).unwrap();
+    assert!(cell.warnings.iter().any(|w| w.what.contains("encoder \"belt\" moves at 390000 mm/s")), "{:?}", cell.warnings);
+}
+
+#[test]
 fn the_limit_of_a_source_can_be_lower() {
     let belt = |more: &str| {
         cell(&format!(

@@ -88,14 +88,14 @@ fn check_says_whether_entry_is_excluded_and_why() {
 fn the_reaction_time_and_the_programmed_override_count() {
     let needed = |text: &str| check(text).json()["regions"][0]["needed_warning_m"].as_f64().unwrap();
     let slow = format!("{OVERRUN}[monitor]\nreaction_ms = 30\n");
-    assert!((needed(&slow) - 0.31).abs() < 1e-6);
+    assert!((needed(&slow) - 0.314).abs() < 1e-6, "one tick until it is seen, 30 ms until it is obeyed");
     let half = OVERRUN.replace("[program.cart]\n", "[program.cart]\noverride = 50\n");
     assert!((needed(&half) - (0.0625 + 0.002)).abs() < 1e-6);
     // An override that falls slower than the robot brakes: 2/s instead of 4/s.
     let rate = format!("{OVERRUN}[monitor]\noverride_rate = 2\n");
     assert!((needed(&rate) - 0.504).abs() < 1e-6);
-    let answer = check(&format!("{OVERRUN}{STOPPING}override_rate = 2\n")).expect(1).json();
-    assert!(answer["regions"][0]["write"].as_str().unwrap().contains("override_rate = 0"), "{answer}");
+    // The stopping distance is not delayed by it.
+    check(&format!("{OVERRUN}{STOPPING}override_rate = 2\n")).expect(0);
 }
 
 #[test]

@@ -9,8 +9,10 @@ use super::RobotProgram;
 use super::profile::Pace;
 use crate::{Cell, CellRegion, CellRobot};
 
-/// The stopping-distance law aims 0.5 mm short of the border: an override that falls late by less than this (m) stays outside.
-const LATE_AT_MOST_M: f64 = 4e-4;
+/// Where braking takes more than so many times the way of the reaction, the two add up.
+const BRAKES_LONG: f64 = 3.0;
+/// Where it takes less, so much more than both is needed.
+const IN_BETWEEN: f64 = 1.025;
 
 /// So much (m) is rounding of the speeds and no thickness.
 const ROUNDING_M: f64 = 1e-6;
@@ -95,11 +97,15 @@ impl Pair<'_> {
         self.paces().map(|p| p.fastest_m_s).fold(0.0, f64::max)
     }
 
-    /// v²/2a + v·t of the guarded point that needs most, and the way that the region comes nearer meanwhile, m.
+    /// The thickness of the guarded point that needs most, and the way that the region comes nearer meanwhile, m.
     fn needed_m(&self) -> f64 {
-        let reaction_s = self.cell.laws.reaction_s;
-        let own = self.paces().map(|p| p.braking_m + p.fastest_m_s * reaction_s).fold(0.0, f64::max);
-        own + self.travel_m_s * (reaction_s + self.program.profile.braking_s)
+        let own = self.paces().map(|p| thickness(p.braking_m, p.fastest_m_s * self.late_s())).fold(0.0, f64::max);
+        own + self.travel_m_s * (self.late_s() + self.program.profile.braking_s)
+    }
+
+    /// How late (s) the robot obeys after it has come into the zone: one tick until the monitor sees it, and the reaction time.
+    fn late_s(&self) -> f64 {
+        self.cell.tick_s + self.cell.laws.obeyed_after_s
     }
 
     /// What no law and no thickness helps against.
@@ -144,19 +150,12 @@ impl Pair<'_> {
         }
         let units = self.cell.units;
         let [needed, zone] = [round_up(self.needed_m()), self.region().region.warning_m];
-        let law = if self.cell.laws.stopping_reaction_s.is_none() {
-            "`stopping_distance` is off".to_owned()
-        } else {
-            let rate = self.cell.laws.laws.override_rate;
-            format!("`override_rate` = {rate} per second is slower than the robot could brake")
-        };
-        let key =
-            if self.cell.laws.stopping_reaction_s.is_none() { "stopping_distance = true" } else { "override_rate = 0" };
+        let law = "`stopping_distance` is off";
         if needed <= zone {
             let why = format!(
                 "{law}, and `direction_aware` lets it go at full speed along the border, from where its path can bend inwards"
             );
-            return Some(Missing::new(why, format!("{key} in [monitor], or direction_aware = false")));
+            return Some(Missing::new(why, "stopping_distance = true in [monitor], or direction_aware = false"));
         }
         let why = format!(
             "{law}, and from {}/s {} it needs a warning zone of {}; it has {}",
@@ -168,20 +167,23 @@ impl Pair<'_> {
         let enough = units.in_file_units(needed);
         Some(Missing::new(
             why,
-            format!("{key} in [monitor], or warning = {enough} in [region.{}]", self.region().region.name),
+            format!(
+                "stopping_distance = true in [monitor], or warning = {enough} in [region.{}]",
+                self.region().region.name
+            ),
         ))
     }
 
-    /// `(8000 mm/s², 2 ms reaction)`.
+    /// `(braking 8000 mm/s², obeying 2 ms late)`.
     fn braking(&self) -> String {
         let (v, way) = (self.fastest_m_s(), self.paces().map(|p| p.braking_m).fold(0.0, f64::max));
         let deceleration = self.cell.units.show_length(round(v * v / (2.0 * way)));
-        format!("(braking {deceleration}/s², reaction {} ms)", round(self.cell.laws.reaction_s * 1e3))
+        format!("(braking {deceleration}/s², obeying {} ms late)", round(self.late_s() * 1e3))
     }
 
-    /// True where the stopping-distance law is on and its override may fall as fast as the robot brakes.
+    /// True where the stopping-distance law is on; `override_rate` does not delay it.
     fn stops_in_time(&self) -> bool {
-        self.cell.laws.stopping_reaction_s.is_some() && self.paces().all(|p| p.late_m <= LATE_AT_MOST_M)
+        self.cell.laws.stopping_reaction_s.is_some()
     }
 
     /// True where the warning zone alone is enough.
@@ -204,18 +206,20 @@ impl Pair<'_> {
     /// Why entry is excluded, with the assumptions.
     fn proof(&self) -> String {
         let units = self.cell.units;
-        let reaction = format!("it obeys within {} ms", round(self.cell.laws.reaction_s * 1e3));
+        let obeys = |seconds: f64| format!("it obeys within {} ms", round(seconds * 1e3));
         let exchange =
             if matches!(self.region().region.kind, Kind::Exchange { .. }) { "without the grant " } else { "" };
         if self.fastest_m_s() <= 0.0 {
             return "no program moves what is guarded, and it stands outside".into();
         }
         if self.stops_in_time() {
+            let reaction = obeys(self.cell.laws.reaction_s);
             return format!(
                 "`stopping_distance`: {exchange}it stops before the border, provided that its joints brake as `stop_time` \
                  states, {reaction}, its program keeps the stated accelerations, and model, TCP and tool are as described"
             );
         }
+        let reaction = obeys(self.late_s());
         format!(
             "the warning zone of {} is thick enough ({} needed): {exchange}it stops before the border, provided that its joints \
              brake as `stop_time` states, {reaction}, and model, TCP and tool are as described",
@@ -223,6 +227,17 @@ impl Pair<'_> {
             units.show_length(round_up(self.needed_m())),
         )
     }
+}
+
+/// Thickness (m) of a warning zone from which a robot that brakes within `braking_m`, and goes `late_m` before it begins to
+/// obey, stays out by the warning law alone.
+///
+/// The two add up (v²/2a + v·t) where braking takes most. Where being late takes most, the law is a differential equation with
+/// a delay, `d' = −v·d(t − τ)/δ`, which goes beyond 0 unless `δ ≥ e·v·τ`; in between, by integration, 2.5 % more than both is
+/// enough.
+fn thickness(braking_m: f64, late_m: f64) -> f64 {
+    let both = braking_m + late_m;
+    if braking_m >= BRAKES_LONG * late_m { both } else { (IN_BETWEEN * both).max(std::f64::consts::E * late_m) }
 }
 
 /// To four digits, for messages.

@@ -67,8 +67,17 @@ pub(super) fn read(
         }
     };
     given(&t, units, &mut limits)?;
-    if let Follow::Poses(index) = follow {
-        warn_of_jumps(&t, &known.pose_tracks[index], &limits, units, warnings);
+    match follow {
+        Follow::Poses(index) => warn_of_jumps(&t, &known.pose_tracks[index], &limits, units, warnings),
+        Follow::Encoder(index) => {
+            let encoder = &known.encoders[index];
+            let speed = encoder.fastest(0.0, f64::INFINITY);
+            if speed > limits.speed_m_s {
+                let what = format!("encoder \"{}\" moves at {}/s", encoder.name, units.show_length(speed));
+                warn_of_jump(&t, &what, warnings);
+            }
+        }
+        Follow::Robot { .. } | Follow::Object(_) => {}
     }
     Ok((follow, limits))
 }
@@ -126,12 +135,12 @@ fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
 fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units: Units, warnings: &mut Vec<Warning>) {
     let too_fast = |(_, speed, turn): &(f64, f64, f64)| *speed > limits.speed_m_s || *turn > limits.turn_rad_s;
     let Some((t_s, speed, turn)) = track.rates().find(too_fast) else { return };
-    let what = format!(
-        "{}: from t_s = {t_s} on the poses move at {}/s and {:.3} rad/s: the monitor takes that for a jump and stops the robots",
-        track.file.display(),
-        units.show_length(speed),
-        turn,
-    );
+    let (file, speed) = (track.file.display(), units.show_length(speed));
+    warn_of_jump(t, &format!("{file}: from t_s = {t_s} on the poses move at {speed}/s and {turn:.3} rad/s"), warnings);
+}
+
+fn warn_of_jump(t: &Table<'_>, what: &str, warnings: &mut Vec<Warning>) {
+    let what = format!("{what}: the monitor takes that for a jump and stops the robots");
     let hint = "max_speed and max_turn in `follow`, where the source can be so fast";
     warnings.push(Warning::new(t.file, t.line, what).hint(hint));
 }

@@ -182,7 +182,7 @@ impl Plausible<'_> {
         let other = if units.length == LengthUnit::Metre { LengthUnit::Millimetre } else { LengthUnit::Metre };
         let factor = other.to_metres(1.0) / units.length.to_metres(1.0);
         let (value, sensible) = match odd {
-            Odd::Far { distance_m, reach_m } => (distance_m, distance_m * factor <= reach_m),
+            Odd::Far { distance_m, reach_m } => (distance_m, distance_m * factor <= FAR_OBJECT * reach_m),
             Odd::Thin(m) | Odd::Large(m) => (m, (THIN_M..=LARGE_M).contains(&(m * factor))),
         };
         let (unit, angle) = (other.symbol(), units.angle.symbol());
