@@ -24,7 +24,7 @@ links = [
   {{ capsule = {{ from = [0, -250, 0], to = [0, 0, 0], radius = 80 }} }},
   {{ capsule = {{ from = [-450, 0, 0], to = [0, 0, 0], radius = 60 }} }},
   {{ sphere = {{ radius = 70 }} }},
-  {{ capsule = {{ from = [0, 100, 0], to = [0, 330, 0], radius = 50 }} }},
+  {{ capsule = {{ from = [0, 100, 0], to = [0, 280, 0], radius = 50 }} }},
   {{ sphere = {{ radius = 45 }} }},
   {{ box = {{ at = [0, 0, 40], size = [90, 160, 80] }} }},
 ]

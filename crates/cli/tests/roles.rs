@@ -7,12 +7,12 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{Answer, SWING, answer, command, keys};
+use common::{Answer, answer, command, keys, solid_swing};
 use tempfile::TempDir;
 
 /// A cell with comments and blanks of its owner's, a permanent region `post` and a temporary one, `cart`.
 fn text() -> String {
-    SWING.replace(
+    solid_swing().replace(
         "[program.arm]",
         "# The cart comes on Mondays.\n[region.cart]\nshape  = 'sphere'   # a ball of a cart\ncentre = [0, 2000, 0]\n\
          radius = 100        # mm\nlife = \"temporary\"\nwarning = 50\n\n[monitor]\nstale_ms = 20   # ours\n\n[program.arm]",

@@ -46,7 +46,7 @@ fn a_collision_is_bad_news() {
 fn json_has_the_documented_keys_and_types() {
     let dir = swing();
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
-    assert_eq!(keys(&json), ["cell", "checksum", "duration_s", "regions", "robots", "tick_ns", "ticks"]);
+    assert_eq!(keys(&json), ["cell", "checksum", "deadlocks", "duration_s", "regions", "robots", "tick_ns", "ticks"]);
     assert_eq!(json["cell"], "cell");
     let checksum = json["checksum"].as_str().unwrap();
     assert!(checksum.len() == 64 && checksum.chars().all(|c| c.is_ascii_hexdigit()), "{checksum}");
@@ -54,7 +54,8 @@ fn json_has_the_documented_keys_and_types() {
     assert_eq!(keys(&json["tick_ns"]), ["max", "p50", "p99"]);
     assert!(json["tick_ns"]["p50"].as_u64() <= json["tick_ns"]["max"].as_u64());
     let robot = &json["robots"][0];
-    assert_eq!(keys(robot), ["collisions", "finished", "min_override", "name", "stopped_s"]);
+    let what = ["by", "collisions", "finished", "min_override", "name", "outcome", "part", "point_m"];
+    assert_eq!(keys(robot), [&what[..], &["stopped_at_s", "stopped_s"]].concat());
     assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));
     assert!(robot["stopped_s"].as_f64().unwrap() >= 1.0, "a run ends after a second of rest");
     assert!(robot["min_override"].as_f64().unwrap() < 0.01);

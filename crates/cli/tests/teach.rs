@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{SWING, elbowroom, with_cell};
+use common::{SWING, elbowroom, solid_swing, with_cell};
 
 /// States (radians) at which the TCP of the swinging arm is at (0.7, 0), (0, 0.7) and so on.
 const HEADER: &str = "joint_1,joint_2\n";
@@ -26,7 +26,7 @@ fn a_taught_sphere_loads_in_the_cell_and_is_where_it_was_taught() {
                     kind = \"forbidden\"\nwarning = 150\n";
     assert_eq!(answer.stdout, expected);
     let file = dir.path().join("cell.toml");
-    std::fs::write(&file, format!("{SWING}{}", answer.stdout)).unwrap();
+    std::fs::write(&file, format!("{}{}", solid_swing(), answer.stdout)).unwrap();
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]);
     let json = json.json();
     assert_eq!(json["regions"][1]["name"], "taught");
@@ -56,7 +56,7 @@ fn every_shape_that_the_plane_can_teach_loads() {
     ] {
         let (dir, answer) = teach(SWING, shape, states, more);
         let answer = answer.expect(0);
-        std::fs::write(dir.path().join("cell.toml"), format!("{SWING}{}", answer.stdout)).unwrap();
+        std::fs::write(dir.path().join("cell.toml"), format!("{}{}", solid_swing(), answer.stdout)).unwrap();
         let ran = elbowroom(dir.path(), &["run", "cell.toml", "--json"]);
         assert!(ran.status < 2, "{shape}: {}{}", answer.stdout, ran.stderr);
     }

@@ -91,3 +91,9 @@ pub fn with_cell(text: &str) -> tempfile::TempDir {
     std::fs::write(dir.path().join("cell.toml"), text).unwrap();
     dir
 }
+
+/// [`SWING`] with a solid, for regions that guard more than the TCP.
+pub fn solid_swing() -> String {
+    let links = "links = [[], { capsule = { from = [0, 0, 0], to = [-300, 0, 0], radius = 40 } }]\n";
+    SWING.replacen("\n[region", &format!("{links}\n[region"), 1)
+}
