@@ -161,7 +161,7 @@ fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
         (
             "radius = 50",
             "radius = 40",
-            &["cell.toml:10:", "`region.post`", "radius is 40, sealed was 50", "--as integrator"],
+            &["cell.toml:11:", "`region.post`", "radius is 40, sealed was 50", "--as integrator"],
         ),
         ("base = [495, 495, -500]", "base = [495, 495, 500]", &["`region.post`", "base is [495, 495, 500]"]),
         ("guards = [\"tcp\"]\n", "", &["`region.post`", "guards", "was removed"]),

@@ -101,15 +101,15 @@ pub(crate) struct Approach {
     deceleration: f64,
 }
 
-/// Until a robot stands.
+/// Until a robot stands; times in s.
 #[derive(Debug, Clone, Copy)]
 struct Course {
-    /// Program time until it brakes, s.
-    run_s: f64,
-    /// Stop time when it begins to brake, s.
-    stop_s: f64,
-    /// Program time until it stands, s.
-    total_s: f64,
+    /// Program time until it brakes.
+    run: f64,
+    /// Stop time when it begins to brake.
+    stop: f64,
+    /// Program time until it stands.
+    total: f64,
 }
 
 /// What the robot does until this tick's answer counts, at most.
@@ -277,7 +277,7 @@ impl StoppingLaw {
         let growth = stop_time(&stopping.joint_acceleration, &stopping.joint_deceleration);
         let courses = [self.course(most, growth), self.pending_course(most, stopping.period_s, growth)];
         let real = self.real_course(growth);
-        let stop_s = courses.iter().fold(real.stop_s, |most: f64, c| most.max(c.stop_s));
+        let stop_s = courses.iter().fold(real.stop, |most: f64, c| most.max(c.stop));
         self.stands_after_s = self.horizon_s + stop_s;
         for volume in 0..self.volumes.len() {
             let approach = self.volumes[volume].anywhere;
@@ -305,9 +305,9 @@ impl StoppingLaw {
     fn stop_after(&self, run_s: f64, sigma: f64, growth: f64) -> Course {
         let full_stop_s = self.program.stop_s + growth * run_s;
         Course {
-            run_s,
-            stop_s: sigma * full_stop_s,
-            total_s: run_s + stopping_program_time(sigma, full_stop_s, growth),
+            run: run_s,
+            stop: sigma * full_stop_s,
+            total: run_s + stopping_program_time(sigma, full_stop_s, growth),
         }
     }
 
@@ -315,7 +315,7 @@ impl StoppingLaw {
     fn real_course(&self, growth: f64) -> Course {
         let run_s = self.horizon_s + self.unnoticed_s;
         let stop_s = self.real.stop_s + growth * run_s;
-        Course { run_s, stop_s, total_s: run_s + stop_s }
+        Course { run: run_s, stop: stop_s, total: run_s + stop_s }
     }
 
     fn may_ask(&self, stopping: &Stopping, gap: &Gap, c: f64, growth: f64) -> bool {
@@ -324,12 +324,12 @@ impl StoppingLaw {
         }
         let course = self.real_course(growth);
         let approach = Approach { program_speed: gap.approach.real_speed, ..gap.approach };
-        let nearer = gap.region_speed * (self.horizon_s + course.stop_s);
+        let nearer = gap.region_speed * (self.horizon_s + course.stop);
         self.travel(stopping, gap.volume, &approach, &course, &self.real) + nearer <= gap.left_m
     }
 
     fn fits(&self, stopping: &Stopping, gap: &Gap, course: &Course) -> bool {
-        let nearer = gap.region_speed * (self.horizon_s + course.stop_s);
+        let nearer = gap.region_speed * (self.horizon_s + course.stop);
         // Whatever is not a number does not fit.
         self.travel(stopping, gap.volume, &gap.approach, course, &self.program) + nearer <= gap.left_m
     }
@@ -339,10 +339,10 @@ impl StoppingLaw {
         let levers = &self.volumes[volume].levers;
         let acceleration = &stopping.joint_acceleration;
         let drift = |j: usize, u: f64| pace.speed[j] * u + 0.5 * acceleration[j] * u * u;
-        let u = course.total_s;
+        let u = course.total;
         let by_program =
             approach.program_speed * u + 0.5 * approach.acceleration * u * u + bending(levers, |j| drift(j, u));
-        let (u, stop) = (course.run_s, 0.5 * course.stop_s * course.stop_s);
+        let (u, stop) = (course.run, 0.5 * course.stop * course.stop);
         let by_stop = approach.program_speed.max(0.0) * u
             + 0.5 * approach.acceleration * u * u
             + approach.deceleration * stop

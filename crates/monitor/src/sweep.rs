@@ -296,9 +296,9 @@ fn levers(config: &Configuration) -> Vec<f64> {
         let mut own = vec![0.0; most.len()];
         let path = config.chain.path(volume.link);
         // Joints that follow one another have its index, and add up.
-        motion_bound(&config.chain, volume.link, radius, &path)
-            .into_iter()
-            .for_each(|(joint, lever)| own[joint] += lever);
+        for (joint, lever) in motion_bound(&config.chain, volume.link, radius, &path) {
+            own[joint] += lever;
+        }
         most.iter_mut().zip(own).for_each(|(most, own): (&mut f64, f64)| *most = most.max(own));
     }
     most
