@@ -42,7 +42,7 @@ fn in_metres(k: f64) -> String {
             let angle = ["alpha = ", "theta = ", "min = ", "max = ", "speed = "].iter().any(|k| head.ends_with(k));
             let value: f64 = tail[..end].parse().unwrap();
             out += head;
-            out += &format!("{}", if angle { value } else { value / 1000.0 });
+            out += &(if angle { value } else { value / 1000.0 }).to_string();
             rest = &tail[end..];
         }
         out + rest

@@ -181,7 +181,9 @@ fn mistakes_are_told() {
     let refused = |csv: &str, more: &str, words: &[&str]| {
         let (dir, text) = poses(csv, more);
         let e = Cell::parse(dir.path().join("cell.toml"), &text).err().unwrap_or_else(|| panic!("accepted: {csv}"));
-        words.iter().for_each(|w| assert!(e.to_string().contains(w), "`{w}` is missing in: {e}"));
+        for w in words {
+            assert!(e.to_string().contains(w), "`{w}` is missing in: {e}");
+        }
     };
     let rows = "t_s,x,y,z\n0,0,0,0\n";
     refused(rows, ", encoder = \"belt\"", &["stands beside `encoder`", "follow = { robot"]);

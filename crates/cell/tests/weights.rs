@@ -8,7 +8,7 @@ use elbowroom_scene::{Checker, Counts, Options, Scene, SceneState};
 fn cell() -> Cell {
     let arm = |name: &str, x: f64| {
         format!(
-            r#"
+            r"
 [robot.{name}]
 base = {{ at = [{x}, 0, 0], rpy = [0, 0, 0] }}
 foot = {{ cylinder = {{ from = [0, 0, 0], to = [0, 0, 100], radius = 90 }} }}
@@ -28,7 +28,7 @@ links = [
   {{ sphere = {{ radius = 45 }} }},
   {{ box = {{ at = [0, 0, 40], size = [90, 160, 80] }} }},
 ]
-"#
+"
         )
     };
     let objects = [
@@ -37,10 +37,11 @@ links = [
         ("post", "[350, 0, 400]", "[60, 60, 800]"),
         ("lamp", "[0, 0, 1250]", "[700, 60, 60]"),
     ];
-    let objects: String = objects
+    let objects = objects
         .iter()
         .map(|(name, at, size)| format!("[object.{name}]\nshape = \"box\"\nat = {at}\nsize = {size}\n"))
-        .collect();
+        .collect::<Vec<_>>()
+        .concat();
     let head = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n";
     Cell::parse("c.toml", &[head, &arm("left", 0.0), &arm("right", 700.0), &objects].concat()).unwrap()
 }

@@ -30,7 +30,7 @@ pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
         }
         _ => Vec::new(),
     };
-    let comments: String = built.iter().map(|line| format!("# {line}\n")).collect();
+    let comments = built.iter().map(|line| format!("# {line}\n")).collect::<Vec<_>>().concat();
     let text = format!("\n{comments}{}", toml(&region, args.warning, &length, &angle));
     accepted(&text, &cell, args)?;
     built.iter().for_each(note);

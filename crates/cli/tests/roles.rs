@@ -197,7 +197,7 @@ fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
         assert!(!said.split(|c: char| !c.is_ascii_alphanumeric()).any(hex), "nothing to paste:\n{said}");
         // Nor can a class edit on top of it; only a seal helps.
         act(dir.path(), "integrator", &["change", "cell.toml", "post", "radius=60"]).expect(2);
-        assert_eq!(run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1).stdout.lines().count() > 1, true);
+        assert!(run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1).stdout.lines().count() > 1);
         act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(0);
         run_in(dir.path(), &["region", "log", "cell.toml"]).expect(0);
     }
@@ -238,10 +238,11 @@ fn a_programmer_seals_temporary_regions_and_nothing_else() {
     assert!(!dir.path().join("cell.seal.jsonl").exists());
 }
 
+type Tamper = fn(&mut Vec<String>);
+
 #[test]
 fn a_seal_or_log_that_was_tampered_with_is_refused() {
     let lines = |dir: &Path| read(dir, "cell.seal.jsonl").lines().map(str::to_owned).collect::<Vec<_>>();
-    type Tamper = fn(&mut Vec<String>);
     let cases: &[(&str, Tamper, &[&str])] = &[
         ("a value", |l| l[1] = l[1].replace("\"120\"", "\"130\""), &["cell.seal.jsonl:2:", "signed"]),
         ("the class", |l| l[1] = l[1].replace("programmer", "integrator"), &["cell.seal.jsonl:2:", "signed"]),
@@ -250,7 +251,7 @@ fn a_seal_or_log_that_was_tampered_with_is_refused() {
             "a signature",
             |l| {
                 let at = l[2].len() - 3;
-                l[2].replace_range(at - 4..at, "0000")
+                l[2].replace_range(at - 4..at, "0000");
             },
             &["cell.seal.jsonl:3:"],
         ),
@@ -281,7 +282,7 @@ fn a_seal_or_log_that_was_tampered_with_is_refused() {
             "half a line",
             |l| {
                 let half = l[2].len() / 2;
-                l[2].truncate(half)
+                l[2].truncate(half);
             },
             &["cell.seal.jsonl:3:", "no entry"],
         ),
@@ -297,7 +298,7 @@ fn a_seal_or_log_that_was_tampered_with_is_refused() {
         let before = all.clone();
         tamper(&mut all);
         assert_ne!(all, before, "{what}");
-        let text: String = all.iter().map(|l| format!("{l}\n")).collect();
+        let text = all.iter().map(|l| format!("{l}\n")).collect::<Vec<_>>().concat();
         write(dir.path(), "cell.seal.jsonl", &text);
         refused(dir.path(), words);
     }

@@ -44,7 +44,7 @@ fn the_least_distance_on_the_way_is_what_many_looks_find() {
     let mut r = Random(7);
     let (mut passed, mut free) = (0, 0);
     for _ in 0..600 {
-        let region = thin(&mut r).guards(if r.bits() % 2 == 0 { Guards::TCP } else { Guards::ARM });
+        let region = thin(&mut r).guards(if r.bits().is_multiple_of(2) { Guards::TCP } else { Guards::ARM });
         let config = configuration(arm(), arm_volumes(), vec![region.clone()]);
         let from: [f64; 6] = std::array::from_fn(|_| r.between(-1.5, 1.5));
         let to = from.map(|q| q + r.between(-0.2, 0.2));
@@ -57,18 +57,15 @@ fn the_least_distance_on_the_way_is_what_many_looks_find() {
         let steps = 400;
         let seen = naive(&config, &from, &to, &region, steps);
         let unseen = sweep.travel(RegionId(0)) / f64::from(steps);
-        match sweep.least(&config, RegionId(0), 0.0, 1e-6) {
-            Some(least) => {
-                passed += 1;
-                assert!(least.distance_m <= 0.0 && ends[0].min(ends[1]) >= 0.0, "{least:?}");
-                assert!(seen <= unseen, "touched where nobody sees it: {seen}");
-                let there: [f64; 6] = std::array::from_fn(|i| from[i] + (to[i] - from[i]) * least.share);
-                assert!(naive(&config, &there, &there, &region, 1) <= 0.0);
-            }
-            None => {
-                free += 1;
-                assert!(seen > 0.0 || ends[0].min(ends[1]) <= 0.0, "missed: {seen}, {ends:?}");
-            }
+        if let Some(least) = sweep.least(&config, RegionId(0), 0.0, 1e-6) {
+            passed += 1;
+            assert!(least.distance_m <= 0.0 && ends[0].min(ends[1]) >= 0.0, "{least:?}");
+            assert!(seen <= unseen, "touched where nobody sees it: {seen}");
+            let there: [f64; 6] = std::array::from_fn(|i| from[i] + (to[i] - from[i]) * least.share);
+            assert!(naive(&config, &there, &there, &region, 1) <= 0.0);
+        } else {
+            free += 1;
+            assert!(seen > 0.0 || ends[0].min(ends[1]) <= 0.0, "missed: {seen}, {ends:?}");
         }
     }
     assert!(passed > 20 && free > 100, "{passed} {free}");
@@ -92,11 +89,11 @@ fn tick(m: &mut Monitor, i: u32, x: f64) -> (Vec<EventKind>, u64) {
 
 #[test]
 fn an_output_pulses_for_one_tick_where_a_plate_was_passed() {
+    use EventKind::{InsideIn, InsideOut, OutputOff, OutputOn, WarnIn, WarnOut};
     let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
     let mut m = Monitor::new(configuration(rail(), tcp, vec![plate()]), None).unwrap();
     assert_eq!(tick(&mut m, 0, -0.024), (vec![], 0));
     assert_eq!(tick(&mut m, 1, -0.008), (vec![], 0));
-    use EventKind::{InsideIn, InsideOut, OutputOff, OutputOn, WarnIn, WarnOut};
     assert_eq!(tick(&mut m, 2, 0.008), (vec![WarnIn, InsideIn, OutputOn(7)], 1 << 7));
     assert!(m.is_inside(RegionId(0)));
     assert_eq!(tick(&mut m, 3, 0.024), (vec![InsideOut, WarnOut, OutputOff(7)], 0));

@@ -160,7 +160,7 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
                 }
                 summary.add(&judged);
             }
-            Err(e) => summary.refuse(e),
+            Err(e) => summary.refuse(&e),
         }
         if told.elapsed() > Duration::from_secs(2) && !options.json {
             told = Instant::now();

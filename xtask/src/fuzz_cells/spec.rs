@@ -150,7 +150,9 @@ impl RobotSpec {
             Model::File(lines) => t.push_str(lines),
             Model::Dh { rows, links } => {
                 t.push_str("dh = [\n");
-                rows.iter().for_each(|r| r.write(t));
+                for r in rows {
+                    r.write(t);
+                }
                 t.push_str("]\nlinks = [\n");
                 for solids in links {
                     let solids: Vec<String> = solids.iter().map(SolidSpec::text).collect();

@@ -66,7 +66,7 @@ impl Summary {
         self.failed += usize::from(!o.findings.is_empty());
     }
 
-    pub fn refuse(&mut self, why: String) {
+    pub fn refuse(&mut self, why: &str) {
         // Without its numbers and names one message stands for many.
         let short: String = why.lines().next().unwrap_or("").chars().filter(|c| !c.is_ascii_digit()).take(90).collect();
         *self.refused.entry(short).or_default() += 1;
@@ -107,11 +107,11 @@ impl Summary {
 
 /// A table, and the failing cells.
 pub fn print(summaries: &[Summary]) {
-    let names: String = summaries.iter().map(|s| format!(" {:>10}", s.kind)).collect();
+    let names = summaries.iter().map(|s| format!(" {:>10}", s.kind)).collect::<Vec<_>>().concat();
     println!("{:<18}{names}", "");
     let rows: Vec<_> = summaries.iter().map(Summary::rows).collect();
     for i in 0..rows.first().map_or(0, |r| r.len()) {
-        let values: String = rows.iter().map(|r| format!(" {:>10}", r[i].1)).collect();
+        let values = rows.iter().map(|r| format!(" {:>10}", r[i].1)).collect::<Vec<_>>().concat();
         println!("{:<18}{values}", rows[0][i].0);
     }
     for s in summaries {

@@ -98,7 +98,7 @@ impl Gap {
             Self::Links => return solid.to_owned(),
         };
         if robots > 1 {
-            hint += &format!("; or `robots` without \"{name}\"");
+            hint = format!("{hint}; or `robots` without \"{name}\"");
         }
         hint
     }

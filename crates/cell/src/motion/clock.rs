@@ -246,12 +246,11 @@ impl Clock {
     fn look(&mut self) {
         let point = self.point_at(self.time);
         let moves = point.is_some();
-        match point {
-            Some(point) => self.here = point,
-            None => {
-                self.here.first.fill(0.0);
-                self.here.second.fill(0.0);
-            }
+        if let Some(point) = point {
+            self.here = point;
+        } else {
+            self.here.first.fill(0.0);
+            self.here.second.fill(0.0);
         }
         self.intent.clone_from(&self.here.first);
         let duration = match self.plan.steps.get(self.step) {

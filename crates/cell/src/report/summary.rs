@@ -102,7 +102,7 @@ impl fmt::Display for Summary<'_> {
         }
         if !rec.deadlocks.is_empty() {
             lines.push(Line::new());
-            lines.extend(rec.deadlocks.iter().flat_map(|d| deadlock_lines(d)));
+            lines.extend(rec.deadlocks.iter().flat_map(deadlock_lines));
         }
         lines.push(Line::new());
         lines.push(ticks(rec));

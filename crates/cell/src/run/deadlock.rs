@@ -47,7 +47,9 @@ impl Deadlocks {
                 continue;
             }
             let circle = board.circle(RobotSlot(robot), t_s);
-            circle.iter().for_each(|(r, _)| told[r.0] = true);
+            for (r, _) in &circle {
+                told[r.0] = true;
+            }
             let since = circle.iter().filter_map(|(r, _)| self.since_s[r.0]).fold(0.0, f64::max);
             let mut regions: Vec<String> = Vec::new();
             for (r, slot) in &circle {

@@ -139,7 +139,7 @@ fn kept_to_oneself(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
     let mode = about.permissions().mode() & 0o777;
-    if mode & 0o077 == 0 {
+    if mode.trailing_zeros() >= 6 {
         return Ok(());
     }
     let what = format!("is a private key that others may read or write (mode {mode:03o})");

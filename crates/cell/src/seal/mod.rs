@@ -133,10 +133,10 @@ const NAMED: usize = 5;
 fn differs(file: &CellFile, log: &Log, now: &State, changes: &[Change]) -> FormatError {
     let shown = state::without_consequences(changes);
     let mut what = String::from("is not as it was sealed: ");
-    let named: Vec<String> = shown.iter().take(NAMED).map(|c| c.to_string()).collect();
+    let named: Vec<String> = shown.iter().take(NAMED).map(std::string::ToString::to_string).collect();
     what += &named.join("; ");
     if shown.len() > NAMED {
-        what += &format!("; and {} more", shown.len() - NAMED);
+        what = format!("{what}; and {} more", shown.len() - NAMED);
     }
     let line = shown.first().and_then(|c| now.line(c));
     let least = state::least_class(&log.state, now, changes);

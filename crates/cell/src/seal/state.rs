@@ -32,7 +32,9 @@ impl State {
         for e in file.entries.iter().filter(|e| !FREE.contains(&e.key.as_str())) {
             match &e.node.data {
                 Data::Table(entries) if NAMED.contains(&e.key.as_str()) => {
-                    entries.iter().for_each(|named| state.add_item(&format!("{}.{}", e.key, named.key), named));
+                    for named in entries {
+                        state.add_item(&format!("{}.{}", e.key, named.key), named);
+                    }
                 }
                 Data::Table(_) => state.add_item(&e.key, e),
                 _ => state.add("cell", &e.key, &e.node),
@@ -73,7 +75,9 @@ impl State {
     fn add(&mut self, item: &str, field: &str, node: &Node) {
         match &node.data {
             Data::Table(entries) if !entries.is_empty() => {
-                entries.iter().for_each(|e| self.add(item, &format!("{field}.{}", key(&e.key)), &e.node));
+                for e in entries {
+                    self.add(item, &format!("{field}.{}", key(&e.key)), &e.node);
+                }
             }
             _ => {
                 let at = (item.to_owned(), field.to_owned());

@@ -49,7 +49,7 @@ mod tests {
     /// Beside a calendar that counts day by day.
     #[test]
     fn every_day_of_five_centuries() {
-        let leap = |y: u64| y % 4 == 0 && (y % 100 != 0 || y % 400 == 0);
+        let leap = |y: u64| y.is_multiple_of(4) && (!y.is_multiple_of(100) || y.is_multiple_of(400));
         let (mut y, mut m, mut d) = (1970, 1, 1);
         for days in 0..182_000 {
             assert_eq!(date(days), (y, m, d));

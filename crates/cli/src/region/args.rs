@@ -50,7 +50,7 @@ pub(crate) struct SignArgs {
     /// The class on whose behalf
     #[arg(long = "as", value_name = "CLASS", value_enum)]
     pub(crate) class: Class,
-    /// The private key that proves it; default: the file that the environment variable ELBOWROOM_KEY names
+    /// The private key that proves it; default: the file that the environment variable `ELBOWROOM_KEY` names
     #[arg(long, value_name = "FILE")]
     pub(crate) key: Option<PathBuf>,
     /// Why, for the log

@@ -61,7 +61,7 @@ pub(super) fn entry(e: &Entry, name: &str) -> String {
 
 fn lines(changes: &[Change]) -> String {
     let shown = seal::shown(changes);
-    let mut text: String = shown.iter().take(MOST).map(|c| format!("      {c}\n")).collect();
+    let mut text = shown.iter().take(MOST).map(|c| format!("      {c}\n")).collect::<Vec<_>>().concat();
     if shown.len() > MOST {
         let _ = writeln!(text, "      and {} more", shown.len() - MOST);
     }

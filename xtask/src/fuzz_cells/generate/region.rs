@@ -13,12 +13,12 @@ const TRIES: usize = 6;
 const START_M: f64 = 0.005;
 
 /// A forbidden region on the way of one of the robots; `None` where none was found that its start is outside of.
-pub fn in_the_way(spec: &CellSpec, cell: &Cell, name: String, random: &mut Random) -> Option<RegionSpec> {
+pub fn in_the_way(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
         let at = point_on_the_way(spec, cell, robot, random)?;
         let region = RegionSpec {
-            name: name.clone(),
+            name: name.to_owned(),
             shape: shape(random, at),
             kind: "forbidden",
             warning: warning(random),

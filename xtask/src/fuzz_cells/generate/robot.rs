@@ -154,12 +154,11 @@ fn from_file(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     let (example, ranges) = random.one(&EXAMPLES);
     let real = random.one(&REAL);
     let real = places.data.map(|d| d.join(real)).filter(|path| path.is_file() && random.percent(10));
-    let (lines, ranges) = match real {
-        Some(path) => (format!("model = \"{}\"\n", path.display()), [1.5, 0.5, 0.5, 1.5, 1.0, 2.0]),
-        None => {
-            let path = places.root.join("examples/models").join(example);
-            (format!("model = \"{0}.urdf\"\nsrdf = \"{0}.srdf\"\n", path.display()), ranges)
-        }
+    let (lines, ranges) = if let Some(path) = real {
+        (format!("model = \"{}\"\n", path.display()), [1.5, 0.5, 0.5, 1.5, 1.0, 2.0])
+    } else {
+        let path = places.root.join("examples/models").join(example);
+        (format!("model = \"{0}.urdf\"\nsrdf = \"{0}.srdf\"\n", path.display()), ranges)
     };
     let mut around = |middle: &[f64], share: f64| -> Vec<f64> {
         let near = |(m, r): (&f64, &f64)| rounded((m + random.between(-share * r, share * r)).clamp(-r, *r));

@@ -31,7 +31,9 @@ pub fn judge(motion: &Motion<'_>, guarded: &[Vec<Guarded>], bad_news: bool, opin
                 let counting = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
                 let pairs: Vec<Pair<'_>> = counting.map(|g| Pair::new(motion, g, robot, region)).collect();
                 let mut during = vec![false; motion.ticks()];
-                pairs.iter().for_each(|p| mark_inside(p, &mut during));
+                for p in &pairs {
+                    mark_inside(p, &mut during);
+                }
                 (robot, pairs, during)
             })
             .collect();

@@ -67,7 +67,7 @@ pub fn start_distance(cell: &Cell, region: usize) -> f64 {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let frames: Vec<_> = arms.iter().zip(&cell.robots).map(|(arm, r)| arm.frames(&r.start)).collect();
     let place = place::Place::new(cell, region, &arms);
-    let at = place.at(&place.travel_at(0.0).0, &frames);
+    let at = place.at(place.travel_at(0.0).0, &frames);
     let one = |robot: &usize| {
         let guarded = Guarded::all(&cell.robots[*robot]);
         let near = guarded.iter().filter(|g| g.counts_for(place.guards));

@@ -83,10 +83,10 @@ impl Place {
     }
 
     /// Its frame in the world at this travel of the belt, with all robots' links in the world.
-    pub fn at(&self, travel: &f64, frames: &[Vec<Frame>]) -> Frame {
+    pub fn at(&self, travel: f64, frames: &[Vec<Frame>]) -> Frame {
         match &self.carrier {
             Carrier::Nothing => self.at,
-            Carrier::Belt(encoder) => Frame::shift(encoder.direction * *travel).then(&self.at),
+            Carrier::Belt(encoder) => Frame::shift(encoder.direction * travel).then(&self.at),
             Carrier::Robot { robot, link, in_link, .. } => frames[*robot][*link].then(in_link).then(&self.at),
         }
     }

@@ -77,7 +77,7 @@ fn first_entry<'p, 'a>(
 fn is_outside(motion: &Motion<'_>, pairs: &[Pair<'_>], region: usize, k: usize) -> bool {
     let frames = motion.frames(&motion.q[k]);
     let place = &motion.places[region];
-    let at = place.at(&place.travel_at(motion.times[k]).0, &frames);
+    let at = place.at(place.travel_at(motion.times[k]).0, &frames);
     pairs.iter().all(|p| {
         p.distance(k, 0.0).lower > 10.0 * TOLERANCE_M && !place.contains(&at, p.guarded.center(&frames[p.robot]))
     })

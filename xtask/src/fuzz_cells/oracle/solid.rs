@@ -196,16 +196,13 @@ impl Piece {
 
     fn corners(&self) -> (Vec3, Vec3) {
         let most = |d: Vec3| self.support(d).dot(d).abs() + self.radius;
-        match &self.core {
-            Core::Points(points) => {
-                let r = Vec3::splat(self.radius);
-                let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), p| (l.min(*p), h.max(*p)));
-                (low - r, high + r)
-            }
-            _ => {
-                let half = Vec3::new(most(Vec3::X), most(Vec3::Y), most(Vec3::Z));
-                (-half, half)
-            }
+        if let Core::Points(points) = &self.core {
+            let r = Vec3::splat(self.radius);
+            let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), p| (l.min(*p), h.max(*p)));
+            (low - r, high + r)
+        } else {
+            let half = Vec3::new(most(Vec3::X), most(Vec3::Y), most(Vec3::Z));
+            (-half, half)
         }
     }
 }

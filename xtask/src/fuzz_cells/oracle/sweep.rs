@@ -65,7 +65,7 @@ impl<'a> Pair<'a> {
         let times = &self.motion.times;
         let next = times.get(region_k + 1).unwrap_or(&times[region_k]);
         let t_s = times[region_k] + (next - times[region_k]) * region_u;
-        let at = place.at(&place.travel_at(t_s).0, &later);
+        let at = place.at(place.travel_at(t_s).0, &later);
         self.guarded.distance(&frames[self.robot], &place.solid, &at, FAR_M)
     }
 

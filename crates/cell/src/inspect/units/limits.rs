@@ -17,11 +17,11 @@ pub(super) fn doubts(chain: &Chain) -> Vec<UnitDoubt> {
         let (count, all) = (wide.len(), turning.len());
         let joint = if let [only] = wide[..] { Some(only.name.clone()) } else { None };
         let what = format!("{count} of {all} joints turn beyond three turns, up to {widest:.4} rad");
-        return vec![doubt(joint, what)];
+        return vec![doubt(joint, &what)];
     }
     let round = wide.into_iter().filter(|j| [j.limits.lower, j.limits.upper].into_iter().all(is_round));
     round
-        .map(|j| doubt(Some(j.name.clone()), format!("the joint `{}` turns up to {:.4} rad", j.name, farthest(j))))
+        .map(|j| doubt(Some(j.name.clone()), &format!("the joint `{}` turns up to {:.4} rad", j.name, farthest(j))))
         .collect()
 }
 
@@ -34,7 +34,7 @@ fn is_round(limit: f64) -> bool {
     (2.0 * limit - (2.0 * limit).round()).abs() < 1e-9
 }
 
-fn doubt(joint: Option<String>, what: String) -> UnitDoubt {
+fn doubt(joint: Option<String>, what: &str) -> UnitDoubt {
     let reason = format!(
         "{what}: the limits look like degrees (deg), read as radians\n  write: <limit lower=\"…\" upper=\"…\"/> in radians: \
          degrees times 0.0174533"
