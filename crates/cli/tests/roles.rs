@@ -165,7 +165,7 @@ fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
         ),
         ("base = [495, 495, -500]", "base = [495, 495, 500]", &["`region.post`", "base is [495, 495, 500]"]),
         ("guards = [\"tcp\"]\n", "", &["`region.post`", "guards", "was removed"]),
-        ("stale_ms = 20", "stale_ms = 2000", &["`monitor`", "stale_ms is 2000, sealed was 20", "--as integrator"]),
+        ("stale_ms = 20", "stale_ms = 90", &["`monitor`", "stale_ms is 90, sealed was 20", "--as integrator"]),
         ("stale_ms = 20", "direction_aware = true", &["`monitor`", "direction_aware = true was added"]),
         ("length = \"mm\"", "length = \"m\"", &["`units`", "length is \"m\", sealed was \"mm\""]),
         ("a = 300", "a = 310", &["`robot.arm`", "dh is"]),

@@ -18,12 +18,14 @@ struct Command {
 #[derive(Debug)]
 pub(crate) struct Commands {
     reaction_s: f64,
+    /// No snapshot that is older than this (s) is believed: what counted no more before it is forgotten.
+    stale_s: f64,
     issued: VecDeque<Command>,
 }
 
 impl Commands {
-    pub(crate) fn new(reaction_s: f64) -> Self {
-        Self { reaction_s, issued: VecDeque::with_capacity(MOST) }
+    pub(crate) fn new(reaction_s: f64, stale_s: f64) -> Self {
+        Self { reaction_s, stale_s, issued: VecDeque::with_capacity(MOST) }
     }
 
     pub(crate) fn push(&mut self, now_s: f64, speed_override: f64) {
@@ -35,6 +37,14 @@ impl Commands {
             }
         }
         self.issued.push_back(Command { at_s: now_s, largest: speed_override });
+        self.forget(now_s - self.stale_s);
+    }
+
+    /// Forgets what counted no more at `stamp_s`.
+    fn forget(&mut self, stamp_s: f64) {
+        while self.issued.get(1).is_some_and(|next| next.at_s + self.reaction_s <= stamp_s) {
+            self.issued.pop_front();
+        }
     }
 
     /// The largest override that may still count.
@@ -53,9 +63,7 @@ impl Commands {
         running: f64,
         stop: impl Fn(f64) -> (f64, f64),
     ) -> (f64, f64) {
-        while self.issued.get(1).is_some_and(|next| next.at_s + self.reaction_s <= stamp_s) {
-            self.issued.pop_front();
-        }
+        self.forget(stamp_s);
         let (mut at_s, mut sigma, mut run_s) = (stamp_s, running, 0.0);
         for (i, command) in self.issued.iter().enumerate() {
             let ends_s = self.issued.get(i + 1).map_or(now_s, |next| next.at_s) + self.reaction_s;
@@ -86,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_lower_override_counts_after_the_reaction_time_and_a_higher_one_at_once() {
-        let mut c = Commands::new(0.01);
+        let mut c = Commands::new(0.01, 0.02);
         let never = |_: f64| (1e12, 0.0);
         c.push(0.0, 0.5);
         assert_eq!(c.run(0.0, 0.002, 0.5, never), (0.5 * 0.012, 0.5));
@@ -103,7 +111,7 @@ mod tests {
 
     #[test]
     fn many_answers_under_way_are_taken_together_not_forgotten() {
-        let mut c = Commands::new(1.0);
+        let mut c = Commands::new(1.0, 0.02);
         c.push(0.0, 1.0);
         for i in 1..1000 {
             c.push(1e-3 * f64::from(i), 0.0);

@@ -272,7 +272,10 @@ impl Monitor {
             self.log.push(region, EventKind::Fault);
         }
         self.fault = Some(fault);
-        self.answer(s, 0.0);
+        self.last_override = Some(0.0);
+        if let Some(law) = self.stopping.as_mut().filter(|_| fault.knows_the_time()) {
+            law.told(s.now_s, 0.0);
+        }
         TickReport {
             stamp_s: s.stamp_s,
             speed_override: 0.0,

@@ -124,6 +124,17 @@ pub enum Fault {
     },
 }
 
+impl Fault {
+    /// True where the snapshot's times were found to be in order: others may have no meaning.
+    pub(crate) fn knows_the_time(self) -> bool {
+        use Fault::{BeyondLimits, Braking, Frozen, NoVelocity, Source, SourceJump, TooFast};
+        matches!(
+            self,
+            BeyondLimits { .. } | TooFast { .. } | NoVelocity | Frozen | Braking | Source { .. } | SourceJump { .. }
+        )
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

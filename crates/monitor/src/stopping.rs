@@ -137,7 +137,7 @@ impl StoppingLaw {
             program: pace(),
             real: pace(),
             program_is_known: false,
-            commands: Commands::new(stopping.reaction_s),
+            commands: Commands::new(stopping.reaction_s, config.laws.stale_s),
             horizon_s: 0.0,
             stands_after_s: 0.0,
             uncertain_s: 0.0,

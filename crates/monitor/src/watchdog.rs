@@ -193,7 +193,7 @@ impl Watchdog {
         let wanted = s.intent.unwrap_or(s.qd);
         if s.q.iter().zip(&self.last_q).any(|(a, b)| a.to_bits() != b.to_bits()) {
             self.unnoticed_s = 0.0;
-        } else if wanted.iter().any(|v| *v != 0.0) {
+        } else if passed_s <= SILENCE_S && wanted.iter().any(|v| *v != 0.0) {
             self.unnoticed_s += told * passed_s;
         }
         if self.unnoticed_s > FROZEN_S { Err(Fault::Frozen) } else { Ok(()) }

@@ -120,3 +120,22 @@ fn a_robot_that_brakes_less_than_stated_is_a_fault() {
         assert_eq!(found, fails, "{brakes} m/s²");
     }
 }
+
+/// A robot that stands because it was stopped is not taken for one whose reading is frozen, and times that make no sense do
+/// not stay in what is remembered of earlier answers.
+#[test]
+fn a_stop_by_a_fault_ends_with_the_fault() {
+    let (q, intent) = ([0.0; 6], [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    // No time at all, from the future, out of order, stale.
+    for stamp_s in [f64::NAN, f64::INFINITY, -1.0, 1.0] {
+        let mut m = monitor();
+        let at = |now_s: f64| Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::still(now_s, &q) };
+        assert_eq!(m.tick(&at(1.0)).reason, Reason::Free);
+        for tick in 1..1000 {
+            let report = m.tick(&Snapshot { stamp_s, ..at(1.0 + TICK_S * f64::from(tick)) });
+            assert!(report.speed_override == 0.0 || (stamp_s == 1.0 && tick <= 10), "{stamp_s}, tick {tick}");
+        }
+        let report = m.tick(&at(3.1));
+        assert!(report.speed_override > 0.9, "{stamp_s}: {}", report.reason);
+    }
+}
