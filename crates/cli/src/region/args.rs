@@ -14,7 +14,7 @@ pub(crate) enum RegionCommand {
     Change(ChangeArgs),
     /// Remove a region
     Remove(RemoveArgs),
-    /// Set keys of [monitor], the laws, or take them out
+    /// Set keys of `monitor`, the laws, or take them out
     Laws(LawsArgs),
     /// Seal a cell file as it stands now
     Seal(SealArgs),

@@ -97,7 +97,11 @@ fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion:
         return;
     }
     opinion.deadlocks += 1;
-    let told = motion.recording.events.iter().any(|e| e.event == "deadlock");
+    let named = |robot: &usize| {
+        let name = &motion.recording.robots[*robot].name;
+        motion.recording.deadlocks.iter().any(|d| d.robots.contains(name))
+    };
+    let told = circle.iter().any(named);
     if !(told && bad_news) {
         opinion.findings.push(Finding::SilentDeadlock { robots: circle });
     }
