@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::{Failure, figures, layers, models, python, shell, snippets};
+use crate::{Failure, figures, fuzz_cells, layers, models, python, shell, snippets};
 
 type Check = fn(&Context) -> Result<(), String>;
 
@@ -27,7 +27,7 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first.
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step { name: "layers", what: "who may depend on whom", check: |c| layers::run(c.root) },
     Step {
@@ -43,6 +43,11 @@ const STEPS: [Step; 9] = [
     Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
+    Step {
+        name: "fuzz",
+        what: "random cells under an independent oracle, a fixed choice of them",
+        check: |c| fuzz_cells::check(c.root),
+    },
     Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step { name: "snippets", what: "commands that the documents promise", check: |c| snippets::run(c.root) },
 ];

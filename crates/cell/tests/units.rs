@@ -119,13 +119,12 @@ fn one_mesh_of_an_arm_that_is_far_too_large_is_named_by_its_link() {
             bounds.fold(0.0, f64::max)
         };
         let largest = moved.into_iter().max_by(|a, b| edge(*a).total_cmp(&edge(*b))).unwrap();
-        for (factor, looks_like) in [(1000.0, &["mm"][..]), (100.0, &["cm"]), (39.37, &["in", "cm"])] {
+        for (factor, looks_like) in [(1000.0, "mm"), (100.0, "cm"), (39.37, "in")] {
             let doubts = unit_doubts(&scaled(&robot, Some(largest), factor));
             let link = robot.chain.links()[largest].as_str();
             let what = format!("{} {link} times {factor}: {doubts:?}", file.display());
             assert!(doubts.len() == 1 && doubts[0].link.as_deref() == Some(link), "{what}");
-            // By its size alone a mesh in inches may be one in centimetres.
-            assert!(looks_like.contains(&doubts[0].looks_like), "{what}");
+            assert_eq!(doubts[0].looks_like, looks_like, "{what}");
         }
     }
 }

@@ -72,8 +72,8 @@ fn asked(scene: &Scene, states: &States, ask: Ask, level: Level) -> (Vec<Row>, C
 }
 
 /// Whether each state collides, in the order of the hierarchy: no weights.
-fn in_order_of_the_hierarchy(scene: &Scene, states: &States) -> (Vec<bool>, Counts) {
-    let mut checker = Checker::new(scene, Options { weights: false, ..Options::default() });
+fn in_order_of_the_hierarchy(scene: &Scene, states: &States, level: Level) -> (Vec<bool>, Counts) {
+    let mut checker = Checker::new(scene, Options { level, weights: false, ..Options::default() });
     let mut state = SceneState::new(scene);
     let collides = (0..states.len()).map(|i| {
         states.of(i).for_each(|(robot, q)| state.set_q(scene, robot, q).unwrap());
@@ -87,23 +87,19 @@ fn query_tests_likely_pairs_first_and_answers_alike() {
     let subject = Subject::of_cell(&cell());
     let states = states(&subject, 1000);
     let scene = subject.scene(false).unwrap();
-    let (collides, plain) = in_order_of_the_hierarchy(&scene, &states);
-    let (rows, weighed) = asked(&scene, &states, Ask::Collision, Level::Auto);
-    assert_eq!(rows.iter().map(|r| r.collides).collect::<Vec<_>>(), collides);
+    // Exact solids only: boxes dismiss most pairs before their order matters.
+    let (collides, plain) = in_order_of_the_hierarchy(&scene, &states, Level::L3);
+    let (exact, weighed) = asked(&scene, &states, Ask::Collision, Level::L3);
+    assert_eq!(exact.iter().map(|r| r.collides).collect::<Vec<_>>(), collides);
     let colliding = collides.iter().filter(|c| **c).count();
     assert!((300..1000).contains(&colliding), "{colliding}");
-    let looked = |c: &Counts| c.pairs_tested.l3;
-    eprintln!(
-        "{colliding} of 1000 collide; exact tests: {} by hierarchy, {} by weight",
-        looked(&plain),
-        looked(&weighed)
-    );
-    // Another order, so other pairs are tested before the first contact.
-    assert_ne!(looked(&weighed), looked(&plain));
+    let [plain, weighed] = [plain, weighed].map(|c| c.pairs_tested.l3);
+    eprintln!("{colliding} of 1000 collide; exact tests: {plain} by hierarchy, {weighed} by weight");
+    assert!(10 * weighed < 9 * plain, "{weighed} by weight, {plain} by hierarchy");
+    let rows = asked(&scene, &states, Ask::Collision, Level::Auto).0;
     // The pair told is one in contact, and the same one at both exact levels.
     let mut checker = Checker::new(&scene, Options::default());
     let mut state = SceneState::new(&scene);
-    let (exact, _) = asked(&scene, &states, Ask::Collision, Level::L3);
     for (i, (row, exact)) in rows.iter().zip(&exact).enumerate() {
         assert_eq!(row.pair, exact.pair, "state {i}");
         let Some((a, b)) = row.pair else { continue };

@@ -129,13 +129,14 @@ fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
 /// Where the segment passes through the triangle (its border included): up to rounding for most triangles, exactly for
 /// slender ones.
 pub(crate) fn segment_crosses(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Option<Vec3> {
-    if is_slender(&t, normal(&t)) { crosses_exactly(p, q, &t) } else { crosses_by_signs(p, q, &t) }
+    let n = normal(&t);
+    if is_slender(&t, n) { crosses_exactly(p, q, &t) } else { crosses_by_signs(p, q, &t, n) }
 }
 
-/// By f64 signs alone.
-fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
+/// By f64 signs alone; `n` is the triangle's normal, of any length.
+#[inline]
+fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3], n: Vec3) -> Option<Vec3> {
     let [a, b, c] = *t;
-    let n = normal(t);
     let (hp, hq) = (n.dot(p - a), n.dot(q - a));
     if (hp > 0.0) == (hq > 0.0) || hp == hq {
         return None;
@@ -200,7 +201,8 @@ fn sides(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<[bool; 3]> {
 
 #[inline]
 fn edges_cross(s: &[Vec3; 3], above: [bool; 3], t: &[Vec3; 3]) -> bool {
-    (0..3).any(|k| above[k] != above[(k + 1) % 3] && crosses_by_signs(s[k], s[(k + 1) % 3], t).is_some())
+    let n = normal(t);
+    (0..3).any(|k| above[k] != above[(k + 1) % 3] && crosses_by_signs(s[k], s[(k + 1) % 3], t, n).is_some())
 }
 
 /// Nearest points of a segment (first) and a triangle.

@@ -1,7 +1,7 @@
 //! The weight matrix: which pair to look at first (S3, "Collision queries sorted using a weight matrix").
 //!
-//! A priori by kinematics and morphology: links far from the base move most, large solids meet more than small ones, and
-//! members whose reaches hardly overlap seldom meet. Then each result counts: a contact raises the weight of its pair
+//! A priori by kinematics and morphology: the more joints lie between two members the more they move against each other,
+//! large solids meet more than small ones, and members whose reaches hardly overlap seldom meet. Then each result counts: a contact raises the weight of its pair
 //! and lowers all others. A question that finds nothing looked at every likely pair in vain and changes no order.
 //!
 //! So weights depend on nothing but which contacts were told, and the contact told is the one of the largest weight: the
@@ -15,8 +15,6 @@ use crate::{Member, Object, SceneRobot, pairs};
 /// What weighs of one member before anything was asked.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Prior {
-    /// Moving joints between the member and its base.
-    depth: usize,
     /// Distance (m) of the solids' farthest point from the member's origin; infinite for solids without end.
     radius_m: f64,
     /// A ball that holds the member whatever its joints do, or nearly so: joints without limits slide 1 m.
@@ -34,7 +32,7 @@ impl Prior {
                 let finite = radius_m.is_finite();
                 let centre = if finite { object.in_world.transform_point(middle(&bounds)) } else { Vec3::ZERO };
                 let radius_m = if finite { radius_m } else { f64::INFINITY };
-                Self { depth: 0, radius_m, centre, reach_m: radius_m }
+                Self { radius_m, centre, reach_m: radius_m }
             }
             Member::Link { robot, link } => {
                 let r = &robots[robot];
@@ -54,23 +52,37 @@ impl Prior {
                         reach_m += if stroke.is_finite() { stroke } else { 1.0 };
                     }
                 }
-                Self { depth, radius_m, centre: pose.translation, reach_m }
+                Self { radius_m, centre: pose.translation, reach_m }
             }
         }
     }
 
-    /// Weight of a pair before anything was asked, in no unit: the product of (1 + moving joints above) of both sides, times
-    /// x / (1 + x) where x are both radii (m), times the share of the smaller reach that the larger one overlaps.
-    pub fn weight(&self, other: &Self) -> f64 {
-        let joints = ((1 + self.depth) * (1 + other.depth)) as f64;
+    /// Weight of a pair before anything was asked, in no unit: 1 + the moving joints `between` them, times (x / (1 + x))³
+    /// where x are both radii (m), times the share of the smaller reach that the larger one overlaps.
+    ///
+    /// The cube: of two solids thrown at random into one volume, the volume of the places in which they overlap grows
+    /// with the cube of their sizes.
+    pub fn weight(&self, other: &Self, between: usize) -> f64 {
         let radii = self.radius_m + other.radius_m;
         let size = if radii.is_finite() { radii / (1.0 + radii) } else { 1.0 };
         let reaches = self.reach_m + other.reach_m;
         let smaller = self.reach_m.min(other.reach_m);
         let overlap = (reaches - self.centre.distance(other.centre)) / (2.0 * smaller);
         let overlap = if reaches.is_finite() && overlap.is_finite() { overlap.clamp(0.0, 1.0) } else { 1.0 };
-        let weight = joints * size * overlap;
+        let weight = (1 + between) as f64 * size.powi(3) * overlap;
         if weight.is_finite() { weight } else { 0.0 }
+    }
+}
+
+/// Number of moving joints between two members: along the chain of one robot, otherwise through both bases.
+pub(crate) fn joints_between(robots: &[SceneRobot], a: Member, b: Member) -> usize {
+    match (a, b) {
+        (Member::Link { robot, link }, Member::Link { robot: other, link: to }) if robot == other => {
+            let chain = &robots[robot].robot.chain;
+            let between = pairs::joints_between(chain, link, to);
+            between.iter().filter(|j| chain.joints()[j.0].kind.moves()).count()
+        }
+        _ => depth(robots, a) + depth(robots, b),
     }
 }
 
@@ -129,17 +141,17 @@ mod tests {
     }
 
     #[test]
-    fn distal_large_and_within_reach_weigh_more() {
-        let base = Prior { depth: 1, radius_m: 0.2, centre: Vec3::ZERO, reach_m: 1.0 };
-        let ball = Prior { depth: 0, radius_m: 0.1, centre: Vec3::X * 0.8, reach_m: 0.1 };
-        let weight = base.weight(&ball);
-        assert!(Prior { depth: 2, ..base }.weight(&ball) > weight);
-        assert!(Prior { radius_m: 0.3, ..base }.weight(&ball) > weight);
-        assert!(base.weight(&Prior { centre: Vec3::X * 1.05, ..ball }) < weight);
-        assert_eq!(base.weight(&Prior { centre: Vec3::X * 1.2, ..ball }), 0.0);
-        let floor = Prior { depth: 0, radius_m: f64::INFINITY, centre: Vec3::ZERO, reach_m: f64::INFINITY };
-        assert_eq!(base.weight(&floor), 2.0);
-        assert_eq!(base.weight(&floor), floor.weight(&base));
-        assert_eq!(base.weight(&Prior { radius_m: f64::NAN, reach_m: f64::NAN, ..ball }), 2.0);
+    fn large_within_reach_and_many_joints_apart_weighs_more() {
+        let base = Prior { radius_m: 0.2, centre: Vec3::ZERO, reach_m: 1.0 };
+        let ball = Prior { radius_m: 0.1, centre: Vec3::X * 0.8, reach_m: 0.1 };
+        let weight = base.weight(&ball, 1);
+        assert!(base.weight(&ball, 2) > weight);
+        assert!(Prior { radius_m: 0.3, ..base }.weight(&ball, 1) > weight);
+        assert!(base.weight(&Prior { centre: Vec3::X * 1.05, ..ball }, 1) < weight);
+        assert_eq!(base.weight(&Prior { centre: Vec3::X * 1.2, ..ball }, 1), 0.0);
+        let floor = Prior { radius_m: f64::INFINITY, centre: Vec3::ZERO, reach_m: f64::INFINITY };
+        assert_eq!(base.weight(&floor, 1), 2.0);
+        assert_eq!(base.weight(&floor, 3), floor.weight(&base, 3));
+        assert_eq!(base.weight(&Prior { radius_m: f64::NAN, reach_m: f64::NAN, ..ball }, 1), 2.0);
     }
 }

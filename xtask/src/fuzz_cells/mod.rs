@@ -8,6 +8,8 @@ mod spec;
 mod summary;
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, InputFault, RunOptions, simulate};
@@ -23,6 +25,10 @@ const CORNER: &str = include_str!("corner.obj");
 /// Failing cells that are written as files, per kind; more teach nothing new.
 const WRITTEN: usize = 20;
 
+/// Cells per kind in the test suite, and their seed.
+const SUITE_CELLS: usize = 150;
+const SUITE_SEED: u64 = 13;
+
 /// What to do.
 #[derive(Debug, PartialEq)]
 pub struct Options {
@@ -36,18 +42,16 @@ pub struct Options {
     shrinks: bool,
 }
 
+impl Default for Options {
+    fn default() -> Self {
+        Self { count: 1000, seed: 1, kinds: Kind::ALL.to_vec(), json: false, case: None, replay: None, shrinks: true }
+    }
+}
+
 impl Options {
     /// Reads the words after `fuzz cells`.
     pub fn parse(words: &[&str]) -> Result<Self, String> {
-        let mut options = Self {
-            count: 1000,
-            seed: 1,
-            kinds: Kind::ALL.to_vec(),
-            json: false,
-            case: None,
-            replay: None,
-            shrinks: true,
-        };
+        let mut options = Self::default();
         let mut words = words.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().copied().ok_or_else(|| format!("`{word}` needs a value"));
@@ -98,6 +102,12 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
 }
 
+/// The cells of every kind that the test suite runs, always the same ones.
+pub fn check(root: &Path) -> Result<(), String> {
+    let options = Options { count: SUITE_CELLS, seed: SUITE_SEED, ..Options::default() };
+    run(root, &options).map_err(|Failure::Check(message)| Failure::Usage(message) | message)
+}
+
 /// Runs a cell file under the eyes of the oracle.
 fn replay(file: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
@@ -129,7 +139,7 @@ fn judged(cell: &Cell, faults: Vec<InputFault>) -> Result<Judged, String> {
     let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
     let robots = &outcome.recording.robots;
     Ok(Judged {
-        opinion: oracle::judge(cell, &outcome.recording, outcome.bad_news()),
+        opinion: oracle::judge(cell, &outcome.recording, outcome.bad_news())?,
         finished: robots.iter().filter(|r| r.finished).count(),
         slowed: robots.iter().filter(|r| r.min_override < 0.2).count(),
         stopped: robots.iter().filter(|r| r.stopped_s > 0.0).count(),
@@ -143,33 +153,48 @@ fn judged_spec(spec: &CellSpec, places: &Places<'_>) -> Result<Judged, String> {
     judged(&cell, spec.faults.clone())
 }
 
+/// Runs the cases on all cores; what is found does not depend on how many there are.
 fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
     let mut summary = Summary::new(kind.name());
-    let (begin, mut told) = (Instant::now(), Instant::now());
-    let cases = match options.case {
-        Some(case) => case..case + 1,
-        None => 0..options.count as u64,
-    };
-    for case in cases {
-        let mut random = kind.random(options.seed, case);
-        let spec = generate::cell(kind, &mut random, places);
-        match judged_spec(&spec, places) {
-            Ok(judged) => {
-                if let Some(finding) = judged.opinion.findings.first() {
-                    report(finding, &spec, (kind, case), options, places, &mut summary);
+    let begin = Instant::now();
+    let (first, end) = options.case.map_or((0, options.count as u64), |case| (case, case + 1));
+    let spec = |case| generate::cell(kind, &mut kind.random(options.seed, case), places);
+    let next = AtomicU64::new(first);
+    std::thread::scope(|threads| {
+        let (send, results) = mpsc::channel();
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            let (send, spec, next) = (send.clone(), &spec, &next);
+            threads.spawn(move || {
+                loop {
+                    let case = next.fetch_add(1, Ordering::Relaxed);
+                    if case >= end || send.send((case, judged_spec(&spec(case), places))).is_err() {
+                        return;
+                    }
                 }
-                summary.add(&judged);
+            });
+        }
+        drop(send);
+        let mut printed = Instant::now();
+        for (case, result) in results {
+            match result {
+                Ok(judged) => {
+                    if let Some(finding) = judged.opinion.findings.first() {
+                        report(finding, &spec(case), (kind, case), options, places, &mut summary);
+                    }
+                    summary.add(&judged);
+                }
+                Err(e) => summary.refuse(&e),
             }
-            Err(e) => summary.refuse(&e),
+            if printed.elapsed() > Duration::from_secs(2) && !options.json {
+                printed = Instant::now();
+                eprint!("\r{}", summary.progress());
+            }
         }
-        if told.elapsed() > Duration::from_secs(2) && !options.json {
-            told = Instant::now();
-            eprint!("\r{}", summary.progress(case + 1));
-        }
-    }
+    });
+    summary.files.sort();
     summary.took = begin.elapsed();
     if !options.json {
-        eprintln!("\r{}", summary.progress(summary.cells as u64));
+        eprintln!("\r{}", summary.progress());
     }
     summary
 }

@@ -72,10 +72,11 @@ impl Summary {
         *self.refused.entry(short).or_default() += 1;
     }
 
-    pub fn progress(&self, cases: u64) -> String {
+    pub fn progress(&self) -> String {
         format!(
-            "{}: {cases} cells, {} refused, {} entries, {} two inside, {} silent deadlocks, {} too hard",
+            "{}: {} cells, {} refused, {} entries, {} two inside, {} silent deadlocks, {} too hard",
             self.kind,
+            self.cells,
             self.refused.values().sum::<usize>(),
             self.entries,
             self.two_inside,

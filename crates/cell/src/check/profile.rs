@@ -94,8 +94,8 @@ impl Profile {
                 *way += f64::midpoint(*a, *b) * step_s;
             }
         }
-        // What the last step goes beyond rest is more than its share in it.
-        let beyond = if u > 0.0 && least_u <= 0.0 { (needed / spent).min(1.0) } else { 1.0 };
+        // The last step goes beyond rest; rounding may even have added a whole one.
+        let beyond = if u > 0.0 { (needed / spent).max(least_u / u).min(1.0) } else { 1.0 };
         for (pace, way) in self.paces.iter_mut().zip(ways) {
             pace.braking_m = pace.braking_m.max(way * beyond);
         }

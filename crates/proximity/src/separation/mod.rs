@@ -80,13 +80,33 @@ pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) ->
 /// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 2.9).is_some());
 /// ```
 pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    nearest_within(a, a_in_world, b, b_in_world, limit, Points::Steady)
+}
+
+/// What the points of a [`Separation`] are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Points {
+    /// To be told: steady where there is a choice.
+    Steady,
+    /// For nothing: only the distance counts.
+    Any,
+}
+
+fn nearest_within(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    points: Points,
+) -> Option<Separation> {
     if !(usable(a, a_in_world) && usable(b, b_in_world)) {
         return Some(Separation::unknown(a_in_world, b_in_world));
     }
     let found = if comes_first(a, a_in_world, b, b_in_world) {
-        ordered(a, a_in_world, b, b_in_world, limit)?
+        ordered(a, a_in_world, b, b_in_world, limit, points)?
     } else {
-        ordered(b, b_in_world, a, a_in_world, limit)?.swapped()
+        ordered(b, b_in_world, a, a_in_world, limit, points)?.swapped()
     };
     // Numbers so large that their products overflow end here.
     let (p, q) = (found.on_a, found.on_b);
@@ -130,7 +150,7 @@ pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolera
             let query = |s: &mut _| crate::mesh::within(m, a_in_world, n, b_in_world, tolerance, s);
             crate::mesh::with_scratch(query).is_some()
         }
-        _ => separation_within(a, a_in_world, b, b_in_world, tolerance).is_some(),
+        _ => nearest_within(a, a_in_world, b, b_in_world, tolerance, Points::Any).is_some(),
     }
 }
 
@@ -194,16 +214,30 @@ pub(crate) fn usable(s: &Shape, pose: &Pose) -> bool {
 }
 
 #[inline]
-fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+fn ordered(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    points: Points,
+) -> Option<Separation> {
     match a {
         Shape::Sphere(s) => point(*s, a_in_world, b, b_in_world, limit),
-        _ => extended(a, a_in_world, b, b_in_world, limit),
+        _ => extended(a, a_in_world, b, b_in_world, limit, points),
     }
 }
 
 /// All but spheres, whose few steps would be slowed down by what these need of registers.
 #[inline(never)]
-fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+fn extended(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    points: Points,
+) -> Option<Separation> {
     match (a, b) {
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
             capsule(c, a_in_world, b, b_in_world, limit)
@@ -231,7 +265,7 @@ fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f
         _ => {
             let a_in_b = b_in_world.inverse_mul(a_in_world);
             let (gap, radii) = convex(a, b, &a_in_b, limit)?;
-            let gap = if gap.lower > 0.0 { steady_points(a, b, &a_in_b, gap) } else { gap };
+            let gap = if points == Points::Steady && gap.lower > 0.0 { steady_points(a, b, &a_in_b, gap) } else { gap };
             Some(world(gap, radii, b_in_world))
         }
     }

@@ -14,6 +14,13 @@ pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
     let size = radius_a + radius_b;
     let (grain, small) = (GRAIN * size, SMALL * size);
     let seen_by_a = a_in_b.inverse_transform_vector(sight);
+    // Most nearest points are corners of one of the two: the cheap test comes first.
+    let flatness = 2.0 * grain / small;
+    if is_corner(b, -sight, gap.on_b, flatness * radius_b)
+        || is_corner(a, seen_by_a, a_in_b.inverse_transform_point(gap.on_a), flatness * radius_a)
+    {
+        return gap;
+    }
     let (of_a, of_b) = (wide(a, seen_by_a, grain, small), wide(b, -sight, grain, small));
     let of_a = if let Wide::Edge(u, width) = of_a { Wide::Edge(a_in_b.transform_vector(u), width) } else { of_a };
     if !of_a.meets(of_b, grain, small) {
@@ -46,6 +53,22 @@ pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
     // A direction without digits proves nothing.
     let most = gap.distance + 2.0 * grain;
     if (on_a - on_b).length_squared() <= most * most { Gap { on_a, on_b, ..gap } } else { gap }
+}
+
+/// True where no corner but one lies less than `depth` (m) behind `top`, the farthest point along a unit vector.
+fn is_corner(core: &Core, along: Vec3, top: Vec3, depth: f64) -> bool {
+    match core {
+        Core::Cuboid(c) => {
+            // The corner after the farthest is behind it by the least of these.
+            let next = (c.half_extents * along.abs() * 2.0).min_element();
+            next > depth
+        }
+        Core::Hull(h) => {
+            let least = top.dot(along) - depth;
+            h.vertices().iter().filter(|v| v.dot(along) > least).count() < 2
+        }
+        _ => true,
+    }
 }
 
 fn nearest(core: &Core, p: Vec3) -> Vec3 {

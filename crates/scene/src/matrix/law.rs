@@ -1,7 +1,7 @@
 //! What the models themselves say about each pair, before anything is measured.
 
 use crate::pairs::{is_moved, why_no_pair};
-use crate::weight::Prior;
+use crate::weight::{Prior, joints_between};
 use crate::{Member, Object, PairEntry, PairMatrix, PairState, Reason, SceneRobot};
 
 /// The matrix by the rule of [`pairs`](crate::pairs::pairs); `solid` members only, `padding` in metres.
@@ -22,7 +22,7 @@ pub(crate) fn by_law(
                 b,
                 state,
                 margin_m: padding(a) + padding(b),
-                weight: priors[i].weight(&priors[k]),
+                weight: priors[i].weight(&priors[k], joints_between(robots, a, b)),
                 reason: why_not.unwrap_or(Reason::Default),
                 suggestion: None,
             });

@@ -11,6 +11,8 @@ use super::{Finding, Opinion};
 const PARTS: usize = 64;
 /// A robot that has not moved for so long (s) at the end stands for ever: a run goes on for a second without motion.
 const STANDS_S: f64 = 0.5;
+/// The same where the run was cut off by its longest time: longer than the run itself waits for a motion.
+const CUT_OFF_S: f64 = 1.5;
 /// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
 const STILL: f64 = 1e-4;
 
@@ -79,7 +81,10 @@ fn two_inside(motion: &Motion<'_>, region: usize, a: &Stay<'_>, b: &Stay<'_>, op
 /// one that has finished, or stands for another reason, is in no circle.
 fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion: &mut Opinion) {
     let ticks = motion.ticks();
-    let held = (STANDS_S / motion.recording.tick_s).ceil() as usize;
+    // A run that was cut off may have been about to go on.
+    let cut_off = motion.recording.duration_s >= motion.cell.max_s - motion.recording.tick_s;
+    let stands_s = if cut_off { CUT_OFF_S } else { STANDS_S };
+    let held = (stands_s / motion.recording.tick_s).ceil() as usize;
     if ticks <= held + 1 {
         return;
     }
@@ -88,8 +93,10 @@ fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion:
         let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
         !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < STILL)
     };
+    // A crossing of several regions is one: whoever is in one of their zones is in all.
+    let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
     let robots: Vec<usize> = (0..in_zone.len()).filter(|r| stands(*r) && in_zone[*r].contains(&true)).collect();
-    let meet = |a: usize, b: usize| a != b && in_zone[a].iter().zip(&in_zone[b]).any(|(a, b)| *a && *b);
+    let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
     let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
     // Whoever has finished, or left, and is still in the zone blocks the others for good: they wait, but not in a circle.
     let parked = |a: usize| (0..in_zone.len()).any(|b| motion.recording.robots[b].finished && meet(a, b));
@@ -105,4 +112,22 @@ fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion:
     if !(told && bad_news) {
         opinion.findings.push(Finding::SilentDeadlock { robots: circle });
     }
+}
+
+/// The regions whose zones overlap, directly or through others, with one of these.
+fn spread(motion: &Motion<'_>, zones: &[bool]) -> Vec<bool> {
+    let exchange = |r: usize| matches!(motion.places[r].kind, Kind::Exchange { .. });
+    let warning = |r: usize| motion.cell.regions[r].region.warning_m;
+    let overlap = |a: usize, b: usize| motion.places[a].distance(&motion.places[b]) <= warning(a) + warning(b);
+    let mut reached = zones.to_vec();
+    let mut open: Vec<usize> = (0..zones.len()).filter(|r| zones[*r]).collect();
+    while let Some(from) = open.pop() {
+        for to in (0..reached.len()).filter(|r| exchange(*r)) {
+            if !reached[to] && overlap(from, to) {
+                reached[to] = true;
+                open.push(to);
+            }
+        }
+    }
+    reached
 }

@@ -51,22 +51,26 @@ pub struct Opinion {
 }
 
 /// Judges a recording; `bad_news` says whether the run reported that something went wrong.
-pub fn judge(cell: &Cell, recording: &Recording, bad_news: bool) -> Opinion {
+///
+/// # Errors
+/// Names a region whose motion the oracle does not know.
+pub fn judge(cell: &Cell, recording: &Recording, bad_news: bool) -> Result<Opinion, String> {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
-    let motion = motion::Motion::new(cell, recording, &arms);
+    let motion = motion::Motion::new(cell, recording, &arms)?;
     let mut opinion = Opinion::default();
     presence::entries(&motion, &guarded, &mut opinion);
     exchange::judge(&motion, &guarded, bad_news, &mut opinion);
     physics::judge(cell, recording, &mut opinion);
-    opinion
+    Ok(opinion)
 }
 
 /// Least distance (m) of a region from what it guards at the start, to a metre; 0 inside.
 pub fn start_distance(cell: &Cell, region: usize) -> f64 {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let frames: Vec<_> = arms.iter().zip(&cell.robots).map(|(arm, r)| arm.frames(&r.start)).collect();
-    let place = place::Place::new(cell, region, &arms);
+    // What cannot be judged is not called outside.
+    let Ok(place) = place::Place::new(cell, region, &arms) else { return 0.0 };
     let at = place.at(place.travel_at(0.0).0, &frames);
     let one = |robot: &usize| {
         let guarded = Guarded::all(&cell.robots[*robot]);

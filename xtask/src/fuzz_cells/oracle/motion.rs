@@ -18,18 +18,12 @@ pub struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Self {
+    pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Result<Self, String> {
         let ticks = recording.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
         let at = |k: usize| recording.robots.iter().map(|r| r.samples[k].q.clone()).collect();
         let times = recording.robots.first().map_or(Vec::new(), |r| r.samples.iter().map(|s| s.t_s).collect());
-        Self {
-            cell,
-            recording,
-            arms,
-            places: (0..cell.regions.len()).map(|r| Place::new(cell, r, arms)).collect(),
-            times,
-            q: (0..ticks).map(at).collect(),
-        }
+        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, arms)).collect::<Result<_, _>>()?;
+        Ok(Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect() })
     }
 
     pub fn ticks(&self) -> usize {

@@ -33,13 +33,18 @@ enum Carrier {
 }
 
 impl Place {
-    pub fn new(cell: &Cell, region: usize, arms: &[Arm]) -> Self {
+    /// # Errors
+    /// Where the region rides on what the oracle does not know.
+    pub fn new(cell: &Cell, region: usize, arms: &[Arm]) -> Result<Self, String> {
         let r = &cell.regions[region];
         let at = Frame::of(&r.region.anchor).then(&Frame::of(&r.region.shape_in_anchor));
         let solid = Solid::eroded(&r.region.shape, TOLERANCE_M);
         let carrier = match &r.follow {
             None => Carrier::Nothing,
-            Some(Follow::Object(_) | Follow::Poses(_)) => unimplemented_carrier(&r.region.name),
+            Some(Follow::Object(_) | Follow::Poses(_)) => {
+                let what = "rides on an object or on a file of poses: the oracle knows belts and robots only";
+                return Err(format!("region {} {what}", r.region.name));
+            }
             Some(Follow::Encoder(e)) => Carrier::Belt(cell.encoders[*e].clone()),
             Some(Follow::Robot { robot, link, in_link }) => {
                 let in_link = Frame::of(in_link);
@@ -47,7 +52,7 @@ impl Place {
                 Carrier::Robot { robot: *robot, link: link.0, in_link, levers: arms[*robot].levers(link.0, radius) }
             }
         };
-        Self {
+        Ok(Self {
             solid,
             guards: r.region.guards,
             robots: r.robots.clone(),
@@ -55,7 +60,13 @@ impl Place {
             at,
             carrier,
             shape: r.region.shape.clone(),
-        }
+        })
+    }
+
+    /// Distance (m) from another region, neither of which moves; 0 where one does.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let still = [self, other].iter().all(|p| matches!(p.carrier, Carrier::Nothing));
+        if still { self.solid.distance(&self.at, &other.solid, &other.at, f64::INFINITY).lower } else { 0.0 }
     }
 
     pub fn is_carried(&self) -> bool {
@@ -110,11 +121,6 @@ impl Place {
             _ => self.solid.distance(&Frame::IDENTITY, &Solid::point(), &Frame::shift(p), f64::INFINITY).upper <= 0.0,
         }
     }
-}
-
-/// The generator writes no such regions; a file to be replayed may.
-fn unimplemented_carrier(region: &str) -> Carrier {
-    panic!("region {region} rides on an object or on poses from a file: the judge knows belts and robots only")
 }
 
 /// Signed solid angle of a triangle seen from the origin (van Oosterom and Strackee, 1983).

@@ -34,7 +34,7 @@ fn run(text: &str, monitored: bool) -> (Cell, RunOutcome) {
 
 fn findings(text: &str, monitored: bool) -> Vec<Finding> {
     let (cell, outcome) = run(text, monitored);
-    judge(&cell, &outcome.recording, outcome.bad_news()).findings
+    judge(&cell, &outcome.recording, outcome.bad_news()).unwrap().findings
 }
 
 fn vector(random: &mut Random, most: f64) -> Vec3 {
@@ -123,7 +123,7 @@ fn a_plate_that_is_jumped_between_two_samples_is_entered() {
     let (cell, outcome) = run(&text, false);
     let inside = |x: f64| x.abs() < 0.0006;
     assert!(!outcome.recording.robots[0].samples.iter().any(|s| inside(s.q[0])), "a sample fell into the plate");
-    let found = judge(&cell, &outcome.recording, true).findings;
+    let found = judge(&cell, &outcome.recording, true).unwrap().findings;
     assert!(matches!(found.as_slice(), [Finding::Entry { .. }]), "{found:?}");
 }
 
@@ -142,7 +142,7 @@ fn a_region_that_runs_into_a_robot_that_stands_was_not_entered() {
     let text = text.replace("steps = [{ move = \"joint\", to = [0] }]", "steps = [{ wait = 3 }]");
     let (cell, outcome) = run(&text, true);
     assert!(outcome.recording.regions[0].entered, "it never came there");
-    assert_eq!(judge(&cell, &outcome.recording, true).findings, []);
+    assert_eq!(judge(&cell, &outcome.recording, true).unwrap().findings, []);
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn a_deadlock_must_be_told() {
     let (cell, mut outcome) = run(&text, true);
     assert!(outcome.recording.robots.iter().all(|r| !r.finished), "no deadlock");
     let told = |outcome: &RunOutcome, bad_news| {
-        let opinion = judge(&cell, &outcome.recording, bad_news);
+        let opinion = judge(&cell, &outcome.recording, bad_news).unwrap();
         assert_eq!(opinion.deadlocks, 1);
         opinion.findings.is_empty()
     };
@@ -177,6 +177,6 @@ fn who_stops_harder_than_it_can_is_seen() {
     let fast = samples.iter().position(|s| s.q[0] > -1.0).unwrap();
     let there = samples[fast].q.clone();
     samples[fast..].iter_mut().for_each(|s| s.q.clone_from(&there));
-    let found = judge(&cell, &outcome.recording, true).findings;
+    let found = judge(&cell, &outcome.recording, true).unwrap().findings;
     assert!(matches!(found.as_slice(), [Finding::TooHard { robot: 0, joint: 0, .. }]), "{found:?}");
 }

@@ -25,7 +25,7 @@ const LARGE_AND_FIXED: f64 = 100.0;
 /// Nothing of a few links smaller than this (m) is in doubt of being too large.
 const LARGE_M: f64 = 5.0;
 /// A link is commonly about a third of its chain.
-const LINK: f64 = 0.3;
+const LINK: f64 = 0.35;
 /// A model whose largest solid is smaller than the chain divided by this is in doubt.
 const SMALL: f64 = 200.0;
 /// A chain (m) or a stroke (m) beyond this is in doubt; an arm is commonly 1.5 m.
