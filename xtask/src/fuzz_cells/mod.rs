@@ -105,7 +105,9 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
 /// The cells of every kind that the test suite runs, always the same ones.
 pub fn check(root: &Path) -> Result<(), String> {
     let options = Options { count: SUITE_CELLS, seed: SUITE_SEED, ..Options::default() };
-    run(root, &options).map_err(|Failure::Check(message)| Failure::Usage(message) | message)
+    run(root, &options).map_err(|failure| match failure {
+        Failure::Check(message) | Failure::Usage(message) => message,
+    })
 }
 
 /// Runs a cell file under the eyes of the oracle.

@@ -60,8 +60,8 @@ fn is_corner(core: &Core, along: Vec3, top: Vec3, depth: f64) -> bool {
     match core {
         Core::Cuboid(c) => {
             // The corner after the farthest is behind it by the least of these.
-            let next = (c.half_extents * along.abs() * 2.0).min_element();
-            next > depth
+            let (h, d) = (c.half_extents, along.abs());
+            2.0 * (h.x * d.x).min(h.y * d.y).min(h.z * d.z) > depth
         }
         Core::Hull(h) => {
             let least = top.dot(along) - depth;

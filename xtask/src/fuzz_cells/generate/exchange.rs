@@ -8,7 +8,7 @@ use crate::fuzz_cells::spec::{CellSpec, DhRow, Model, RegionSpec, RobotSpec, Sol
 
 /// Carriages through one to four crossings, each with solids that reach some of them.
 pub fn cell(random: &mut Random) -> CellSpec {
-    let mut spec = CellSpec { tick_ms: random.one(&[2.0, 4.0, 8.0]), max_s: 20.0, ..settings(random) };
+    let mut spec = CellSpec { tick_ms: random.one(&[2.0, 4.0, 8.0]), max_s: 120.0, ..settings(random) };
     let crossings = random.whole(1, 4);
     let apart = random.between(0.3, 3.0);
     let centers: Vec<Vector> = (0..crossings)

@@ -11,8 +11,6 @@ use super::{Finding, Opinion};
 const PARTS: usize = 64;
 /// A robot that has not moved for so long (s) at the end stands for ever: a run goes on for a second without motion.
 const STANDS_S: f64 = 0.5;
-/// The same where the run was cut off by its longest time: longer than the run itself waits for a motion.
-const CUT_OFF_S: f64 = 1.5;
 /// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
 const STILL: f64 = 1e-4;
 
@@ -81,10 +79,7 @@ fn two_inside(motion: &Motion<'_>, region: usize, a: &Stay<'_>, b: &Stay<'_>, op
 /// one that has finished, or stands for another reason, is in no circle.
 fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion: &mut Opinion) {
     let ticks = motion.ticks();
-    // A run that was cut off may have been about to go on.
-    let cut_off = motion.recording.duration_s >= motion.cell.max_s - motion.recording.tick_s;
-    let stands_s = if cut_off { CUT_OFF_S } else { STANDS_S };
-    let held = (stands_s / motion.recording.tick_s).ceil() as usize;
+    let held = (STANDS_S / motion.recording.tick_s).ceil() as usize;
     if ticks <= held + 1 {
         return;
     }
@@ -93,6 +88,10 @@ fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], bad_news: bool, opinion:
         let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
         !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < STILL)
     };
+    // While anybody moves, as in a run that was cut off, those who stand may still be let in.
+    if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !stands(r)) {
+        return;
+    }
     // A crossing of several regions is one: whoever is in one of their zones is in all.
     let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
     let robots: Vec<usize> = (0..in_zone.len()).filter(|r| stands(*r) && in_zone[*r].contains(&true)).collect();
