@@ -14,6 +14,10 @@ const STANDS_S: f64 = 0.5;
 /// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
 const STILL: f64 = 1e-4;
 
+/// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin
+/// (hysteresis), and monitors measure volumes that enclose the solids.
+const PARKED_M: f64 = 0.1;
+
 /// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
 type Stay<'a> = (usize, Vec<Pair<'a>>, Vec<bool>);
 
@@ -45,7 +49,8 @@ pub fn judge(motion: &Motion<'_>, guarded: &[Vec<Guarded>], bad_news: bool, opin
         let last = motion.ticks().saturating_sub(1);
         let zone = motion.cell.regions[region].region.warning_m;
         for (robot, pairs, _) in &stays {
-            in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone);
+            let more = if motion.recording.robots[*robot].finished { PARKED_M } else { 0.0 };
+            in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone + more);
         }
     }
     deadlock(motion, &in_zone, bad_news, opinion);
