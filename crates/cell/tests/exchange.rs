@@ -147,6 +147,38 @@ fn two_robots_that_start_inside_one_region_are_called_a_deadlock() {
     assert_eq!((&deadlock.robots[..], &deadlock.regions[..]), (&["a".into(), "b".into()][..], &["shared".into()][..]));
 }
 
+/// With the recovery law each goes out slowly where its program leads out: the same cell is no deadlock.
+#[test]
+fn two_robots_that_start_inside_one_region_drive_out_where_their_programs_lead_out() {
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{LAWS}direction_aware = true\n{}{}{}",
+        carriage("a", [0.0, 0.0, 0.0], 0.0, 100.0, -100.0, 2000.0),
+        carriage("b", [0.0, 400.0, 0.0], 0.0, 100.0, 100.0, 2000.0),
+        exchanged("shared", [0.0, 0.0, -500.0], 1000.0, 300.0),
+    );
+    let r = run(&text).recording;
+    assert!(r.deadlocks.is_empty() && r.robots.iter().all(|r| r.finished), "{:?}", r.deadlocks);
+    // Slowly, as long as the other one may be inside, too.
+    let fast = |robot: usize| r.robots[robot].samples.iter().any(|s| s.q[0] < 0.4 && s.speed_override > 0.11);
+    assert!(!(fast(0) && fast(1)), "both at speed inside");
+}
+
+/// A robot that accelerates harder than it brakes cannot be proven to stop outside, at rest and just beyond the warning zone,
+/// while it is told to go at full speed. It gives the region back all the same.
+#[test]
+fn a_robot_that_ends_beyond_the_warning_zone_gives_the_region_back() {
+    let quick = carriage("first", [0.0, 0.0, 0.0], 0.0, 0.0, -1500.0, 400.0)
+        .replace("acceleration = 8000", "acceleration = 27000")
+        .replace("stop_time = 0.1", "stop_time = 0.8");
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 4\n{LAWS}reaction_ms = 55\n{quick}{}{}",
+        carriage("second", [0.0, 0.0, 0.0], 90.0, 0.0, -5000.0, 1000.0),
+        exchanged("shared", [0.0, 0.0, -500.0], 400.0, 50.0),
+    );
+    let r = run(&text).recording;
+    assert!(r.robots.iter().all(|r| r.finished), "{:?}", r.robots.iter().map(|r| &r.ending).collect::<Vec<_>>());
+}
+
 #[test]
 fn a_robot_that_follows_another_through_two_regions_is_not_kept_until_both_are_free() {
     let text = format!(

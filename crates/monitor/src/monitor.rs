@@ -206,6 +206,13 @@ impl Monitor {
         }
     }
 
+    fn may_enter(&self, region: RegionId, now_s: f64) -> bool {
+        match self.config.regions[region.0].kind {
+            Kind::Exchange { slot } => self.seat.as_ref().is_some_and(|seat| seat.may_enter(slot, now_s)),
+            Kind::Forbidden | Kind::Monitored { .. } => false,
+        }
+    }
+
     /// How the robot stood to an exchange region in the last tick; `None` for any other region.
     pub fn exchange_state(&self, region: RegionId) -> Option<ExchangeState> {
         match self.config.regions[region.0].kind {
@@ -393,7 +400,7 @@ impl Monitor {
         for r in self.gaps.near() {
             let Some(gap) = self.gaps.get(*r as usize) else { continue };
             let id = RegionId(*r as usize);
-            if self.holds(id) {
+            if self.may_enter(id, s.now_s) {
                 continue;
             }
             verdict.at_once = verdict.at_once.min(gap.at_once);

@@ -52,7 +52,13 @@ struct SlotUse {
     stay: Stay,
     answer: Option<Grant>,
     state: SlotState,
+    /// Since when the robot holds the slot outside of all warning zones.
+    left_s: Option<f64>,
 }
+
+/// So long (s) a robot that has left keeps a slot, as it cannot be proven to stop outside, before it is slowed down like
+/// any other robot, until it can. Most are far enough away by then.
+const LEAVING_S: f64 = 0.25;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SlotState {
@@ -94,6 +100,8 @@ impl Seat {
             };
             let active = u.regions.iter().map(|r| at(*r)).filter(|a| a.0);
             u.stay = active.map(stay).max().unwrap_or(Stay::Outside);
+            let warned = u.regions.iter().map(|r| at(*r)).any(|(active, presence, _)| active && presence.warned);
+            u.left_s = if held && !warned { u.left_s.or(Some(now_s)) } else { None };
         }
         self.exchange(now_s);
         for u in &mut self.slots {
@@ -145,11 +153,17 @@ impl Seat {
     pub(crate) fn holds(&self, slot: SlotId) -> bool {
         self.slots.iter().any(|u| u.slot == slot && u.state == SlotState::Held)
     }
+
+    /// True where the slot's regions do not count for this robot: it holds them, and did not leave long ago.
+    pub(crate) fn may_enter(&self, slot: SlotId, now_s: f64) -> bool {
+        let long_gone = |u: &SlotUse| u.left_s.is_some_and(|left_s| now_s - left_s > LEAVING_S);
+        self.slots.iter().any(|u| u.slot == slot && u.state == SlotState::Held && !long_gone(u))
+    }
 }
 
 impl SlotUse {
     fn new(slot: SlotId, region: RegionId) -> Self {
-        Self { slot, regions: vec![region], stay: Stay::Unknown, answer: None, state: SlotState::Away }
+        Self { slot, regions: vec![region], stay: Stay::Unknown, answer: None, state: SlotState::Away, left_s: None }
     }
 
     /// A slot that was granted may have been given back in the same tick, by yielding.

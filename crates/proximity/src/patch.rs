@@ -14,7 +14,7 @@ pub(crate) const GRAIN: f64 = 1e-8;
 /// A patch smaller than this share of the sizes is a point.
 pub(crate) const SMALL: f64 = 1e-3;
 
-/// Corners of a polygon at most: a face of four and what ten or more cuts add.
+/// Corners of a polygon at most: a face of eight and what sixteen cuts add.
 const MOST: usize = 24;
 
 /// A flat convex polygon.
@@ -26,9 +26,9 @@ pub(crate) struct Polygon {
 
 impl Polygon {
     /// Of up to eight corners in order.
-    pub fn new(corners: &[Vec3]) -> Self {
+    pub fn new(corners: impl IntoIterator<Item = Vec3>) -> Self {
         let mut polygon = Self { points: [Vec3::ZERO; MOST], len: 0 };
-        corners.iter().take(8).for_each(|&p| polygon.push(p));
+        corners.into_iter().take(8).for_each(|p| polygon.push(p));
         polygon
     }
 

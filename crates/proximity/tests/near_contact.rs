@@ -25,7 +25,7 @@ const ACCURATE: [f64; 3] = [1e-11, 1e-8, 1e-8];
 const ON_SHAPE: [f64; 3] = [1e-9, 1e-8, 1e-8];
 const ON_SHAPE_APART: f64 = 1e-15;
 
-/// What the witnesses of two flat faces may be farther apart than the distance, so that they are steady.
+/// What the witnesses of faces and edges may be farther apart than the distance, so that they are steady.
 const PARALLEL: f64 = 2e-8;
 
 struct Placed {
@@ -41,7 +41,7 @@ impl Placed {
     }
 
     fn is_flat(&self) -> bool {
-        [&self.a, &self.b].iter().all(|s| matches!(s, Shape::Cuboid(_) | Shape::Hull(_)))
+        [&self.a, &self.b].iter().all(|s| !matches!(s, Shape::Sphere(_) | Shape::HalfSpace(_)))
     }
 
     /// About the largest coordinate that occurs: no shape of these tests is larger than 3 m.

@@ -55,6 +55,8 @@ fn uphill(mut d: Vec3, mut best: f64, wanted: f64, gap: impl Fn(Vec3) -> f64) ->
 /// Radius about the frame's origin of what has corners, metres.
 fn reach(shape: &Shape) -> f64 {
     match shape {
+        Shape::Capsule(c) => c.half_length,
+        Shape::Cylinder(c) => c.half_length.hypot(c.radius),
         Shape::Cuboid(c) => c.half_extents.length(),
         Shape::Hull(h) => h.vertices().iter().fold(0.0, |r: f64, v| r.max(v.length())),
         _ => 0.0,
@@ -70,11 +72,15 @@ fn certify(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, tolerance: f64) -> bool {
     if s.distance < 1e-9 {
         return false;
     }
-    let d = (s.on_a - s.on_b) / s.distance;
-    assert!((d.length() - 1.0).abs() < 1e-6, "witnesses are not as far apart as said: {}", what());
-    // Of flat faces that are nearly parallel the witnesses may be a hair farther apart, so that they are steady.
-    let flat = [a, b].iter().all(|s| matches!(s, Shape::Cuboid(_) | Shape::Hull(_)));
+    // Of faces and edges that are nearly parallel the witnesses may be a hair farther apart, so that they are steady.
+    let flat = [a, b].iter().all(|s| !matches!(s, Shape::Sphere(_) | Shape::HalfSpace(_)));
     let steady = if flat { 2e-8 * (reach(a) + reach(b)) } else { 0.0 };
+    let d = (s.on_a - s.on_b) / s.distance;
+    assert!(
+        (d.length() - 1.0).abs() < 1e-6 + steady / s.distance,
+        "witnesses are not as far apart as said: {}",
+        what()
+    );
     assert!((s.on_a.distance(s.on_b) - s.distance).abs() <= tolerance + steady, "{}", what());
     assert!(project_point(a, pa, s.on_a).signed_distance <= tolerance, "on_a is not in a: {}", what());
     assert!(project_point(b, pb, s.on_b).signed_distance <= tolerance, "on_b is not in b: {}", what());

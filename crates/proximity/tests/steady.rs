@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use common::Rng;
 use elbowroom_proximity::mesh::{Scratch, distance};
-use elbowroom_proximity::{ConvexHull, Cuboid, Separation, Shape, TriMesh, separation, tessellate::tessellate};
+use elbowroom_proximity::{
+    Capsule, ConvexHull, Cuboid, Cylinder, Separation, Shape, TriMesh, separation, tessellate::tessellate,
+};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 const KINDS: [&str; 3] = ["box", "hull", "mesh"];
@@ -54,7 +56,7 @@ fn tilted(rng: &mut Rng, most: f64, at: Vec3) -> Pose {
 fn parallel_plates_have_steady_points() {
     let worlds = [Pose::IDENTITY, Pose::new(Rotation::from_rpy(0.3, -0.5, 1.1), Vec3::new(1.0, 2.0, -0.7))];
     for first in KINDS {
-        for second in KINDS.into_iter().filter(|second| (first == "mesh") == (*second == "mesh")) {
+        for second in KINDS {
             let (a, b) = (plate(first, Vec3::new(0.4, 0.3, 0.01)), plate(second, Vec3::new(0.35, 0.3, 0.02)));
             for gap in [1e-6, 1e-3, 0.1] {
                 for world in &worlds {
@@ -66,6 +68,38 @@ fn parallel_plates_have_steady_points() {
             }
         }
     }
+}
+
+/// Round shapes on their flat ends, and lying along faces and along each other.
+#[test]
+fn round_shapes_have_steady_points() {
+    let lying = Rotation::from_rpy(0.0, std::f64::consts::FRAC_PI_2, 0.4);
+    let pillar = Shape::Cylinder(Cylinder { half_length: 0.3, radius: 0.25 });
+    let rod = Shape::Capsule(Capsule { half_length: 0.3, radius: 0.05 });
+    // How each stands on what is flat there, and how high its middle is.
+    let ways = [(&pillar, Rotation::IDENTITY, 0.3), (&pillar, lying, 0.25), (&rod, lying, 0.05)];
+    for kind in KINDS {
+        let floor = plate(kind, Vec3::new(0.9, 0.8, 0.1));
+        for (shape, turn, height) in ways {
+            let at = |rng: &mut Rng| {
+                tilted(rng, 1e-9, Vec3::new(0.1, 0.05, 0.1 + height + 0.02)) * Pose::new(turn, Vec3::ZERO)
+            };
+            let worst = steps(&floor, shape, at, &Pose::IDENTITY, 1.5).into_iter().fold(0.0, f64::max);
+            assert!(worst < 5e-3, "{shape:?} over {kind}: a step of {worst} m");
+        }
+    }
+    for (first, below) in [(&pillar, 0.25), (&rod, 0.05)] {
+        for (second, above) in [(&pillar, 0.25), (&rod, 0.05)] {
+            let world = Pose::new(lying, Vec3::ZERO);
+            let up = world.inverse_transform_vector(Vec3::Z * (below + above + 0.02));
+            let at = |rng: &mut Rng| tilted(rng, 1e-9, up + Vec3::Z * 0.1);
+            let worst = steps(first, second, at, &world, 1.0).into_iter().fold(0.0, f64::max);
+            assert!(worst < 5e-3, "{first:?} along {second:?}: a step of {worst} m");
+        }
+    }
+    let standing = |rng: &mut Rng| tilted(rng, 1e-9, Vec3::new(0.1, 0.0, 0.65));
+    let worst = steps(&pillar, &pillar, standing, &Pose::IDENTITY, 1.0).into_iter().fold(0.0, f64::max);
+    assert!(worst < 5e-3, "one on the other: a step of {worst} m");
 }
 
 /// The middle of where the faces face each other, when they are parallel.

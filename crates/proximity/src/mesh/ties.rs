@@ -148,7 +148,7 @@ impl Choice<'_> {
         }
         self.open |= found.on_a.distance(self.first) > self.small;
         self.offer(found.on_a, found.on_b, (ta as u32, tb as u32));
-        if let Some((on_a, _, size)) = self.facing.pair(&Polygon::new(&s), &Polygon::new(&t)) {
+        if let Some((on_a, _, size)) = self.facing.pair(&Polygon::new(s), &Polygon::new(t)) {
             let (on_a, on_b) = settled(on_a, &|q| nearest_on_triangle(q, s), &|p| nearest_on_triangle(p, t));
             // Where the faces look elsewhere, ends along the common direction say nothing.
             let most = self.radius + 2.0 * self.facing.grain;

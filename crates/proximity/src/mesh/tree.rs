@@ -85,6 +85,11 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
+    /// Centre, in the mesh's coordinates, and radius (m) of a ball around all vertices.
+    pub fn ball(&self) -> (Vec3, f64) {
+        (self.frame.center, self.radius)
+    }
+
     pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], threads: usize) -> Self {
         let bounds = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize]));
         let frame = Frame::of(&bounds);

@@ -83,6 +83,8 @@ impl Core<'_> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
     pub distance: f64,
+    /// Distance of the two points. Steady ones may be farther apart than the least distance, by what is as good as equal.
+    pub apart: f64,
     pub lower: f64,
     pub on_a: Vec3,
     pub on_b: Vec3,
@@ -93,12 +95,18 @@ impl Gap {
     #[inline]
     pub fn closed(on_a: Vec3, on_b: Vec3, scale: f64) -> Self {
         let distance = (on_a - on_b).length();
-        Self { distance, lower: (distance - rounding(scale)).max(0.0), on_a, on_b }
+        Self { distance, apart: distance, lower: (distance - rounding(scale)).max(0.0), on_a, on_b }
     }
 
     #[inline]
     pub fn touching(on_a: Vec3, on_b: Vec3) -> Self {
-        Self { distance: 0.0, lower: 0.0, on_a, on_b }
+        Self { distance: 0.0, apart: 0.0, lower: 0.0, on_a, on_b }
+    }
+
+    /// True where cores are proven to be farther apart than their radii, together: shapes do not touch.
+    #[inline]
+    pub fn is_beyond(&self, radii: f64) -> bool {
+        self.lower - radii - rounding(radii) > 0.0
     }
 
     /// With a proof of another kind: what is proven apart does not touch, whatever rounding makes of the points.
@@ -106,7 +114,8 @@ impl Gap {
     pub fn at_least(self, proven: f64) -> Self {
         let lower = self.lower.max(proven);
         let raised = || (self.on_a - self.on_b).length().max(lower);
-        Self { lower, distance: if self.distance < lower { raised() } else { self.distance }, ..self }
+        let distance = if self.distance < lower { raised() } else { self.distance };
+        Self { lower, distance, apart: self.apart.max(distance), ..self }
     }
 }
 

@@ -21,7 +21,8 @@ pub(super) fn distance(a: &Core, a_in_b: &Pose) -> Gap {
 pub(super) fn above(lowest: Vec3, scale: f64) -> Gap {
     let height = lowest.z;
     let foot = Vec3::new(lowest.x, lowest.y, height.min(0.0));
-    Gap { distance: height.max(0.0), lower: (height - rounding(scale)).max(0.0), on_a: lowest, on_b: foot }
+    let distance = height.max(0.0);
+    Gap { distance, apart: distance, lower: (height - rounding(scale)).max(0.0), on_a: lowest, on_b: foot }
 }
 
 /// Two half-spaces are apart only where they face each other exactly.

@@ -3,9 +3,12 @@
 
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
+use super::Points;
 use super::core::{Core, Gap, rounding};
+use super::flat::ball;
 use super::projections;
 use super::segment::Segment;
+use super::steady::{grain_of_mesh, steady_of_mesh};
 use crate::TriMesh;
 use crate::mesh::{BoxProbe, Height};
 use crate::triangle::{nearest_on_triangle, segment_triangle};
@@ -13,8 +16,14 @@ use crate::triangle::{nearest_on_triangle, segment_triangle};
 /// The best answer so far.
 struct Best {
     gap: Option<Gap>,
+    /// The triangle with its point.
+    triangle: usize,
     /// Nothing farther is of interest.
     limit: f64,
+    /// Pairs that are farther than the best by no more are noticed.
+    grain: f64,
+    /// How far apart, added up, points of such pairs were seen.
+    spread: f64,
     /// Nothing nearer makes a difference.
     enough: f64,
     /// Smallest proven bound of all leaves.
@@ -22,18 +31,24 @@ struct Best {
 }
 
 impl Best {
-    fn new(limit: f64, enough: f64) -> Self {
-        Self { gap: None, limit, enough, lower: f64::INFINITY }
+    fn new(limit: f64, enough: f64, grain: f64) -> Self {
+        let (triangle, spread) = (0, 0.0);
+        Self { gap: None, triangle, limit, grain, spread, enough, lower: f64::INFINITY }
     }
 
-    fn offer(&mut self, gap: Gap) {
+    fn offer(&mut self, triangle: usize, gap: Gap) {
+        if let Some(best) = &self.gap
+            && (best.distance - gap.distance).abs() <= self.grain
+        {
+            self.spread += best.on_a.distance(gap.on_a);
+        }
         if gap.lower > self.limit {
             return;
         }
         self.lower = self.lower.min(gap.lower);
         if self.gap.is_none_or(|best| gap.distance < best.distance) {
             self.limit = self.limit.min(gap.distance);
-            self.gap = Some(gap);
+            (self.gap, self.triangle) = (Some(gap), triangle);
         }
     }
 
@@ -48,23 +63,34 @@ impl Best {
     /// Asks `leaf` about every triangle that may be within the limit of the core's box.
     fn search(&mut self, mesh: &TriMesh, probe: &BoxProbe, leaf: &dyn Fn(usize, f64) -> Option<Gap>) {
         mesh.tree.visit(probe, BoxProbe::limit(&mesh.tree, self.limit), &mut |triangle| {
-            if let Some(gap) = leaf(triangle, self.limit) {
-                self.offer(gap);
+            if let Some(gap) = leaf(triangle, self.limit + self.grain) {
+                self.offer(triangle, gap);
             }
-            if self.done() { f32::NEG_INFINITY } else { BoxProbe::limit(&mesh.tree, self.limit) }
+            if self.done() { f32::NEG_INFINITY } else { BoxProbe::limit(&mesh.tree, self.limit + self.grain) }
         });
     }
 }
 
 /// Distance of a mesh and a convex core in the mesh's frame, where that less the core's radius is not above the limit.
 /// Not below the radius is looked closely.
-pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit: f64, radius: f64) -> Option<Gap> {
+pub(super) fn mesh_core(
+    mesh: &TriMesh,
+    core: &Core,
+    core_in_mesh: &Pose,
+    limit: f64,
+    radius: f64,
+    points: Points,
+) -> Option<Gap> {
     // The bound in `world` decides; this one must not pass the limit before it.
     let (limit, enough) = (limit + radius + 2.0 * rounding(radius), radius);
     let t = core_in_mesh.translation;
     let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
     let scale = 3.0 * extent + t.abs().max_element() + core.size();
-    let mut best = Best::new(limit, enough);
+    let grain = match ball(core) {
+        Some((radius, _)) if points == Points::Steady => grain_of_mesh(mesh, radius).0,
+        _ => 0.0,
+    };
+    let mut best = Best::new(limit, enough, grain);
     let probe = BoxProbe::new(&mesh.tree, &bounds(core), core_in_mesh);
     match core {
         Core::Point => {
@@ -97,11 +123,14 @@ pub(super) fn mesh_core(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose, limit:
     if !best.done() && mesh.contains(inside) {
         return Some(Gap::touching(inside, inside));
     }
-    best.finish()
+    let (triangle, spread) = (best.triangle, best.spread);
+    let gap = best.finish()?;
+    let apart = grain > 0.0 && gap.is_beyond(radius);
+    Some(if apart { steady_of_mesh(mesh, core, core_in_mesh, gap, triangle, spread) } else { gap })
 }
 
 /// Bounds of a core in its own frame.
-fn bounds(core: &Core) -> Aabb {
+pub(super) fn bounds(core: &Core) -> Aabb {
     let high = |axis: Vec3| core.reach(axis);
     let max = Vec3::new(high(Vec3::X), high(Vec3::Y), high(Vec3::Z));
     Aabb { min: -Vec3::new(high(-Vec3::X), high(-Vec3::Y), high(-Vec3::Z)), max }

@@ -2,6 +2,7 @@
 
 mod box_box;
 pub(crate) mod core;
+mod flat;
 pub(crate) mod gjk;
 mod half_space;
 mod mesh;
@@ -34,7 +35,7 @@ pub struct Separation {
     /// Nearest point of the second shape, in the world, `distance` from `on_a` to within 1e-15 of the largest coordinate
     /// involved. On contact: `on_a`.
     ///
-    /// Where faces or edges of two boxes, hulls or meshes are so nearly parallel that many pairs of points are within 2e-8 of
+    /// Where faces, edges or sides of two shapes (but spheres and half-spaces) are so nearly parallel that many pairs of points are within 2e-8 of
     /// the sizes (radii, together) of the least distance, the pair nearest to a point between the shapes' middles, near
     /// that of the smaller: it moves steadily where the nearest pair itself would jump. It is farther apart by no more than that.
     pub on_b: Vec3,
@@ -240,7 +241,7 @@ fn extended(
 ) -> Option<Separation> {
     match (a, b) {
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
-            capsule(c, a_in_world, b, b_in_world, limit)
+            capsule(c, a_in_world, b, b_in_world, limit, points)
         }
         (Shape::HalfSpace(_), _) => {
             Some(world(half_space::both(&b_in_world.inverse_mul(a_in_world)), [0.0; 2], b_in_world))
@@ -259,19 +260,20 @@ fn extended(
         }
         (_, Shape::Mesh(m)) => {
             let (core, radius) = rounded(a)?;
-            let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius)?;
+            let gap = mesh::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius, points)?;
             Some(world(gap, [0.0, radius], b_in_world).swapped())
         }
         _ => {
             let a_in_b = b_in_world.inverse_mul(a_in_world);
             let (gap, radii) = convex(a, b, &a_in_b, limit)?;
-            let gap = if points == Points::Steady && gap.lower > 0.0 { steady_points(a, b, &a_in_b, gap) } else { gap };
+            let apart = gap.is_beyond(radii[0] + radii[1]);
+            let gap = if points == Points::Steady && apart { steady_points(a, b, &a_in_b, gap) } else { gap };
             Some(world(gap, radii, b_in_world))
         }
     }
 }
 
-/// Of boxes and hulls the steady ones of several nearest points.
+/// The steady ones of several nearest points.
 fn steady_points(a: &Shape, b: &Shape, a_in_b: &Pose, gap: Gap) -> Gap {
     match (rounded(a), rounded(b)) {
         (Some((a, _)), Some((b, _))) => steady::steady(&a, &b, a_in_b, gap),
@@ -292,14 +294,21 @@ fn point(s: Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64)
         Shape::HalfSpace(_) => (Vec3::new(p.x, p.y, p.z.min(0.0)), 0.0),
         Shape::Hull(h) => (h.nearest(p), 0.0),
         Shape::Mesh(m) => {
-            let gap = mesh::mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius)?;
+            let gap = mesh::mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius, Points::Any)?;
             return Some(world(gap, [0.0, s.radius], b_in_world).swapped());
         }
     };
     closed(p, q, size + q.abs().max_element(), [s.radius, radius], limit, b_in_world)
 }
 
-fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+fn capsule(
+    c: &Capsule,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    points: Points,
+) -> Option<Separation> {
     let axis = segment::Segment {
         middle: b_in_world.inverse_transform_point(a_in_world.translation),
         direction: b_in_world.inverse_transform_vector(a_in_world.rotation.z_axis()),
@@ -342,7 +351,29 @@ fn capsule(c: &Capsule, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: 
         let proven = axis.box_gap(core_box(b)) - rounding(2.0 * size);
         return needle(c, b, a_in_world, b_in_world, points, proven);
     }
+    if points == Points::Steady && steady::lies_across(axis.direction, q - p) {
+        return steady_capsule(c, a_in_world, b, b_in_world, limit, Gap::closed(p, q, scale));
+    }
     closed(p, q, scale, [c.radius, radius], limit, b_in_world)
+}
+
+/// A capsule with an axis across the way to the other shape.
+#[cold]
+fn steady_capsule(
+    c: &Capsule,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    gap: Gap,
+) -> Option<Separation> {
+    let (core, radius) = rounded(b)?;
+    if gap.lower > limit + c.radius + radius + 2.0 * rounding(c.radius + radius) {
+        return None;
+    }
+    let apart = gap.is_beyond(c.radius + radius);
+    let steady = || steady::steady(&Core::Segment(c.half_length), &core, &b_in_world.inverse_mul(a_in_world), gap);
+    Some(world(if apart { steady() } else { gap }, [c.radius, radius], b_in_world))
 }
 
 /// Half the box around what is left of a shape without its rounding.
@@ -440,7 +471,7 @@ fn world(gap: Gap, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
         return contact(&gap, radii, frame_in_world);
     }
     if radius > 0.0 {
-        let toward_b = (q - p) / gap.distance;
+        let toward_b = (q - p) / gap.apart;
         p += toward_b * radii[0].min(gap.distance);
         q -= toward_b * radii[1].min(gap.distance);
     }

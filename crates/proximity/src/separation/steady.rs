@@ -1,10 +1,15 @@
-//! Steady witness points of boxes and hulls whose faces or edges are parallel, or nearly so ([`crate::patch`]).
+//! Steady witness points where faces or edges are parallel, or nearly so ([`crate::patch`]): of two convex cores, and of
+//! a mesh and a convex core.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::core::{Core, Gap};
+use super::flat::{ball, faces, is_corner, nearest, normal, wide};
+use crate::TriMesh;
+use crate::mesh::BoxProbe;
 use crate::patch::{Facing, GRAIN, Polygon, SMALL, Wide, between, settled};
-use crate::{ConvexHull, Cuboid};
+use crate::shape::hull::farthest;
+use crate::triangle::nearest_on_triangle;
 
 /// The gap with its points moved to where they are steady; as it is where there is no choice.
 pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
@@ -21,143 +26,155 @@ pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
     {
         return gap;
     }
-    let (of_a, of_b) = (wide(a, seen_by_a, grain, small), wide(b, -sight, grain, small));
-    let of_a = if let Wide::Edge(u, width) = of_a { Wide::Edge(a_in_b.transform_vector(u), width) } else { of_a };
-    if !of_a.meets(of_b, grain, small) {
+    let of_a = turned(wide(a, seen_by_a, grain, small), a_in_b);
+    if !of_a.meets(wide(b, -sight, grain, small), grain, small) {
         return gap;
     }
-    let middle = between(a_in_b.transform_point(middle_a), radius_a, middle_b, radius_b);
     let ends = |d: Vec3| {
         let low = a_in_b.transform_point(a.support(a_in_b.inverse_transform_vector(d)));
         [low.dot(d), b.support(-d).dot(d)]
     };
-    let apart = |d: &Vec3| ends(*d)[1] - ends(*d)[0];
     // Points that are very close give a direction with few digits; a face's normal has all.
-    let all = [sight, a_in_b.transform_vector(normal(a, seen_by_a)), -normal(b, -sight)];
-    let along = all.into_iter().max_by(|d, e| apart(d).total_cmp(&apart(e))).unwrap_or(sight);
-    let facing = Facing { along, ends: ends(along), grain, middle };
-    let (mut best, mut open) = (None::<(Vec3, Vec3)>, false);
+    let middle_a = a_in_b.transform_point(middle_a);
+    let of_a = normal(a, seen_by_a, a_in_b.inverse_transform_point(middle_b));
+    let of_b = normal(b, -sight, middle_a);
+    let along = farthest_apart([sight, a_in_b.transform_vector(of_a), -of_b], &ends);
+    let middle = between(middle_a, radius_a, middle_b, radius_b);
+    let mut choice = Choice::new(Facing { along, ends: ends(along), grain, middle }, small, &gap);
     faces(a, a_in_b.inverse_transform_vector(along), &mut |of_a| {
-        let of_a: [Vec3; 4] = of_a.map(|p| a_in_b.transform_point(p));
+        let of_a = Polygon::new(of_a.iter().map(|p| a_in_b.transform_point(*p)));
         faces(b, -along, &mut |of_b| {
-            let Some((on_a, on_b, patch)) = facing.pair(&Polygon::new(&of_a), &Polygon::new(&of_b)) else { return };
-            open |= patch > small;
-            if best.is_none_or(|b| (on_a - middle).length_squared() < (b.0 - middle).length_squared()) {
-                best = Some((on_a, on_b));
+            if let Some((on_a, on_b, patch)) = choice.facing.pair(&of_a, &Polygon::new(of_b.iter().copied())) {
+                choice.offer(0, on_a, on_b, patch);
             }
         });
     });
-    let Some((on_a, _)) = best.filter(|_| open) else { return gap };
-    let (on_a, on_b) =
-        settled(on_a, &|q| a_in_b.transform_point(nearest(a, a_in_b.inverse_transform_point(q))), &|p| nearest(b, p));
-    // A direction without digits proves nothing.
-    let most = gap.distance + 2.0 * grain;
-    if (on_a - on_b).length_squared() <= most * most { Gap { on_a, on_b, ..gap } } else { gap }
+    let Some((on_a, _)) = choice.best() else { return gap };
+    let onto_a = |q: Vec3| a_in_b.transform_point(nearest(a, a_in_b.inverse_transform_point(q)));
+    let (on_a, on_b) = settled(on_a, &onto_a, &|p| nearest(b, p));
+    moved(gap, on_a, on_b, grain)
 }
 
-/// True where no corner but one lies less than `depth` (m) behind `top`, the farthest point along a unit vector.
-fn is_corner(core: &Core, along: Vec3, top: Vec3, depth: f64) -> bool {
-    match core {
-        Core::Cuboid(c) => {
-            // The corner after the farthest is behind it by the least of these.
-            let (h, d) = (c.half_extents, along.abs());
-            2.0 * (h.x * d.x).min(h.y * d.y).min(h.z * d.z) > depth
+/// True where a line along the unit vector `direction` may lie so nearly across the way between two points that it has a
+/// choice: as [`is_corner`] of a segment, without a root.
+#[inline]
+pub(super) fn lies_across(direction: Vec3, way: Vec3) -> bool {
+    const SLOPE: f64 = GRAIN / SMALL;
+    let along = direction.dot(way);
+    along * along <= SLOPE * SLOPE * way.length_squared()
+}
+
+/// As [`steady`], of a mesh (first) and a core in the mesh's frame; `nearest_triangle` is the one with the gap's point, and
+/// `spread` whether pairs as near were seen elsewhere.
+pub(super) fn steady_of_mesh(
+    mesh: &TriMesh,
+    core: &Core,
+    core_in_mesh: &Pose,
+    gap: Gap,
+    nearest_triangle: usize,
+    spread: f64,
+) -> Gap {
+    let Some((radius_b, middle_b)) = ball(core) else { return gap };
+    let Some(sight) = (gap.on_b - gap.on_a).try_normalize() else { return gap };
+    let (grain, small) = grain_of_mesh(mesh, radius_b);
+    let back = |d: Vec3| core_in_mesh.inverse_transform_vector(d);
+    let t = mesh.corners(nearest_triangle);
+    let flat = || {
+        let of_a = Wide::of(t.iter().copied(), farthest(&t, sight), sight, grain, small);
+        of_a.meets(turned(wide(core, back(-sight), grain, small), core_in_mesh), grain, small)
+    };
+    if !(spread > small || flat()) {
+        return gap;
+    }
+    let ends = |d: Vec3| {
+        let high = t.iter().fold(f64::NEG_INFINITY, |most: f64, p| most.max(d.dot(*p)));
+        [high, core_in_mesh.transform_point(core.support(back(-d))).dot(d)]
+    };
+    let of_triangle = (t[1] - t[0]).cross(t[2] - t[0]).try_normalize().unwrap_or(sight);
+    let of_triangle = if of_triangle.dot(sight) < 0.0 { -of_triangle } else { of_triangle };
+    let of_core = -core_in_mesh.transform_vector(normal(core, back(-sight), back(-sight)));
+    let along = farthest_apart([sight, of_triangle, of_core], &ends);
+    let (center, radius_a) = mesh.tree.ball();
+    let middle = between(center, radius_a, core_in_mesh.transform_point(middle_b), radius_b);
+    let mut choice = Choice::new(Facing { along, ends: ends(along), grain, middle }, small, &gap);
+    let reach = gap.distance + 2.0 * grain;
+    let limit = BoxProbe::limit(&mesh.tree, reach);
+    let onto_core = |p: Vec3| core_in_mesh.transform_point(nearest(core, core_in_mesh.inverse_transform_point(p)));
+    mesh.tree.visit(&BoxProbe::new(&mesh.tree, &super::mesh::bounds(core), core_in_mesh), limit, &mut |number| {
+        let corners = mesh.corners(number);
+        if choice.is_beaten(nearest_on_triangle(middle, corners)) {
+            return limit;
         }
-        Core::Hull(h) => {
-            let least = top.dot(along) - depth;
-            h.vertices().iter().filter(|v| v.dot(along) > least).count() < 2
+        let of_a = Polygon::new(corners);
+        faces(core, back(-along), &mut |of_b| {
+            let of_b = Polygon::new(of_b.iter().map(|p| core_in_mesh.transform_point(*p)));
+            let Some((on_a, _, patch)) = choice.facing.pair(&of_a, &of_b) else { return };
+            let (on_a, on_b) = settled(on_a, &|q| nearest_on_triangle(q, corners), &onto_core);
+            if (on_a - on_b).length_squared() <= reach * reach {
+                choice.offer(number, on_a, on_b, patch);
+            }
+        });
+        limit
+    });
+    let Some((on_a, on_b)) = choice.best() else { return gap };
+    moved(gap, on_a, on_b, grain)
+}
+
+/// What counts as as near, and what as a point, of a mesh and a core of this radius, m.
+pub(super) fn grain_of_mesh(mesh: &TriMesh, radius: f64) -> (f64, f64) {
+    let size = mesh.tree.ball().1 + radius;
+    (GRAIN * size, SMALL * size)
+}
+
+/// Of several directions the one in which the two are farthest apart.
+fn farthest_apart(directions: [Vec3; 3], ends: &dyn Fn(Vec3) -> [f64; 2]) -> Vec3 {
+    let apart = |d: &Vec3| ends(*d)[1] - ends(*d)[0];
+    directions.into_iter().max_by(|d, e| apart(d).total_cmp(&apart(e))).unwrap_or(directions[0])
+}
+
+fn turned(wide: Wide, to: &Pose) -> Wide {
+    if let Wide::Edge(u, width) = wide { Wide::Edge(to.transform_vector(u), width) } else { wide }
+}
+
+/// The gap with other points, unless they are farther apart than is as good as equal: a direction without digits proves
+/// nothing.
+fn moved(gap: Gap, on_a: Vec3, on_b: Vec3, grain: f64) -> Gap {
+    let apart = on_a.distance(on_b);
+    if apart <= gap.distance + 2.0 * grain { Gap { apart, on_a, on_b, ..gap } } else { gap }
+}
+
+/// The pair of points nearest to the middle among those offered.
+struct Choice {
+    facing: Facing,
+    small: f64,
+    /// What was found first.
+    first: Vec3,
+    /// There is a choice: points lie apart.
+    open: bool,
+    /// Scores that differ by less are equal, and the smaller number counts: so nothing depends on the order.
+    step: f64,
+    best: Option<(f64, usize, Vec3, Vec3)>,
+}
+
+impl Choice {
+    fn new(facing: Facing, small: f64, gap: &Gap) -> Self {
+        Self { facing, small, first: gap.on_a, open: false, step: 1e-3 * small, best: None }
+    }
+
+    /// True where whatever has this point nearest to the middle would not be taken.
+    fn is_beaten(&self, nearest: Vec3) -> bool {
+        self.open && self.best.is_some_and(|b| nearest.distance(self.facing.middle) > (b.0 + 1.0) * self.step)
+    }
+
+    fn offer(&mut self, number: usize, on_a: Vec3, on_b: Vec3, patch: f64) {
+        self.open |= patch > self.small || on_a.distance(self.first) > self.small;
+        let score = (on_a.distance(self.facing.middle) / self.step).round();
+        if self.best.is_none_or(|b| (score, number) < (b.0, b.1)) {
+            self.best = Some((score, number, on_a, on_b));
         }
-        _ => true,
     }
-}
 
-fn nearest(core: &Core, p: Vec3) -> Vec3 {
-    match core {
-        Core::Cuboid(c) => c.nearest(p),
-        Core::Hull(h) => h.nearest(p),
-        _ => p,
-    }
-}
-
-/// Radius about a middle; `None` for what is round.
-fn ball(core: &Core) -> Option<(f64, Vec3)> {
-    match core {
-        Core::Cuboid(c) => Some((c.half_extents.length(), Vec3::ZERO)),
-        Core::Hull(h) => Some((0.5 * h.aabb().extent().length(), h.aabb().center())),
-        _ => None,
-    }
-}
-
-fn wide(core: &Core, along: Vec3, grain: f64, small: f64) -> Wide {
-    match core {
-        Core::Cuboid(c) => wide_of_box(c, along, grain, small),
-        Core::Hull(h) => Wide::of(h.vertices().iter().copied(), h.support(along), along, grain, small),
-        _ => Wide::Point,
-    }
-}
-
-/// The axes of a box that lie across the direction.
-fn wide_of_box(c: &Cuboid, along: Vec3, grain: f64, small: f64) -> Wide {
-    let (mut found, mut width) = (Wide::Point, 0.0_f64);
-    for k in 0..3 {
-        let (length, slope) = (2.0 * c.half_extents[k], along[k].abs());
-        if length > small && slope * small < grain {
-            let axis = [Vec3::X, Vec3::Y, Vec3::Z][k];
-            found = if matches!(found, Wide::Point) { Wide::Edge(axis, 0.0) } else { return Wide::Face };
-        } else {
-            width = width.max(length.min(grain / slope));
-        }
-    }
-    if let Wide::Edge(axis, _) = found { Wide::Edge(axis, width) } else { found }
-}
-
-/// Normal of the face that looks along the direction most.
-fn normal(core: &Core, along: Vec3) -> Vec3 {
-    match core {
-        Core::Cuboid(_) => {
-            let axis = face_axis(along);
-            [Vec3::X, Vec3::Y, Vec3::Z][axis] * along[axis].signum()
-        }
-        Core::Hull(h) => h.most_along(along),
-        _ => along,
-    }
-}
-
-fn face_axis(along: Vec3) -> usize {
-    let d = along.abs();
-    let first = usize::from(d.y > d.x);
-    if d.z > d[first] { 2 } else { first }
-}
-
-/// The faces that look along the direction most; a triangle has its last corner twice. Where an edge is farthest, one of
-/// its two faces is enough.
-fn faces(core: &Core, along: Vec3, each: &mut dyn FnMut([Vec3; 4])) {
-    match core {
-        Core::Cuboid(c) => each(side(c, along)),
-        Core::Hull(h) => triangles(h, along, each),
-        _ => {}
-    }
-}
-
-fn side(c: &Cuboid, along: Vec3) -> [Vec3; 4] {
-    let k = face_axis(along);
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| {
-        let mut p = [0.0; 3];
-        (p[i], p[j], p[k]) = (u * c.half_extents[i], v * c.half_extents[j], c.half_extents[k].copysign(along[k]));
-        Vec3::from(p)
-    })
-}
-
-/// Triangles whose normals differ by less than this from the one that looks along the direction most are one face.
-const FLAT: f64 = 1e-6;
-
-fn triangles(hull: &ConvexHull, along: Vec3, each: &mut dyn FnMut([Vec3; 4])) {
-    let most = hull.most_along(along);
-    for (number, normal) in hull.normals().enumerate() {
-        if (normal - most).length_squared() < FLAT * FLAT {
-            let [p, q, r] = hull.corners(number);
-            each([p, q, r, r]);
-        }
+    fn best(&self) -> Option<(Vec3, Vec3)> {
+        self.best.filter(|_| self.open).map(|b| (b.2, b.3))
     }
 }

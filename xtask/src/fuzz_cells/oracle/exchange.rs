@@ -1,6 +1,7 @@
 //! Exchange regions: never two inside, and no deadlock in silence.
 
 use elbowroom_monitor::Kind;
+use elbowroom_spatial::Vec3;
 
 use super::guarded::Guarded;
 use super::motion::Motion;
@@ -15,7 +16,7 @@ const STANDS_S: f64 = 0.5;
 const STILL: f64 = 1e-4;
 
 /// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin
-/// (hysteresis), and monitors measure volumes that enclose the solids.
+/// (hysteresis), and monitors measure volumes that enclose a link's solids, which may lie apart.
 const PARKED_M: f64 = 0.1;
 
 /// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
@@ -49,11 +50,19 @@ pub fn judge(motion: &Motion<'_>, guarded: &[Vec<Guarded>], bad_news: bool, opin
         let last = motion.ticks().saturating_sub(1);
         let zone = motion.cell.regions[region].region.warning_m;
         for (robot, pairs, _) in &stays {
-            let more = if motion.recording.robots[*robot].finished { PARKED_M } else { 0.0 };
+            let more = if motion.recording.robots[*robot].finished { PARKED_M + spread_m(motion, pairs) } else { 0.0 };
             in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone + more);
         }
     }
     deadlock(motion, &in_zone, bad_news, opinion);
+}
+
+/// Largest distance (m) of the middles of two of a robot's solids, at the start.
+fn spread_m(motion: &Motion<'_>, pairs: &[Pair<'_>]) -> f64 {
+    let frames = motion.frames(&motion.q[0]);
+    let middles: Vec<_> = pairs.iter().map(|p| p.guarded.center(&frames[p.robot])).collect();
+    let from = |a: &Vec3| middles.iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
+    middles.iter().map(from).fold(0.0, f64::max)
 }
 
 /// Marks the ticks from which to the next the solid touches the region at some time.

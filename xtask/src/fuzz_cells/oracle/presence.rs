@@ -96,6 +96,10 @@ fn drove_in(pair: &Pair<'_>, k: usize, u: f64) -> bool {
     if k == 0 {
         return true;
     }
+    let moves = |k: usize| k + 1 < pair.motion.ticks() && pair.own_travel(k) > 0.0;
+    if !moves(k) && !(u <= 0.0 && moves(k - 1)) {
+        return false;
+    }
     let before = (k - 1, u);
     pair.distance_between(before, (k, u)).lower > TOLERANCE_M
 }

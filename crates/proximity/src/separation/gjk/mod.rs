@@ -55,7 +55,7 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
         (simplex, v, upper) = (grown, nearer, length);
     }
     let (on_a, on_b) = (simplex.blend(|x| x.on_a), simplex.blend(|x| x.on_b));
-    Some(Gap { distance: upper, lower: 0.0, on_a, on_b }.at_least(lower))
+    Some(Gap { distance: upper, apart: upper, lower: 0.0, on_a, on_b }.at_least(lower))
 }
 
 /// The simplex with one vertex more, reduced to what holds its nearest point; `None` where that brings nothing nearer.

@@ -94,7 +94,7 @@ fn along_edges(cores: &Cores, gap: Gap) -> Gap {
 
 fn nearer_of(gap: Gap, on_a: Vec3, on_b: Vec3) -> Gap {
     let distance = (on_a - on_b).length();
-    if distance < gap.distance { Gap { distance, on_a, on_b, ..gap } } else { gap }
+    if distance < gap.distance { Gap { distance, apart: distance, on_a, on_b, ..gap } } else { gap }
 }
 
 fn nearest_to_edge(edge: &Segment, solid: &Core) -> Option<(Vec3, Vec3)> {

@@ -138,7 +138,7 @@ fn nearer(a: Gap, b: Gap) -> Gap {
 /// Projects to and fro, with Newton steps in between.
 #[inline]
 fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
-    let mut best = Gap { distance: f64::INFINITY, lower: 0.0, on_a: start, on_b: start };
+    let mut best = Gap { distance: f64::INFINITY, apart: f64::INFINITY, lower: 0.0, on_a: start, on_b: start };
     // The start is anywhere, so its step is not judged, and is a plain one.
     let (mut p, mut doubts, mut judged) = (start, TRUST.len() - 1, false);
     for _ in 0..rounds {
@@ -158,7 +158,7 @@ fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
         }
         let better = length < best.distance;
         if better {
-            best = Gap { distance: length, on_a: onto_a.point, on_b: q, ..best };
+            best = Gap { distance: length, apart: length, on_a: onto_a.point, on_b: q, ..best };
         }
         if best.distance - best.lower <= cores.wanted {
             best.lower = best.lower.min(best.distance);
