@@ -47,6 +47,20 @@ fn the_sound_cell_is_sound() {
 /// (line to replace, by what, words of the message, words of the hint)
 const CASES: &[(&str, &str, &str, &str)] = &[
     ("version = 1", "version = 2", "reads version 1", "version = 1"),
+    ("volumes = \"capsule\"", "stop_time = 1e300", "no robot brakes for so long", "at most 60"),
+    ("volumes = \"capsule\"", "acceleration = 1e200", "no joint is so fast", "at most"),
+    (
+        "follow = { robot = \"c\", frame = \"flange\" }",
+        "follow = { robot = \"c\", max_speed = 1e12 }",
+        "no jump would be noticed",
+        "at most 1000000 mm/s",
+    ),
+    (
+        "follow = { robot = \"c\", frame = \"flange\" }",
+        "follow = { robot = \"c\", max_turn = 1e9 }",
+        "no jump would be noticed",
+        "at most 500 rad/s",
+    ),
     ("version = 1", "version = \"1\"", "must be a number", "version"),
     ("tick_ms = 4", "tick_msec = 4", "no key `tick_msec`", "tick_ms"),
     ("tick_ms = 4", "tick_ms = -4", "above 0", "tick_ms"),

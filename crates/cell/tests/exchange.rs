@@ -163,6 +163,49 @@ fn two_robots_that_start_inside_one_region_drive_out_where_their_programs_lead_o
     assert!(!(fast(0) && fast(1)), "both at speed inside");
 }
 
+/// Between the two regions the robots cannot stop: whoever is in the first keeps it until it is in the second. So both are
+/// granted to one robot before the other.
+#[test]
+fn a_gap_that_is_too_short_to_stop_in_joins_two_stretches() {
+    let robot = |name: &str, y: f64, other: f64, start: f64| {
+        carriage(name, [0.0, y, 0.0], 0.0, other, start, -start)
+            .replace("speed = 1000", "speed = 1500")
+            .replace("stop_time = 0.1", "stop_time = 0.5")
+    };
+    let region = |name: &str, x: f64| {
+        format!(
+            "[region.{name}]\nshape = \"box\"\nbase = [{x}, 75, -500]\nsize = [200, 2000, 1000]\nwarning = 50\n\
+             kind = \"exchange\"\n"
+        )
+    };
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{LAWS}direction_aware = true\n{}{}{}{}",
+        robot("a", 0.0, -700.0, -2500.0),
+        robot("b", 150.0, 700.0, 2500.0),
+        region("first", -450.0),
+        region("second", 450.0),
+    );
+    let r = run(&text).recording;
+    assert!(r.deadlocks.is_empty() && r.robots.iter().all(|r| r.finished), "{:?}", r.deadlocks);
+}
+
+/// One holds the region, and is kept out by what the other one carries.
+#[test]
+fn a_circle_through_a_region_that_a_robot_carries_is_a_deadlock_too() {
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{LAWS}{}{}{}\
+         [region.hand]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 300\nwarning = 100\nrobots = [\"b\"]\n\
+         follow = {{ robot = \"a\" }}\n",
+        carriage("a", [0.0, 0.0, 0.0], 0.0, 0.0, -1800.0, 2000.0),
+        carriage("b", [0.0, 100.0, 0.0], 0.0, 0.0, 1000.0, -2000.0),
+        exchanged("x", [0.0, 0.0, -500.0], 600.0, 100.0),
+    );
+    let outcome = run(&text);
+    let [deadlock] = &outcome.recording.deadlocks[..] else { panic!("{:?}", outcome.recording.deadlocks) };
+    assert_eq!(deadlock.robots, ["a", "b"]);
+    assert!(outcome.bad_news() && outcome.recording.robots.iter().all(|r| r.ending.outcome == Outcome::Deadlock));
+}
+
 /// A robot that accelerates harder than it brakes cannot be proven to stop outside, at rest and just beyond the warning zone,
 /// while it is told to go at full speed. It gives the region back all the same.
 #[test]

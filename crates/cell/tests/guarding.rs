@@ -101,3 +101,16 @@ fn a_tcp_within_a_solid_adds_nothing() {
     let enclosed = "tool.tcp = { at = [0, 0, 51] }\nload = { sphere = { at = [0, 0, 60], radius = 20 } }\n";
     assert_eq!(part(enclosed), Part::Tcp);
 }
+
+#[test]
+fn a_region_that_rides_on_the_only_robot_keeps_nobody_out() {
+    let follow = "follow = { robot = \"a\" }";
+    let words = ["region \"z\" concerns no robot", "follow something else"];
+    refused(&format!("{HEAD}{}{}{PROGRAM}", ball(""), region(&format!("{follow}\n"))), follow, &words);
+}
+
+#[test]
+fn a_zone_in_which_nobody_can_ask_is_refused() {
+    let exchange = region("kind = \"exchange\"\n").replace("warning = 300", "warning = 0.5");
+    refused(&format!("{HEAD}{}{exchange}{PROGRAM}", ball("")), "[region.z]", &["1 mm or more", "warning = 250"]);
+}

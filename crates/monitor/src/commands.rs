@@ -11,6 +11,15 @@ struct Command {
     at_s: f64,
     /// The largest override of this answer and all later ones.
     largest: f64,
+    /// The least of them.
+    least: f64,
+}
+
+/// Overrides that the robot may be obeying.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Obeyed {
+    pub(crate) largest: f64,
+    pub(crate) least: f64,
 }
 
 /// Overrides that were asked for and may still count: a robot obeys a lower one up to the reaction time late, a higher one
@@ -21,22 +30,28 @@ pub(crate) struct Commands {
     /// No snapshot that is older than this (s) is believed: what counted no more before it is forgotten.
     stale_s: f64,
     issued: VecDeque<Command>,
+    /// When the first answer was given, s.
+    since_s: f64,
 }
 
 impl Commands {
     pub(crate) fn new(reaction_s: f64, stale_s: f64) -> Self {
-        Self { reaction_s, stale_s, issued: VecDeque::with_capacity(MOST) }
+        Self { reaction_s, stale_s, issued: VecDeque::with_capacity(MOST), since_s: f64::INFINITY }
     }
 
     pub(crate) fn push(&mut self, now_s: f64, speed_override: f64) {
-        self.issued.iter_mut().for_each(|c| c.largest = c.largest.max(speed_override));
+        self.since_s = self.since_s.min(now_s);
+        for c in &mut self.issued {
+            (c.largest, c.least) = (c.largest.max(speed_override), c.least.min(speed_override));
+        }
         if self.issued.len() == MOST {
             let oldest = self.issued.pop_front();
             if let (Some(oldest), Some(next)) = (oldest, self.issued.front_mut()) {
-                *next = Command { at_s: oldest.at_s, largest: oldest.largest.max(next.largest) };
+                let (largest, least) = (oldest.largest.max(next.largest), oldest.least.min(next.least));
+                *next = Command { at_s: oldest.at_s, largest, least };
             }
         }
-        self.issued.push_back(Command { at_s: now_s, largest: speed_override });
+        self.issued.push_back(Command { at_s: now_s, largest: speed_override, least: speed_override });
         self.forget(now_s - self.stale_s);
     }
 
@@ -50,6 +65,13 @@ impl Commands {
     /// The largest override that may still count.
     pub(crate) fn largest(&self) -> f64 {
         self.issued.front().map_or(0.0, |c| c.largest)
+    }
+
+    /// The overrides that may still count at `now_s`. Before the first answer the robot stands.
+    pub(crate) fn obeyed(&self, now_s: f64) -> Obeyed {
+        let Some(oldest) = self.issued.front() else { return Obeyed::default() };
+        let least = if now_s - self.since_s >= self.reaction_s { oldest.least } else { 0.0 };
+        Obeyed { largest: oldest.largest, least }
     }
 
     /// How much of the program's time passes at most from `stamp_s` until an answer given at `now_s` counts, and the override

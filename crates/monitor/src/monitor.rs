@@ -5,6 +5,7 @@ use std::sync::Arc;
 use elbowroom_kinematics::{ChainState, JointKind};
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::commands::Obeyed;
 use crate::events::EventLog;
 use crate::gaps::{self, Gap, Gaps};
 use crate::laws::rate_limited;
@@ -14,7 +15,7 @@ use crate::seat::{ExchangeState, Seat};
 use crate::source_watch::{SourceWatch, Trust};
 use crate::stopping::{StoppingLaw, TickState};
 use crate::sweep::Sweep;
-use crate::verdict::{Judge, LOOKAHEAD_S};
+use crate::verdict::{Judge, LOOKAHEAD_S, fastest_region};
 use crate::watchdog::Watchdog;
 use crate::{
     AccessClass, Board, ConfigError, Configuration, Event, EventKind, Fault, Kind, Life, Reason, RegionId, RobotSlot,
@@ -103,8 +104,10 @@ impl Monitor {
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
         let since_last_s = self.watchdog.since_last(s);
-        let trusted =
-            self.watchdog.check(s, self.config.sources.len(), self.told()).and_then(|()| self.check_sources(s));
+        let trusted = self
+            .watchdog
+            .check(s, self.config.sources.len(), self.obeyed(s.now_s))
+            .and_then(|()| self.check_sources(s));
         if let Err(fault) = trusted {
             return self.stop(s, fault);
         }
@@ -293,9 +296,9 @@ impl Monitor {
         }
     }
 
-    /// The largest override that the robot may be obeying.
-    fn told(&self) -> f64 {
-        self.stopping.as_ref().map_or(0.0, StoppingLaw::largest_told)
+    /// The overrides that the robot may be obeying.
+    fn obeyed(&self, now_s: f64) -> Obeyed {
+        self.stopping.as_ref().map_or(Obeyed::default(), |law| law.obeyed(now_s))
     }
 
     /// Takes note of an answer.
@@ -339,7 +342,8 @@ impl Monitor {
         });
         let last_override = last_override.unwrap_or(0.0);
         let (soon, intent) = (soon.as_ref(), intent.as_ref());
-        let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping };
+        let region_speed_m_s = fastest_region(now, s.sources);
+        let judge = Judge { config, snapshot: s, now, soon, intent, last_override, stopping, region_speed_m_s };
         gaps.measure(config, active, now, &judge, sweep.reach());
     }
 

@@ -10,7 +10,7 @@ use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::brake_watch::BrakeWatch;
-use crate::commands::Commands;
+use crate::commands::{Commands, Obeyed};
 use crate::laws::{stop_time, stopping_program_time};
 use crate::{Configuration, Stopping, Volume};
 
@@ -152,9 +152,9 @@ impl StoppingLaw {
         self.commands.push(now_s, speed_override);
     }
 
-    /// The largest override that may still count at `stamp_s` or later.
-    pub(crate) fn largest_told(&self) -> f64 {
-        self.commands.largest()
+    /// The overrides that the robot may be obeying.
+    pub(crate) fn obeyed(&self, now_s: f64) -> Obeyed {
+        self.commands.obeyed(now_s)
     }
 
     /// True where the robot brakes less than was stated.

@@ -2,14 +2,14 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::gaps::{Asked, Pair, PairLaw};
 use crate::laws::{Stopping, speed_zone, warning_factor};
 use crate::placement::{Placement, region_point_motion};
 use crate::recovery::leads_out;
 use crate::stopping::{Gap, StoppingLaw};
-use crate::{Configuration, Kind, Snapshot};
+use crate::{Configuration, Kind, Snapshot, Source};
 
 /// How far (s) the direction-aware law looks along the program's intent.
 pub(crate) const LOOKAHEAD_S: f64 = 0.01;
@@ -33,6 +33,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) last_override: f64,
     /// The stopping-distance law, where that is on.
     pub(crate) stopping: Option<(&'a Stopping, &'a StoppingLaw)>,
+    /// No point of any region is faster, m/s.
+    pub(crate) region_speed_m_s: f64,
 }
 
 /// Which way a pair goes.
@@ -225,7 +227,7 @@ impl PairLaw for Judge<'_> {
     fn extra_reach(&self, volume: usize) -> f64 {
         let Some((_, law)) = self.stopping else { return 0.0 };
         let (travel, time_s) = law.reach(volume);
-        travel + STOP_SHORT_M + source_speed(self.snapshot) * time_s
+        travel + STOP_SHORT_M + self.region_speed_m_s * time_s
     }
 
     fn only_closest_matters(&self) -> bool {
@@ -233,7 +235,18 @@ impl PairLaw for Judge<'_> {
     }
 }
 
-/// Speed of the fastest source, m/s; regions are near their sources, so their turning is left to the warning zone.
-fn source_speed(snapshot: &Snapshot) -> f64 {
-    snapshot.sources.iter().fold(0.0, |v, s| s.motion.velocity.length().max(v))
+/// No point of a region that follows a source is faster, m/s.
+pub(crate) fn fastest_region(now: &Placement, sources: &[Source]) -> f64 {
+    let fastest = |(region, source): &(usize, usize)| {
+        let Source { pose, motion, .. } = &sources[*source];
+        let turning = motion.angular_velocity.length();
+        let lever = || farthest(&now.region_box[*region], pose.translation);
+        motion.velocity.length() + if turning > 0.0 { turning * lever() } else { 0.0 }
+    };
+    now.riders.iter().map(fastest).fold(0.0, f64::max)
+}
+
+/// Distance of a point from the farthest corner of a box, m.
+fn farthest(boxed: &Aabb, from: Vec3) -> f64 {
+    (boxed.min - from).abs().max((boxed.max - from).abs()).length()
 }

@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use elbowroom_kinematics::{Chain, JointKind};
 
+use crate::commands::Obeyed;
 use crate::{Fault, Laws, Snapshot};
 
 /// A joint beyond its limits by more than this (rad or m) is an implausible reading: controllers overshoot by less.
@@ -40,8 +41,10 @@ pub(crate) struct Watchdog {
     velocity: Vec<f64>,
     /// Time over which it was derived, s.
     derived_over_s: f64,
-    /// Program time for which the reading has not changed although the robot was to move, s.
+    /// Program time that may have passed since the reading last changed, s.
     unnoticed_s: f64,
+    /// Program time that must have passed since then, unless the reading is frozen, s.
+    frozen_s: f64,
 }
 
 #[derive(Debug)]
@@ -85,17 +88,18 @@ impl Watchdog {
             velocity: zeros,
             derived_over_s: 0.0,
             unnoticed_s: 0.0,
+            frozen_s: 0.0,
         }
     }
 
-    /// Accepts the snapshot and remembers it, or says what is wrong with it. `told` is the largest override that the robot may
-    /// be obeying.
-    pub(crate) fn check(&mut self, s: &Snapshot, sources: usize, told: f64) -> Result<(), Fault> {
+    /// Accepts the snapshot and remembers it, or says what is wrong with it; `obeyed` are the overrides that the robot may be
+    /// obeying.
+    pub(crate) fn check(&mut self, s: &Snapshot, sources: usize, obeyed: Obeyed) -> Result<(), Fault> {
         self.check_form(s, sources)?;
         self.check_time(s)?;
         self.hear(s);
         self.check_joints(s)?;
-        let motion = if self.needs_motion { self.check_motion(s, told) } else { Ok(()) };
+        let motion = if self.needs_motion { self.check_motion(s, obeyed) } else { Ok(()) };
         self.last = Some((s.now_s, s.stamp_s));
         self.last_q.copy_from_slice(s.q);
         self.explained.fill(0.0);
@@ -184,7 +188,7 @@ impl Watchdog {
     }
 
     /// Velocities must be known, and a reading must change while the robot moves.
-    fn check_motion(&mut self, s: &Snapshot, told: f64) -> Result<(), Fault> {
+    fn check_motion(&mut self, s: &Snapshot, obeyed: Obeyed) -> Result<(), Fault> {
         let Some((_, stamp_s)) = self.last else {
             return if s.qd.is_empty() { Err(Fault::NoVelocity) } else { Ok(()) };
         };
@@ -192,11 +196,12 @@ impl Watchdog {
         self.derive_velocity(s, passed_s);
         let wanted = s.intent.unwrap_or(s.qd);
         if s.q.iter().zip(&self.last_q).any(|(a, b)| a.to_bits() != b.to_bits()) {
-            self.unnoticed_s = 0.0;
+            (self.unnoticed_s, self.frozen_s) = (0.0, 0.0);
         } else if passed_s <= SILENCE_S && wanted.iter().any(|v| *v != 0.0) {
-            self.unnoticed_s += told * passed_s;
+            self.unnoticed_s += obeyed.largest * passed_s;
+            self.frozen_s += obeyed.least * passed_s;
         }
-        if self.unnoticed_s > FROZEN_S { Err(Fault::Frozen) } else { Ok(()) }
+        if self.frozen_s > FROZEN_S { Err(Fault::Frozen) } else { Ok(()) }
     }
 
     fn derive_velocity(&mut self, s: &Snapshot, passed_s: f64) {

@@ -14,8 +14,12 @@ const TICK_S: f64 = 0.002;
 const BRAKES: f64 = 4.0;
 
 fn monitor() -> Monitor {
+    obeying_after(TICK_S)
+}
+
+fn obeying_after(reaction_s: f64) -> Monitor {
     let stopping = Stopping {
-        reaction_s: TICK_S,
+        reaction_s,
         period_s: TICK_S,
         joint_deceleration: vec![BRAKES; 6],
         joint_acceleration: vec![8.0; 6],
@@ -86,6 +90,20 @@ fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
             assert!(robot.speed < 1e-3 && (found || frozen_at > 1.8), "frozen at {frozen_at}: {} m/s", robot.speed);
         }
     }
+}
+
+/// A robot that begins to move 0.3 s after it was told is alive; one that then does not is not.
+#[test]
+fn a_robot_that_obeys_late_is_not_frozen() {
+    let mut m = obeying_after(0.3);
+    let intent = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut reason = |tick: u32| {
+        let still = Snapshot::still(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..still }).reason
+    };
+    let ticks = |time_s: f64| (time_s / TICK_S) as u32;
+    assert!((0..ticks(0.3)).all(|tick| !matches!(reason(tick), Reason::Fault(_))));
+    assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == Reason::Fault(Fault::Frozen)));
 }
 
 #[test]

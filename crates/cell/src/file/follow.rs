@@ -82,13 +82,31 @@ pub(super) fn read(
     Ok((follow, limits))
 }
 
+/// Limits of a source beyond these would let every jump pass, m/s and rad/s.
+const MOST_SPEED_M_S: f64 = 1000.0;
+const MOST_TURN_RAD_S: f64 = 500.0;
+
 /// `max_speed` and `max_turn`, where the file states them.
 fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     if let Some(v) = t.get("max_speed") {
         limits.speed_m_s = units.positive_length(&v)?;
+        if limits.speed_m_s > MOST_SPEED_M_S {
+            let what = format!(
+                "is {}/s: nothing in a cell is so fast, so no jump would be noticed",
+                units.show_length(limits.speed_m_s)
+            );
+            return Err(v.error(what).hint(format!("at most {}/s", units.show_length(MOST_SPEED_M_S))));
+        }
     }
     if let Some(v) = t.get("max_turn") {
         limits.turn_rad_s = units.angle.to_radians(v.positive()?);
+        if limits.turn_rad_s > MOST_TURN_RAD_S {
+            let what = format!(
+                "is {:.0} rad/s: nothing in a cell turns so fast, so no jump would be noticed",
+                limits.turn_rad_s
+            );
+            return Err(v.error(what).hint(format!("at most {MOST_TURN_RAD_S} rad/s, or 28647 deg/s")));
+        }
     }
     Ok(())
 }

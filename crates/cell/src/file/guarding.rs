@@ -19,6 +19,19 @@ pub(super) fn check(
     robots: &[CellRobot],
     warnings: &mut Vec<Warning>,
 ) -> Result<()> {
+    if region.robots.is_empty() && !robots.is_empty() {
+        let what = format!(
+            "region \"{}\" concerns no robot: one that carries a region is not kept out of it",
+            region.region.name
+        );
+        let line = t.get("follow").map_or(t.line, |v| v.line);
+        let error = FormatError::new(t.file, line, what)
+            .hint("robots = [\"…\"]   (the robots to keep out; or follow something else)");
+        match region.region.kind {
+            Kind::Monitored { .. } => warnings.push(error.into()),
+            Kind::Forbidden | Kind::Exchange { .. } => return Err(error),
+        }
+    }
     let line = t.get("guards").map_or(t.line, |v| v.line);
     for robot in region.robots.iter().map(|r| &robots[*r]) {
         let Some(gap) = Gap::of(robot, region.region.guards) else { continue };

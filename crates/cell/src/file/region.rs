@@ -32,6 +32,8 @@ const COMMON: &[&str] = &[
 const MOST_M: f64 = 10_000.0;
 /// Thicker warning zones are warned about, m.
 const LARGE_WARNING_M: f64 = 10.0;
+/// The thinnest warning zone of an exchange region, m.
+const LEAST_EXCHANGE_WARNING_M: f64 = 1e-3;
 /// A larger hysteresis is warned about, m.
 const LARGE_HYSTERESIS_M: f64 = 1.0;
 
@@ -94,21 +96,20 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<War
 }
 
 fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
-    if region.warning_m > 0.0 {
-        return Ok(());
-    }
     match region.kind {
-        Kind::Exchange { .. } => Err(t
+        // A robot that is kept out stops half a millimetre before the border: there it must have asked.
+        Kind::Exchange { .. } if region.warning_m < LEAST_EXCHANGE_WARNING_M => Err(t
             .error(format!(
-                "region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one"
+                "region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one of 1 mm \
+                 or more"
             ))
             .hint("warning = 250")),
-        Kind::Forbidden => {
+        Kind::Forbidden if region.warning_m <= 0.0 => {
             let what = format!("region \"{name}\" has no warning zone: robots stop only when they touch it");
             warnings.push(Warning::new(t.file, t.line, what).hint("warning = 250"));
             Ok(())
         }
-        Kind::Monitored { .. } => Ok(()),
+        _ => Ok(()),
     }
 }
 

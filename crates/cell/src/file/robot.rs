@@ -34,6 +34,11 @@ const KEYS: &[&str] = &[
     "stop_time",
 ];
 
+/// Longer stop times (s) are refused,
+const MOST_STOP_TIME_S: f64 = 60.0;
+/// and so are larger speeds, accelerations and jerks, in the file's units.
+const MOST_RATE: f64 = 1e9;
+
 /// Full speed to rest in this time, where `stop_time` does not say otherwise.
 pub(crate) const STOP_TIME_S: f64 = 0.1;
 /// Rest to full speed in this time, where neither model nor `acceleration` say otherwise.
@@ -287,6 +292,16 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
 }
 
 /// One number for all joints, or a list with one per joint.
+/// Full speed to rest, s.
+fn stop_time(v: &Value<'_>) -> Result<f64> {
+    let time_s = v.positive()?;
+    if time_s > MOST_STOP_TIME_S {
+        let what = format!("is {time_s} s: no robot brakes for so long");
+        return Err(v.error(what).hint(format!("stop_time = 0.5   (at most {MOST_STOP_TIME_S})")));
+    }
+    Ok(time_s)
+}
+
 fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     let values = if v.is_list() {
         v.list("[…]")?.iter().map(Value::positive).collect::<Result<Vec<_>>>()?
@@ -296,6 +311,9 @@ fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     if values.len() != chain.dof() {
         let what = format!("has {} values for {} joints", values.len(), chain.dof());
         return Err(v.error(what).hint("one number for all joints, or a list with one per joint"));
+    }
+    if let Some(value) = values.iter().find(|x| **x > MOST_RATE) {
+        return Err(v.error(format!("has {value:e}: no joint is so fast")).hint(format!("at most {MOST_RATE:e}")));
     }
     let prismatic = |j: &elbowroom_kinematics::JointId| chain.joints()[j.0].kind == JointKind::Prismatic;
     Ok(values.iter().zip(chain.active_joints()).map(|(x, j)| units.joint(prismatic(j), *x)).collect())
@@ -319,7 +337,7 @@ fn limits(
 ) -> Result<Vec<JointLimits>> {
     let given = |key: &str| t.get(key).map(|v| per_joint(&v, chain, units)).transpose();
     let (speed, acceleration, jerk) = (given("speed")?, given("acceleration")?, given("jerk")?);
-    let stop_time = t.get("stop_time").map_or(Ok(STOP_TIME_S), |v| v.positive())?;
+    let stop_time = t.get("stop_time").map_or(Ok(STOP_TIME_S), |v| stop_time(&v))?;
     let mut unknown = Vec::new();
     let mut limits = Vec::with_capacity(chain.dof());
     for (i, id) in chain.active_joints().iter().enumerate() {

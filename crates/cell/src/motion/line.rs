@@ -20,6 +20,12 @@ const STENCIL: f64 = 5e-4;
 /// A joint that turns farther than this (rad, m) between two knots has jumped to another branch.
 const JUMP: f64 = 0.5;
 
+/// Looks at a stretch between two knots; a joint that goes more than this share of its way, and this far (rad, m), from one
+/// look to the next has changed its branch there.
+const LOOKS: usize = 8;
+const FLIP_SHARE: f64 = 0.6;
+const FLIP: f64 = 0.01;
+
 /// A straight line of the TCP in the root frame.
 #[derive(Debug)]
 pub struct Line {
@@ -83,7 +89,27 @@ impl Line {
             })?;
             line.knots.push(next);
         }
+        for i in 0..cells {
+            if let Some((s, joint)) = line.flip(i) {
+                let name = &chain.joints()[chain.active_joints()[joint].0].name;
+                let why = format!("joint \"{name}\" would have to jump: the line passes a singularity");
+                return Err(Broken { at_m: s * line.length(), length_m: line.length(), why });
+            }
+        }
         Ok(line)
+    }
+
+    /// Where within a stretch the joints go from one branch to another, and which joint shows it: two branches may be so
+    /// close that the knots alone do not tell.
+    fn flip(&self, cell: usize) -> Option<(f64, usize)> {
+        let s = |k: usize| (cell as f64 + k as f64 / LOOKS as f64) / self.cells() as f64;
+        let looks: Vec<Vec<f64>> = (0..=LOOKS).map(|k| self.q(s(k))).collect();
+        let step = |k: usize, j: usize| (looks[k + 1][j] - looks[k][j]).abs();
+        (0..looks[0].len()).find_map(|j| {
+            let way: f64 = (0..LOOKS).map(|k| step(k, j)).sum();
+            let jumps = |k: &usize| step(*k, j) > FLIP && step(*k, j) > FLIP_SHARE * way;
+            (0..LOOKS).find(jumps).map(|k| (s(k), j))
+        })
     }
 
     fn step(&self, chain: &Chain, s: f64, i: usize) -> Result<Vec<f64>, String> {

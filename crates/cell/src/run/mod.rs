@@ -9,6 +9,7 @@ pub(crate) mod frames;
 mod needs;
 mod outcome;
 mod regions;
+mod waits;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -32,6 +33,7 @@ pub use faults::{InputFault, InputFaultKind};
 use frames::Frames;
 use needs::Needs;
 use regions::Regions;
+use waits::Waits;
 
 /// How to run a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -504,16 +506,22 @@ impl<'a> Run<'a> {
         let mut robots = std::mem::take(&mut self.tracks);
         for (i, track) in robots.iter_mut().enumerate() {
             track.finished = self.finished(i);
-            // Those of one tick come in the order of the pairs.
-            track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
-            let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
-            let (deadlocked, governing) = (self.deadlocks.holds(i), self.governing[i].as_ref());
-            track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
         }
-        let deadlocks = self
+        let mut deadlocks = self
             .board
             .as_ref()
             .map_or_else(Vec::new, |board| self.deadlocks.finish(t_s, board, self.cell, self.setups, &self.monitors));
+        deadlocks.extend(
+            Waits::new(self.cell, self.setups, self.board.as_deref(), &self.halts, &robots).circles(&deadlocks),
+        );
+        for (i, track) in robots.iter_mut().enumerate() {
+            // Those of one tick come in the order of the pairs.
+            track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+            let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
+            let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
+            let governing = self.governing[i].as_ref();
+            track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
+        }
         for (track, evasive) in robots.iter_mut().zip(self.evasive) {
             track.avoidance = evasive.map(Evasive::finish);
         }

@@ -43,7 +43,7 @@ impl Needs {
         let mut near = Near::new(setup);
         let mut occupied: Vec<(usize, f64, u64)> = Vec::new();
         let mut here = near.slots(&plan.start, 0.0);
-        let mut known: Vec<(*const (), Spans, u64)> = Vec::new();
+        let mut known: Vec<((*const (), u64), Spans, u64)> = Vec::new();
         for (step, what) in plan.steps.iter().enumerate() {
             let (key, duration): (*const (), f64) = match what {
                 PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
@@ -53,9 +53,9 @@ impl Needs {
                     continue;
                 }
             };
-            let index = known.iter().position(|k| k.0 == key).unwrap_or_else(|| {
-                let spans = near.along(duration, &|t| at(what, t));
-                known.push((key, spans, near.slots(&at(what, duration), 0.0)));
+            let index = known.iter().position(|k| k.0 == (key, here)).unwrap_or_else(|| {
+                let (spans, end) = near.along(duration, here, &|t| at(what, t));
+                known.push(((key, here), spans, end));
                 known.len() - 1
             });
             let (_, spans, end) = &known[index];
@@ -130,8 +130,9 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// Over a motion of this duration: from when on the robot is in which zones.
-    fn along(&mut self, duration: f64, q: &dyn Fn(f64) -> Vec<f64>) -> Spans {
+    /// Over a motion of this duration that begins with `slots`: from when on the robot has which slots, and at the end. It
+    /// has those in whose zones it is, and keeps what it had until it can stop before the region.
+    fn along(&mut self, duration: f64, mut slots: u64, q: &dyn Fn(f64) -> Vec<f64>) -> (Spans, u64) {
         let steps = (duration / STEP_S).ceil().clamp(1.0, MOST_STEPS);
         let time = |i: usize| duration * i as f64 / steps;
         let mut spans = Spans::new();
@@ -139,17 +140,44 @@ impl<'a> Near<'a> {
         for i in 0..steps as usize {
             let next = q(time(i + 1));
             let moved: f64 = self.levers.iter().map(|(j, lever)| lever * (next[*j] - here[*j]).abs()).sum();
-            let slots = self.slots(&here, moved);
+            let speed: Vec<f64> = next.iter().zip(&here).map(|(b, a)| (b - a).abs() * steps / duration).collect();
+            slots = self.slots(&here, moved) | (slots & self.not_left(&here, moved + self.stopping_way(&speed)));
             if spans.last().is_none_or(|s| s.1 != slots) {
                 spans.push((time(i), slots));
             }
             here = next;
         }
-        spans
+        let end = self.slots(&here, 0.0) | (slots & self.not_left(&here, self.stopping_way(&[])));
+        (spans, end)
+    }
+
+    /// No point goes farther (m) until the robot stands, at these joint speeds (rad/s, m/s; none: at rest) and told override
+    /// 1, by the stopping law's assumptions. 0 where it does not count.
+    fn stopping_way(&self, speed: &[f64]) -> f64 {
+        let Some(law) = &self.setup.configuration.laws().stopping_distance else { return 0.0 };
+        // Twice the time until a stop begins: the law keeps as much in reserve.
+        let run_s = 2.0 * (law.reaction_s + 2.0 * law.period_s);
+        let speed = |j: usize| speed.get(j).copied().unwrap_or(0.0);
+        let (acceleration, deceleration) = (&law.joint_acceleration, &law.joint_deceleration);
+        let stop_s = |(j, a): (usize, &f64)| (speed(j) + acceleration[j] * run_s) / a;
+        let stop_s = deceleration.iter().enumerate().map(stop_s).fold(0.0, f64::max);
+        let way = |j: usize| {
+            speed(j) * run_s + 0.5 * acceleration[j] * run_s * run_s + 0.5 * deceleration[j] * stop_s * stop_s
+        };
+        self.levers.iter().map(|(j, lever)| lever * way(*j)).sum()
+    }
+
+    /// Slots with a region that the robot comes to within `reach` (m).
+    fn not_left(&mut self, q: &[f64], reach: f64) -> u64 {
+        self.slots_within(q, |region| reach.max(region.warning_m + region.hysteresis_m + MARGIN_M))
     }
 
     /// Slots in whose zones the robot is, or may be after moving by no more than `moved` (m).
     fn slots(&mut self, q: &[f64], moved: f64) -> u64 {
+        self.slots_within(q, |region| region.warning_m + region.hysteresis_m + MARGIN_M + moved)
+    }
+
+    fn slots_within(&mut self, q: &[f64], reach: impl Fn(&Region) -> f64) -> u64 {
         let configuration = &self.setup.configuration;
         self.state.q.copy_from_slice(q);
         configuration.chain().forward(&mut self.state);
@@ -158,7 +186,7 @@ impl<'a> Near<'a> {
         let boxes: Vec<Aabb> = volumes.iter().map(|(v, pose)| v.shape.aabb(pose)).collect();
         let mut slots = 0;
         for (slot, region, pose, bounds) in &self.regions {
-            let reach = region.warning_m + region.hysteresis_m + MARGIN_M + moved;
+            let reach = reach(region);
             let near = |((volume, at), boxed): (&(&Volume, Pose), &Aabb)| {
                 volume.part.counts_for(region.guards)
                     && bounds.distance(boxed) <= reach

@@ -47,7 +47,7 @@ pub(super) fn ending(
 }
 
 /// Since when the robot is where it ended, s; `None` where it was still under way.
-fn stopped_at(track: &RobotTrack) -> Option<f64> {
+pub(super) fn stopped_at(track: &RobotTrack) -> Option<f64> {
     let last = track.samples.last()?;
     let elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > THERE);
     let moving = track.samples.iter().rposition(|s| elsewhere(&s.q));
