@@ -486,3 +486,6 @@ fn bisect(most: f64, fits: impl Fn(f64) -> bool) -> f64 {
     }
     low
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,7 @@ use crate::{Cell, Deadlock, Follow, RobotTrack};
 pub(super) struct Waits<'a> {
     cell: &'a Cell,
     tracks: &'a [RobotTrack],
-    waits: Vec<Option<(usize, Vec<usize>)>>,
+    kept_out: Vec<Option<(usize, Vec<usize>)>>,
 }
 
 impl<'a> Waits<'a> {
@@ -30,7 +30,7 @@ impl<'a> Waits<'a> {
             let stands = halts[robot].stopped && !track.finished;
             stands.then(|| (region, keepers(cell, &setups[robot], board, robot, region)))
         };
-        Self { cell, tracks, waits: (0..tracks.len()).map(wait).collect() }
+        Self { cell, tracks, kept_out: (0..tracks.len()).map(wait).collect() }
     }
 
     /// The circles that are not among those that are known.
@@ -38,7 +38,7 @@ impl<'a> Waits<'a> {
         let mut told: Vec<bool> =
             self.tracks.iter().map(|t| known.iter().any(|d| d.robots.contains(&t.name))).collect();
         let mut found = Vec::new();
-        for robot in 0..self.waits.len() {
+        for robot in 0..self.kept_out.len() {
             let reached = self.reached(robot);
             if told[robot] || !reached[robot] {
                 continue;
@@ -46,7 +46,9 @@ impl<'a> Waits<'a> {
             // Whoever is reached and reaches back is in the circle.
             let circle: Vec<usize> =
                 (0..reached.len()).filter(|other| reached[*other] && self.reached(*other)[robot]).collect();
-            circle.iter().for_each(|r| told[*r] = true);
+            for r in &circle {
+                told[*r] = true;
+            }
             found.push(self.deadlock(&circle));
         }
         found
@@ -54,10 +56,10 @@ impl<'a> Waits<'a> {
 
     /// Robots that have to go before this one can.
     fn reached(&self, from: usize) -> Vec<bool> {
-        let mut reached = vec![false; self.waits.len()];
+        let mut reached = vec![false; self.kept_out.len()];
         let mut open = vec![from];
         while let Some(robot) = open.pop() {
-            for &next in self.waits[robot].iter().flat_map(|w| &w.1) {
+            for &next in self.kept_out[robot].iter().flat_map(|w| &w.1) {
                 if !reached[next] {
                     reached[next] = true;
                     open.push(next);
@@ -69,7 +71,7 @@ impl<'a> Waits<'a> {
 
     fn deadlock(&self, circle: &[usize]) -> Deadlock {
         let mut regions: Vec<String> = Vec::new();
-        for (region, _) in circle.iter().filter_map(|r| self.waits[*r].as_ref()) {
+        for (region, _) in circle.iter().filter_map(|r| self.kept_out[*r].as_ref()) {
             let name = &self.cell.regions[*region].region.name;
             if !regions.contains(name) {
                 regions.push(name.clone());

@@ -97,7 +97,8 @@ fn drove_in(pair: &Pair<'_>, k: usize, u: f64) -> bool {
         return true;
     }
     let moves = |k: usize| k + 1 < pair.motion.ticks() && pair.own_travel(k) > 0.0;
-    if !moves(k) && !(u <= 0.0 && moves(k - 1)) {
+    let moved = moves(k) || (u <= 0.0 && moves(k - 1));
+    if !moved {
         return false;
     }
     let before = (k - 1, u);

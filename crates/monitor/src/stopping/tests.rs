@@ -1,0 +1,145 @@
+//! How far a volume goes is bounded for every program within the stated accelerations: programs that use them up, at random.
+
+use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
+use elbowroom_proximity::{Shape, Sphere};
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::{Course, StoppingLaw, TickState};
+use crate::{Configuration, ConfigurationParts, Laws, Part, Stopping, Volume};
+
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    fn list(&mut self, n: usize, most: f64) -> Vec<f64> {
+        (0..n).map(|_| self.between(-most, most)).collect()
+    }
+}
+
+/// A chain of `kinds`, with axes across each other or all along z, and a ball at its end.
+fn configuration(kinds: &[JointKind], flat: bool, stopping: Stopping) -> Configuration {
+    let joint = |(i, kind): (usize, &JointKind)| Joint {
+        name: format!("j{i}"),
+        kind: *kind,
+        parent: LinkId(i),
+        child: LinkId(i + 1),
+        origin: Pose::from_translation(if i == 0 { Vec3::ZERO } else { Vec3::X * 0.5 }),
+        axis: if flat || i % 2 == 0 { Vec3::Z } else { Vec3::Y },
+        limits: Limits { velocity: Some(5.0), ..Limits::symmetric(3.0) },
+        mimic: None,
+    };
+    let links = (0..=kinds.len()).map(|i| format!("l{i}")).collect();
+    let chain = Chain::new("arm", links, kinds.iter().enumerate().map(joint).collect()).unwrap();
+    let volume = Volume {
+        name: "ball".into(),
+        link: LinkId(kinds.len()),
+        part: Part::Arm,
+        shape: Shape::Sphere(Sphere { radius: 0.01 }),
+        in_link: Pose::from_translation(Vec3::X * 0.5),
+    };
+    Configuration::new(ConfigurationParts {
+        robot: "arm".into(),
+        base_in_world: Pose::IDENTITY,
+        chain,
+        volumes: vec![volume],
+        regions: Vec::new(),
+        sources: Vec::new(),
+        laws: Laws { stopping_distance: Some(stopping), ..Laws::default() },
+    })
+    .unwrap()
+}
+
+fn center(chain: &Chain, q: &[f64]) -> Vec3 {
+    let mut state = ChainState::new(chain);
+    state.q.copy_from_slice(q);
+    chain.forward(&mut state);
+    state.link_in_root(LinkId(chain.links().len() - 1)).transform_point(Vec3::X * 0.5)
+}
+
+/// The largest and the average share of the bound that programs came to.
+fn shares(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
+    let (n, rounds) = (kinds.len(), 1500);
+    let (mut most, mut sum) = (0.0_f64, 0.0);
+    for _ in 0..rounds {
+        let acceleration: Vec<f64> = (0..n).map(|_| r.between(0.5, 12.0)).collect();
+        let stopping = Stopping {
+            reaction_s: 0.0,
+            period_s: 0.002,
+            joint_deceleration: vec![4.0; n],
+            joint_acceleration: acceleration.clone(),
+        };
+        let config = configuration(kinds, flat, stopping.clone());
+        let mut law = StoppingLaw::new(&config, &stopping);
+        let (q, qd) = (r.list(n, 2.0), r.list(n, 2.0));
+        let mut state = ChainState::new(&config.chain);
+        state.q.copy_from_slice(&q);
+        state.qd.copy_from_slice(&qd);
+        config.chain.forward_motion(&mut state);
+        let in_world = [state.link_in_root(LinkId(n)) * config.volumes[0].in_link];
+        law.begin(
+            &config,
+            &stopping,
+            &TickState {
+                now: &state,
+                intent: &state,
+                program_is_known: true,
+                now_s: 0.0,
+                stamp_s: 0.0,
+                programmed_override: 1.0,
+                uncertain_s: 0.0,
+                unnoticed_s: 0.0,
+                volume_in_world: &in_world,
+            },
+        );
+        // Toward the first axis, where turning alone brings the ball, or anywhere.
+        let at = in_world[0].translation;
+        let anywhere = Vec3::new(r.between(-1.0, 1.0), r.between(-1.0, 1.0), r.between(-1.0, 1.0));
+        let towards = if r.unit() < 0.5 { Vec3::new(-at.x, -at.y, 0.0) } else { anywhere };
+        let Some(towards) = towards.try_normalize() else { continue };
+        let motion = state.link_motion(LinkId(n));
+        let offset = at - state.link_in_root(LinkId(n)).translation;
+        let speed = motion.velocity_at(offset).dot(towards);
+        let approach = law.approach(&stopping, 0, towards, [speed, speed]);
+        let u = r.between(0.01, 0.3);
+        let course = Course { run: u, stop: 0.0, total: u };
+        let bound = law.travel(&stopping, 0, &approach, &course, &law.program);
+        // The program speeds every joint up, or down, as hard as it may; mostly the way it goes.
+        let then: Vec<f64> = (0..n)
+            .map(|j| {
+                let push = if r.unit() < 0.7 { qd[j].signum() } else { r.between(-1.0, 1.0) };
+                q[j] + qd[j] * u + push * acceleration[j] * u * u / 2.0
+            })
+            .collect();
+        let went = (center(&config.chain, &then) - at).dot(towards);
+        assert!(went <= bound + 1e-12, "went {went}, bound {bound}, u {u}, q {q:?}, qd {qd:?}, A {acceleration:?}");
+        if bound > 1e-3 {
+            most = most.max(went / bound);
+            sum += went.max(0.0) / bound;
+        }
+    }
+    (most, sum / f64::from(rounds))
+}
+
+#[test]
+fn no_program_goes_farther_than_the_bound() {
+    use JointKind::{Prismatic, Revolute};
+    let mut r = Random(13);
+    for kinds in
+        [&[Revolute][..], &[Revolute; 2], &[Prismatic, Revolute], &[Revolute, Prismatic, Revolute], &[Revolute; 6]]
+    {
+        for flat in [true, false] {
+            let (most, mean) = shares(kinds, flat, &mut r);
+            eprintln!("{} joints, flat {flat}: at most {most:.3} of the bound, {mean:.3} on average", kinds.len());
+            // The bound is one that is nearly reached by some, or the test would prove little.
+            assert!(kinds.len() > 2 || most > 0.9, "{most}");
+        }
+    }
+}
