@@ -128,7 +128,7 @@ fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
     assert!(noticed > 15 && of_no_concern > 15, "{noticed} noticed, {of_no_concern} of no concern");
 }
 
-/// A number of a file, the words that name what differs, and whether a region follows what was read from it.
+/// A file, what is in it, and the words that name it when it differs: none where no region follows what is read from it.
 const FILES: &[(&str, &str, &[&str])] = &[
     (
         "poses.csv",
@@ -150,7 +150,9 @@ fn the_files_of_what_a_region_follows_are_sealed() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("cell.toml");
     let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
-    FILES.iter().for_each(|(name, text, _)| write(name, text));
+    for (name, text, _) in FILES {
+        write(name, text);
+    }
     let region = |name: &str, follow: &str| {
         format!(
             "[region.{name}]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 300\nwarning = 10\nfollow = {{ {follow} }}\n"
