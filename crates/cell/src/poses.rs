@@ -77,6 +77,15 @@ impl PoseTrack {
         })
     }
 
+    /// Every number that decides where the frame is, for a checksum. A field that is added has to be named here.
+    pub(crate) fn numbers(&self, each: &mut dyn FnMut(f64)) {
+        let Self { file: _, rows } = self;
+        for (t_s, pose) in rows {
+            each(*t_s);
+            pose.to_rows().into_iter().flatten().for_each(&mut *each);
+        }
+    }
+
     fn leg(&self, t_s: f64) -> Option<Leg<'_>> {
         let next = self.rows.partition_point(|r| r.0 <= t_s);
         Some(Leg { from: self.rows.get(next.checked_sub(1)?)?, to: self.rows.get(next)? })

@@ -92,3 +92,100 @@ fn a_text_is_no_file_and_asks_for_no_seal() {
     assert_eq!((seal.class.as_str(), seal.name.as_str(), seal.entries), ("integrator", "I", 1));
     assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().seal.is_none());
 }
+
+/// A box that a region follows, and one that none follows, each with a way of its own.
+const OBJECTS: &str = "[object.NAME]\nshape = \"box\"\nsize = [400, 300, 200]\nat = [3000, 1000, 100]\nrpy = [1, 2, 30]\n\
+     motion = { via = [[5000, 1000, 100], [5000, 2000, 100]], speed = 500, start = 3, turn = [1, 2, 90], repeat = \"loop\" }\n";
+
+#[test]
+fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("cell.toml");
+    let region = "[region.cart]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 300\nwarning = 10\n\
+                  follow = { object = \"cart\" }\n";
+    let rest = format!("{}{region}", text());
+    let (cart, free) = (OBJECTS.replace("NAME", "cart"), OBJECTS.replace("NAME", "free"));
+    sealed(dir.path(), &format!("{rest}{cart}{free}"));
+    let (mut noticed, mut of_no_concern) = (0, 0);
+    let all = |object: &str| mutations(object).into_iter().chain([object.replace("loop", "back and forth")]);
+    for mutated in all(&cart).filter(|m| m.contains("[object.cart]")) {
+        let changed = format!("{rest}{mutated}{free}");
+        if mutated == cart || Cell::parse(&file, &changed).is_err() {
+            continue;
+        }
+        std::fs::write(&file, &changed).unwrap();
+        let e = Cell::load(&file).expect_err(&mutated);
+        assert!(e.what.contains("is not as it was sealed") && e.what.contains("object.cart."), "{e}");
+        noticed += 1;
+    }
+    for mutated in all(&free) {
+        if Cell::parse(&file, &format!("{rest}{cart}{mutated}")).is_ok() {
+            std::fs::write(&file, format!("{rest}{cart}{mutated}")).unwrap();
+            Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
+            of_no_concern += 1;
+        }
+    }
+    assert!(noticed > 15 && of_no_concern > 15, "{noticed} noticed, {of_no_concern} of no concern");
+}
+
+/// A file, what is in it, and the words that name it when it differs: none where no region follows what is read from it.
+const FILES: &[(&str, &str, &[&str])] = &[
+    (
+        "poses.csv",
+        "t_s,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\n0,3,0,0,10,20,30\n5,4,0,0,10,20,30\n",
+        &["`region.poses`", "poses from \"poses.csv\""],
+    ),
+    ("belt.csv", "t_s,travel_m\n0,0\n5,1\n", &["`region.belt`", "encoder travel from \"belt.csv\""]),
+    ("cart.csv", "t_s,travel_m\n0,0\n5,1\n", &["`region.cart`", "object cart from \"cart.obj\" and \"cart.csv\""]),
+    (
+        "cart.obj",
+        "v 0 0 0\nv 500 0 0\nv 500 250 0\nv 100 100 300\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+        &["`region.cart`", "object cart from \"cart.obj\" and \"cart.csv\""],
+    ),
+    ("free.csv", "t_s,travel_m\n0,0\n5,1\n", &[]),
+];
+
+#[test]
+fn the_files_of_what_a_region_follows_are_sealed() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("cell.toml");
+    let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
+    for (name, text, _) in FILES {
+        write(name, text);
+    }
+    let region = |name: &str, follow: &str| {
+        format!(
+            "[region.{name}]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 300\nwarning = 10\nfollow = {{ {follow} }}\n"
+        )
+    };
+    let encoder = |name: &str, file: &str| format!("[encoder.{name}]\nfile = \"{file}\"\n");
+    let cart = "[object.cart]\nshape = \"mesh\"\nmesh = \"cart.obj\"\nmesh_unit = \"mm\"\nat = [4000, 4000, 0]\n\
+                follow = { encoder = \"cart\" }\n";
+    let regions = [
+        region("poses", "poses = \"poses.csv\""),
+        region("belt", "encoder = \"travel\""),
+        region("cart", "object = \"cart\""),
+    ];
+    let encoders = [encoder("travel", "belt.csv"), encoder("cart", "cart.csv"), encoder("free", "free.csv")];
+    sealed(dir.path(), &format!("{HEAD}{}{}{}{cart}", rail("a", 0.0), encoders.concat(), regions.concat()));
+    Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    for (name, text, words) in FILES {
+        let mut tried = 0;
+        for mutated in mutations(text).into_iter().filter(|m| m != text) {
+            write(name, &mutated);
+            if let Err(e) = Cell::load(&file) {
+                if e.what.contains("is not as it was sealed") {
+                    assert!(words.iter().all(|w| e.what.contains(w)) && !words.is_empty(), "{name}: {e}\n{mutated}");
+                    assert_eq!(history(&file).unwrap().unsealed.len(), 1);
+                    tried += 1;
+                }
+            } else {
+                assert!(words.is_empty(), "{name}: not noticed:\n{mutated}");
+                tried += 1;
+            }
+        }
+        assert!(tried >= 3, "{name}: {tried} tried");
+        write(name, text);
+        Cell::load(&file).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}

@@ -238,6 +238,93 @@ fn a_programmer_seals_temporary_regions_and_nothing_else() {
     assert!(!dir.path().join("cell.seal.jsonl").exists());
 }
 
+/// Regions that follow an object, a file of poses and an encoder with a file; an object that none follows.
+fn carried(life: &str) -> String {
+    let region = |name: &str, follow: &str| {
+        format!(
+            "[region.{name}]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 50\nwarning = 50\nlife = \"{life}\"\n\
+             follow = {{ {follow} }}\n\n"
+        )
+    };
+    let regions = [
+        region("on_cart", "object = \"cart\""),
+        region("on_poses", "poses = \"poses.csv\""),
+        region("on_belt", "encoder = \"belt\""),
+    ];
+    let object = |name: &str, at: &str| format!("[object.{name}]\nshape = \"sphere\"\nat = {at}\nradius = 10\n\n");
+    let objects = object("cart", "[0, 4000, 0]") + &object("free", "[0, 6000, 0]");
+    let encoder = "[encoder.belt]\nfile = \"belt.csv\"\n\n";
+    text().replace("[program.arm]", &format!("{objects}{encoder}{}[program.arm]", regions.concat()))
+}
+
+const POSES: &str = "t_s,x_m,y_m,z_m\n0,0,-4,0\n5,0,-4,0\n";
+const BELT: &str = "t_s,travel_m\n0,5\n5,5\n";
+
+fn sealed_and_carried(life: &str) -> TempDir {
+    let dir = with_keys();
+    write(dir.path(), "cell.toml", &carried(life));
+    write(dir.path(), "poses.csv", POSES);
+    write(dir.path(), "belt.csv", BELT);
+    act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(0);
+    run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+    dir
+}
+
+/// Whoever moves what carries a region moves the region.
+#[test]
+fn what_carries_a_region_is_sealed_with_it() {
+    let cart = carried("LIFE").replace("at = [0, 4000, 0]", "at = [0, 40000, 0]");
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("cell.toml", &cart, &["`region.on_cart`", "object.cart.at is [0, 40000, 0], sealed was [0, 4000, 0]"]),
+        ("poses.csv", "t_s,x_m,y_m,z_m\n0,0,-9,0\n5,0,-9,0\n", &["`region.on_poses`", "poses from \"poses.csv\""]),
+        ("belt.csv", "t_s,travel_m\n0,9\n5,9\n", &["`region.on_belt`", "encoder belt from \"belt.csv\""]),
+    ];
+    for (life, class) in [("permanent", "integrator"), ("temporary", "programmer")] {
+        for (file, edited, words) in cases {
+            let dir = sealed_and_carried(life);
+            write(dir.path(), file, &edited.replace("LIFE", life));
+            refused(
+                dir.path(),
+                &[&["cell.toml:", "is not as it was sealed", &format!("--as {class}")], *words].concat(),
+            );
+            let log = run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1);
+            let said = log.stdout + &log.stderr;
+            assert!(words.iter().all(|w| said.contains(w)), "{said}");
+            let answer = act(dir.path(), "programmer", &["seal", "cell.toml"]);
+            if class == "integrator" {
+                let said = answer.expect(2).stderr;
+                assert!(said.contains(words[0]) && said.contains("that needs the integrator class"), "{said}");
+                act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(0);
+            } else {
+                answer.expect(0);
+            }
+            run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+            run_in(dir.path(), &["region", "log", "cell.toml"]).expect(0);
+        }
+    }
+}
+
+#[test]
+fn an_object_that_no_region_follows_is_the_users_own() {
+    let dir = sealed_and_carried("permanent");
+    write(dir.path(), "cell.toml", &carried("permanent").replace("at = [0, 6000, 0]", "at = [0, 7000, 0]"));
+    run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+    run_in(dir.path(), &["region", "log", "cell.toml"]).expect(0);
+    // Until one does; whoever adds the region seals the object with it.
+    let add = NEW.replace("NAME", "on_free").replace("LIFE", "temporary") + "follow = { object = \"free\" }\n";
+    write(dir.path(), "on_free.toml", &add);
+    act(dir.path(), "programmer", &["add", "cell.toml", "on_free.toml"]).expect(0);
+    let cell = read(dir.path(), "cell.toml");
+    write(dir.path(), "cell.toml", &cell.replace("at = [0, 7000, 0]", "at = [0, 6000, 0]"));
+    refused(dir.path(), &["`region.on_free`", "object.free.at", "--as programmer"]);
+    // And no longer once it is removed.
+    write(dir.path(), "cell.toml", &cell);
+    act(dir.path(), "programmer", &["remove", "cell.toml", "on_free"]).expect(0);
+    let cell = read(dir.path(), "cell.toml");
+    write(dir.path(), "cell.toml", &cell.replace("at = [0, 7000, 0]", "at = [0, 6000, 0]"));
+    run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+}
+
 type Tamper = fn(&mut Vec<String>);
 
 #[test]

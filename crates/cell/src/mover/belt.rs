@@ -9,6 +9,23 @@ impl Encoder {
         (self.wrap_m.map_or(travel, |wrap| travel.rem_euclid(wrap)), speed)
     }
 
+    /// Every number that decides how it travels, for a checksum. A field that is added has to be named here.
+    pub(crate) fn numbers(&self, each: &mut dyn FnMut(f64)) {
+        let Self { name: _, direction, travel, wrap_m } = self;
+        direction.to_array().into_iter().for_each(&mut *each);
+        // No travel is 0 m long.
+        each(wrap_m.unwrap_or(0.0));
+        match travel {
+            Travel::Constant { at_m, speed, start_s, end_s } => {
+                [0.0, *at_m, *speed, *start_s, *end_s].into_iter().for_each(each);
+            }
+            Travel::Table(rows) => {
+                each(1.0);
+                rows.iter().flat_map(|(t_s, at_m)| [*t_s, *at_m]).for_each(each);
+            }
+        }
+    }
+
     /// True where the travel begins again between two times.
     pub(super) fn begins_again(&self, from_s: f64, to_s: f64) -> bool {
         let round = |t_s| self.wrap_m.map(|wrap| (self.travelled(t_s).0 / wrap).floor());

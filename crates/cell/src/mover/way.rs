@@ -60,6 +60,19 @@ impl Way {
         &self.corners
     }
 
+    /// Every number that decides where it goes, for a checksum. A field that is added has to be named here.
+    pub(crate) fn numbers(&self, each: &mut dyn FnMut(f64)) {
+        // The lengths follow from the corners.
+        let Self { corners, lengths: _, speed, start_s, repeat, turn } = self;
+        let repeat = match repeat {
+            Repeat::No => 0.0,
+            Repeat::Loop => 1.0,
+            Repeat::BackAndForth => 2.0,
+        };
+        [*speed, *start_s, repeat].into_iter().for_each(&mut *each);
+        corners.iter().chain([turn]).flat_map(|v| v.to_array()).for_each(each);
+    }
+
     pub(super) fn pose(&self, rest_in_world: Pose, t_s: f64) -> Pose {
         let now = self.moment(t_s);
         Pose::new(Rotation::from_rotation_vector(self.turn * now.turning_s) * rest_in_world.rotation, now.at)

@@ -2,7 +2,7 @@
 //!
 //! A sealed cell has a log beside it, `cell.seal.jsonl` for `cell.toml`: a line of JSON per edit, each signed (Ed25519) by
 //! whoever made it, each with the hash of the line before. The last line is the seal. It covers all that the monitors go by:
-//! robots, regions, what regions follow, laws, units, tick, and the files that these name. [`Cell::load`](crate::Cell::load)
+//! robots, regions, what regions follow (objects too), laws, units, tick, and the files that these name. [`Cell::load`](crate::Cell::load)
 //! refuses a cell that is not as it was sealed, and names what differs.
 //!
 //! Whose signature counts is said by [`TrustedKeys`]. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
@@ -15,6 +15,7 @@ mod entry;
 mod hex;
 mod keys;
 mod log;
+mod source;
 mod state;
 mod text;
 mod time;

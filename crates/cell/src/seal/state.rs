@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{AccessClass, Life};
 
-use super::change::{Change, RESOLVED};
+use super::change::{Change, FOLLOWS, OBJECT, RESOLVED};
+use super::source::Source;
 use super::{hex, trust};
 use crate::file::node::{Data, Entry, Node};
 use crate::{Cell, CellFile, configure};
 
-/// Tables and keys that no monitor goes by: user programs, what they plan with, and words. All else is sealed.
+/// Tables and keys that no monitor goes by: user programs, what they plan with, and words. All else is sealed. An object that
+/// a region follows is sealed with the region.
 const FREE: &[&str] = &["version", "name", "max_s", "checksum", "object", "map", "avoidance", "program"];
 /// Tables of which each has a name: `[robot.NAME]`.
 const NAMED: &[&str] = &["robot", "region", "encoder"];
@@ -44,7 +46,11 @@ impl State {
             state.resolved(format!("robot.{}", robot.name), Some(robot.line), setup.configuration.robot_checksum());
         }
         for r in &cell.regions {
-            state.resolved(format!("region.{}", r.region.name), Some(r.line), r.region.checksum());
+            let item = format!("region.{}", r.region.name);
+            state.resolved(item.clone(), Some(r.line), r.region.checksum());
+            if let Some(source) = Source::of(file, cell, r) {
+                state.add_source(&item, r.line, &source);
+            }
         }
         for (id, key) in trust::beside(&file.file)? {
             state.values.insert((trust::FILE.into(), id), key);
@@ -56,6 +62,16 @@ impl State {
         let at = (item, RESOLVED.to_owned());
         line.map(|line| self.lines.insert(at.clone(), line));
         self.values.insert(at, checksum);
+    }
+
+    /// What carries a region is part of the region: whoever may move the one may move the other.
+    fn add_source(&mut self, region: &str, line: usize, source: &Source<'_>) {
+        if let Some(object) = source.object {
+            self.add(region, &format!("{OBJECT}{}", key(&object.key)), &object.node);
+        }
+        let at = (region.to_owned(), format!("{FOLLOWS}{}", source.title()));
+        self.lines.insert(at.clone(), source.files.first().map_or(line, |f| f.line));
+        self.values.insert(at, source.checksum.clone());
     }
 
     fn add_item(&mut self, item: &str, entry: &Entry) {
@@ -163,7 +179,7 @@ pub(super) fn least_class(before: &State, after: &State, changes: &[Change]) -> 
 
 /// The changes that were made: not that a checksum changed where a key that it covers did.
 pub(super) fn without_consequences(changes: &[Change]) -> Vec<&Change> {
-    let made = |c: &&Change| c.field != RESOLVED;
+    let made = |c: &&Change| c.is_written();
     // Units and laws count for all.
     let everywhere = changes.iter().filter(made).any(|c| !NAMED.iter().any(|n| c.item.starts_with(&format!("{n}."))));
     let whole = |c: &Change| c.before.is_none() || c.after.is_none();
@@ -172,13 +188,14 @@ pub(super) fn without_consequences(changes: &[Change]) -> Vec<&Change> {
         if news(&c.item) {
             return c.field == RESOLVED;
         }
-        c.field != RESOLVED || !(everywhere || changes.iter().filter(made).any(|other| other.item == c.item))
+        let covers = |other: &Change| other.item == c.item && other.is_of_source() == c.is_of_source();
+        c.is_written() || !(everywhere || changes.iter().filter(made).any(covers))
     };
     changes.iter().filter(shown).collect()
 }
 
 /// A key as TOML writes it.
-fn key(name: &str) -> String {
+pub(super) fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare { name.to_owned() } else { quoted(name) }
 }
@@ -188,7 +205,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A value as TOML writes it, the same however the file does: tables in the order of their keys.
-fn text(node: &Node) -> String {
+pub(super) fn text(node: &Node) -> String {
     match &node.data {
         Data::Text(t) => quoted(t),
         // -0 and 0 are one number.
