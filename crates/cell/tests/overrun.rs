@@ -90,7 +90,8 @@ impl Setting {
         let mut steps = String::new();
         for (share, speed, programmed) in &self.before {
             let to: Vec<f64> = to.iter().map(|v| v * share).collect();
-            let _ = write!(steps, "{{ override = {programmed} }}, {{ move = \"joint\", to = {to:?}, speed = {speed} }}, ");
+            let _ =
+                write!(steps, "{{ override = {programmed} }}, {{ move = \"joint\", to = {to:?}, speed = {speed} }}, ");
         }
         let reaction =
             if self.reaction_ms > 0 { format!("reaction_ms = {}\n", self.reaction_ms) } else { String::new() };

@@ -45,9 +45,9 @@ fn run(text: &str) -> Answer {
 }
 
 /// The thickness is the sum and what comes on top of it, which the law's approach with late answers takes
-/// (docs/laws.md, section 2: (v·t)²/4 over the way of braking), and 0.2 % for what is sampled.
+/// (docs/laws.md, section 2: (v·t)²/4 over the way of braking), and 0.3 % for what is sampled.
 fn assert_close(needed: f64, sum: f64, late: f64) {
-    assert!(needed >= sum && needed <= (sum + late) * 1.0021, "{needed} m, the sum is {sum} m");
+    assert!(needed >= sum && needed <= (sum + late) * 1.003, "{needed} m, the sum is {sum} m");
 }
 
 #[test]
@@ -113,7 +113,8 @@ fn a_robot_that_is_released_near_the_border_is_not_kept_out_by_any_thickness() {
     // One straight move never comes back.
     check(&aware).expect(0);
     // It goes to the border, a little away from it, at full speed, and in.
-    let turns = aware.replace("to = [2500]", "to = [500] }, { move = \"joint\", to = [400] }, { move = \"joint\", to = [2500]");
+    let turns =
+        aware.replace("to = [2500]", "to = [500] }, { move = \"joint\", to = [400] }, { move = \"joint\", to = [2500]");
     let row = &check(&turns).expect(1).json()["regions"][0];
     assert_eq!(row["excluded"], false);
     assert!(row["reason"].as_str().unwrap().contains("no thickness is enough"), "{row}");

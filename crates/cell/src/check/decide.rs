@@ -146,7 +146,7 @@ impl Pair<'_> {
         let units = self.cell.units;
         let [needed, zone] = [round_up(self.needed_m()), self.region().region.warning_m];
         let law = "`stopping_distance` is off";
-        if self.thick() {
+        if self.is_released() {
             let why = format!(
                 "{law}, and `direction_aware` lets it go at full speed anywhere in the warning zone while it leaves: where its \
                  program then turns inwards no thickness is enough"
@@ -184,7 +184,12 @@ impl Pair<'_> {
 
     /// True where the warning zone alone is enough.
     fn thick_enough(&self) -> bool {
-        self.thick() && (!self.cell.laws.laws.direction_aware || self.never_turns())
+        self.thick() && !self.is_released()
+    }
+
+    /// True where `direction_aware` may let the robot go at full speed within the zone.
+    fn is_released(&self) -> bool {
+        self.cell.laws.laws.direction_aware && !self.never_turns()
     }
 
     fn thick(&self) -> bool {
@@ -202,6 +207,11 @@ impl Pair<'_> {
             && !matches!(self.region().region.shape, Shape::Mesh(_))
     }
 
+    fn plays_a_recording(&self) -> bool {
+        let program = self.cell.programs.get(self.robot).and_then(Option::as_ref);
+        program.is_some_and(|p| matches!(p.body, crate::ProgramBody::Trajectory(_)))
+    }
+
     /// Why entry is excluded, with the assumptions.
     fn proof(&self) -> String {
         let units = self.cell.units;
@@ -213,9 +223,14 @@ impl Pair<'_> {
         }
         if self.stops_in_time() {
             let reaction = obeys(self.cell.laws.reaction_s);
+            let program = if self.plays_a_recording() {
+                "it plays the recording as it is (its accelerations are reckoned with)"
+            } else {
+                "its program keeps the stated accelerations"
+            };
             return format!(
                 "`stopping_distance`: {exchange}it stops before the border, provided that its joints brake as `stop_time` \
-                 states, {reaction}, its program keeps the stated accelerations, and model, TCP and tool are as described"
+                 states, {reaction}, {program}, and model, TCP and tool are as described"
             );
         }
         let reaction = obeys(self.late_s());

@@ -41,6 +41,7 @@ mod travel;
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::{Guards, Kind};
 
+use crate::motion::recording_warnings;
 use crate::{Cell, configure};
 use decide::{Decision, Pair};
 use outline::Outline;
@@ -122,6 +123,11 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
 /// As for [`check`].
 pub fn overruns(cell: &Cell) -> Result<Vec<Warning>, FormatError> {
     Ok(check(cell)?.into_iter().filter_map(|c| c.overrun).collect())
+}
+
+/// What to tell the user of recordings that ask more of a joint than the cell states of it. A run tells it among its notes.
+pub fn recordings(cell: &Cell) -> Vec<Warning> {
+    (0..cell.robots.len()).flat_map(|robot| recording_warnings(cell, robot)).collect()
 }
 
 /// A robot's program and the guarded volumes that it moves.

@@ -150,7 +150,8 @@ impl Course {
         // Half of the square of the override, which is what falls evenly.
         let mut left = self.programmed * self.programmed / 2.0;
         let (mut spent, mut way) = (0.0, 0.0);
-        let mut braking = Braking { way_m: 0.0, speed_m_s: 0.0, peak_m: lasting_s * moments[0].speeds[rider] * self.programmed };
+        let mut braking =
+            Braking { way_m: 0.0, speed_m_s: 0.0, peak_m: lasting_s * moments[0].speeds[rider] * self.programmed };
         for (a, b) in moments.iter().zip(&moments[1..]) {
             if left <= 0.0 && spent >= all {
                 break;
@@ -178,8 +179,7 @@ impl Course {
 /// What is left of half of the square of the override after a step (s, at override 1) in which the stop time goes from `a` to
 /// `b`: the slower of braking and of a limited rate counts.
 fn fallen(left: f64, a: f64, b: f64, step_s: f64, rate: f64) -> f64 {
-    let braked =
-        if b > 1e-9 { (a * a * left - f64::midpoint(a, b) * step_s) / (b * b) } else { f64::NEG_INFINITY };
+    let braked = if b > 1e-9 { (a * a * left - f64::midpoint(a, b) * step_s) / (b * b) } else { f64::NEG_INFINITY };
     let limited = if rate.is_finite() { left - rate * step_s } else { f64::NEG_INFINITY };
     left.min(braked.max(limited))
 }
