@@ -14,8 +14,6 @@ use crate::{Cell, CellRobot, Follow};
 
 /// Ticks after which a controller that got no answer stops by itself.
 pub const ANSWERS_MISSED: f64 = 2.0;
-/// Linear moves are timed from samples of their course: between those a joint may accelerate by so much more.
-const ACCELERATION_MARGIN: f64 = 1.1;
 
 /// What one robot's monitor is given, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]
@@ -128,7 +126,7 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         // A simulated controller stops by itself where an answer is missing for longer.
         period_s: ANSWERS_MISSED * cell.tick_s,
         joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
-        joint_acceleration: robot.limits.iter().map(|l| ACCELERATION_MARGIN * l.acceleration).collect(),
+        joint_acceleration: crate::motion::accelerations(cell, index),
     });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),

@@ -4,6 +4,9 @@
 mod common;
 
 use common::{ARM, HEAD, run};
+use elbowroom_cell::check::{check, recordings};
+use elbowroom_cell::{Cell, RunOptions, simulate};
+use elbowroom_monitor::Reason;
 
 fn carriage(stop_time: f64, reaction_ms: f64, to: f64) -> String {
     format!(
@@ -102,6 +105,95 @@ fn six_axis_arms_that_brake_softly_stay_outside() {
         assert!(!region.entered, "entered:\n{text}");
     }
     assert!(cells > 30 && slowed > 8, "{cells} cells, {slowed} slowed");
+}
+
+/// A robot of two slides, and a recording that turns through a right angle at 1.9 m/s from one row to the next.
+const TURNS: &str = "t_s,joint_1,joint_2\n0,0.92,-1.5\n0.8,0.92,0.02\n1.5,2.25,0.02\n";
+
+fn table(name: &str, y: f64) -> String {
+    let slide = "kind = \"prismatic\", min = -9000, max = 9000, speed = 2000, acceleration = 8000";
+    format!(
+        "[robot.{name}]\nbase = {{ at = [0, {y}, 0], rpy = [0, 90, 0] }}\n\
+         dh = [{{ {slide}, alpha = -90, theta = 0 }}, {{ {slide} }}]\nlinks = [[], {{ sphere = {{ radius = 50 }} }}]\n\
+         stop_time = 0.5\n[program.{name}]\ntrajectory = \"{name}.csv\"\n"
+    )
+}
+
+fn with_recordings(text: &str, recordings: &[(&str, &str)]) -> (tempfile::TempDir, Cell) {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, rows) in recordings {
+        std::fs::write(dir.path().join(format!("{name}.csv")), rows).unwrap();
+    }
+    let cell = Cell::parse(dir.path().join("c.toml"), text).unwrap_or_else(|e| panic!("{e}"));
+    (dir, cell)
+}
+
+const WALL: &str = "[region.wall]\nshape = \"box\"\nbase = [1500, 0, -500]\nsize = [1000, 4000, 1000]\n";
+
+#[test]
+fn a_recording_that_turns_sharply_towards_a_wall_stops_before_it() {
+    for tick_ms in [1, 2, 4, 8] {
+        for reaction_ms in [1, 8, 40] {
+            for at in [1480, 1500, 1560, 1700, 2000] {
+                let head = HEAD.replace("tick_ms = 4", &format!("tick_ms = {tick_ms}"));
+                let text = format!(
+                    "{head}[monitor]\nstopping_distance = true\ndirection_aware = true\nreaction_ms = {reaction_ms}\n{}{}warning = 1\n",
+                    table("a", 0.0),
+                    WALL.replace("1500, 0", &format!("{at}, 0")),
+                );
+                let (_dir, cell) = with_recordings(&text, &[("a", TURNS)]);
+                let run = simulate(&cell, &RunOptions::default()).unwrap().recording;
+                let least = run.regions[0].min_distance_m.unwrap();
+                let what = format!("tick {tick_ms} ms, reaction {reaction_ms} ms, wall at {at} mm: {least} m");
+                assert!(!run.regions[0].entered && least > 0.0, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_recording_that_accelerates_harder_than_stated_is_told_and_reckoned_with() {
+    let text = format!(
+        "{HEAD}[monitor]\nstopping_distance = true\ndirection_aware = true\n{}{WALL}warning = 1\n",
+        table("a", 0.0)
+    )
+    .replace("tick_ms = 4\n", "");
+    let (_dir, cell) = with_recordings(&text, &[("a", TURNS)]);
+    let outcome = simulate(&cell, &RunOptions::default()).unwrap();
+    assert!(!outcome.recording.regions[0].entered);
+    assert!(outcome.recording.robots[0].samples.iter().all(|s| !matches!(s.reason, Reason::Fault(_))), "a fault");
+    let notes: Vec<String> = outcome.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        notes,
+        recordings(&cell).iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "check and run say the same"
+    );
+    for joint in ["joint_1", "joint_2"] {
+        let told = notes.iter().find(|n| n.contains(joint)).unwrap();
+        for words in ["c.toml:", "program.a", "0.800 s", "8000 mm/s²", "more rows"] {
+            assert!(told.contains(words), "{words}: {told}");
+        }
+    }
+    let entry = &check(&cell).unwrap()[0];
+    assert!(entry.excluded && entry.reason.contains("recording"), "{}", entry.reason);
+    // One that is faster than the joint can go.
+    let (_dir, cell) = with_recordings(&text, &[("a", "t_s,joint_1,joint_2\n0,0,0\n1,0,3\n2,0,6\n")]);
+    let told = recordings(&cell)[0].to_string();
+    assert!(told.contains("joint_2") && told.contains("3000 mm/s") && told.contains("2000 mm/s"), "{told}");
+}
+
+#[test]
+fn recordings_never_meet_in_an_exchange_region() {
+    let text = format!(
+        "{HEAD}[monitor]\nstopping_distance = true\ndirection_aware = true\n{}{}{WALL}warning = 30\nkind = \"exchange\"\n",
+        table("a", 0.0),
+        table("b", 300.0)
+    )
+    .replace("tick_ms = 4\n", "");
+    let (_dir, cell) = with_recordings(&text, &[("a", TURNS), ("b", "t_s,joint_1,joint_2\n0,1.3,0\n3,1.5,0\n")]);
+    let run = simulate(&cell, &RunOptions::default()).unwrap().recording;
+    // The first one starts 30 mm from the region, the second one inside.
+    assert!(run.regions[0].inside_spans.iter().all(|s| s.robot == 1), "{:?}", run.regions[0].inside_spans);
 }
 
 /// xorshift64*, 0..1.

@@ -1,7 +1,7 @@
 //! `elbowroom check`: is entry excluded, and what is missing.
 
 use elbowroom::cell::Cell;
-use elbowroom::cell::check::{EntryCheck, check as judge, table};
+use elbowroom::cell::check::{EntryCheck, check as judge, recordings, table};
 use serde::Serialize;
 
 use crate::args::CheckArgs;
@@ -32,6 +32,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Verdict, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let checks = judge(&cell)?;
+    recordings(&cell).iter().for_each(|w| note(format_args!("warning: {w}")));
     if args.json {
         print_json(&Answer {
             cell: &cell.name,

@@ -44,15 +44,21 @@ fn run(text: &str) -> Answer {
     elbowroom(cell(text).path(), &["run", "cell.toml", "--json"])
 }
 
+/// The thickness is the sum and what comes on top of it, which the law's approach with late answers takes
+/// (docs/laws.md, section 2: (v·t)²/4 over the way of braking), and 0.3 % for what is sampled.
+fn assert_close(needed: f64, sum: f64, late: f64) {
+    assert!(needed >= sum && needed <= (sum + late) * 1.003, "{needed} m, the sum is {sum} m");
+}
+
 #[test]
 fn an_overrun_is_said_before_the_run() {
     let answer = run(OVERRUN).expect(1);
-    for words in ["cell.toml:12: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "254 mm", "50 mm"] {
+    for words in ["cell.toml:12: ", "region \"wall\"", "robot \"cart\"", "2000 mm/s", "255 mm", "50 mm"] {
         assert!(answer.stderr.contains(words), "{words}: {}", answer.stderr);
     }
-    assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 254 in [region.wall]"));
+    assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 255 in [region.wall]"));
     // Both ways out that are named work, and say nothing more.
-    for cured in [format!("{OVERRUN}{STOPPING}"), OVERRUN.replace("warning = 50", "warning = 254")] {
+    for cured in [format!("{OVERRUN}{STOPPING}"), OVERRUN.replace("warning = 50", "warning = 255")] {
         let answer = run(&cured).expect(0);
         assert!(!answer.stderr.contains("overrun"), "{}", answer.stderr);
     }
@@ -68,15 +74,15 @@ fn check_says_whether_entry_is_excluded_and_why() {
     assert_eq!(keys(row), ["excluded", "kind", "name", "needed_warning_m", "reason", "robot", "warning_m", "write"]);
     assert_eq!((row["name"].as_str(), row["robot"].as_str()), (Some("wall"), Some("cart")));
     assert_eq!(row["excluded"], false);
-    // 2²/(2·8) + 2·0.002
-    assert!((row["needed_warning_m"].as_f64().unwrap() - 0.254).abs() < 1e-6, "{row}");
+    // 2²/(2·8) + 2·0.002; then 20 µm because the robot runs by late answers when it comes to the law's curve, and 0.2 %.
+    assert_close(row["needed_warning_m"].as_f64().unwrap(), 0.254, 0.02e-3);
     assert!(row["reason"].as_str().unwrap().contains("`stopping_distance` is off"), "{row}");
     assert!(row["write"].as_str().unwrap().contains("stopping_distance = true"), "{row}");
 
     let row = &check(&format!("{OVERRUN}{STOPPING}")).expect(0).json()["regions"][0];
     assert_eq!(row["excluded"], true);
     assert!(row["reason"].as_str().unwrap().contains("provided that its joints brake as `stop_time` states"), "{row}");
-    let row = &check(&OVERRUN.replace("warning = 50", "warning = 254")).expect(0).json()["regions"][0];
+    let row = &check(&OVERRUN.replace("warning = 50", "warning = 255")).expect(0).json()["regions"][0];
     assert!(row["reason"].as_str().unwrap().contains("thick enough"), "{row}");
     assert_eq!(
         check(&OVERRUN.replace("warning = 50", "warning = 253")).expect(1).json()["regions"][0]["excluded"],
@@ -88,14 +94,32 @@ fn check_says_whether_entry_is_excluded_and_why() {
 fn the_reaction_time_and_the_programmed_override_count() {
     let needed = |text: &str| check(text).json()["regions"][0]["needed_warning_m"].as_f64().unwrap();
     let slow = format!("{OVERRUN}[monitor]\nreaction_ms = 30\n");
-    assert!((needed(&slow) - 0.314).abs() < 1e-6, "one tick until it is seen, 30 ms until it is obeyed");
+    // One tick until it is seen, 30 ms until it is obeyed.
+    assert_close(needed(&slow), 0.314, 0.064 * 0.064 / (4.0 * 0.25));
     let half = OVERRUN.replace("[program.cart]\n", "[program.cart]\noverride = 50\n");
-    assert!((needed(&half) - (0.0625 + 0.002)).abs() < 1e-6);
+    assert_close(needed(&half), 0.0625 + 0.002, 0.02e-3);
     // An override that falls slower than the robot brakes: 2/s instead of 4/s.
     let rate = format!("{OVERRUN}[monitor]\noverride_rate = 2\n");
-    assert!((needed(&rate) - 0.504).abs() < 1e-6, "{}", needed(&rate));
+    assert_close(needed(&rate), 0.504, 0.02e-3);
     // The stopping distance is not delayed by it.
     check(&format!("{OVERRUN}{STOPPING}override_rate = 2\n")).expect(0);
+}
+
+#[test]
+fn a_robot_that_is_released_near_the_border_is_not_kept_out_by_any_thickness() {
+    let thick = OVERRUN.replace("warning = 50", "warning = 2000");
+    check(&thick).expect(0);
+    let aware = format!("{thick}[monitor]\ndirection_aware = true\n");
+    // One straight move never comes back.
+    check(&aware).expect(0);
+    // It goes to the border, a little away from it, at full speed, and in.
+    let turns =
+        aware.replace("to = [2500]", "to = [500] }, { move = \"joint\", to = [400] }, { move = \"joint\", to = [2500]");
+    let row = &check(&turns).expect(1).json()["regions"][0];
+    assert_eq!(row["excluded"], false);
+    assert!(row["reason"].as_str().unwrap().contains("no thickness is enough"), "{row}");
+    assert!(row["write"].as_str().unwrap().starts_with("stopping_distance = true"), "{row}");
+    check(&turns.replace("direction_aware = true", "stopping_distance = true\ndirection_aware = true")).expect(0);
 }
 
 #[test]

@@ -6,13 +6,8 @@ use elbowroom_monitor::{Kind, Life};
 use elbowroom_proximity::Shape;
 
 use super::RobotProgram;
-use super::profile::Pace;
+use super::profile::{Pace, lateness};
 use crate::{Cell, CellRegion, CellRobot};
-
-/// Where braking takes more than so many times the way of the reaction, the two add up.
-const BRAKES_LONG: f64 = 3.0;
-/// Where it takes less, so much more than both is needed.
-const IN_BETWEEN: f64 = 1.025;
 
 /// So much (m) is rounding of the speeds and no thickness.
 const ROUNDING_M: f64 = 1e-6;
@@ -99,13 +94,13 @@ impl Pair<'_> {
 
     /// The thickness of the guarded point that needs most, and the way that the region comes nearer meanwhile, m.
     fn needed_m(&self) -> f64 {
-        let own = self.paces().map(|p| thickness(p.braking_m, p.fastest_m_s * self.late_s())).fold(0.0, f64::max);
+        let own = self.paces().map(|p| p.needed_m).fold(0.0, f64::max);
         own + self.travel_m_s * (self.late_s() + self.program.profile.braking_s)
     }
 
     /// How late (s) the robot obeys after it has come into the zone: one tick until the monitor sees it, and the reaction time.
     fn late_s(&self) -> f64 {
-        self.cell.tick_s + self.cell.laws.obeyed_after_s
+        lateness(self.cell).late_s
     }
 
     /// What no law and no thickness helps against.
@@ -151,9 +146,10 @@ impl Pair<'_> {
         let units = self.cell.units;
         let [needed, zone] = [round_up(self.needed_m()), self.region().region.warning_m];
         let law = "`stopping_distance` is off";
-        if needed <= zone {
+        if self.is_released() {
             let why = format!(
-                "{law}, and `direction_aware` lets it go at full speed along the border, from where its path can bend inwards"
+                "{law}, and `direction_aware` lets it go at full speed anywhere in the warning zone while it leaves: where its \
+                 program then turns inwards no thickness is enough"
             );
             return Some(Missing::new(why, "stopping_distance = true in [monitor], or direction_aware = false"));
         }
@@ -188,19 +184,32 @@ impl Pair<'_> {
 
     /// True where the warning zone alone is enough.
     fn thick_enough(&self) -> bool {
-        let zone = self.region().region.warning_m;
-        zone + ROUNDING_M >= self.needed_m() && (!self.cell.laws.laws.direction_aware || self.never_comes_back())
+        self.thick() && !self.is_released()
     }
 
-    /// True where a guarded point that moves away from the region cannot come back to it without a rest: it goes on straight
-    /// lines, and the region is convex.
-    fn never_comes_back(&self) -> bool {
+    /// True where `direction_aware` may let the robot go at full speed within the zone.
+    fn is_released(&self) -> bool {
+        self.cell.laws.laws.direction_aware && !self.never_turns()
+    }
+
+    fn thick(&self) -> bool {
+        self.region().region.warning_m + ROUNDING_M >= self.needed_m()
+    }
+
+    /// True where a guarded point that moves away from the region never comes back: the program is one straight move of sliding
+    /// joints, and the region is convex. After a rest it may come back, and it still runs by the override that it was told
+    /// while it left.
+    fn never_turns(&self) -> bool {
         let slides = |j: &elbowroom_kinematics::Joint| matches!(j.kind, JointKind::Prismatic | JointKind::Fixed);
-        let steps = |p: &crate::Program| matches!(p.body, crate::ProgramBody::Steps(_));
         let program = self.cell.programs.get(self.robot).and_then(Option::as_ref);
         self.robot().robot.chain.joints().iter().all(slides)
-            && program.is_none_or(steps)
+            && program.is_none_or(is_one_move)
             && !matches!(self.region().region.shape, Shape::Mesh(_))
+    }
+
+    fn plays_a_recording(&self) -> bool {
+        let program = self.cell.programs.get(self.robot).and_then(Option::as_ref);
+        program.is_some_and(|p| matches!(p.body, crate::ProgramBody::Trajectory(_)))
     }
 
     /// Why entry is excluded, with the assumptions.
@@ -214,9 +223,14 @@ impl Pair<'_> {
         }
         if self.stops_in_time() {
             let reaction = obeys(self.cell.laws.reaction_s);
+            let program = if self.plays_a_recording() {
+                "it plays the recording as it is (its accelerations are reckoned with)"
+            } else {
+                "its program keeps the stated accelerations"
+            };
             return format!(
                 "`stopping_distance`: {exchange}it stops before the border, provided that its joints brake as `stop_time` \
-                 states, {reaction}, its program keeps the stated accelerations, and model, TCP and tool are as described"
+                 states, {reaction}, {program}, and model, TCP and tool are as described"
             );
         }
         let reaction = obeys(self.late_s());
@@ -229,15 +243,10 @@ impl Pair<'_> {
     }
 }
 
-/// Thickness (m) of a warning zone from which a robot that brakes within `braking_m`, and goes `late_m` before it begins to
-/// obey, stays out by the warning law alone.
-///
-/// The two add up (v²/2a + v·t) where braking takes most. Where being late takes most, the law is a differential equation with
-/// a delay, `d' = −v·d(t − τ)/δ`, which goes beyond 0 unless `δ ≥ e·v·τ`; in between, by integration, 2.5 % more than both is
-/// enough.
-fn thickness(braking_m: f64, late_m: f64) -> f64 {
-    let both = braking_m + late_m;
-    if braking_m >= BRAKES_LONG * late_m { both } else { (IN_BETWEEN * both).max(std::f64::consts::E * late_m) }
+fn is_one_move(program: &crate::Program) -> bool {
+    let moves = |s: &&crate::Step| matches!(s.action, crate::Action::Joint { .. } | crate::Action::Linear { .. });
+    let once = program.repeat <= 1;
+    matches!(&program.body, crate::ProgramBody::Steps(steps) if once && steps.iter().filter(moves).count() <= 1)
 }
 
 /// To four digits, for messages.

@@ -8,6 +8,7 @@
 //! from full speed takes 0.1 s.
 
 mod clock;
+mod demand;
 mod geometry;
 mod line;
 mod plan;
@@ -15,6 +16,7 @@ mod playback;
 mod segment;
 
 pub use clock::Clock;
+pub use demand::{accelerations, recording_warnings};
 pub use geometry::{Geometry, Point};
 pub use line::Line;
 pub use plan::{Plan, PlanStep, plan};

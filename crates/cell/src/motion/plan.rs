@@ -6,13 +6,12 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{Options, Solver};
 
+use super::demand::{levers, recording_warnings};
 use super::{Geometry, Line, Playback, Segment};
 use crate::{Action, Cell, CellRobot, Program, ProgramBody, Step, Target};
 
 /// Most steps that a plan holds, repeats counted.
 const MOST_STEPS: u64 = 1_000_000;
-/// Speeds of recordings are averaged over this time, s: readings are quantized.
-const WINDOW_S: f64 = 0.04;
 
 /// What a robot will do.
 #[derive(Debug, Clone, Default)]
@@ -58,7 +57,10 @@ pub fn plan(cell: &Cell, robot: usize, repeat: u32, notes: &mut Vec<Warning>) ->
     let mut planner = Planner { cell, robot: at, q: at.start.clone(), notes, known: Vec::new() };
     match &program.body {
         ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MOST_STEPS / steps.len().max(1) as u64)),
-        ProgramBody::Trajectory(rows) => planner.playback(program, rows, passes.min(MOST_STEPS)),
+        ProgramBody::Trajectory(rows) => {
+            planner.notes.extend(recording_warnings(cell, robot));
+            planner.playback(program, rows, passes.min(MOST_STEPS))
+        }
     }
 }
 
@@ -187,7 +189,7 @@ impl Planner<'_> {
             self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
         }
         let mut plan = Plan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
-        let play = Rc::new(Playback::new(rows.to_vec(), WINDOW_S));
+        let play = Rc::new(Playback::new(rows.to_vec(), &levers(self.robot)));
         let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
