@@ -32,7 +32,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Verdict, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let checks = judge(&cell)?;
-    recordings(&cell).iter().for_each(|w| note(format_args!("warning: {w}")));
+    for w in recordings(&cell) {
+        note(format_args!("warning: {w}"));
+    }
     if args.json {
         print_json(&Answer {
             cell: &cell.name,
