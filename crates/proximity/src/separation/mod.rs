@@ -351,7 +351,7 @@ fn capsule(
         let proven = axis.box_gap(core_box(b)) - rounding(2.0 * size);
         return needle(c, b, a_in_world, b_in_world, points, proven);
     }
-    if points == Points::Steady && steady::lies_across(axis.direction, q - p) {
+    if points == Points::Steady && steady::may_have_choice(axis.direction, b, q - p) {
         return steady_capsule(c, a_in_world, b, b_in_world, limit, Gap::closed(p, q, scale));
     }
     closed(p, q, scale, [c.radius, radius], limit, b_in_world)

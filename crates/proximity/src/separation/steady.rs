@@ -5,11 +5,11 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::core::{Core, Gap};
 use super::flat::{ball, faces, is_corner, nearest, normal, wide};
-use crate::TriMesh;
 use crate::mesh::BoxProbe;
 use crate::patch::{Facing, GRAIN, Polygon, SMALL, Wide, between, settled};
 use crate::shape::hull::farthest;
 use crate::triangle::nearest_on_triangle;
+use crate::{Shape, TriMesh};
 
 /// The gap with its points moved to where they are steady; as it is where there is no choice.
 pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
@@ -55,13 +55,28 @@ pub(super) fn steady(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
     moved(gap, on_a, on_b, grain)
 }
 
-/// True where a line along the unit vector `direction` may lie so nearly across the way between two points that it has a
-/// choice: as [`is_corner`] of a segment, without a root.
+/// False where a line along the unit vector `direction` certainly has no choice beside `b`, with `way` from its nearest point
+/// to that of `b`; all in the frame of `b`, and without a root.
 #[inline]
-pub(super) fn lies_across(direction: Vec3, way: Vec3) -> bool {
+pub(super) fn may_have_choice(direction: Vec3, b: &Shape, way: Vec3) -> bool {
+    /// Lines that are less parallel than this are within the grain over a few millimetres at most; squared cosine.
+    const PARALLEL: f64 = 0.98;
     const SLOPE: f64 = GRAIN / SMALL;
     let along = direction.dot(way);
-    along * along <= SLOPE * SLOPE * way.length_squared()
+    if along * along > SLOPE * SLOPE * way.length_squared() {
+        return false;
+    }
+    let d = direction;
+    match b {
+        Shape::Capsule(_) => d.z * d.z > PARALLEL,
+        Shape::Cylinder(_) => d.z * d.z > PARALLEL || way.x.abs().max(way.y.abs()) <= SLOPE * way.z.abs(),
+        _ => {
+            let (w, least) = (way.abs(), SLOPE * way.abs().max_element());
+            let across = |v: f64| u8::from(v <= least);
+            let edge = (d.x * d.x).max(d.y * d.y).max(d.z * d.z) > PARALLEL;
+            edge || across(w.x) + across(w.y) + across(w.z) == 2
+        }
+    }
 }
 
 /// As [`steady`], of a mesh (first) and a core in the mesh's frame; `nearest_triangle` is the one with the gap's point, and
