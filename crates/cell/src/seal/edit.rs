@@ -126,7 +126,7 @@ fn trusted(cell: &Path) -> Result<TrustedKeys> {
     TrustedKeys::find(cell)?.ok_or_else(|| {
         let what = format!("there is no {} that says whose keys count", trust::FILE);
         FormatError::new(cell, None, what).hint(
-            "elbowroom region keygen --as integrator --name \"A. Meyer\" --out integrator.key >> trusted-keys.toml   \
+            "elbowroom region keygen --as integrator --name \"integration, line 4\" --out integrator.key >> trusted-keys.toml   \
              (beside the cell file; docs/roles.md)",
         )
     })

@@ -70,7 +70,7 @@ impl PrivateKey {
             secret.error("is no key").hint("64 hexadecimal digits, as `elbowroom region keygen` writes them")
         })?;
         let class = class(&table.need("class", "class = \"programmer\"")?)?;
-        let name = table.need("name", "name = \"A. Meyer\"")?.text()?.to_owned();
+        let name = table.need("name", "name = \"integration, line 4\"")?.text()?.to_owned();
         Ok(Self { class, name, key: SigningKey::from_bytes(&bytes) })
     }
 

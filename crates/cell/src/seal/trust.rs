@@ -24,7 +24,7 @@ const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
 /// ```toml
 /// [[key]]
 /// class = "integrator"
-/// name = "A. Meyer"
+/// name = "integration, line 4"
 /// public = "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c"
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -100,7 +100,7 @@ fn trusted(value: &Value<'_>) -> Result<TrustedKey> {
     })?;
     Ok(TrustedKey {
         class: class(&t.need("class", "class = \"programmer\"   (or integrator)")?)?,
-        name: t.need("name", "name = \"A. Meyer\"   (the owner of the key)")?.text()?.to_owned(),
+        name: t.need("name", "name = \"integration, line 4\"   (the owner of the key)")?.text()?.to_owned(),
         public: key,
         retired: t.flag_or("retired", false)?,
     })

@@ -146,7 +146,7 @@ pub(crate) struct LogArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  elbowroom region keygen --as integrator --name 'A. Meyer' --out meyer.key >> trusted-keys.toml")]
+  elbowroom region keygen --as integrator --name 'integration, line 4' --out integrator.key >> trusted-keys.toml")]
 pub(crate) struct KeygenArgs {
     /// The class it is for
     #[arg(long = "as", value_name = "CLASS", value_enum)]
