@@ -108,7 +108,9 @@ fn the_angular_velocity_of_poses_counts() {
     let needed = elbowroom_cell::check::check(&cell).unwrap()[0].needed_warning_m.unwrap();
     // 1 m/s: 50 mm to brake, 4 mm of reaction; the bar's end, 0.9 m away, comes for (0.1 + 0.004) s meanwhile.
     let tip = motion.angular_velocity.z * f64::hypot(0.9, 0.03).hypot(0.05);
-    assert!((needed - (0.054 + 0.104 * tip)).abs() < 1e-6, "{needed}");
+    // And what the lateness is worth, and what is added for samples (docs/laws.md, section 2).
+    let sum = 0.054 + 0.104 * tip;
+    assert!((sum..1.003 * (sum + 2e-4)).contains(&needed), "{needed}, at least {sum}");
 }
 
 #[test]
