@@ -1,6 +1,8 @@
 //! What a recording asks of the joints, where that is more than the cell states of them.
 
 use elbowroom_formats::Warning;
+use elbowroom_kinematics::Chain;
+use elbowroom_monitor::Volume;
 use elbowroom_scene::pairs::motion_bound;
 
 use super::Playback;
@@ -126,9 +128,13 @@ impl Joint<'_> {
 
 /// Per joint the farthest that it moves any guarded point, m per rad or m.
 pub fn levers(robot: &CellRobot) -> Vec<f64> {
-    let chain = &robot.robot.chain;
+    levers_of(&robot.robot.chain, &robot.guarded_volumes())
+}
+
+/// Per joint the farthest that it moves any point of these volumes, m per rad or m.
+pub fn levers_of(chain: &Chain, volumes: &[Volume]) -> Vec<f64> {
     let mut levers = vec![0.0_f64; chain.dof()];
-    for volume in robot.guarded_volumes() {
+    for volume in volumes {
         let box_in_link = volume.shape.aabb(&volume.in_link);
         let radius = box_in_link.min.abs().max(box_in_link.max.abs()).length();
         let mut own = vec![0.0; levers.len()];

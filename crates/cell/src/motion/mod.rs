@@ -16,7 +16,7 @@ mod playback;
 mod segment;
 
 pub use clock::Clock;
-pub use demand::{accelerations, recording_warnings};
+pub use demand::{accelerations, levers_of, recording_warnings};
 pub use geometry::{Geometry, Point};
 pub use line::Line;
 pub use plan::{Plan, PlanStep, plan};

@@ -141,13 +141,13 @@ impl<'a> Near<'a> {
             let next = q(time(i + 1));
             let moved: f64 = self.levers.iter().map(|(j, lever)| lever * (next[*j] - here[*j]).abs()).sum();
             let speed: Vec<f64> = next.iter().zip(&here).map(|(b, a)| (b - a).abs() * steps / duration).collect();
-            slots = self.slots(&here, moved) | (slots & self.not_left(&here, moved + self.stopping_way(&speed)));
+            slots = self.slots(&here, moved) | self.kept(slots, &here, moved + self.stopping_way(&speed));
             if spans.last().is_none_or(|s| s.1 != slots) {
                 spans.push((time(i), slots));
             }
             here = next;
         }
-        let end = self.slots(&here, 0.0) | (slots & self.not_left(&here, self.stopping_way(&[])));
+        let end = self.slots(&here, 0.0) | self.kept(slots, &here, self.stopping_way(&[]));
         (spans, end)
     }
 
@@ -167,14 +167,14 @@ impl<'a> Near<'a> {
         self.levers.iter().map(|(j, lever)| lever * way(*j)).sum()
     }
 
-    /// Slots with a region that the robot comes to within `reach` (m).
-    fn not_left(&mut self, q: &[f64], reach: f64) -> u64 {
-        self.slots_within(q, |region| reach.max(region.warning_m + region.hysteresis_m + MARGIN_M))
+    /// Those of the slots with a region that the robot comes to within `reach` (m).
+    fn kept(&mut self, slots: u64, q: &[f64], reach: f64) -> u64 {
+        if slots == 0 { 0 } else { slots & self.slots_within(q, |region| reach.max(zone_m(region))) }
     }
 
     /// Slots in whose zones the robot is, or may be after moving by no more than `moved` (m).
     fn slots(&mut self, q: &[f64], moved: f64) -> u64 {
-        self.slots_within(q, |region| region.warning_m + region.hysteresis_m + MARGIN_M + moved)
+        self.slots_within(q, |region| zone_m(region) + moved)
     }
 
     fn slots_within(&mut self, q: &[f64], reach: impl Fn(&Region) -> f64) -> u64 {
@@ -198,6 +198,11 @@ impl<'a> Near<'a> {
         }
         slots
     }
+}
+
+/// As thick as the monitor may take a region's warning zone to be, m.
+fn zone_m(region: &Region) -> f64 {
+    region.warning_m + region.hysteresis_m + MARGIN_M
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! What happens at the regions during a run.
 
-use elbowroom_kinematics::{Chain, ChainState};
+use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Configuration, Kind, Life, Monitor, RegionId, Sweep};
-use elbowroom_scene::pairs::motion_bound;
 use elbowroom_spatial::Pose;
 
 use super::frames::Frames;
 use crate::configure::Setup;
+use crate::motion::levers_of;
 use crate::{Cell, RegionPoses, RegionTrack, Span};
 
 /// Distances up to this (m) beyond what is needed are measured, so that the next look can wait.
@@ -187,27 +187,8 @@ fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: usize, spans: &mut 
 
 /// Per joint the farthest that any volume moves per unit.
 pub(super) fn levers(setup: &Setup) -> Vec<(usize, f64)> {
-    let chain: &Chain = setup.configuration.chain();
-    let mut most: Vec<(usize, f64)> = Vec::new();
-    for volume in setup.configuration.volumes() {
-        let box_in_link = volume.shape.aabb(&volume.in_link);
-        let radius = box_in_link.min.abs().max(box_in_link.max.abs()).length();
-        let mut own: Vec<(usize, f64)> = Vec::new();
-        for (joint, lever) in motion_bound(chain, volume.link, radius, &chain.path(volume.link)) {
-            // Joints that follow one another have its index, and add up.
-            match own.iter_mut().find(|o| o.0 == joint) {
-                Some(o) => o.1 += lever,
-                None => own.push((joint, lever)),
-            }
-        }
-        for (joint, lever) in own {
-            match most.iter_mut().find(|m| m.0 == joint) {
-                Some(m) => m.1 = m.1.max(lever),
-                None => most.push((joint, lever)),
-            }
-        }
-    }
-    most
+    let levers = levers_of(setup.configuration.chain(), setup.configuration.volumes());
+    levers.into_iter().enumerate().filter(|(_, lever)| *lever != 0.0).collect()
 }
 
 fn track(r: &elbowroom_monitor::Region, moves: bool) -> RegionTrack {
