@@ -113,6 +113,30 @@ fn the_angular_velocity_of_poses_counts() {
     assert!((sum..1.003 * (sum + 2e-4)).contains(&needed), "{needed}, at least {sum}");
 }
 
+/// A box four metres from what it turns with comes at 6 m/s, from far outside of what the robot can reach.
+#[test]
+fn a_region_that_turns_is_foreseen_from_afar() {
+    let text = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\ntick_ms = 2\n\
+        [robot.a]\nbase = { at = [0, 0, 0], rpy = [0, 90, 0] }\n\
+        dh = [{ kind = \"prismatic\", min = -9000, max = 9000, speed = 500, acceleration = 2000 }]\n\
+        links = [[{ sphere = { at = [0, 0, 0], radius = 50 } }]]\nstop_time = 0.5\nstart = [-3000]\n\
+        [object.t]\nshape = \"sphere\"\nradius = 10\nat = [0, -4000, 3000]\nmotion = { turn = [0, 0, 90] }\n\
+        [region.w]\nshape = \"box\"\nbase = [4000, 0, -3500]\nsize = [500, 500, 1000]\nwarning = 10\n\
+        follow = { object = \"t\" }\n\
+        [monitor]\nstopping_distance = true\ndirection_aware = true\n\
+        [program.a]\nsteps = [{ move = \"joint\", to = [3000] }]\n";
+    let r = run_at(Path::new("."), text).recording;
+    let reached = r.events.iter().filter(|e| e.event == "inside_in");
+    let samples = &r.robots[0].samples;
+    let speeds: Vec<f64> = reached
+        .map(|e| {
+            let tick = (e.t_s / 0.002).round() as usize;
+            (samples[tick].q[0] - samples[tick - 1].q[0]).abs() / 0.002
+        })
+        .collect();
+    assert!(!speeds.is_empty() && speeds.iter().all(|v| *v < 0.01), "{speeds:?}");
+}
+
 #[test]
 fn a_source_that_jumps_stops_the_robot() {
     // 3.9 m in 10 ms, onto the rail: what was believed.
