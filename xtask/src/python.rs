@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::shell;
 
-/// Pinned, so that a test judges the same reference everywhere.
+/// Pinned, so that a test compares with the same reference everywhere.
 const PACKAGES: [&str; 2] = ["pin==4.1.0", "numpy==2.4.6"];
 
 /// Proves that what is installed is what is pinned.
@@ -22,6 +22,9 @@ pub fn ready(root: &Path) -> Option<PathBuf> {
 }
 
 /// Makes `target/venv` ready: nothing where it already is, else a fresh environment from PyPI.
+///
+/// # Errors
+/// Where Python, `venv` or the packages cannot be had; the message says what to do.
 pub fn install(root: &Path) -> Result<(), String> {
     if ready(root).is_some() {
         println!("target/venv has {}", PACKAGES.join(", "));

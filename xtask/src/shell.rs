@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::process::Command;
 
-/// Runs `program args…` in `root` with extra environment; an exit status other than 0 is an error.
+/// Runs `program args…` in `root` with extra environment.
+///
+/// # Errors
+/// An exit status other than 0.
 pub fn run(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
     match status(root, program, args, env)? {
         0 => Ok(()),
@@ -12,6 +15,9 @@ pub fn run(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> R
 }
 
 /// As [`run`], for the cargo that started us.
+///
+/// # Errors
+/// An exit status other than 0.
 pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     println!("$ {}", line("cargo", args, env));
@@ -21,13 +27,28 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), Str
     }
 }
 
+/// As [`cargo`], silent; gives the exit status.
+///
+/// # Errors
+/// Where cargo does not start.
+pub fn cargo_status(root: &Path, args: &[&str]) -> Result<i32, String> {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    wait(root, &cargo, args, &[])
+}
+
 /// Prints and runs; gives the exit status, -1 where a signal ended the program.
+///
+/// # Errors
+/// Where the program does not start.
 pub fn status(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
     println!("$ {}", line(program, args, env));
     wait(root, program, args, env)
 }
 
-/// What `program args…` prints; an exit status other than 0 is an error with what it said.
+/// What `program args…` prints.
+///
+/// # Errors
+/// An exit status other than 0, with the standard error of the program.
 pub fn output(root: &Path, program: &str, args: &[&str]) -> Result<String, String> {
     let output = Command::new(program).args(args).current_dir(root).output();
     let output = output.map_err(|e| format!("cannot start `{program}`: {e}"))?;
@@ -58,4 +79,12 @@ fn line(program: &str, args: &[&str], env: &[(&str, &str)]) -> String {
 
 fn quoted(word: &str) -> String {
     if word.is_empty() || word.contains([' ', '\n', '"', '$', '*']) { format!("'{word}'") } else { word.to_owned() }
+}
+
+/// Makes a folder and those above it.
+///
+/// # Errors
+/// Names the folder.
+pub fn make_folder(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))
 }

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell;
+use xtask::shell;
 
 /// One block to run.
 #[derive(Debug, PartialEq)]

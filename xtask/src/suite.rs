@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::{Failure, figures, fuzz_cells, layers, models, python, shell, snippets};
+use xtask::{Failure, python, shell};
+
+use crate::{layers, snippets, terms};
 
 type Check = fn(&Context) -> Result<(), String>;
 
@@ -27,18 +29,23 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first.
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
-    Step { name: "layers", what: "who may depend on whom", check: |c| layers::run(c.root) },
+    Step { name: "layers", what: "who may depend on whom, and no circles of files", check: |c| layers::run(c.root) },
+    Step {
+        name: "terms",
+        what: "no retired words, no long lines and no broken links in documents",
+        check: |c| terms::run(c.root),
+    },
     Step {
         name: "models",
         what: "committed robots and tools are what the generator writes",
-        check: |c| models::check(c.root),
+        check: |c| devtools(c, &["models", "--check"]),
     },
     Step {
         name: "figures",
         what: "committed figures of docs/laws.md are what the laws give",
-        check: |c| figures::check(c.root),
+        check: |c| devtools(c, &["figures", "--check"]),
     },
     Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
@@ -46,7 +53,7 @@ const STEPS: [Step; 10] = [
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
-        check: |c| fuzz_cells::check(c.root),
+        check: |c| devtools(c, &["fuzz", "cells", "--fixed"]),
     },
     Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step { name: "snippets", what: "commands that the documents promise", check: |c| snippets::run(c.root) },
@@ -157,9 +164,16 @@ fn tests(context: &Context) -> Result<(), String> {
 
 /// Tests on real robots pass where their data are missing: the log must show which run it was.
 fn announce_data(root: &Path) {
-    let folder = crate::data_folder(root, None);
-    let verdict = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
-    println!("{verdict} {}", folder.display());
+    let folder = xtask::call::data_folder(root, None);
+    let line = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
+    println!("{line} {}", folder.display());
+}
+
+/// A command of `elbowroom-devtools`, in the profile of the tests: what they compiled serves again.
+fn devtools(context: &Context, words: &[&str]) -> Result<(), String> {
+    let run = ["run", "--quiet", "--package", "elbowroom-devtools", "--"];
+    let args: Vec<&str> = run.iter().chain(words).copied().collect();
+    shell::cargo(context.root, &args, &network(context))
 }
 
 fn docs(context: &Context) -> Result<(), String> {

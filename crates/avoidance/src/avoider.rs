@@ -1,556 +1,474 @@
-//! The loop: sense, correct, check, command.
+//! The control loop: sense, correct, check, command.
 
 use std::time::Instant;
 
-use elbowroom_planner::{Connect, Fence, RouteOptions};
+use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
+use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
-use crate::calm::Calm;
-use crate::joint::{self, JointLimit, astray, brake, headway, share, slowing, stop_s};
-use crate::proof::{Course, Proof};
-use crate::sense::Senses;
-use crate::way::{Moving, NONE_S, Way};
+use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
+use crate::joint_command::JointCommand;
+use crate::joint_limit::{
+    JointLimit, arrival_speed, brake, distance_s, progress, speed_fraction, stop_s, update_bounds,
+};
+use crate::objective::Objective;
+use crate::path_rate::{PathState, approach_rate, path_rate};
+use crate::proximity_query::{ProximityQuery, ProximityRange};
+use crate::reversal_limiter::ReversalLimiter;
+use crate::state_machine::{StateMachine, TickSummary};
+use crate::sweep_check::{SweepCheck, VelocitySegment};
 use crate::{
-    Advice, Around, AvoidanceError, Doing, Manner, Other, PathKind, Reaction, Reference, Reflex, ReflexSettings, Rules,
-    Task, Threat, TickTimes, VelocityBounds,
+    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, ObstacleKind, ProximityPair, Reaction,
+    ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
 };
 
-/// Below this override nothing is commanded but a stop.
-const NO_OVERRIDE: f64 = 1e-6;
-/// Less than this share of the wanted motion is no headway; nor is the last of it, in seconds of joint motion.
-const HEADWAY: f64 = 0.15;
-const NEARLY_S: f64 = 2e-3;
-/// Slower than this share of its speed the robot counts as standing.
-const STANDS: f64 = 5e-3;
-/// Near something the pull back to the path falls with the distance, in this time, s: a steeper one would tug at evasion.
-const SOFT_S: f64 = 0.15;
-/// A correction of less than this size is not told as evading, nor one that was longer ago, s.
-const EVADING: f64 = 0.02;
-const EVADING_S: f64 = 0.1;
-/// An obstacle slower than this stands, m/s.
-const OBSTACLE_STANDS_M_S: f64 = 0.01;
+/// Override below which the robot is stopped.
+const MIN_OVERRIDE: f64 = 1e-6;
+/// Fraction of the desired velocity below which the robot makes no progress.
+const MIN_PROGRESS: f64 = 0.15;
+/// Path deviation below which the robot need not move, in seconds of joint motion.
+const ARRIVED_S: f64 = 2e-3;
+/// Fraction of the top speed below which the robot is stationary.
+const STATIONARY_FRACTION: f64 = 5e-3;
+/// Time constant of the return to the path shortly after a correction, s: a faster return would work against the evasion.
+const GENTLE_RETURN_S: f64 = 0.15;
+/// Size below which a correction does not count.
+const MIN_CORRECTION: f64 = 0.02;
+/// Speed below which an obstacle is stationary, m/s.
+const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 
-/// How the loop behaves beyond a single look.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AvoiderSettings {
-    /// Of the single look.
-    pub reflex: ReflexSettings,
-    /// Share of the joints' top speeds on the way back.
-    pub return_share: f64,
-    /// A path that need not be kept is gone on with while the robot is off it by no more than this, in seconds of joint
-    /// motion at full speed.
-    pub stray_s: f64,
-    /// A joint does not turn back twice within this time, s.
-    pub quiet_s: f64,
-    /// After so long without headway another way is asked for, s.
-    pub patience_s: f64,
-}
-
-impl Default for AvoiderSettings {
-    /// Half the speed back, 0.4 s astray, 0.25 s between reversals, 0.6 s of patience.
-    fn default() -> Self {
-        Self { reflex: ReflexSettings::default(), return_share: 0.5, stray_s: 0.4, quiet_s: 0.25, patience_s: 0.6 }
-    }
-}
-
-/// What there is to do if nothing comes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mode {
-    /// On the path.
-    Path,
-    /// Along a proven way.
-    Way,
-    /// Off the path: stand, until there is a proven way.
-    Stop,
-    /// Off the path, and something is near: pulled back to it.
-    Back,
-}
-
-fn manner(mode: Mode, reference: &Reference<'_>) -> Manner {
-    match (mode, reference.path) {
-        (Mode::Way, _) => Manner::Proven,
-        (Mode::Back | Mode::Stop, _) => Manner::Back,
-        (Mode::Path, PathKind::Continuous) => Manner::Holding,
-        // Where it stands, things may stand near.
-        (Mode::Path, PathKind::PointToPoint) if reference.qd.iter().all(|v| *v == 0.0) => Manner::Holding,
-        (Mode::Path, PathKind::PointToPoint) => Manner::Underway,
-    }
-}
-
-/// Keeps one robot of a scene out of the way of what moves, and brings it back (S4.11).
+/// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path (S4.11).
 ///
-/// The path is the caller's: each tick it says where the path wants the robot, at the rate that the last advice allowed;
-/// where nothing is near the command is exactly that. See the crate's documentation for a whole loop.
+/// The path belongs to the caller: in each tick the reference is the next point of the path, advanced at the rate of the
+/// last output. Where no obstacle is near the command equals the reference.
 #[derive(Debug)]
 pub struct Avoider<'s> {
-    senses: Senses<'s>,
-    reflex: Reflex,
+    query: ProximityQuery<'s>,
+    controller: ReactiveController,
+    sweep: SweepCheck,
+    reversals: ReversalLimiter,
     limits: Vec<JointLimit>,
     settings: AvoiderSettings,
+    command: JointCommand,
+    workspace: Workspace,
+    machine: StateMachine,
+}
+
+/// Memory of one tick.
+#[derive(Debug)]
+struct Workspace {
     bounds: VelocityBounds,
-    calm: Calm,
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    qdd: Vec<f64>,
-    wanted: Vec<f64>,
+    desired: Vec<f64>,
     next: Vec<f64>,
-    intent: Vec<f64>,
     braked: Vec<f64>,
-    way: Way,
-    proof: Proof,
-    /// The fastest that each joint can be commanded next, and how long that and a stop take to matter, s.
-    fastest: Vec<f64>,
-    ahead_s: f64,
+    max_next: Vec<f64>,
     columns: Vec<[f64; 6]>,
-    standing_s: f64,
-    /// Off the path and nothing comes for so long, s.
-    lost_s: f64,
-    /// Share of the wanted velocity that was left.
-    headway: f64,
-    /// Since the rules last asked for something, s.
-    evaded_s: f64,
-    following: bool,
+}
+
+/// A correction of the desired velocity.
+struct Correction {
+    reaction: Reaction,
+    /// Fraction of the desired velocity that is left.
+    progress: f64,
+    /// The next command is exactly the reference.
+    is_reference: bool,
 }
 
 impl<'s> Avoider<'s> {
-    /// For a robot of a scene that stands at `q`. `limits` has one entry per independent joint.
+    /// For a robot of a scene at rest at `q`. `limits` has one entry per independent joint.
     ///
     /// # Errors
-    /// No such robot, wrong joint values, limits that no joint can have, or not one per joint.
+    /// No such robot, invalid joint values, invalid limits, or a wrong number of them.
     pub fn new(
         scene: &'s Scene,
-        robot: usize,
+        robot: RobotId,
         q: &[f64],
         limits: &[JointLimit],
         rules: Rules,
         settings: AvoiderSettings,
     ) -> Result<Self, AvoidanceError> {
         let count = scene.robots().len();
-        let chain = &scene.robots().get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?.robot.chain;
-        let mut senses = Senses::new(scene, robot);
-        senses.place(q, &Around::default())?;
+        let chain = &scene.robots().get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?.robot.chain;
+        let mut query = ProximityQuery::new(scene, robot);
+        query.update_scene(q, &DynamicObstacles::default())?;
         let n = chain.dof();
         if limits.len() != n {
             return Err(AvoidanceError::Limits { given: limits.len(), joints: n });
         }
-        if let Some((joint, what)) = limits.iter().enumerate().find_map(|(j, l)| Some((j, l.wrong()?))) {
+        if let Some((joint, what)) = limits.iter().enumerate().find_map(|(j, l)| Some((j, l.problem()?))) {
             return Err(AvoidanceError::Limit { joint, what });
         }
         let limits = limits.to_vec();
         let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
-        // A gap must not close faster than a stop takes.
+        // A distance must not decrease faster than a stop allows.
         let mut settings = settings;
-        settings.reflex.closing_s = settings.reflex.closing_s.max(stop_s(&limits, &speeds));
+        settings.reactive.closing_s = settings.reactive.closing_s.max(stop_s(&limits, &speeds));
+        let zeros = || vec![0.0; n];
         Ok(Self {
-            reflex: Reflex::new(chain, &speeds, rules, settings.reflex),
-            proof: Proof::new(scene),
-            senses,
-            bounds: VelocityBounds { now: vec![[0.0; 2]; n], soon: vec![[0.0; 2]; n] },
-            calm: Calm::new(n, settings.quiet_s),
+            controller: ReactiveController::new(chain, &speeds, rules, settings.reactive),
+            sweep: SweepCheck::new(scene),
+            query,
+            reversals: ReversalLimiter::new(n, settings.min_reversal_interval_s),
+            machine: StateMachine::new(settings.stall_timeout_s),
             settings,
             limits,
-            q: q.to_vec(),
-            qd: vec![0.0; n],
-            qdd: vec![0.0; n],
-            wanted: vec![0.0; n],
-            next: vec![0.0; n],
-            intent: vec![0.0; n],
-            braked: vec![0.0; n],
-            fastest: vec![0.0; n],
-            columns: vec![[0.0; 6]; n],
-            ahead_s: 0.0,
-            way: Way::default(),
-            standing_s: 0.0,
-            lost_s: 0.0,
-            headway: 1.0,
-            evaded_s: f64::INFINITY,
-            following: true,
+            command: JointCommand::at_rest(q),
+            workspace: Workspace {
+                bounds: VelocityBounds { next: vec![[0.0; 2]; n], stoppable: vec![[0.0; 2]; n] },
+                desired: zeros(),
+                next: zeros(),
+                braked: zeros(),
+                max_next: zeros(),
+                columns: vec![[0.0; 6]; n],
+            },
         })
     }
 
     /// The commanded joint values, rad or m.
     pub fn q(&self) -> &[f64] {
-        &self.q
+        &self.command.q
     }
 
     /// The commanded joint velocities, rad/s or m/s.
     pub fn qd(&self) -> &[f64] {
-        &self.qd
+        &self.command.qd
     }
 
     /// The commanded joint accelerations, rad/s² or m/s².
     pub fn qdd(&self) -> &[f64] {
-        &self.qdd
+        &self.command.qdd
     }
 
-    /// The joint velocities that it would have at override 1, rad/s or m/s: for a monitor that knows directions.
+    /// The joint velocities at override 1, rad/s or m/s: for a monitor with the direction-aware law.
     pub fn intent(&self) -> &[f64] {
-        &self.intent
+        &self.command.intent
     }
 
-    /// The rules it reacts by.
-    pub fn rules(&self) -> &Rules {
-        self.reflex.rules()
+    /// True where the robot is slow enough to start a detour.
+    pub fn is_stationary(&self) -> bool {
+        speed_fraction(&self.command.qd, &self.limits) < STATIONARY_FRACTION
     }
 
-    /// True where it is slow enough for a way to begin.
-    pub fn stands(&self) -> bool {
-        share(&self.qd, &self.limits) < STANDS
+    /// True while the robot follows a detour.
+    pub fn has_detour(&self) -> bool {
+        self.machine.has_detour()
     }
 
-    /// True while a planned way is gone.
-    pub fn has_way(&self) -> bool {
-        !self.way.is_empty()
-    }
-
-    /// One tick of `dt` seconds. `around` is what is seen now; `reference` where the path wants to be after the tick;
-    /// `speed_override` (0 to 1) what a monitor allows, which scales all motion last.
+    /// One tick of `dt` seconds. `reference` is the path at the end of the tick, `obstacles` the present observations, and
+    /// `speed_override` (0 to 1) the override of a monitor, which scales the corrected motion.
     ///
     /// # Errors
-    /// Poses, motions or joint values that are not finite or not there, a tick without time. The robot is to be stopped
-    /// then: the next tick takes it as standing where it was commanded last, and leads it back.
+    /// Poses, motions or joint values that are missing or not finite, or a duration that is not positive. Stop the robot
+    /// then: the next tick starts at rest at the last command, and returns to the path.
     pub fn tick(
         &mut self,
         dt: f64,
         reference: &Reference<'_>,
-        around: &Around<'_>,
+        obstacles: &DynamicObstacles<'_>,
         speed_override: f64,
-    ) -> Result<Advice, AvoidanceError> {
-        let advice = self.try_tick(dt, reference, around, speed_override);
-        if advice.is_err() {
-            self.way.clear();
-            self.following = false;
-            self.qd.fill(0.0);
-            self.qdd.fill(0.0);
-        }
-        advice
-    }
-
-    fn try_tick(
-        &mut self,
-        dt: f64,
-        reference: &Reference<'_>,
-        around: &Around<'_>,
-        speed_override: f64,
-    ) -> Result<Advice, AvoidanceError> {
-        self.check_call(dt, reference)?;
+    ) -> Result<AvoiderOutput, AvoidanceError> {
+        let valid = self.check_call(dt, reference);
         let begin = Instant::now();
-        self.senses.place(&self.q, around)?;
-        for (fastest, (v, limit)) in self.fastest.iter_mut().zip(self.qd.iter().zip(&self.limits)) {
-            *fastest = (v.abs() + limit.stop * dt).min(limit.speed);
+        if let Err(error) = valid.and_then(|()| self.query.update_scene(&self.command.q, obstacles)) {
+            self.machine.fail();
+            self.command.stop();
+            return Err(error);
         }
-        self.ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.fastest);
-        self.senses.look(around, self.reflex.rules().reach_m(), self.fixed_reach(), self.ahead_s);
+        self.find_pairs(dt, obstacles);
         let sensed = Instant::now();
-        let allowed = if speed_override >= NO_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
-        joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
-        let mode = self.mode();
-        let (reaction, mut exactly) = self.correct(dt, reference, allowed, mode);
+        let allowed = if speed_override >= MIN_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
+        let objective = Objective::of(self.machine.state());
+        let mut correction = self.correct(dt, reference, allowed, objective);
         let corrected = Instant::now();
-        let mut braked = false;
-        // A way was proven with all that stood: what has moved since may stand on it.
-        let on_way = mode == Mode::Way;
-        if !exactly && !self.can_stop(dt, around, on_way) {
-            braked = true;
-            self.way.clear();
-            if mode == Mode::Path {
-                // The path is known to be free, and is slowed down on.
-                self.along_path(dt, reference);
-                exactly = true;
-            } else {
-                brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next);
-            }
-        } else if !exactly {
-            braked = self.check(dt, around);
-        }
+        let braked = !correction.is_reference && self.check(dt, reference, obstacles, objective, &mut correction);
         let checked = Instant::now();
-        self.command(dt, exactly.then_some(reference.q));
-        let times = TickTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
-        Ok(self.advice(dt, reference, allowed, Advice { reaction, braked, times, ..Advice::default() }))
+        let reference_q = correction.is_reference.then_some(reference.q);
+        self.command.advance(dt, &self.workspace.next, &self.limits, reference_q);
+        self.reversals.record(&self.command.qd, self.limits.iter().map(|l| l.speed), dt);
+        let times = StageTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
+        let output = AvoiderOutput { reaction: correction.reaction, braked, times, ..AvoiderOutput::default() };
+        Ok(self.conclude(dt, reference, allowed, correction.progress, output))
     }
 
-    /// Plans a way from where the robot stands to `goal`, around everything as it stands now, proven free, and goes it from the
-    /// next tick on, until something comes. The clearance is kept where the ends of the way have it
-    /// ([`Connect::plan_out`]). Takes as long as planning takes: a controller does it beside its loop.
+    /// Plans a detour from the present configuration to `goal`, around all obstacles at their present poses, checked to be
+    /// free, and follows it from the next tick on until an obstacle has to be evaded. The clearance is kept where the ends of
+    /// the detour have it ([`RrtConnect::plan_from_tight_ends`]). Takes as long as planning takes: a controller calls it beside its loop.
     ///
     /// # Errors
-    /// The robot moves, or as [`Connect::plan_out`].
-    pub fn plan_to(&mut self, goal: &[f64], options: &RouteOptions) -> Result<(), AvoidanceError> {
-        self.plan_within(goal, options, None)
+    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
+    pub fn plan_to(&mut self, goal: &[f64], options: &RrtConnectSettings) -> Result<(), AvoidanceError> {
+        self.plan_to_constrained(goal, options, None)
     }
 
-    /// As [`plan_to`](Self::plan_to), on a way that stays out of something else, too ([`Connect::fenced`]): regions, for which a
-    /// monitor would stop it.
+    /// As [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as regions in which a monitor
+    /// stops the robot.
     ///
     /// # Errors
-    /// The robot moves, or as [`Connect::plan_out`].
-    pub fn plan_within(
+    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
+    pub fn plan_to_constrained(
         &mut self,
         goal: &[f64],
-        options: &RouteOptions,
-        fence: Option<&mut dyn Fence>,
+        options: &RrtConnectSettings,
+        constraint: Option<&mut dyn PathConstraint>,
     ) -> Result<(), AvoidanceError> {
-        if !self.stands() {
-            return Err(AvoidanceError::Underway);
+        if !self.is_stationary() {
+            return Err(AvoidanceError::NotStationary);
         }
         let limits = self.limits.iter().map(|l| (l.lower, l.upper));
-        let mut connect = Connect::new(self.senses.scene, self.senses.robot)?.within(limits);
-        if let Some(fence) = fence {
-            connect = connect.fenced(fence);
+        let mut planner = RrtConnect::new(self.query.scene, self.query.robot)?.with_limits(limits);
+        if let Some(constraint) = constraint {
+            planner = planner.with_constraint(constraint);
         }
-        self.senses.state.set_q(self.senses.scene, self.senses.robot, &self.q)?;
-        let route = connect.plan_out(&self.senses.state, goal, options)?;
-        self.way = Way::new(route.waypoints);
-        self.standing_s = 0.0;
-        self.lost_s = 0.0;
-        self.following = false;
+        self.query.state.set_q(self.query.scene, self.query.robot, &self.command.q)?;
+        let route = planner.plan_from_tight_ends(&self.query.state, goal, options)?;
+        self.machine.start_detour(Detour::new(route.waypoints));
         Ok(())
     }
 
     fn check_call(&self, dt: f64, reference: &Reference<'_>) -> Result<(), AvoidanceError> {
         if !(dt.is_finite() && dt > 0.0) {
-            return Err(AvoidanceError::Period(dt));
+            return Err(AvoidanceError::TickDuration(dt));
         }
-        let joints = self.q.len();
-        let sound = |v: &[f64]| v.len() == joints && v.iter().all(|v| v.is_finite());
-        if sound(reference.q) && sound(reference.qd) {
+        let joints = self.command.q.len();
+        let is_valid = |v: &[f64]| v.len() == joints && v.iter().all(|v| v.is_finite());
+        if is_valid(reference.q) && is_valid(reference.qd) {
             return Ok(());
         }
         Err(AvoidanceError::Reference { given: reference.q.len().min(reference.qd.len()), joints })
     }
 
-    /// How near what is known must be to matter: what a stop takes from the fastest that the next command can be, or from
-    /// half again the evasion speed in the reflex's own time.
-    fn fixed_reach(&self) -> f64 {
-        let s = &self.settings.reflex;
-        let nearby = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
-        nearby.max(self.senses.levers[self.senses.robot].farthest(&self.fastest, self.ahead_s))
+    fn find_pairs(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) {
+        let max_next = &mut self.workspace.max_next;
+        for (max, (v, limit)) in max_next.iter_mut().zip(self.command.qd.iter().zip(&self.limits)) {
+            *max = (v.abs() + limit.stop * dt).min(limit.speed);
+        }
+        let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, max_next);
+        // Fixed obstacles matter within a stop from the fastest next command, or from one and a half times the evasion speed
+        // within the time constant of the controller.
+        let s = &self.settings.reactive;
+        let nearby_m = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
+        let fixed_m = nearby_m.max(self.query.own_motion_bounds().max_travel(max_next, ahead_s));
+        let range = ProximityRange { dynamic_m: self.controller.rules().reach_m(), fixed_m, ahead_s };
+        self.query.find_pairs(obstacles, range);
     }
 
-    /// Fills `next` with the velocity to command; true where it is exactly the path's.
-    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) -> (Reaction, bool) {
-        self.want(dt, reference, allowed, mode);
+    /// Writes the next velocity to the workspace.
+    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, objective: Objective) -> Correction {
+        self.update_bounds(dt);
+        self.update_desired(dt, reference, allowed, objective);
         if allowed == 0.0 {
-            self.intent.fill(0.0);
-            // A path that is followed brings itself to a stop.
-            match mode {
-                Mode::Path => self.along_path(dt, reference),
-                _ => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
+            self.command.intent.fill(0.0);
+            // A path that is followed stops by itself.
+            match objective {
+                Objective::Path => self.follow_reference(dt, reference),
+                _ => self.brake(dt),
             }
-            return (Reaction::default(), mode == Mode::Path);
+            let is_reference = objective == Objective::Path;
+            return Correction { reaction: Reaction::default(), progress: 1.0, is_reference };
         }
-        self.calm.hold(&mut self.bounds);
-        for (now, soon) in self.bounds.now.iter_mut().zip(&self.bounds.soon) {
-            // All but limits is scaled last.
-            *now = now.map(|v| (v / allowed).clamp(soon[0], soon[1]));
+        self.reversals.restrict(&mut self.workspace.bounds);
+        let Workspace { bounds, desired, next, .. } = &mut self.workspace;
+        for (next, stoppable) in bounds.next.iter_mut().zip(&bounds.stoppable) {
+            // The override scales everything but the position limits afterwards.
+            *next = next.map(|v| (v / allowed).clamp(stoppable[0], stoppable[1]));
         }
-        let Senses { scene, robot, chains, threats, .. } = &self.senses;
-        let (chain, state) = (&scene.robots()[*robot].robot.chain, &chains[*robot]);
-        let task = Task { wanted: &self.wanted, bounds: &self.bounds, manner: manner(mode, reference) };
-        let reaction = self.reflex.react(chain, state, &task, threats, &mut self.next);
-        self.headway = headway(&self.next, &self.wanted, &self.limits);
-        self.intent.copy_from_slice(&self.next);
-        // The bounds were widened by the override, and what is lowered last must keep them, too.
-        joint::fill(&mut self.bounds, &self.limits, &self.q, &self.qd, dt);
-        self.calm.hold(&mut self.bounds);
-        for (v, [low, high]) in self.next.iter_mut().zip(&self.bounds.now) {
+        let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
+        let (chain, state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
+        let task = VelocityTask { desired, bounds, mode: objective.mode(reference) };
+        let reaction = self.controller.react(chain, state, &task, pairs, next);
+        let progress = progress(next, desired, &self.limits);
+        self.command.intent.copy_from_slice(next);
+        let is_trapped = self.is_stalled() && progress < MIN_PROGRESS && reaction.overrun_m_s <= 0.0;
+        // The bounds were widened by the override; the scaled command must keep the original ones.
+        self.update_bounds(dt);
+        self.reversals.restrict(&mut self.workspace.bounds);
+        let Workspace { bounds, desired, next, .. } = &mut self.workspace;
+        for (v, [low, high]) in next.iter_mut().zip(&bounds.next) {
             *v = (*v * allowed).clamp(*low, *high);
         }
-        let held = self.stuck() && self.headway < HEADWAY && reaction.overrun_m_s <= 0.0;
-        match mode {
-            _ if reaction.asked && !held => self.way.clear(),
-            Mode::Path if !held => self.along_path(dt, reference),
-            Mode::Way => self.next.iter_mut().zip(&self.wanted).for_each(|(v, w)| *v = w * allowed),
-            Mode::Stop => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
-            // Trapped: to stand is better than to creep.
-            _ if held => brake(&self.limits, &self.bounds.soon, &self.qd, dt, &mut self.next),
+        match objective {
+            _ if reaction.is_active && !is_trapped => self.machine.abandon_detour(),
+            Objective::Path if !is_trapped => self.follow_reference(dt, reference),
+            Objective::Detour => next.iter_mut().zip(desired).for_each(|(v, w)| *v = *w * allowed),
+            Objective::Rest => self.brake(dt),
+            // Trapped: rest instead of creeping.
+            _ if is_trapped => self.brake(dt),
             _ => {}
         }
-        (reaction, mode == Mode::Path && !reaction.asked && !held)
+        let is_reference = objective == Objective::Path && !reaction.is_active && !is_trapped;
+        Correction { reaction, progress, is_reference }
     }
 
-    /// What there is to do if nothing comes.
-    fn mode(&self) -> Mode {
-        if !self.way.is_empty() {
-            return Mode::Way;
-        }
-        if self.following {
-            return Mode::Path;
-        }
-        // A way back that is proven is worth a short wait.
-        let waits = self.evaded_s >= EVADING_S && self.lost_s < self.settings.patience_s;
-        if waits { Mode::Stop } else { Mode::Back }
+    fn update_bounds(&mut self, dt: f64) {
+        update_bounds(&mut self.workspace.bounds, &self.limits, &self.command.q, &self.command.qd, dt);
     }
 
-    /// Fills `next` with what leads to where the path wants to be.
-    fn along_path(&mut self, dt: f64, reference: &Reference<'_>) {
-        for ((v, to), from) in self.next.iter_mut().zip(reference.q).zip(&self.q) {
+    /// Writes the velocity that leads to the reference to `next`.
+    fn follow_reference(&mut self, dt: f64, reference: &Reference<'_>) {
+        for ((v, to), from) in self.workspace.next.iter_mut().zip(reference.q).zip(&self.command.q) {
             *v = (to - from) / dt;
         }
     }
 
-    /// Fills `wanted`: along the path, along a way, or back to the path, at override 1.
-    fn want(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mode: Mode) {
-        let scale = allowed.max(NO_OVERRIDE);
-        match mode {
-            Mode::Path => {
-                for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
+    /// Writes the velocity of a stop to `next`.
+    fn brake(&mut self, dt: f64) {
+        let Workspace { bounds, next, .. } = &mut self.workspace;
+        brake(&self.limits, &bounds.stoppable, &self.command.qd, dt, next);
+    }
+
+    /// Writes the velocity towards the objective, at override 1, to `desired`.
+    fn update_desired(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, objective: Objective) {
+        let scale = allowed.max(MIN_OVERRIDE);
+        let desired = &mut self.workspace.desired;
+        match objective {
+            Objective::Path => {
+                for ((v, to), from) in desired.iter_mut().zip(reference.q).zip(&self.command.q) {
                     *v = (to - from) / (dt * scale);
                 }
             }
-            Mode::Stop => self.wanted.fill(0.0),
-            Mode::Way => {
-                let most = self.settings.return_share * allowed;
-                let now = Moving { q: &self.q, qd: &self.qd, limits: &self.limits };
-                self.way.follow(dt, most, &now, &self.calm, &mut self.wanted);
-                self.wanted.iter_mut().for_each(|v| *v /= scale);
+            Objective::Rest => desired.fill(0.0),
+            Objective::Detour => {
+                let max_speed = self.settings.return_speed_fraction * allowed;
+                let now = JointState { q: &self.command.q, qd: &self.command.qd, limits: &self.limits };
+                if let Some(detour) = self.machine.detour_mut() {
+                    detour.follow(dt, max_speed, &now, &self.reversals, desired);
+                }
+                for v in desired.iter_mut() {
+                    *v /= scale;
+                }
             }
-            Mode::Back => self.pull(dt, reference),
+            Objective::Return { gently } => {
+                let remaining_s = distance_s(reference.q, &self.command.q, &self.limits);
+                let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
+                let gentle = if gently { remaining_s / GENTLE_RETURN_S } else { f64::INFINITY };
+                let speed = arrival_speed(remaining_s, rise_s).min(self.settings.return_speed_fraction).min(gentle);
+                let rate = if remaining_s > 0.0 { (speed / remaining_s).min(1.0 / dt) } else { 0.0 };
+                for ((v, to), from) in desired.iter_mut().zip(reference.q).zip(&self.command.q) {
+                    *v = (to - from) * rate;
+                }
+            }
         }
     }
 
-    /// Back to the path, as straight as what is near lets it.
-    fn pull(&mut self, dt: f64, reference: &Reference<'_>) {
-        let left_s = astray(reference.q, &self.q, &self.limits);
-        let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
-        let soft = if self.evaded_s < EVADING_S { left_s / SOFT_S } else { f64::INFINITY };
-        let speed = slowing(left_s, rise_s).min(self.settings.return_share).min(soft);
-        let rate = if left_s > 0.0 { (speed / left_s).min(1.0 / dt) } else { 0.0 };
-        for ((v, to), from) in self.wanted.iter_mut().zip(reference.q).zip(&self.q) {
-            *v = (to - from) * rate;
+    /// Checks the next command; true where it was replaced by braking.
+    fn check(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        obstacles: &DynamicObstacles<'_>,
+        objective: Objective,
+        correction: &mut Correction,
+    ) -> bool {
+        if self.can_stop(dt, obstacles, objective == Objective::Detour) {
+            return self.brake_before_hit(dt, obstacles);
         }
+        self.machine.abandon_detour();
+        if objective == Objective::Path {
+            // The path is known to be free: the robot slows down on it.
+            self.follow_reference(dt, reference);
+            correction.is_reference = true;
+        } else {
+            self.brake(dt);
+        }
+        true
     }
 
-    /// No collision falls between two commands: replaces `next` by braking where that is hit later.
-    fn check(&mut self, dt: f64, around: &Around<'_>) -> bool {
-        let loose = |t: &Threat| matches!(t.other, Other::Loose { .. });
-        let Self { proof, senses, limits, bounds, q, next, braked, .. } = self;
-        let mut hit = |qd: &[f64]| proof.first_hit(senses, &Course { q, qd, limits, seconds: dt }, around, loose);
-        let Some(first) = hit(next) else { return false };
-        brake(limits, &bounds.soon, &self.qd, dt, braked);
-        let better = hit(braked).unwrap_or(f64::INFINITY) > first;
-        if better {
+    /// True where the command, and a stop after it, hit no fixed or known obstacle. While every command satisfies this, a
+    /// collision-free stop exists: that of the previous command. A detour was checked with all fixed obstacles: while it is
+    /// followed, the obstacles that may have moved since count instead.
+    fn can_stop(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>, is_detour: bool) -> bool {
+        let duration_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.workspace.next);
+        // Pairs in intended contact, such as a part that is being placed, are ignored: only their distance may not decrease.
+        let is_apart = |p: &ProximityPair| p.distance_m > SweepOptions::default().tolerance_m;
+        let has_left_detour = !self.machine.has_detour();
+        let counts = |p: &ProximityPair| match p.obstacle {
+            ObstacleKind::OwnLink(_) | ObstacleKind::Fixed => !is_detour || has_left_detour,
+            ObstacleKind::KnownMoving { .. } => true,
+            ObstacleKind::Dynamic { .. } => is_detour,
+        };
+        let segment =
+            VelocitySegment { q: &self.command.q, qd: &self.workspace.next, limits: &self.limits, duration_s };
+        let filter = |p: &ProximityPair| counts(p) && is_apart(p);
+        self.sweep.first_hit(&mut self.query, &segment, obstacles, filter).is_none()
+    }
+
+    /// Replaces the next command by braking where that hits a dynamic obstacle later; true where it was replaced.
+    fn brake_before_hit(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) -> bool {
+        let Self { sweep, query, limits, command, workspace, .. } = self;
+        let Workspace { bounds, next, braked, .. } = workspace;
+        let mut first_hit = |qd: &[f64]| {
+            let segment = VelocitySegment { q: &command.q, qd, limits, duration_s: dt };
+            sweep.first_hit(query, &segment, obstacles, |p| p.obstacle.is_dynamic())
+        };
+        let Some(hit) = first_hit(next) else { return false };
+        brake(limits, &bounds.stoppable, &command.qd, dt, braked);
+        let is_later = first_hit(braked).unwrap_or(f64::INFINITY) > hit;
+        if is_later {
             next.copy_from_slice(braked);
         }
-        better
+        is_later
     }
 
-    /// Whether the command, and a stop right after it, run free of what does not come by itself. As long as each command does,
-    /// there is always a stop that does, as far as things stand: that of the command before. A way was proven with all that
-    /// is fixed: as long as it is kept to, what can have moved since is what counts.
-    fn can_stop(&mut self, dt: f64, around: &Around<'_>, on_way: bool) -> bool {
-        let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.next);
-        // What is touched by intent, a part that is being placed, holds nothing up: only its gap may not close.
-        let apart = |t: &Threat| t.distance_m > SweepOptions::default().tolerance_m;
-        let left_way = self.way.is_empty();
-        let counts = |t: &Threat| match t.other {
-            Other::Own(_) | Other::Fixed => !on_way || left_way,
-            Other::Moving { .. } => true,
-            Other::Loose { .. } => on_way,
+    /// Ends the tick: updates the state machine and completes the output.
+    fn conclude(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        allowed: f64,
+        progress: f64,
+        mut output: AvoiderOutput,
+    ) -> AvoiderOutput {
+        output.path_deviation_s = distance_s(reference.q, &self.command.q, &self.limits);
+        let is_at_reference = output.path_deviation_s <= SAME_CONFIGURATION_S;
+        let is_following = is_at_reference && !self.machine.has_detour();
+        let is_stationary = self.is_stationary();
+        let requires_motion =
+            output.path_deviation_s > ARRIVED_S || (is_following && reference.qd.iter().any(|v| *v != 0.0));
+        let tick = TickSummary {
+            dt,
+            is_at_reference,
+            is_corrected: output.reaction.size > MIN_CORRECTION,
+            is_stalled: requires_motion
+                && allowed > 0.0
+                && (progress < MIN_PROGRESS || (is_following && is_stationary)),
+            is_stationary,
+            is_halted: allowed == 0.0,
         };
-        let course = Course { q: &self.q, qd: &self.next, limits: &self.limits, seconds: ahead_s };
-        self.proof.first_hit(&mut self.senses, &course, around, |t| counts(t) && apart(t)).is_none()
-    }
-
-    /// Takes `next` as the command; the values that the path has are taken as they are.
-    fn command(&mut self, dt: f64, exactly: Option<&[f64]>) {
-        for j in 0..self.q.len() {
-            let limit = &self.limits[j];
-            let beyond = self.q[j] + self.next[j] * dt;
-            let held = beyond.clamp(limit.lower, limit.upper);
-            // What a limit holds back does not move so fast.
-            let v = if held == beyond { self.next[j] } else { (held - self.q[j]) / dt };
-            self.qdd[j] = (v - self.qd[j]) / dt;
-            self.qd[j] = v;
-            self.q[j] = exactly.map_or(held, |q| q[j]);
-        }
-        self.calm.note(&self.qd, self.limits.iter().map(|l| l.speed), dt);
-    }
-
-    fn advice(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, mut advice: Advice) -> Advice {
-        advice.astray_s = astray(reference.q, &self.q, &self.limits);
-        self.following = self.way.is_empty() && advice.astray_s <= NONE_S;
-        let loose = self.senses.threats.iter().find(|t| matches!(t.other, Other::Loose { .. }));
-        advice.nearest_m = loose.map_or(f64::INFINITY, |t| t.distance_m);
-        let governing = advice.reaction.governing.and_then(|g| self.senses.threats.get(g));
-        advice.governed_by =
-            governing.and_then(|t| if let Other::Loose { key, .. } = t.other { Some(key) } else { None });
-        let stands = self.stands();
-        let wants = advice.astray_s > NEARLY_S || (self.following && reference.qd.iter().any(|v| *v != 0.0));
-        let held = wants && allowed > 0.0 && (self.headway < HEADWAY || (self.following && stands));
-        self.standing_s = if held { self.standing_s + dt } else { 0.0 };
-        self.evaded_s = if advice.reaction.size > EVADING { 0.0 } else { self.evaded_s + dt };
-        let lost = !self.following && self.way.is_empty() && self.evaded_s >= EVADING_S && allowed > 0.0;
-        self.lost_s = if lost && stands {
-            self.lost_s + dt
-        } else if lost {
-            self.lost_s
-        } else {
+        self.machine.end_tick(&tick);
+        let pairs = &self.query.pairs;
+        output.nearest_m =
+            pairs.iter().find(|p| p.obstacle.is_dynamic()).map_or(f64::INFINITY, |nearest| nearest.distance_m);
+        output.governed_by = output.reaction.governing.and_then(|g| pairs.get(g)).and_then(|p| match p.obstacle {
+            ObstacleKind::Dynamic { key, .. } => Some(key),
+            _ => None,
+        });
+        let is_idle = self.machine.state().idle_s() > 0.0;
+        output.requests_detour = !self.has_detour() && is_stationary && (is_idle || self.is_stalled());
+        output.rate = if self.has_detour() || (output.braked && is_following) {
             0.0
-        };
-        advice.wants_way = self.way.is_empty() && stands && (self.lost_s > 0.0 || self.stuck());
-        advice.rate = if advice.braked && self.following { 0.0 } else { self.rate(reference, advice.astray_s) };
-        advice.doing = if allowed == 0.0 {
-            Doing::Halted
-        } else if held && stands && self.standing_s > 0.1 {
-            Doing::Waiting
-        } else if !self.way.is_empty() {
-            Doing::Rounding
-        } else if self.following {
-            Doing::Following
-        } else if self.evaded_s < EVADING_S || advice.reaction.asked {
-            Doing::Evading
         } else {
-            Doing::Returning
+            self.path_rate(reference, output.path_deviation_s)
         };
-        advice
+        output.state = self.machine.reported(&tick, output.reaction.is_active);
+        output
     }
 
-    /// No headway for long, and what is in the way does not move.
-    fn stuck(&self) -> bool {
-        let moves = |t: &Threat| t.velocity().length() > OBSTACLE_STANDS_M_S;
-        self.standing_s >= self.settings.patience_s && !self.senses.threats.iter().any(moves)
+    /// True where the robot makes no progress for the stall timeout, and no obstacle moves.
+    fn is_stalled(&self) -> bool {
+        let moves = |p: &ProximityPair| p.obstacle_velocity().length() > STATIONARY_OBSTACLE_M_S;
+        self.machine.is_stalled() && !self.query.pairs.iter().any(moves)
     }
 
-    /// How fast the path may go on.
-    fn rate(&mut self, reference: &Reference<'_>, astray_s: f64) -> f64 {
-        if !self.way.is_empty() {
-            return 0.0;
-        }
-        let ahead: f64 = reference
-            .qd
-            .iter()
-            .zip(reference.q.iter().zip(&self.q))
-            .zip(&self.limits)
-            .map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed))
-            .sum();
-        match reference.path {
-            PathKind::Continuous if astray_s > NONE_S => 0.0,
-            PathKind::Continuous => self.slowed(reference),
-            // The robot is ahead of its path: the nearest point of the path lies farther on.
-            PathKind::PointToPoint if astray_s > NONE_S && ahead > 0.0 => 1.0,
-            PathKind::PointToPoint => (1.0 - astray_s / self.settings.stray_s).max(0.0),
-        }
-    }
-
-    /// The share of the path's speed at which gaps close half as fast as they may.
-    fn slowed(&mut self, reference: &Reference<'_>) -> f64 {
-        let chain = &self.senses.scene.robots()[self.senses.robot].robot.chain;
-        let state = &self.senses.chains[self.senses.robot];
-        let s = &self.settings.reflex;
-        let mut rate: f64 = 1.0;
-        let columns = &mut self.columns;
-        for threat in self.senses.threats.iter().filter(|t| matches!(t.other, Other::Loose { .. })) {
-            let in_link = state.link_in_root(threat.link).inverse().transform_point(threat.on_link);
-            chain.jacobian(state, threat.link, in_link, columns);
-            let along = |c: &[f64; 6]| c[0] * threat.away.x + c[1] * threat.away.y + c[2] * threat.away.z;
-            let closing: f64 = -columns.iter().zip(reference.qd).map(|(c, v)| along(c) * v).sum::<f64>();
-            if closing > 0.0 {
-                let may = 0.5 * (threat.distance_m - s.clearance_m) / s.closing_s
-                    - threat.away.dot(threat.velocity()).max(0.0);
-                rate = rate.min((may / closing).max(0.0));
-            }
-        }
-        rate
+    /// The rate at which the path may advance.
+    fn path_rate(&mut self, reference: &Reference<'_>, deviation_s: f64) -> f64 {
+        let max_deviation_s = self.settings.max_deviation_s;
+        let state = PathState { q: &self.command.q, limits: &self.limits, deviation_s, max_deviation_s };
+        let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
+        let (chain, chain_state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
+        let columns = &mut self.workspace.columns;
+        let settings = &self.settings.reactive;
+        path_rate(reference, &state, || {
+            approach_rate(chain, chain_state, pairs.iter(), settings, reference.qd, columns)
+        })
     }
 }

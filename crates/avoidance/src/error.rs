@@ -1,23 +1,25 @@
-//! What a tick refuses.
+//! Errors of the avoidance.
 
-use elbowroom_planner::RouteError;
+use elbowroom_planner::RrtConnectError;
 use elbowroom_scene::SceneError;
 
-/// Why a tick commanded nothing (the robot is to be stopped then), or no way is gone.
+use crate::LimitProblem;
+
+/// Why a tick has no command (stop the robot then), or why no detour was planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AvoidanceError {
-    /// Something cannot be where it is said to be.
+    /// A pose or configuration is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A velocity that is none.
-    #[error("the motion of `{object}` is not finite: give velocities in m/s and rad/s, 0 where it stands")]
+    /// The motion of an object is not finite.
+    #[error("the motion of `{object}` is not finite: give velocities in m/s and rad/s, 0 where it is at rest")]
     Motion {
         /// Name of the object.
         object: String,
     },
-    /// Another robot does not say how it moves.
+    /// The velocities of another robot are missing or not finite.
     #[error(
-        "`{robot}` gives {given} velocities for {joints} joints, or one that is not finite: give qd, 0 where it stands"
+        "`{robot}` gives {given} velocities for {joints} joints, or one that is not finite: give qd, 0 where it is at rest"
     )]
     Neighbour {
         /// Its name.
@@ -27,15 +29,15 @@ pub enum AvoidanceError {
         /// Joints that it has.
         joints: usize,
     },
-    /// Limits that no joint can have.
+    /// The limits of a joint are invalid.
     #[error("the limits of joint {joint} (from 0): {what}")]
     Limit {
         /// Number of the joint.
         joint: usize,
-        /// What is wrong, and what to write instead.
-        what: &'static str,
+        /// The problem.
+        what: LimitProblem,
     },
-    /// Not one per joint.
+    /// The number of limits is not that of the joints.
     #[error("{given} limits for {joints} joints: give one per independent joint, `JointLimit::of` makes them")]
     Limits {
         /// Entries given.
@@ -43,16 +45,16 @@ pub enum AvoidanceError {
         /// Joints of the robot.
         joints: usize,
     },
-    /// A way is asked for while the robot moves.
-    #[error("a way begins where the robot stands, and it moves: plan when `Advice::wants_way` says so")]
-    Underway,
-    /// No way was found.
+    /// A detour cannot start while the robot moves.
+    #[error("a detour starts at rest, and the robot moves: plan when `AvoiderOutput::requests_detour` is true")]
+    NotStationary,
+    /// No detour was found.
     #[error(transparent)]
-    Route(#[from] RouteError),
-    /// No time to move in.
+    Route(#[from] RrtConnectError),
+    /// The duration of a tick is not positive.
     #[error("a tick of {0} s: give the time to the next command, above 0 s")]
-    Period(f64),
-    /// The path asks for what cannot be.
+    TickDuration(f64),
+    /// The reference of the path is invalid.
     #[error(
         "the path gives {given} values for {joints} joints, or one that is not finite: give q and qd, one number per joint"
     )]

@@ -1,37 +1,50 @@
-//! Reacting while moving: near what is in the way the planned motion is corrected, and taken up again afterwards (S4.10, S4.11).
+//! Reactive avoidance: near an obstacle the planned motion is corrected, and resumed afterwards (S4.10, S4.11).
 //!
 //! | | |
 //! | --- | --- |
-//! | [`fuzzy`] | variables, rules as sentences, Mamdani inference, control surfaces: general, data in TOML |
-//! | [`Rules`] | how near and how fast to how hard and where to |
-//! | [`Reflex`] | one look: a wanted joint velocity becomes one that evades, by weighted least squares on the Jacobians of the collision points |
-//! | [`Avoider`] | the loop: senses in a scene, corrects, checks by a sweep, commands; leaves its path, waits, returns |
+//! | [`fuzzy`] | fuzzy control in general: variables, rules as sentences, Mamdani inference, control surfaces; data in TOML |
+//! | [`Rules`] | from distance and approach speed to the size and direction of a correction |
+//! | [`ReactiveController`] | one tick: from a desired joint velocity to one that evades, by weighted least squares on the Jacobians of the collision points |
+//! | [`Avoider`] | the control loop in a scene: sense, correct, check by a sweep, command; it leaves its path, waits, and returns |
 //!
-//! Avoidance proposes a motion. A monitor of interference regions stands above it and scales last; it never depends on
-//! this crate.
+//! Avoidance proposes a motion. A monitor of interference regions scales it afterwards; the monitor never depends on this
+//! crate.
 
-mod advice;
 mod avoider;
-mod calm;
+mod detour;
+mod dynamic_obstacles;
 mod error;
 pub mod fuzzy;
-mod joint;
-mod least;
-mod levers;
-mod proof;
-mod reflex;
+mod joint_command;
+mod joint_limit;
+mod least_squares;
+mod motion_bounds;
+mod objective;
+mod output;
+mod path_rate;
+mod proximity_pair;
+mod proximity_query;
+mod reactive_controller;
+mod reference;
+mod reversal_limiter;
 mod rules;
-mod sense;
-mod side;
-mod threat;
-mod way;
+mod settings;
+mod side_selector;
+mod state;
+mod state_machine;
+mod sweep_check;
+mod velocity_bounds;
 
-pub use advice::{Advice, Doing, PathKind, Reference, TickTimes};
-pub use avoider::{Avoider, AvoiderSettings};
+pub use avoider::Avoider;
+pub use dynamic_obstacles::{DynamicObstacles, Neighbour, ObservedObject};
 pub use error::AvoidanceError;
-pub use joint::JointLimit;
-pub use least::{LeastSquares, Wish};
-pub use reflex::{Manner, Reaction, Reflex, ReflexSettings, Task, VelocityBounds};
+pub use joint_limit::{JointLimit, LimitProblem};
+pub use least_squares::{LeastSquares, SoftConstraint};
+pub use output::{AvoiderOutput, StageTimes};
+pub use proximity_pair::{ObstacleKind, ProximityPair};
+pub use reactive_controller::{Mode, Reaction, ReactiveController, ReactiveSettings, VelocityTask};
+pub use reference::{PathKind, Reference};
 pub use rules::{Correction, DEFAULT_RULES, Rules};
-pub use sense::{Around, Neighbour, Seen};
-pub use threat::{Other, Threat};
+pub use settings::AvoiderSettings;
+pub use state::State as AvoiderState;
+pub use velocity_bounds::VelocityBounds;

@@ -1,12 +1,12 @@
-//! The rules of avoidance: from how near and how fast to how hard and where to.
+//! The rules of avoidance: from distance and approach speed to the size and direction of a correction.
 
 use crate::fuzzy::{Controller, FuzzyError};
 
-/// The rules that come with the library, as text to copy and change.
+/// The default rules, as text to copy and change.
 pub const DEFAULT_RULES: &str = include_str!("default.toml");
 
 /// A fuzzy controller with the inputs `proximity` (m) and `speed` (of approach, m/s) and the outputs `size` (share of
-/// the evasion speed, 0 to 1) and `direction` (degrees: 0 straight away from the obstacle, 90 across its way), S4.10.
+/// the evasion speed, 0 to 1) and `direction` (degrees: 0 away from the obstacle, 90 perpendicular to its motion), S4.10.
 ///
 /// ```
 /// use elbowroom_avoidance::Rules;
@@ -14,31 +14,31 @@ pub const DEFAULT_RULES: &str = include_str!("default.toml");
 /// let far = rules.correction(0.9, 0.0);
 /// let near = rules.correction(0.05, 0.3);
 /// assert!(far.size == 0.0 && near.size > 0.8);
-/// assert!(near.direction_rad < 0.3, "what is very near and slow is fled from straight away");
-/// assert!(rules.correction(0.45, 1.5).direction_rad > 1.4, "what comes fast from farther off is let pass");
+/// assert!(near.direction_rad < 0.3, "a very near and slow obstacle is evaded straight away from it");
+/// assert!(rules.correction(0.45, 1.5).direction_rad > 1.4, "a fast obstacle at a distance is evaded sideways");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules {
     controller: Controller,
 }
 
-/// What the rules ask for.
+/// The correction that the rules request.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Correction {
     /// Share of the evasion speed, 0 to 1.
     pub size: f64,
-    /// 0: straight away; π/2: across the way of what comes, rad.
+    /// 0: away from the obstacle; π/2: perpendicular to its motion, rad.
     pub direction_rad: f64,
 }
 
-/// Below this the rules ask for nothing: the centre of gravity is found by samples.
-const NOTHING: f64 = 1e-3;
+/// Size below which the correction is 0: the sampled centre of gravity is not exact.
+const MIN_SIZE: f64 = 1e-3;
 
 impl Rules {
     /// Reads rules in the form of [`DEFAULT_RULES`].
     ///
     /// # Errors
-    /// [`FuzzyError`] with the line; other inputs or outputs than those of avoidance, or in other ranges.
+    /// [`FuzzyError`] with the line: invalid text, or inputs, outputs or ranges that are not those of avoidance.
     pub fn from_toml(text: &str) -> Result<Self, FuzzyError> {
         let controller = Controller::from_toml(text)?;
         let names = |list: &[crate::fuzzy::Variable]| list.iter().map(|v| v.name.clone()).collect::<Vec<_>>();
@@ -60,24 +60,24 @@ impl Rules {
         Ok(Self { controller })
     }
 
-    /// The controller behind it.
+    /// The fuzzy controller.
     pub fn controller(&self) -> &Controller {
         &self.controller
     }
 
-    /// Farther away than this, metres, proximity makes no difference any more.
+    /// Distance (m) beyond which proximity has no effect.
     pub fn reach_m(&self) -> f64 {
         self.controller.inputs()[0].range[1]
     }
 
-    /// For a distance (m) and a speed of approach (m/s; less than 0 counts as 0). NaN counts as touching, and as the
-    /// fastest there is.
+    /// The correction for a distance (m) and a speed of approach (m/s; negative counts as 0). NaN counts as contact, and as the
+    /// largest speed.
     pub fn correction(&self, distance_m: f64, approach_m_s: f64) -> Correction {
-        let fastest = self.controller.inputs()[1].range[1];
-        let speed = if approach_m_s.is_nan() { fastest } else { approach_m_s };
+        let max_speed = self.controller.inputs()[1].range[1];
+        let speed = if approach_m_s.is_nan() { max_speed } else { approach_m_s };
         let mut out = [0.0; 2];
         self.controller.infer(&[distance_m, speed], &mut out);
-        let size = if out[0] < NOTHING { 0.0 } else { out[0] };
+        let size = if out[0] < MIN_SIZE { 0.0 } else { out[0] };
         Correction { size, direction_rad: out[1].to_radians() }
     }
 }
@@ -85,6 +85,6 @@ impl Rules {
 impl Default for Rules {
     /// [`DEFAULT_RULES`].
     fn default() -> Self {
-        Self::from_toml(DEFAULT_RULES).expect("the rules that come along are sound: a test reads them")
+        Self::from_toml(DEFAULT_RULES).expect("the default rules are valid: a test reads them")
     }
 }

@@ -1,11 +1,13 @@
-//! A tick takes no memory, once what comes near has come near before. Without the test harness, whose threads take some.
+//! A tick does not allocate, once the number of pairs has been reached before. Without the test harness, whose threads
+//! allocate.
 
 mod common;
 
 use std::alloc::System;
 
 use common::{Ball, DT, avoider, scene};
-use elbowroom_avoidance::{Around, PathKind, Reference};
+use elbowroom_avoidance::{DynamicObstacles, PathKind, Reference};
+use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Vec3;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -18,13 +20,14 @@ fn main() {
     let mut avoider = avoider(&scene, &lean);
     let reference = Reference { q: &lean, qd: &[0.0; 3], path: PathKind::PointToPoint };
     let from = Vec3::new(0.62, -1.5, 0.5);
-    let ball = Ball { object: 1, from, velocity: Vec3::new(0.0, 0.9, 0.0), stops_s: f64::INFINITY };
+    let ball = Ball { object: ObjectId(1), from, velocity: Vec3::new(0.0, 0.9, 0.0), stops_s: f64::INFINITY };
     let mut pass = || {
         let mut corrected = 0;
         for tick in 0..900 {
-            let seen = [ball.seen(f64::from(tick) * DT)];
-            let advice = avoider.tick(DT, &reference, &Around { objects: &seen, robots: &[] }, 1.0).unwrap();
-            corrected += usize::from(advice.reaction.size > 0.0);
+            let objects = [ball.observed(f64::from(tick) * DT)];
+            let output =
+                avoider.tick(DT, &reference, &DynamicObstacles { objects: &objects, robots: &[] }, 1.0).unwrap();
+            corrected += usize::from(output.reaction.size > 0.0);
         }
         corrected
     };

@@ -1,15 +1,17 @@
-//! What callers get wrong, and things that are seen badly: nothing is hit, nothing panics.
+//! Invalid input and incomplete observations: no collision, no panic.
 
 mod common;
 
-use common::{DT, Random, Stage, limits, scene};
+use common::{DT, Random, Simulation, limits, scene};
 use elbowroom_avoidance::{
-    Advice, Around, AvoidanceError, Avoider, AvoiderSettings, JointLimit, Neighbour, PathKind, Reference, Rules, Seen,
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
+    PathKind, Reference, Rules,
 };
-use elbowroom_planner::RouteOptions;
+use elbowroom_planner::RrtConnectSettings;
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
-use elbowroom_scene::{Checker, Object, Options, Scene, SceneState, Selection, example};
-use elbowroom_spatial::{Motion, Pose, Vec3};
+use elbowroom_robot::{ObjectId, RobotId, example::arm};
+use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection, example};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 const HERE: [f64; 3] = [-0.8, 0.9, 0.6];
 const THERE: [f64; 3] = [0.8, 0.9, 0.6];
@@ -18,61 +20,67 @@ fn at(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-fn ball(place: Vec3, known: bool) -> Seen {
-    Seen { object: 1, in_world: Pose::from_translation(place), motion: Motion::REST, known }
+fn ball(place: Vec3, known: bool) -> ObservedObject {
+    ObservedObject { object: ObjectId(1), in_world: Pose::from_translation(place), motion: FrameMotion::REST, known }
 }
 
-fn stands(q: &[f64]) -> Reference<'_> {
+fn resting_at(q: &[f64]) -> Reference<'_> {
     Reference { q, qd: &[0.0; 3], path: PathKind::PointToPoint }
 }
 
-fn clearance(clearance_m: f64) -> RouteOptions {
-    RouteOptions { clearance_m, ..RouteOptions::default() }
+fn clearance(clearance_m: f64) -> RrtConnectSettings {
+    RrtConnectSettings { clearance_m, ..RrtConnectSettings::default() }
 }
 
-/// The robot's room, with the ball where it is.
-fn room(scene: &Scene, q: &[f64], place: Option<Vec3>) -> f64 {
+/// Distance of the robot from everything, with the ball at `place`.
+fn distance(scene: &Scene, q: &[f64], place: Option<Vec3>) -> f64 {
     let mut state = SceneState::new(scene);
-    state.set_q(scene, 0, q).unwrap();
+    state.set_q(scene, RobotId(0), q).unwrap();
     if let Some(place) = place {
-        state.place(scene, 1, Pose::from_translation(place)).unwrap();
+        state.place(scene, ObjectId(1), Pose::from_translation(place)).unwrap();
     }
-    let mut checker = Checker::new(scene, Options::default());
-    let mut all = checker.between(Selection::Robot(0), Selection::All);
+    let mut checker = Checker::new(scene, CheckerOptions::default());
+    let mut all = checker.between(Selection::Robot(RobotId(0)), Selection::All);
     all.distance(&state).map_or(f64::INFINITY, |d| d.metres)
 }
 
-/// Least room on a planned way from here to there when the ball appears on it, named in the ticks that `named` says.
-fn least(scene: &Scene, limits: &[JointLimit], rules: Rules, known: bool, named: impl Fn(usize) -> bool) -> f64 {
-    let settings = AvoiderSettings { return_share: 1.0, ..AvoiderSettings::default() };
-    let mut avoider = Avoider::new(scene, 0, &HERE, limits, rules, settings).unwrap();
+/// Smallest distance on a planned detour when the ball appears on it, observed in the ticks given by `observed`.
+fn min_distance(
+    scene: &Scene,
+    limits: &[JointLimit],
+    rules: Rules,
+    known: bool,
+    observed: impl Fn(usize) -> bool,
+) -> f64 {
+    let settings = AvoiderSettings { return_speed_fraction: 1.0, ..AvoiderSettings::default() };
+    let mut avoider = Avoider::new(scene, RobotId(0), &HERE, limits, rules, settings).unwrap();
     let far = ball(at(3.0, 3.0, 3.0), known);
-    avoider.tick(DT, &stands(&HERE), &Around { objects: &[far], robots: &[] }, 1.0).unwrap();
+    avoider.tick(DT, &resting_at(&HERE), &DynamicObstacles { objects: &[far], robots: &[] }, 1.0).unwrap();
     avoider.plan_to(&THERE, &clearance(0.02)).unwrap();
     let place = at(0.70, 0.0, 0.63);
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     for n in 0..1_000 {
-        let seen = [ball(place, known)];
-        let objects = if named(n) { &seen[..] } else { &[] };
-        avoider.tick(DT, &stands(&THERE), &Around { objects, robots: &[] }, 1.0).unwrap();
-        least = least.min(room(scene, avoider.q(), Some(place)));
+        let observed_ball = [ball(place, known)];
+        let objects = if observed(n) { &observed_ball[..] } else { &[] };
+        avoider.tick(DT, &resting_at(&THERE), &DynamicObstacles { objects, robots: &[] }, 1.0).unwrap();
+        smallest = smallest.min(distance(scene, avoider.q(), Some(place)));
     }
-    least
+    smallest
 }
 
 #[test]
-fn what_is_no_longer_seen_may_still_be_there() {
+fn an_object_that_is_no_longer_observed_is_assumed_stationary() {
     let scene = scene();
     for known in [false, true] {
-        assert!(least(&scene, &limits(&scene), Rules::default(), known, |_| true) > 1e-3);
-        assert!(least(&scene, &limits(&scene), Rules::default(), known, |n| n < 3) > 1e-3);
+        assert!(min_distance(&scene, &limits(&scene), Rules::default(), known, |_| true) > 1e-3);
+        assert!(min_distance(&scene, &limits(&scene), Rules::default(), known, |n| n < 3) > 1e-3);
     }
 }
 
 #[test]
-fn rules_that_look_less_far_than_a_stop_takes_hit_nothing() {
+fn rules_with_less_reach_than_a_stop_cause_no_hit() {
     let scene = scene();
-    // All distances a tenth of those that come along.
+    // All distances a tenth of the default ones.
     let text: String = elbowroom_avoidance::DEFAULT_RULES
         .lines()
         .scan(false, |near, line| {
@@ -87,7 +95,7 @@ fn rules_that_look_less_far_than_a_stop_takes_hit_nothing() {
     assert!((rules().reach_m() - 0.1 * Rules::default().reach_m()).abs() < 1e-9);
     let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
     for known in [false, true] {
-        assert!(least(&scene, &limits, rules(), known, |_| true) > 1e-3, "known {known}");
+        assert!(min_distance(&scene, &limits, rules(), known, |_| true) > 1e-3, "known {known}");
     }
 }
 
@@ -99,54 +107,59 @@ fn tenth(list: &str) -> String {
 }
 
 #[test]
-fn a_robot_that_falls_silent_stands_where_it_was() {
+fn a_robot_without_updates_is_assumed_stationary() {
     let scene = example::two_arms();
     let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
     let (from, goal, other) = ([1.2, 1.2, 0.3], [-1.2, 1.2, 0.3], [0.0, -1.2, -0.3]);
-    let told = [Neighbour { robot: 1, q: &other, qd: &[0.0; 3], known: false }];
-    let mut avoider = Avoider::new(&scene, 0, &from, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
-    avoider.tick(DT, &stands(&from), &Around { objects: &[], robots: &told }, 1.0).unwrap();
-    avoider.plan_to(&[1.4, 1.2, 0.3], &RouteOptions::default()).unwrap();
-    let (mut state, mut judge) = (SceneState::new(&scene), Checker::new(&scene, Options::default()));
-    state.set_q(&scene, 1, &other).unwrap();
+    let reported = [Neighbour { robot: RobotId(1), q: &other, qd: &[0.0; 3], known: false }];
+    let mut avoider =
+        Avoider::new(&scene, RobotId(0), &from, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
+    avoider.tick(DT, &resting_at(&from), &DynamicObstacles { objects: &[], robots: &reported }, 1.0).unwrap();
+    avoider.plan_to(&[1.4, 1.2, 0.3], &RrtConnectSettings::default()).unwrap();
+    let (mut state, mut checker) = (SceneState::new(&scene), Checker::new(&scene, CheckerOptions::default()));
+    state.set_q(&scene, RobotId(1), &other).unwrap();
     for _ in 0..2_000 {
-        avoider.tick(DT, &stands(&goal), &Around::default(), 1.0).unwrap();
-        state.set_q(&scene, 0, avoider.q()).unwrap();
-        let near = judge.between(Selection::Robot(0), Selection::Robot(1)).within(&state, 1e-3);
+        avoider.tick(DT, &resting_at(&goal), &DynamicObstacles::default(), 1.0).unwrap();
+        state.set_q(&scene, RobotId(0), avoider.q()).unwrap();
+        let near = checker.between(Selection::Robot(RobotId(0)), Selection::Robot(RobotId(1))).within(&state, 1e-3);
         assert!(near.is_none(), "{:?}", avoider.q());
     }
 }
 
 #[test]
-fn ways_keep_to_limits_that_are_narrower_than_the_robots_own() {
+fn detours_keep_to_limits_narrower_than_those_of_the_robot() {
     let mut builder = Scene::builder();
-    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    builder.robot("arm", arm().unwrap(), Pose::IDENTITY);
     let pillar = Shape::Cuboid(Cuboid { half_extents: at(0.05, 0.05, 0.45) });
     let in_world = Pose::from_translation(at(0.6, 0.0, 0.45));
     builder.object(Object { name: "pillar".into(), shape: pillar, in_world });
     let scene = builder.build().unwrap();
     let mut narrow = limits(&scene);
-    let tick = |avoider: &mut Avoider<'_>, to: &[f64]| avoider.tick(DT, &stands(to), &Around::default(), 1.0).unwrap();
-    let few = RouteOptions { most_states: 2_000, ..clearance(0.02) };
+    let tick = |avoider: &mut Avoider<'_>, to: &[f64]| {
+        avoider.tick(DT, &resting_at(to), &DynamicObstacles::default(), 1.0).unwrap()
+    };
+    let few = RrtConnectSettings { max_states: 2_000, ..clearance(0.02) };
 
-    let mut free = Avoider::new(&scene, 0, &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
+    let mut free =
+        Avoider::new(&scene, RobotId(0), &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
     tick(&mut free, &HERE);
     free.plan_to(&THERE, &few).unwrap();
-    // Only over the pillar or behind the base: the shoulder is held down now.
+    // The narrow limits leave no detour over the pillar.
     (narrow[1].lower, narrow[2].lower, narrow[2].upper) = (0.7, 0.4, 0.8);
-    let mut held = Avoider::new(&scene, 0, &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
+    let mut held =
+        Avoider::new(&scene, RobotId(0), &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
     tick(&mut held, &HERE);
     let planned = held.plan_to(&THERE, &few);
     for _ in 0..1_500 {
         tick(&mut held, &THERE);
-        assert!(room(&scene, held.q(), None) > 1e-4 && held.q()[1] >= 0.7, "{planned:?}: {:?}", held.q());
+        assert!(distance(&scene, held.q(), None) > 1e-4 && held.q()[1] >= 0.7, "{planned:?}: {:?}", held.q());
     }
 }
 
 #[test]
-fn a_crowd_of_fixed_things_does_not_stop_a_way() {
+fn many_fixed_obstacles_do_not_stop_a_detour() {
     let mut builder = Scene::builder();
-    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    builder.robot("arm", arm().unwrap(), Pose::IDENTITY);
     for i in 0..400 {
         let (angle, row) = (f64::from(i / 5) / 80.0 * 3.0 - 1.5, f64::from(i % 5));
         let in_world = Pose::from_translation(at(0.81 * angle.cos(), 0.81 * angle.sin(), 0.48 + 0.03 * row));
@@ -155,22 +168,27 @@ fn a_crowd_of_fixed_things_does_not_stop_a_way() {
     let scene = builder.build().unwrap();
     let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
     let (from, to) = ([-0.8, 0.9, 0.9], [0.8, 0.9, 0.9]);
-    let mut avoider = Avoider::new(&scene, 0, &from, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
-    avoider.tick(DT, &stands(&from), &Around::default(), 1.0).unwrap();
+    let mut avoider =
+        Avoider::new(&scene, RobotId(0), &from, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
+    avoider.tick(DT, &resting_at(&from), &DynamicObstacles::default(), 1.0).unwrap();
     avoider.plan_to(&to, &clearance(0.02)).unwrap();
     let mut ticks = 0;
     while avoider.q() != to {
-        let advice: Advice = avoider.tick(DT, &stands(&to), &Around::default(), 1.0).unwrap();
-        assert!(!advice.braked && (avoider.has_way() || advice.astray_s < 1e-6) && ticks < 2_000, "tick {ticks}");
+        let output: AvoiderOutput = avoider.tick(DT, &resting_at(&to), &DynamicObstacles::default(), 1.0).unwrap();
+        assert!(
+            !output.braked && (avoider.has_detour() || output.path_deviation_s < 1e-6) && ticks < 2_000,
+            "tick {ticks}"
+        );
         ticks += 1;
     }
 }
 
 #[test]
-fn limits_that_no_joint_can_have_are_refused() {
+fn invalid_limits_are_refused() {
     let scene = scene();
-    let make =
-        |limits: &[JointLimit]| Avoider::new(&scene, 0, &HERE, limits, Rules::default(), AvoiderSettings::default());
+    let make = |limits: &[JointLimit]| {
+        Avoider::new(&scene, RobotId(0), &HERE, limits, Rules::default(), AvoiderSettings::default())
+    };
     let good = limits(&scene);
     assert!(make(&good).is_ok());
     for count in [0, 1, 4] {
@@ -188,7 +206,7 @@ fn limits_that_no_joint_can_have_are_refused() {
         for value in [f64::NAN, -1.0, f64::NEG_INFINITY] {
             let mut bad = good.clone();
             spoil(&mut bad[1], value);
-            // A range from −1 to 1 is one.
+            // The range from −1 to 1 is valid.
             let is_range = bad[1].lower <= bad[1].upper && bad[1].speed > 0.0 && bad[1].acceleration > 0.0;
             if is_range && bad[1].stop == good[1].stop {
                 continue;
@@ -199,19 +217,19 @@ fn limits_that_no_joint_can_have_are_refused() {
 }
 
 #[test]
-fn a_way_is_not_begun_in_motion() {
+fn a_detour_does_not_start_in_motion() {
     let scene = scene();
-    let mut stage = Stage::new(&scene, &HERE);
+    let mut simulation = Simulation::new(&scene, &HERE);
     let sweeping = |tau: f64| {
         let s = (tau / 2.0).clamp(0.0, 1.0);
         let (f, d) = (s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), 15.0 * s * s * (1.0 - s) * (1.0 - s));
         (vec![-0.8 + 1.6 * f, 0.9, 0.6], vec![1.6 * d, 0.0, 0.0])
     };
-    while stage.tau < 1.0 {
-        stage.step(&sweeping, PathKind::PointToPoint, &[], 1.0);
+    while simulation.tau < 1.0 {
+        simulation.step(&sweeping, PathKind::PointToPoint, &[], 1.0);
     }
-    let error = stage.avoider.plan_to(&HERE, &RouteOptions::default()).unwrap_err();
-    assert_eq!(error, AvoidanceError::Underway);
+    let error = simulation.avoider.plan_to(&HERE, &RrtConnectSettings::default()).unwrap_err();
+    assert_eq!(error, AvoidanceError::NotStationary);
 }
 
 #[test]
@@ -219,28 +237,30 @@ fn a_neighbour_without_velocities_is_refused() {
     let scene = example::two_arms();
     let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
     let (own, other) = ([0.0, 0.7, 0.2], [0.0, -1.2, -0.3]);
-    let mut avoider = Avoider::new(&scene, 0, &own, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
+    let mut avoider =
+        Avoider::new(&scene, RobotId(0), &own, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
     for qd in [&[0.0][..], &[], &[f64::NAN, 0.0, 0.0], &[1.0, 0.0, 0.0, 5.0], &[f64::INFINITY, 0.0, 0.0]] {
-        let robots = [Neighbour { robot: 1, q: &other, qd, known: false }];
-        let error = avoider.tick(DT, &stands(&own), &Around { objects: &[], robots: &robots }, 1.0).unwrap_err();
+        let robots = [Neighbour { robot: RobotId(1), q: &other, qd, known: false }];
+        let error =
+            avoider.tick(DT, &resting_at(&own), &DynamicObstacles { objects: &[], robots: &robots }, 1.0).unwrap_err();
         assert!(matches!(error, AvoidanceError::Neighbour { joints: 3, .. }), "{error}");
         assert_eq!((avoider.q(), avoider.qd()), (&own[..], &[0.0; 3][..]));
     }
 }
 
 #[test]
-fn a_failed_tick_leads_back_to_the_path_without_a_jump() {
+fn after_a_failed_tick_the_robot_returns_without_a_jump() {
     let scene = scene();
     let mut avoider = common::avoider(&scene, &HERE);
-    let none = Around::default();
-    avoider.tick(DT, &stands(&HERE), &none, 1.0).unwrap();
+    let none = DynamicObstacles::default();
+    avoider.tick(DT, &resting_at(&HERE), &none, 1.0).unwrap();
     let nan = [ball(at(f64::NAN, 0.0, 0.0), false)];
-    assert!(avoider.tick(DT, &stands(&HERE), &Around { objects: &nan, robots: &[] }, 1.0).is_err());
-    // Its program went on meanwhile.
+    assert!(avoider.tick(DT, &resting_at(&HERE), &DynamicObstacles { objects: &nan, robots: &[] }, 1.0).is_err());
+    // Its program advanced in the meantime.
     let on = [-0.7, 0.9, 0.6];
     for n in 0..2_000 {
         let before = avoider.q().to_vec();
-        avoider.tick(DT, &stands(&on), &none, 1.0).unwrap();
+        avoider.tick(DT, &resting_at(&on), &none, 1.0).unwrap();
         let step = (avoider.q()[0] - before[0]).abs();
         assert!(step <= DT * limits(&scene)[0].speed, "tick {n}: {step} rad");
     }
@@ -248,7 +268,7 @@ fn a_failed_tick_leads_back_to_the_path_without_a_jump() {
 }
 
 #[test]
-fn braking_near_a_limit_tells_the_velocity_that_there_is() {
+fn braking_near_a_limit_reports_the_actual_velocity() {
     let scene = scene();
     let mut random = Random(3);
     let mut stopped = 0;
@@ -259,18 +279,22 @@ fn braking_near_a_limit_tells_the_velocity_that_there_is() {
         }
         let start = [0.0, random.range(0.5, 0.9), random.range(1.6, 2.45)];
         let mut avoider =
-            Avoider::new(&scene, 0, &start, &uneven, Rules::default(), AvoiderSettings::default()).unwrap();
+            Avoider::new(&scene, RobotId(0), &start, &uneven, Rules::default(), AvoiderSettings::default()).unwrap();
         let angle = random.range(-3.0, 3.0);
         let velocity = at(angle.cos(), angle.sin(), random.range(-0.5, 0.5));
         let through = at(random.range(0.2, 0.7), random.range(-0.1, 0.1), random.range(0.2, 0.6));
         let stop = random.range(0.4, 1.3);
         for n in 0..400 {
             let t = f64::from(n) * DT;
-            let seen =
-                Seen { motion: Motion { velocity, ..Motion::REST }, ..ball(through + velocity * (t - 1.0), false) };
+            let observed_ball = ObservedObject {
+                motion: FrameMotion { velocity, ..FrameMotion::REST },
+                ..ball(through + velocity * (t - 1.0), false)
+            };
             let before = (avoider.q().to_vec(), avoider.qd().to_vec());
             let allowed = if t > stop { 0.0 } else { 1.0 };
-            avoider.tick(DT, &stands(&start), &Around { objects: &[seen], robots: &[] }, allowed).unwrap();
+            avoider
+                .tick(DT, &resting_at(&start), &DynamicObstacles { objects: &[observed_ball], robots: &[] }, allowed)
+                .unwrap();
             for (j, limit) in uneven.iter().enumerate() {
                 let moved = avoider.q()[j] - before.0[j];
                 if avoider.q() != start {

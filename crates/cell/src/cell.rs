@@ -1,4 +1,4 @@
-//! A cell, resolved: every name looked up, every number in metres, radians and seconds.
+//! A resolved cell: names resolved, all numbers in metres, radians and seconds.
 
 use std::path::PathBuf;
 
@@ -7,24 +7,26 @@ use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
-use elbowroom_scene::{Body, Object, Robot};
+use elbowroom_robot::{Collider, Robot};
+use elbowroom_scene::Object;
+use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
-use elbowroom_spatial::{Pose, Vec3};
 
 use crate::seal::Seal;
-use crate::{Mover, PoseTrack};
+use crate::{Encoder, MovingObject, PoseTrack};
 
-/// A tool centre point so near to a solid (m) lies on its surface: a flange's frame lies on the flange's face.
+/// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
+/// flange's face.
 const ON_SURFACE_M: f64 = 1e-6;
 
-/// Everything that a cell file says. Read by [`Cell::load`].
+/// The contents of a cell file. Read by [`Cell::load`].
 #[derive(Debug, Clone)]
 pub struct Cell {
-    /// The file it came from.
+    /// The file.
     pub file: PathBuf,
     /// Its name.
     pub name: String,
-    /// The units its file is written in, for messages.
+    /// The units of its file, for messages.
     pub units: Units,
     /// Period of the control tick, s.
     pub tick_s: f64,
@@ -32,44 +34,44 @@ pub struct Cell {
     pub max_s: f64,
     /// In file order.
     pub robots: Vec<CellRobot>,
-    /// In file order, where they stand at the start.
+    /// In file order, at their initial poses.
     pub objects: Vec<Object>,
-    /// The objects that move, in the same order.
-    pub movers: Vec<Mover>,
+    /// The moving objects, in the same order.
+    pub moving_objects: Vec<MovingObject>,
     /// In file order.
     pub regions: Vec<CellRegion>,
     /// In file order.
     pub encoders: Vec<Encoder>,
-    /// Files of poses that regions follow.
+    /// Pose files that regions follow.
     pub pose_tracks: Vec<PoseTrack>,
-    /// The laws of all monitors; joint decelerations are filled in per robot.
+    /// The laws of all monitors; joint decelerations are set per robot.
     pub laws: CellLaws,
-    /// One per robot; `None` for a robot that stands at its start.
+    /// One per robot; `None` for a robot that stays at its start.
     pub programs: Vec<Option<Program>>,
-    /// One per robot; `None` for a robot that does not evade.
+    /// One per robot; `None` for a robot without avoidance.
     pub avoidance: Vec<Option<AvoidanceSpec>>,
-    /// Joint-space maps, checked but used by later verbs.
+    /// Joint-space maps.
     pub maps: Vec<MapSpec>,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
-    /// Who sealed it last; `None` where it is not sealed.
+    /// The last seal; `None` where the cell is not sealed.
     pub seal: Option<Seal>,
-    /// What a user should know about the file, none of it fatal.
+    /// Warnings about the file, none of them fatal.
     pub warnings: Vec<Warning>,
 }
 
-/// How a robot evades what moves.
+/// Avoidance settings of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AvoidanceSpec {
-    /// How hard and where to.
+    /// Fuzzy rules.
     pub rules: Rules,
     /// Speeds, distances and times.
     pub settings: AvoiderSettings,
-    /// Indices of the objects that it sees coming; all others are where its programs know them to be.
+    /// Indices of the evaded objects; the poses of all others are known to its program.
     pub objects: Vec<usize>,
-    /// Indices of the robots that it sees coming; of all others its programs know.
+    /// Indices of the evaded robots; the motion of all others is known to its program.
     pub robots: Vec<usize>,
-    /// Whether another way is planned where what is in the way stands.
+    /// Whether another path is planned where an obstacle blocks the path.
     pub replan: bool,
 }
 
@@ -82,25 +84,25 @@ pub struct Units {
     pub angle: AngleUnit,
 }
 
-/// A robot, its place, its tool.
+/// A robot with its pose and tool.
 #[derive(Debug, Clone)]
 pub struct CellRobot {
     /// Its name in the cell.
     pub name: String,
     /// Line of its table.
     pub line: usize,
-    /// Links, joints, solids; tool and load are bodies of the flange link.
+    /// Links, joints, colliders; tool and load are colliders of the flange link.
     pub robot: Robot,
-    /// Where the root link stands.
+    /// Pose of the root link.
     pub base_in_world: Pose,
     /// The link that carries the tool.
     pub flange: LinkId,
     /// Tool centre point frame in the flange link.
     pub tcp_in_flange: Pose,
-    /// The tool's solid, in the flange link.
-    pub tool: Option<Body>,
-    /// The load's solid, in the flange link.
-    pub load: Option<Body>,
+    /// The tool's collider, in the flange link.
+    pub tool: Option<Collider>,
+    /// The load's collider, in the flange link.
+    pub load: Option<Collider>,
     /// Joint values at the start, rad or m.
     pub start: Vec<f64>,
     /// True where the file gives `start`.
@@ -111,7 +113,7 @@ pub struct CellRobot {
     pub limits: Vec<JointLimits>,
 }
 
-/// How fast a joint may move. Per second, per second² and per second³, in rad or m.
+/// Motion limits of a joint. Per second, per second² and per second³, in rad or m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimits {
     /// Largest speed.
@@ -120,26 +122,26 @@ pub struct JointLimits {
     pub acceleration: f64,
     /// Largest jerk of a programmed move.
     pub jerk: f64,
-    /// Deceleration that the joint reaches when the override falls.
+    /// Deceleration of the joint when the override falls.
     pub stop: f64,
 }
 
-/// A region and whom it concerns.
+/// A region and the robots it guards against.
 #[derive(Debug, Clone)]
 pub struct CellRegion {
-    /// As the monitors see it; `follow` and the slot of an exchange region are filled in per monitor.
+    /// Region of the monitors; `follow` and the slot of an exchange region are set per monitor.
     pub region: Region,
     /// Line of its table.
     pub line: usize,
     /// Indices of the robots that it guards against.
     pub robots: Vec<usize>,
-    /// What carries it.
+    /// The frame that it follows.
     pub follow: Option<Follow>,
-    /// The fastest motion of that which the monitors believe.
+    /// Largest plausible motion of that frame, for the monitors.
     pub source_limits: SourceLimits,
 }
 
-/// What a dynamic region rides on.
+/// The source that a dynamic region follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Follow {
     /// A frame of a robot.
@@ -153,74 +155,43 @@ pub enum Follow {
     },
     /// Index of an encoder.
     Encoder(usize),
-    /// Index of an object, which may move or stand.
+    /// Index of an object, moving or fixed.
     Object(usize),
-    /// Index of a file of poses.
+    /// Index of a pose file.
     Poses(usize),
 }
 
-/// A conveyor or a rail: something that travels along a line.
-#[derive(Debug, Clone)]
-pub struct Encoder {
-    /// Its name.
-    pub name: String,
-    /// Unit vector of positive travel, in the world.
-    pub direction: Vec3,
-    /// How it travels.
-    pub travel: Travel,
-    /// Travel after which it begins again at 0, m.
-    pub wrap_m: Option<f64>,
-}
-
-/// Travel over time.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Travel {
-    /// Constant speed between two times.
-    Constant {
-        /// Travel before it starts, m.
-        at_m: f64,
-        /// m/s.
-        speed: f64,
-        /// It starts at this time, s.
-        start_s: f64,
-        /// It stops at this time, s; infinite for never.
-        end_s: f64,
-    },
-    /// Times (s, rising) and travels (m), linear between.
-    Table(Vec<(f64, f64)>),
-}
-
-/// The laws of a cell.
+/// Laws of a cell.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CellLaws {
-    /// As the monitors take them, without stopping distance.
+    /// Laws of the monitors, without stopping distance.
     pub laws: Laws,
     /// Time from the monitor's answer to the first deceleration, s: `reaction_ms`, or one tick.
     pub reaction_s: f64,
     /// Reaction time (s) of the stopping-distance law, where that is on.
     pub stopping_reaction_s: Option<f64>,
-    /// How late (s) robots obey in simulation: the reaction time that the file gives, 0 where it gives none.
-    pub obeyed_after_s: f64,
+    /// Reaction time (s) of robots in the simulation: the one in the file, 0 where it gives none.
+    pub reaction_delay_s: f64,
 }
 
-/// What a robot does.
+/// Program of a robot.
 #[derive(Debug, Clone)]
 pub struct Program {
     /// Programmed override at the start, 0..1.
     pub speed_override: f64,
-    /// How often it runs.
+    /// Number of repetitions.
     pub repeat: u32,
-    /// What it does.
+    /// Its contents.
     pub body: ProgramBody,
     /// Line of its table.
     pub line: usize,
 }
 
-/// Steps, or a recording.
+/// Steps, or a recorded trajectory.
 #[derive(Debug, Clone)]
 pub enum ProgramBody {
-    /// One after the other, at rest in between.
-    Steps(Vec<Step>),
+    /// Executed in order, at rest in between.
+    Steps(Vec<ProgramStep>),
     /// Joint values over time.
     Trajectory(Vec<TrajectoryRow>),
 }
@@ -236,27 +207,27 @@ pub struct TrajectoryRow {
 
 /// One step of a program.
 #[derive(Debug, Clone)]
-pub struct Step {
+pub struct ProgramStep {
     /// Its line in the cell file.
     pub line: usize,
-    /// What it does.
-    pub action: Action,
+    /// Its action.
+    pub action: StepAction,
 }
 
-/// What a step does.
+/// Action of a step.
 #[derive(Debug, Clone)]
-pub enum Action {
-    /// Straight in joint space.
+pub enum StepAction {
+    /// Joint move: straight in joint space.
     Joint {
-        /// Where to.
-        to: Target,
+        /// Target.
+        to: MoveTarget,
         /// Share of each joint's speed, 0..1.
         speed: f64,
     },
-    /// TCP on a straight line.
+    /// Linear move: the TCP on a straight line.
     Linear {
-        /// Where to.
-        to: Target,
+        /// Target.
+        to: MoveTarget,
         /// TCP speed, m/s.
         speed: f64,
     },
@@ -273,16 +244,16 @@ pub enum Action {
     Override(f64),
 }
 
-/// Where a move goes.
+/// Target of a move.
 #[derive(Debug, Clone)]
-pub enum Target {
+pub enum MoveTarget {
     /// Joint values, rad or m.
     Joints(Vec<f64>),
     /// TCP in the world.
     Tcp(Pose),
 }
 
-/// The joint-space map that a robot asks for.
+/// Settings of the joint-space map of a robot.
 #[derive(Debug, Clone)]
 pub struct MapSpec {
     /// Index of the robot.
@@ -298,22 +269,22 @@ pub struct MapSpec {
 }
 
 impl MapSpec {
-    /// What a robot has that asks for nothing: its first three joints, 2 degrees (0.02 m where they slide), the others
-    /// anywhere.
+    /// Defaults for a robot: its first three joints, 2 degrees (0.02 m for prismatic joints), all values of the other
+    /// joints.
     pub fn of(index: usize, robot: &CellRobot) -> Self {
         let joints: Vec<usize> = (0..robot.robot.chain.dof().min(3)).collect();
         let step = joints.iter().map(|&j| Self::default_step(robot, j)).collect();
         Self { robot: index, line: robot.line, joints, step, others_at_start: false }
     }
 
-    /// Width of a cell where nothing else is said, rad or m.
+    /// Default cell width, rad or m.
     pub(crate) fn default_step(robot: &CellRobot, joint: usize) -> f64 {
         if robot.slides(joint) { 0.02 } else { 2.0_f64.to_radians() }
     }
 }
 
 impl CellRobot {
-    /// True where a joint (by its place in `q`) slides.
+    /// True for a prismatic joint (by its index in `q`).
     pub(crate) fn slides(&self, joint: usize) -> bool {
         let chain = &self.robot.chain;
         chain.joints()[chain.active_joints()[joint].0].kind == elbowroom_kinematics::JointKind::Prismatic
@@ -325,7 +296,7 @@ impl CellRobot {
         chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
     }
 
-    /// What the monitor keeps out of regions: the TCP, tool and load, and the links. The TCP is the first.
+    /// Guarded volumes: the TCP, tool and load, and the links. The TCP is the first.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
         let parts = [("tool", &self.tool), ("load", &self.load)];
@@ -337,14 +308,14 @@ impl CellRobot {
             };
             Some(Volume { name: name.into(), part: Part::Tool, link: self.flange, shape, in_link })
         }));
-        volumes.extend(arm_volumes(&self.bare(), self.volumes));
+        volumes.extend(arm_volumes(&self.without_payload(), self.volumes));
         if !self.encloses(&volumes[1..], &volumes[0]) {
             volumes[0].part = Part::TcpOutside;
         }
         volumes
     }
 
-    /// True where one of the solids that keep their place relative to the flange contains the point.
+    /// True where a solid that is fixed relative to the flange contains the point.
     fn encloses(&self, solids: &[Volume], point: &Volume) -> bool {
         let chain = &self.robot.chain;
         let moving = |link: LinkId| {
@@ -353,7 +324,7 @@ impl CellRobot {
             joints
         };
         let with_point = moving(point.link);
-        // Whatever the joint values: only links that no joint moves against each other are compared.
+        // Independent of joint values: only links without a joint in between are compared.
         let mut state = ChainState::new(chain);
         state.q.copy_from_slice(&self.start);
         chain.forward(&mut state);
@@ -364,16 +335,16 @@ impl CellRobot {
             .any(|v| elbowroom_proximity::within(&point.shape, &in_root(point), &v.shape, &in_root(v), ON_SURFACE_M))
     }
 
-    /// The robot without tool and load, which are bodies of its flange for collisions.
-    pub fn bare(&self) -> Robot {
-        let mut bare = self.robot.clone();
-        let bodies = &mut bare.bodies[self.flange.0];
-        bodies.truncate(bodies.len().saturating_sub(self.carried().count()));
-        bare
+    /// The robot without tool and load.
+    pub fn without_payload(&self) -> Robot {
+        let mut robot = self.robot.clone();
+        let bodies = &mut robot.colliders[self.flange.0];
+        bodies.truncate(bodies.len().saturating_sub(self.payload().count()));
+        robot
     }
 
     /// Tool and load, in the flange's frame.
-    pub fn carried(&self) -> impl Iterator<Item = &Body> {
+    pub fn payload(&self) -> impl Iterator<Item = &Collider> {
         [&self.tool, &self.load].into_iter().flatten()
     }
 }

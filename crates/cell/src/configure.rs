@@ -1,23 +1,23 @@
-//! From a cell to what each robot's monitor is given.
+//! Configuration of each robot's monitor from a cell.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
 
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{
-    Board, ConfigError, Configuration, ConfigurationParts, Kind, Monitor, Region, RobotSlot, SlotId, SourceId,
-    SourceLimits, SourceSpec, Stopping, group_overlapping,
+    ConfigError, Configuration, ConfigurationParts, Monitor, Region, RegionKind, RobotSlot, SlotId, SourceId,
+    SourceLimits, SourceSpec, Stopping, ZoneArbiter, group_overlapping,
 };
 use sha2::{Digest, Sha256};
 
 use crate::{Cell, CellRobot, Follow};
 
-/// Ticks after which a controller that got no answer stops by itself.
-pub const ANSWERS_MISSED: f64 = 2.0;
+/// Ticks without an answer after which a controller stops by itself.
+pub const MISSED_ANSWERS: f64 = 2.0;
 
-/// What one robot's monitor is given, and how its indices relate to the cell's.
+/// Configuration of one robot's monitor, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]
-pub struct Setup {
+pub struct MonitorSetup {
     /// For [`Monitor::new`].
     pub configuration: Configuration,
     /// Per region of the configuration, its index in [`Cell::regions`].
@@ -26,38 +26,42 @@ pub struct Setup {
     pub sources: Vec<Follow>,
 }
 
-/// One set-up per robot, in order.
+/// One setup per robot, in order.
 ///
 /// # Errors
 /// [`FormatError`] at the line of the region or robot that a monitor would refuse.
-pub fn setups(cell: &Cell) -> Result<Vec<Setup>, FormatError> {
+pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
     let slots = slots(cell);
     cell.robots.iter().enumerate().map(|(i, robot)| setup(cell, i, robot, &slots)).collect()
 }
 
-/// The monitors, joined by a board where there are exchange regions.
+/// The monitors, connected by a zone arbiter where there are exchange regions.
 ///
 /// # Errors
 /// As for [`setups`].
-pub fn monitors(cell: &Cell, setups: &[Setup]) -> Result<Vec<Monitor>, FormatError> {
-    monitors_at(cell, setups, board(cell).as_ref())
+pub fn monitors(cell: &Cell, setups: &[MonitorSetup]) -> Result<Vec<Monitor>, FormatError> {
+    monitors_with(cell, setups, zone_arbiter(cell).as_ref())
 }
 
-/// The monitors, joined by the cell's [`board`].
+/// The monitors, connected by the given [`zone_arbiter`].
 ///
 /// # Errors
 /// As for [`setups`].
-pub fn monitors_at(cell: &Cell, setups: &[Setup], board: Option<&Arc<Board>>) -> Result<Vec<Monitor>, FormatError> {
-    let monitor = |(i, s): (usize, &Setup)| {
-        Monitor::new(s.configuration.clone(), board.map(|b| (b.clone(), RobotSlot(i))))
+pub fn monitors_with(
+    cell: &Cell,
+    setups: &[MonitorSetup],
+    arbiter: Option<&Arc<ZoneArbiter>>,
+) -> Result<Vec<Monitor>, FormatError> {
+    let monitor = |(i, s): (usize, &MonitorSetup)| {
+        Monitor::new(s.configuration.clone(), arbiter.map(|b| (b.clone(), RobotSlot(i))))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
     };
     setups.iter().enumerate().map(monitor).collect()
 }
 
-/// The board of the cell's exchange regions, its robots in the order of the cell; `None` where there are no such regions.
-/// Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
-pub fn board(cell: &Cell) -> Option<Arc<Board>> {
+/// The arbiter of the cell's exchange regions, its robots in the order of the cell; `None` where there is no such
+/// region. Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
+pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
     let slots = slots(cell);
     let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
     let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
@@ -65,9 +69,9 @@ pub fn board(cell: &Cell) -> Option<Arc<Board>> {
     let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
     let names: Vec<String> = (0..count).map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    // Five ticks of silence, or the board's own patience where that is longer.
-    let patience_s = (5.0 * cell.tick_s).max(0.1);
-    Some(Arc::new(Board::new(&robots, &names).patience(patience_s)))
+    // Five ticks of silence, at least 0.1 s.
+    let silence_timeout_s = (5.0 * cell.tick_s).max(0.1);
+    Some(Arc::new(ZoneArbiter::new(&robots, &names).silence_timeout(silence_timeout_s)))
 }
 
 /// SHA-256 (hex) over the checksums of all monitors' configurations.
@@ -83,11 +87,12 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
     }))
 }
 
-/// The lock of each exchange region; zones that overlap share one, so that nobody waits in a circle.
-pub(crate) fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
-    let exchange: Vec<usize> =
-        (0..cell.regions.len()).filter(|i| matches!(cell.regions[*i].region.kind, Kind::Exchange { .. })).collect();
-    // Grouping looks at `follow`, which the cell keeps beside the region.
+/// The slot of each exchange region; overlapping zones share one, which avoids deadlocks.
+pub fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
+    let exchange: Vec<usize> = (0..cell.regions.len())
+        .filter(|i| matches!(cell.regions[*i].region.kind, RegionKind::Exchange { .. }))
+        .collect();
+    // Grouping depends on `follow`, which the cell stores beside the region.
     let regions: Vec<Region> = exchange
         .iter()
         .map(|i| {
@@ -101,14 +106,14 @@ pub(crate) fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     slots
 }
 
-fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<Setup, FormatError> {
+fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<MonitorSetup, FormatError> {
     let mut regions = Vec::new();
     let mut indices = Vec::new();
     let mut sources: Vec<(Follow, SourceLimits)> = Vec::new();
     for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&index)) {
         let mut region = r.region.clone();
         if let Some(slot) = slots[i] {
-            region.kind = Kind::Exchange { slot };
+            region.kind = RegionKind::Exchange { slot };
         }
         region.follow = r.follow.map(|follow| {
             let source = (follow, r.source_limits);
@@ -124,9 +129,9 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
     let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
         reaction_s,
         // A simulated controller stops by itself where an answer is missing for longer.
-        period_s: ANSWERS_MISSED * cell.tick_s,
+        period_s: MISSED_ANSWERS * cell.tick_s,
         joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
-        joint_acceleration: crate::motion::accelerations(cell, index),
+        joint_acceleration: crate::trajectory::accelerations(cell, index),
     });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),
@@ -138,7 +143,7 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
-    Ok(Setup { configuration, regions: indices, sources: sources.into_iter().map(|s| s.0).collect() })
+    Ok(MonitorSetup { configuration, regions: indices, sources: sources.into_iter().map(|s| s.0).collect() })
 }
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {
@@ -158,7 +163,7 @@ fn source_name(cell: &Cell, follow: &Follow) -> String {
 
 fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> FormatError {
     let line = match e {
-        ConfigError::Region { region, .. } | ConfigError::DuplicateRegion(region) | ConfigError::NoBoard(region) => {
+        ConfigError::Region { region, .. } | ConfigError::DuplicateRegion(region) | ConfigError::NoArbiter(region) => {
             cell.regions.iter().find(|r| r.region.name == *region).map_or(robot.line, |r| r.line)
         }
         _ => robot.line,

@@ -1,11 +1,13 @@
-//! A whole cell from one file, run in simulated time.
+//! The cell file and the model it describes.
 //!
-//! A cell file names robots, tools, objects, regions and programs ([`Cell::load`]; every key is in `docs/cell-file.md`).
-//! [`simulate`] runs the programs under the monitor on one clock and returns a [`Recording`], which [`Summary`] and [`csv`]
-//! turn into what scripts and people read.
+//! A cell file names robots, tools, objects, regions and programs ([`Cell::load`]; every key is in
+//! `docs/cell-file.md`). In a [`Cell`] all names are resolved and all numbers are in metres, radians and seconds.
+//! [`configure`] builds the configuration of each robot's monitor from it, [`QueryModel`] the scene,
+//! [`region_constraint`] the constraint that keeps planned paths out of regions; [`seal`] controls who may change what
+//! in the file. There is no simulation here: `elbowroom_sim` runs the programs.
 //!
 //! ```
-//! use elbowroom_cell::{Cell, RunOptions, simulate};
+//! use elbowroom_cell::{Cell, configure};
 //! let cell = Cell::parse("rail.toml", r#"
 //! version = 1
 //! units = { length = "mm", angle = "deg" }
@@ -15,50 +17,35 @@
 //! shape = "plane"
 //! origin = [0, 0, 1000]
 //! x = [0, 1, 1000]
-//! y = [1, 0, 1000]       # its normal looks down: all above z = 1000 is forbidden
+//! y = [1, 0, 1000]       # its normal points down: everything above z = 1000 is forbidden
 //! warning = 300
 //! guards = ["tcp"]
-//! [program.rail]
-//! steps = [{ move = "joint", to = [1500], speed = 50 }]
 //! "#)?;
-//! let outcome = simulate(&cell, &RunOptions::default())?;
-//! assert!(!outcome.recording.robots[0].finished); // it stopped at the border
-//! assert!(!outcome.bad_news());
+//! assert_eq!(cell.robots[0].joint_names(), ["joint_1"]);
+//! let setups = configure::setups(&cell)?;
+//! assert_eq!(setups[0].configuration.regions()[0].warning_m, 0.3);
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
 
 mod cell;
-pub mod check;
 pub mod configure;
-pub mod csv;
-mod fence;
 mod file;
-pub mod inspect;
-pub mod map;
-pub mod motion;
-mod mover;
-pub mod plan;
-mod png;
+mod frames;
+mod moving_object;
 mod poses;
-pub mod query;
-mod recording;
-pub mod report;
+pub mod region_constraint;
 mod resting;
-pub mod run;
 pub mod seal;
-mod summary;
-pub mod watch;
+mod subject;
+pub mod suggest;
+pub mod trajectory;
 
 pub use cell::{
-    Action, AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Encoder, Follow, JointLimits, MapSpec, Program,
-    ProgramBody, Step, Target, TrajectoryRow, Travel, Units,
+    AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, JointLimits, MapSpec, MoveTarget, Program,
+    ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
 pub use file::{CellFile, NumberTable};
-pub use mover::{Drive, Leg, Mover, Repeat, Way};
-pub use poses::PoseTrack;
-pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, Recording, RegionPoses,
-    RegionTrack, RobotEnding, RobotTrack, Sample, Span, TickTimes,
-};
-pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
-pub use summary::Summary;
+pub use frames::Frames;
+pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
+pub use poses::{PoseRate, PoseTrack};
+pub use subject::{QueryModel, QueryRobot};

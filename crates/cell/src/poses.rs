@@ -1,25 +1,37 @@
-//! A frame whose poses over time stand in a file: what a sensor saw, or another program planned.
+//! A frame with poses over time from a file: a sensor recording, or a planned motion.
 
 use std::path::PathBuf;
 
-use elbowroom_spatial::{Motion, Pose};
+use elbowroom_spatial::{FrameMotion, Pose};
 
-/// Poses over time, straight and by the shortest turn in between; before the first row and after the last one it stands.
+/// Poses over time, linear and by the shortest rotation in between; constant before the first row and after the last
+/// one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseTrack {
-    /// Where they were read.
+    /// The file.
     pub file: PathBuf,
-    /// Times (s, rising) and poses in the world.
+    /// Times (s, increasing) and poses in the world.
     rows: Vec<(f64, Pose)>,
 }
 
-/// From one row to the next.
-struct Leg<'a> {
+/// The speeds between two rows of a [`PoseTrack`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseRate {
+    /// Time of the first row, s.
+    pub from_s: f64,
+    /// Speed of the origin, m/s.
+    pub speed_m_s: f64,
+    /// Angular speed, rad/s.
+    pub turn_rad_s: f64,
+}
+
+/// The interval between two rows.
+struct PoseInterval<'a> {
     from: &'a (f64, Pose),
     to: &'a (f64, Pose),
 }
 
-impl Leg<'_> {
+impl PoseInterval<'_> {
     fn seconds(&self) -> f64 {
         self.to.0 - self.from.0
     }
@@ -28,19 +40,19 @@ impl Leg<'_> {
         self.from.1.interpolate(&self.to.1, (t_s - self.from.0) / self.seconds())
     }
 
-    /// The same all along: the turn is about one axis, seen from the world.
-    fn motion(&self) -> Motion {
+    /// Constant over the interval: the rotation is about one fixed axis of the world.
+    fn motion(&self) -> FrameMotion {
         let turn = (self.to.1.rotation * self.from.1.rotation.inverse()).to_rotation_vector();
-        Motion {
+        FrameMotion {
             velocity: (self.to.1.translation - self.from.1.translation) / self.seconds(),
             angular_velocity: turn / self.seconds(),
-            ..Motion::REST
+            ..FrameMotion::REST
         }
     }
 }
 
 impl PoseTrack {
-    /// A track through `rows`: times (s) that rise, and poses in the world; `None` without rows.
+    /// A track through `rows`: increasing times (s), and poses in the world; `None` without rows.
     ///
     /// ```
     /// use elbowroom_cell::PoseTrack;
@@ -55,29 +67,33 @@ impl PoseTrack {
         (!rows.is_empty()).then_some(Self { file, rows })
     }
 
-    /// Where the frame is at a time (s), in the world.
+    /// Pose of the frame in the world at a time (s).
     pub fn pose(&self, t_s: f64) -> Pose {
-        match self.leg(t_s) {
-            Some(leg) => leg.pose(t_s),
+        match self.interval(t_s) {
+            Some(interval) => interval.pose(t_s),
             None if t_s < self.rows[0].0 => self.rows[0].1,
             None => self.rows[self.rows.len() - 1].1,
         }
     }
 
-    /// How the frame moves at a time (s), in the world; at a row as it goes on.
-    pub fn motion(&self, t_s: f64) -> Motion {
-        self.leg(t_s).map_or(Motion::REST, |leg| leg.motion())
+    /// Velocity of the frame in the world at a time (s); at a row the velocity after it.
+    pub fn motion(&self, t_s: f64) -> FrameMotion {
+        self.interval(t_s).map_or(FrameMotion::REST, |interval| interval.motion())
     }
 
-    /// Per pair of rows that follow one another: the time (s) of the first, the speed (m/s) and the turning rate (rad/s).
-    pub fn rates(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+    /// The speeds between consecutive rows.
+    pub fn rates(&self) -> impl Iterator<Item = PoseRate> {
         self.rows.windows(2).map(|w| {
-            let motion = Leg { from: &w[0], to: &w[1] }.motion();
-            (w[0].0, motion.velocity.length(), motion.angular_velocity.length())
+            let motion = PoseInterval { from: &w[0], to: &w[1] }.motion();
+            PoseRate {
+                from_s: w[0].0,
+                speed_m_s: motion.velocity.length(),
+                turn_rad_s: motion.angular_velocity.length(),
+            }
         })
     }
 
-    /// Every number that decides where the frame is, for a checksum. A field that is added has to be named here.
+    /// Passes every number that defines the track, for a checksum. A new field must be added here.
     pub(crate) fn numbers(&self, each: &mut dyn FnMut(f64)) {
         let Self { file: _, rows } = self;
         for (t_s, pose) in rows {
@@ -86,8 +102,8 @@ impl PoseTrack {
         }
     }
 
-    fn leg(&self, t_s: f64) -> Option<Leg<'_>> {
+    fn interval(&self, t_s: f64) -> Option<PoseInterval<'_>> {
         let next = self.rows.partition_point(|r| r.0 <= t_s);
-        Some(Leg { from: self.rows.get(next.checked_sub(1)?)?, to: self.rows.get(next)? })
+        Some(PoseInterval { from: self.rows.get(next.checked_sub(1)?)?, to: self.rows.get(next)? })
     }
 }

@@ -1,32 +1,34 @@
-//! Links that touch where their robot rests, with no solid between them: said, with what to write where it is built so.
+//! Links that touch at rest without a collider between them: a warning, with the SRDF entry for robots that are built
+//! so.
 
-use elbowroom_scene::{Robot, pairs};
+use elbowroom_robot::Robot;
+use elbowroom_robot::rest_pose_contacts;
 
-/// What to say and what to write of each such pair at the joint values `rest` (rad or m). `name` is the robot's in its cell;
-/// `None` for a model alone.
+/// The warning and the hint for each such pair at the joint values `rest` (rad or m). `name` is the robot's name in its
+/// cell; `None` for a single model.
 pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl Iterator<Item = (String, String)> {
     let links = robot.chain.links().to_vec();
     let of_robot = name.map_or_else(String::new, |n| format!("robot \"{n}\": "));
     let (whose, file) = if name.is_some() { ("at its `start`", "srdf = \"FILE\"") } else { ("at rest", "--srdf FILE") };
-    pairs::resting_contacts(robot, rest).into_iter().map(move |found| {
+    rest_pose_contacts(robot, rest).into_iter().map(move |found| {
         let (a, b) = (&links[found.a.0], &links[found.b.0]);
         let often = if found.always() {
-            format!("in all {} states of the joint space that were looked at", found.samples)
+            format!("in all {} states sampled in the joint space", found.samples)
         } else {
-            format!("in {} of {} states of the joint space", found.contacts, found.samples)
+            format!("in {} of {} states sampled in the joint space", found.contacts, found.samples)
         };
         let what = format!(
-            "{of_robot}links `{a}` and `{b}` touch {whose}, and {often}, with no solid between them: every such state \
+            "{of_robot}links `{a}` and `{b}` touch {whose}, and {often}, with no link with collision geometry between them: every such state \
              counts as a collision (in `run` once they have been apart)"
         );
         (what, disable(a, b, file))
     })
 }
 
-/// The line of an SRDF that makes two links no pair.
+/// The SRDF entry that disables a pair of links.
 pub(crate) fn disable(a: &str, b: &str, file: &str) -> String {
     format!(
-        "<disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"Default\"/> in an SRDF, and {file}, where they are \
+        "<disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"Default\"/> in an SRDF, and {file}, if they are \
          built so"
     )
 }

@@ -1,11 +1,11 @@
-//! Numbers in another unit than the file states are noticed.
+//! Numbers in another unit than the stated one are detected.
 
 mod common;
 
 use common::{ARM, parse};
 use elbowroom_cell::Cell;
 
-/// A whole cell, its lengths scaled by `k`, its unit stated as `length`.
+/// A cell with lengths scaled by `k` and the unit `length`.
 fn cell(length: &str, k: f64) -> String {
     let n = |v: f64| format!("{}", v * k);
     format!(
@@ -30,7 +30,7 @@ fn cell(length: &str, k: f64) -> String {
     )
 }
 
-/// The robot's own numbers stay as they are: in millimetres.
+/// As [`cell`] in metres, with the robot's own numbers converted from millimetres.
 fn in_metres(k: f64) -> String {
     let metres = |text: &str| {
         // The rows of ARM in metres: `a`, `d`, the points and radii of capsules.
@@ -55,7 +55,7 @@ fn warnings(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_right_unit_is_no_news() {
+fn the_right_unit_causes_no_warning() {
     assert_eq!(warnings(&cell("mm", 1.0)), Vec::<String>::new());
     assert_eq!(warnings(&in_metres(0.001)), Vec::<String>::new());
 }
@@ -81,8 +81,8 @@ fn millimetres_under_metres_are_named() {
 }
 
 #[test]
-fn a_region_twelve_hundred_metres_away_says_so() {
-    // Only the place is in millimetres.
+fn a_region_1200_metres_away_causes_a_warning() {
+    // Only the position is in millimetres.
     let text = in_metres(0.001).replace("base = [1.248, 0, 0]", "base = [1248, 0, 0]");
     let all = warnings(&text);
     assert_eq!(all.len(), 1, "{all:#?}");
@@ -102,7 +102,7 @@ fn metres_under_millimetres_are_named() {
 }
 
 #[test]
-fn a_region_that_nobody_reaches_is_said_without_a_unit_that_makes_no_sense() {
+fn a_region_out_of_reach_is_reported_without_an_implausible_unit() {
     let all = warnings(&cell("mm", 1.0).replace("base = [1248, 0, 0]", "base = [12480, 0, 0]"));
     assert!(all.len() == 1 && all[0].contains("beyond reach") && !all[0].contains("units ="), "{all:#?}");
     // Its warning zone reaches the robot.
@@ -113,7 +113,7 @@ fn a_region_that_nobody_reaches_is_said_without_a_unit_that_makes_no_sense() {
 }
 
 #[test]
-fn what_comes_into_reach_is_right() {
+fn regions_that_come_into_range_are_measured_exactly() {
     let cart = "[object.cart]\nshape = \"sphere\"\nat = [20000, 0, 500]\nradius = 100\nmotion = { via = [[1000, 0, 500]], speed = 1000 }\n";
     let ride = "[encoder.belt]\ndirection = [-1, 0, 0]\nspeed = 1000\n\
                 [region.ride]\nshape = \"sphere\"\ncentre = [15000, 0, 500]\nradius = 100\nwarning = 50\nfollow = { encoder = \"belt\" }\n";
@@ -121,7 +121,7 @@ fn what_comes_into_reach_is_right() {
 }
 
 #[test]
-fn the_examples_are_right() {
+fn the_example_cells_are_valid() {
     for name in ["figure12", "exchange", "conveyor", "tool_box", "pallet"] {
         let file = format!("{}/../../examples/{name}/cell.toml", env!("CARGO_MANIFEST_DIR"));
         assert_eq!(Cell::load(file).unwrap().warnings, [], "{name}");

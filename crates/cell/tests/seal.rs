@@ -1,4 +1,4 @@
-//! A seal covers whatever the monitors go by: every number and word of a cell that its checksum depends on.
+//! A seal covers all inputs of the monitors: every number and word of a cell that its checksum depends on.
 
 mod common;
 
@@ -9,7 +9,7 @@ use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{PrivateKey, Signer, history, seal};
 use elbowroom_monitor::AccessClass;
 
-/// Every kind of table that counts for a monitor.
+/// Every kind of table that affects a monitor.
 fn text() -> String {
     format!(
         "{HEAD}{}[robot.c]\n{ARM}base = {{ at = [0, 3000, 0] }}\nstart = [0, 0, 0, 0, 40, 0]\nvolumes = \"capsule\"\nstop_time = 0.2\n\
@@ -37,7 +37,7 @@ fn sealed(dir: &Path, text: &str) {
     seal(&dir.join("cell.toml"), &signer).unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// The text with each of its numbers one larger, and each of its words in quotes replaced by others.
+/// The text with each number increased by one, each quoted word replaced, and each line removed.
 fn mutations(text: &str) -> Vec<String> {
     let mut all = Vec::new();
     let mut at = 0;
@@ -75,16 +75,16 @@ fn whatever_changes_the_checksum_breaks_the_seal() {
             assert!(e.what.contains("is not as it was sealed"), "{e}");
             assert!(!history(&file).unwrap().unsealed.is_empty());
         } else {
-            assert_eq!(cell.checksum, checksum, "not noticed:\n{mutated}");
+            assert_eq!(cell.checksum, checksum, "not detected:\n{mutated}");
             free += 1;
         }
         tried += 1;
     }
-    assert!(tried > 150 && free > 5 && free < 40, "{tried} tried, {free} of no concern to a monitor");
+    assert!(tried > 150 && free > 5 && free < 40, "{tried} tried, {free} without effect on a monitor");
 }
 
 #[test]
-fn a_text_is_no_file_and_asks_for_no_seal() {
+fn text_that_is_no_file_needs_no_seal() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("cell.toml");
     sealed(dir.path(), &text());
@@ -93,7 +93,7 @@ fn a_text_is_no_file_and_asks_for_no_seal() {
     assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().seal.is_none());
 }
 
-/// A box that a region follows, and one that none follows, each with a way of its own.
+/// An object with a path of its own.
 const OBJECTS: &str = "[object.NAME]\nshape = \"box\"\nsize = [400, 300, 200]\nat = [3000, 1000, 100]\nrpy = [1, 2, 30]\n\
      motion = { via = [[5000, 1000, 100], [5000, 2000, 100]], speed = 500, start = 3, turn = [1, 2, 90], repeat = \"loop\" }\n";
 
@@ -107,7 +107,7 @@ fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
     let (cart, free) = (OBJECTS.replace("NAME", "cart"), OBJECTS.replace("NAME", "free"));
     sealed(dir.path(), &format!("{rest}{cart}{free}"));
     let (mut noticed, mut of_no_concern) = (0, 0);
-    let all = |object: &str| mutations(object).into_iter().chain([object.replace("loop", "back and forth")]);
+    let all = |object: &str| mutations(object).into_iter().chain([object.replace("loop", "ping-pong")]);
     for mutated in all(&cart).filter(|m| m.contains("[object.cart]")) {
         let changed = format!("{rest}{mutated}{free}");
         if mutated == cart || Cell::parse(&file, &changed).is_err() {
@@ -125,10 +125,10 @@ fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
             of_no_concern += 1;
         }
     }
-    assert!(noticed > 15 && of_no_concern > 15, "{noticed} noticed, {of_no_concern} of no concern");
+    assert!(noticed > 15 && of_no_concern > 15, "{noticed} detected, {of_no_concern} without effect");
 }
 
-/// A file, what is in it, and the words that name it when it differs: none where no region follows what is read from it.
+/// A file, its contents, and the words of the error when it differs: none where no region follows what is read from it.
 const FILES: &[(&str, &str, &[&str])] = &[
     (
         "poses.csv",
@@ -146,7 +146,7 @@ const FILES: &[(&str, &str, &[&str])] = &[
 ];
 
 #[test]
-fn the_files_of_what_a_region_follows_are_sealed() {
+fn the_files_of_the_source_of_a_region_are_sealed() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("cell.toml");
     let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
@@ -180,7 +180,7 @@ fn the_files_of_what_a_region_follows_are_sealed() {
                     tried += 1;
                 }
             } else {
-                assert!(words.is_empty(), "{name}: not noticed:\n{mutated}");
+                assert!(words.is_empty(), "{name}: not detected:\n{mutated}");
                 tried += 1;
             }
         }

@@ -1,18 +1,18 @@
-//! What can be typed.
+//! Command-line arguments.
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use elbowroom::cell::query::{Ask, Level};
-use elbowroom::cspace::Model;
+use elbowroom::analysis::query::{Level, QueryKind};
+use elbowroom::cspace::ObstacleModel;
 
 /// Collision awareness for industrial robot cells.
 ///
 /// Without a command, the example cell of the interference-region paper's figure 12 runs and its report is written to
 /// elbowroom-out/figure12.
 ///
-/// Exit status: 0 done and free of trouble; 1 the answer is bad news (a collision, a forbidden region entered, no path);
-/// 2 the input or the call is wrong.
+/// Exit status: 0 success; 1 negative result (a collision, a forbidden region entered, no path);
+/// 2 invalid input or call.
 #[derive(Debug, Parser)]
 #[command(name = "elbowroom", version, after_help = "Not a certified safety device.")]
 pub(crate) struct Cli {
@@ -24,23 +24,23 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Run a cell's programs in simulated time under the monitor
     Run(RunArgs),
-    /// Say for every region and robot whether entry is excluded by the laws that are on, and what is missing
+    /// Report for each region and robot whether the enabled laws exclude entry, and what is missing
     Check(CheckArgs),
-    /// Ask for collisions, distances or tolerances of a cell or a robot, one answer per joint state
+    /// Compute collisions, distances or tolerances of a cell or a robot, one row per joint state
     Query(QueryArgs),
-    /// Say what is in a robot or mesh file
+    /// Report the contents of a robot or mesh file
     Inspect(InspectArgs),
     /// Write a robot as a URDF with STL meshes, or as 3DS
     Convert(ConvertArgs),
-    /// Turn a cell's objects into blocked cells of a robot's joint space
+    /// Compute the joint-space occupancy of a cell's objects for one robot
     Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another
     Plan(PlanArgs),
-    /// Show the rules by which a robot evades what moves, or write them to a file to change
+    /// Print the fuzzy rules of obstacle avoidance, or write them to a file for editing
     Rules(RulesArgs),
-    /// Turn points that the robot was driven to into a region for the cell file
+    /// Build a region for the cell file from taught points
     Teach(TeachArgs),
-    /// Change regions and laws of a sealed cell on behalf of a class, seal it, and show who changed what
+    /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
     /// List the example cells, or copy them to a folder to start from
@@ -56,13 +56,13 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom rules                             the rules that come along, as a table
-  elbowroom rules --write my_rules.toml       a copy to change; name it in the cell file: [avoidance.ROBOT] rules = ...
+  elbowroom rules                             the built-in rules, as a table
+  elbowroom rules --write my_rules.toml       a copy for editing; name it in the cell file: [avoidance.ROBOT] rules = ...
   elbowroom rules my_rules.toml --picture out size.svg and direction.svg: the control surfaces")]
 pub(crate) struct RulesArgs {
-    /// A file of rules; without it, those that come along
+    /// A file of rules; default: the built-in rules
     pub(crate) file: Option<PathBuf>,
-    /// Write the rules that come along to this file, with comments
+    /// Write the built-in rules, with comments, to this file
     #[arg(long, value_name = "FILE", conflicts_with = "file")]
     pub(crate) write: Option<PathBuf>,
     /// Draw the control surfaces into this folder
@@ -77,22 +77,22 @@ pub(crate) struct RulesArgs {
 #[command(after_help = "Examples:
   elbowroom run cell.toml                     a summary on the screen
   elbowroom run cell.toml --out out           and trace.csv, events.csv, report.html in out/
-  elbowroom run cell.toml --out out --compare the report shows the run without the monitor beside it
+  elbowroom run cell.toml --out out --compare the report compares the run with one without the monitor
   elbowroom run cell.toml --json | jq .regions")]
-#[allow(clippy::struct_excessive_bools)] // each is a flag that is typed
+#[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 pub(crate) struct RunArgs {
     /// The cell file (docs/cell-file.md has every key)
     pub(crate) cell: PathBuf,
     /// Write trace.csv, events.csv and report.html to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Let the monitor watch without slowing anything
+    /// Let the monitor observe without limiting the speed override
     #[arg(long)]
     pub(crate) no_monitor: bool,
-    /// Let robots that evade keep to their programs, whatever comes
+    /// Disable obstacle avoidance: all robots follow their programs
     #[arg(long)]
     pub(crate) no_avoidance: bool,
-    /// Also run without the monitor and show both in the report
+    /// Also run without the monitor, and compare both runs in the report
     #[arg(long, requires = "out", conflicts_with = "no_monitor")]
     pub(crate) compare: bool,
     /// Run the programs this many times in a row
@@ -105,11 +105,11 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom check cell.toml                   a table with the reasons, and what to write where entry is possible
+  elbowroom check cell.toml                   a table with reasons, and the missing keys where entry is possible
   elbowroom check cell.toml --json | jq '.regions[] | select(.excluded | not)'
 
-Nothing is run: the answer comes from the laws, the stopping times and the speeds of the programs (docs/laws.md).
-Exit status: 1 where a region that is meant to keep a robot out does not.")]
+Nothing is simulated: the result follows from the laws, the stopping times and the program speeds (docs/laws.md).
+Exit status: 1 if entry into a forbidden or exchange region is not excluded.")]
 pub(crate) struct CheckArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
@@ -120,35 +120,35 @@ pub(crate) struct CheckArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom query cell.toml --ask collision                         the cell as it starts
+  elbowroom query cell.toml --ask collision                         the start state of the cell
   elbowroom query cell.toml --ask distance --states q.csv           a row per state, as CSV
   elbowroom query --urdf arm.urdf --srdf arm.srdf --ask tolerance=0.02 --states q.csv --json
-  elbowroom query cell.toml --ask collision --level L2              with a box around each link
+  elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
 
-Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (docs/query.md says what is in them).
-Exit status: 1 where --ask collision finds one.")]
+Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (see docs/query.md).
+Exit status: 1 if --ask collision finds a collision.")]
 pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
     #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
     pub(crate) cell: Option<PathBuf>,
-    /// One robot alone, its root link being the world: a URDF, or a 3DS, GLB or glTF model
+    /// A single robot with its root link at the world origin: a URDF, or a 3DS, GLB or glTF model
     #[arg(long, value_name = "FILE", visible_alias = "model")]
     pub(crate) urdf: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) joints: JointArgs,
-    /// The SRDF that belongs to the URDF: the pairs that it disables are not looked at
+    /// The SRDF of the URDF: link pairs that it disables are not tested
     #[arg(long, value_name = "FILE", conflicts_with = "cell")]
     pub(crate) srdf: Option<PathBuf>,
-    /// Unit of a 3DS model, or of a URDF's meshes whose format states none
+    /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
-    /// What to ask: collision, distance, or tolerance=METRES
+    /// The query: collision, distance, or tolerance=METRES
     #[arg(long, value_name = "WHAT")]
-    pub(crate) ask: Ask,
-    /// Joint states (a header of joint names, a row of radians or metres each); default: the start
+    pub(crate) ask: QueryKind,
+    /// Joint states (a header of joint names, then a row of radians or metres per state); default: the start state
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
-    /// How closely to look: auto, L1, L2, L3, capsule or hull. All but auto and L3 err on the safe side
+    /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
     /// Print one JSON document instead of CSV
@@ -156,14 +156,13 @@ pub(crate) struct QueryArgs {
     pub(crate) json: bool,
 }
 
-/// What moves in a 3DS, GLB or glTF model.
+/// The joints of a 3DS, GLB or glTF model.
 #[derive(Debug, Args)]
 pub(crate) struct JointArgs {
-    /// The file that says which nodes of a 3DS, GLB or glTF model move (docs/models.md); default: MODEL.joints.toml
-    /// beside it
+    /// The file with the joints of a 3DS, GLB or glTF model (docs/models.md); default: MODEL.joints.toml beside it
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) joints: Option<PathBuf>,
-    /// One node that moves, in metres and degrees, as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated
+    /// One joint, in metres and degrees, such as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated
     #[arg(long, value_name = "NODE: axis=…")]
     pub(crate) joint: Vec<String>,
 }
@@ -175,23 +174,23 @@ pub(crate) struct JointArgs {
   elbowroom convert arm.glb --out arm --joint \"link_1: axis=z, min=-170, max=170, speed=100\"
   elbowroom convert cell.toml --robot ns16 --out ns16     the robot of a cell, with its tool and load
 
-Exit status: 0 where the files are written.")]
+Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
     /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it (docs/models.md)
     pub(crate) model: PathBuf,
-    /// The folder to write to
+    /// The output folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// What to write; both as urdf,3ds
+    /// The output format; urdf,3ds for both
     #[arg(long, value_enum, value_delimiter = ',', default_value = "urdf")]
     pub(crate) to: Vec<Written>,
-    /// The robot of a cell file; may be left out where there is one
+    /// The robot of a cell file; optional if there is only one
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
     /// An SRDF that belongs to the model
     #[arg(long, value_name = "FILE")]
     pub(crate) srdf: Option<PathBuf>,
-    /// Unit of a 3DS model, or of a URDF's meshes whose format states none
+    /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
     #[command(flatten)]
@@ -200,35 +199,35 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Written {
-    /// NAME.urdf, meshes/NAME/*.stl, and NAME.srdf where pairs are disabled
+    /// NAME.urdf, meshes/NAME/*.stl, and NAME.srdf if pairs are disabled
     Urdf,
-    /// NAME.3ds, and NAME.joints.toml with what a 3DS file cannot say
+    /// NAME.3ds, and NAME.joints.toml with the joints, which a 3DS file cannot hold
     #[value(name = "3ds")]
     Tds,
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom map cell.toml                                a table of what each object blocks
+  elbowroom map cell.toml                                a table of the blocked cells per object
   elbowroom map cell.toml --out map.npy --json           the cells as NumPy reads them, 0 free, 1 blocked
-  elbowroom map cell.toml --png slices                   pictures, and slices/index.html that shows them
-  elbowroom map cell.toml --model spheres=8              as the paper would, to compare
+  elbowroom map cell.toml --png slices                   pictures, and the page slices/index.html
+  elbowroom map cell.toml --model spheres=8              the obstacle model of the paper, for comparison
 
 Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees (docs/map.md).
 A cell is blocked if any configuration in it can touch an object.")]
 pub(crate) struct MapArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
-    /// The robot; may be left out where there is one, or one [map.ROBOT]
+    /// The robot; optional if there is only one, or only one [map.ROBOT]
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// What stands for each object: exact, slices, sphere, spheres=N or box
+    /// Obstacle model: exact, slices, sphere, spheres=N or box
     #[arg(long, default_value = "exact")]
-    pub(crate) model: Model,
-    /// Write the cells to this file: one byte each, 0 free, 1 blocked, axes in the order of the joints
+    pub(crate) model: ObstacleModel,
+    /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) out: Option<PathBuf>,
-    /// Write pictures of slices, and a page that shows them, to this folder
+    /// Write pictures of slices, and an HTML page with them, to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) png: Option<PathBuf>,
     /// Print one JSON document instead of the table
@@ -245,7 +244,7 @@ pub(crate) struct MapArgs {
 pub(crate) struct InspectArgs {
     /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF)
     pub(crate) model: PathBuf,
-    /// The SRDF that belongs to the URDF
+    /// The SRDF of the URDF
     #[arg(long, value_name = "FILE")]
     pub(crate) srdf: Option<PathBuf>,
     /// Unit of a 3DS model, or of meshes whose format states none
@@ -253,22 +252,22 @@ pub(crate) struct InspectArgs {
     pub(crate) unit: Option<Unit>,
     #[command(flatten)]
     pub(crate) joints: JointArgs,
-    /// The link at which the Denavit-Hartenberg table ends
+    /// The last link of the Denavit-Hartenberg table
     #[arg(long, value_name = "LINK")]
     pub(crate) tip: Option<String>,
-    /// The Denavit-Hartenberg tables to print, with commas between; --json has them all
+    /// The Denavit-Hartenberg tables to print, comma-separated; --json has all of them
     #[arg(long, value_enum, value_delimiter = ',', value_name = "TABLE,…", conflicts_with = "states")]
     pub(crate) dh: Vec<Dh>,
-    /// Joint states (a header of joint names, a row of radians or metres each): print link poses instead
+    /// Joint states (a header of joint names, then a row of radians or metres per state): print link poses instead
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
-    /// Leave out what takes time: resolution levels, the pair matrix, visual meshes
+    /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes
     #[arg(long, conflicts_with = "models")]
     pub(crate) brief: bool,
-    /// Also write a picture of the model with the axes of its joints: a PNG, or a page with four views
+    /// Also write a picture of the model with its joint axes: a PNG, or an HTML page with four views
     #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
     pub(crate) picture: Option<PathBuf>,
-    /// Also write hull, middle and coarse triangles of each link as STL (metres, link's frame) to this folder
+    /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
     /// Print one JSON document instead of tables
@@ -280,11 +279,11 @@ pub(crate) struct InspectArgs {
 pub(crate) enum Dh {
     /// Rz(theta) Tz(d) Tx(a) Ty(b) Rx(alpha) along the axes; the default
     Generalized,
-    /// Rz(theta) Tz(d) Tx(a) Rx(alpha), where no row needs b
+    /// Rz(theta) Tz(d) Tx(a) Rx(alpha); exists if no row needs b
     Classical,
     /// Rx(alpha) Tx(a) Rz(theta) Tz(d), Craig's
     Modified,
-    /// Generalized, a row for each frame of the model
+    /// Generalized, one row per frame of the model
     Direct,
 }
 
@@ -300,38 +299,38 @@ pub(crate) enum Unit {
 #[command(after_help = "Examples:
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0               from the robot's start
   elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv   and timed samples for the controller
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv   with timed samples for the controller
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
 
-Objects, the other robots at their start, the robot itself with tool and load count, by the pair matrix of the cell;
-permanent forbidden regions count for what the monitor guards against them.
-Exit status: 1 where no path was found, which proves nothing: there may be one (docs/plan.md).")]
+Obstacles are the objects, the other robots at their start, and the robot itself with tool and load, by the allowed
+collision matrix of the cell; the volumes that the monitor guards stay out of permanent forbidden regions.
+Exit status: 1 if no path was found; a path may exist nevertheless (docs/plan.md).")]
 pub(crate) struct PlanArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
-    /// Name of the robot; may be left out where there is one
+    /// Name of the robot; optional if there is only one
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// Where it is: a number per joint in the order of the chain, rad (m where it slides), with commas between;
-    /// default: the robot's start
+    /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints);
+    /// default: the robot's `start`
     #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
     pub(crate) from: Option<Numbers>,
-    /// Where it shall go, likewise
+    /// Goal configuration, likewise
     #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
     pub(crate) to: Numbers,
-    /// Write timed samples to this file: `t_s` and a column per joint, linear between rows
+    /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Time from sample to sample in seconds; default: the cell's tick
+    /// Sampling period in seconds; default: the cell's control period
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) period: Option<f64>,
-    /// Stop looking after this time in seconds
+    /// Time limit of the search in seconds
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: f64,
-    /// Stay away from everything by more than this, in metres
+    /// Security margin to all obstacles, in metres
     #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) clearance: f64,
-    /// Another whole number may find another path; the same finds the same
+    /// Seed of the random sampling; the same seed gives the same path
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Print one JSON document instead of a table
@@ -339,7 +338,7 @@ pub(crate) struct PlanArgs {
     pub(crate) json: bool,
 }
 
-/// Numbers with commas between.
+/// Comma-separated numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
@@ -355,7 +354,7 @@ impl std::str::FromStr for Numbers {
     }
 }
 
-/// A time that can be waited for.
+/// A duration in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
     value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
@@ -373,22 +372,22 @@ Example:
 pub(crate) struct TeachArgs {
     /// The cell file that has the robot
     pub(crate) cell: PathBuf,
-    /// What the points determine
+    /// The shape that the points determine
     #[arg(long, value_enum)]
     pub(crate) shape: TaughtShape,
     /// Name of the region
     #[arg(long)]
     pub(crate) name: String,
-    /// Joint states of the taught points, one row each
+    /// Joint states of the taught points, one row per point
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: PathBuf,
-    /// The robot that was driven; may be left out where there is one
+    /// The robot that was taught with; optional if there is only one
     #[arg(long)]
     pub(crate) robot: Option<String>,
     /// Teach with the flange instead of the TCP
     #[arg(long)]
     pub(crate) flange: bool,
-    /// Height of box3, in the cell file's unit of length: positive goes up from the taught corners, negative down
+    /// Height of box3, in the cell file's unit of length: positive is upwards from the taught corners, negative downwards
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
     /// Thickness of the warning zone, in the cell file's unit of length
@@ -408,6 +407,6 @@ pub(crate) enum TaughtShape {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExampleArgs {
-    /// Copy all examples and their models here; without it they are listed
+    /// Copy all examples and their models to this folder; without it they are listed
     pub(crate) dir: Option<PathBuf>,
 }

@@ -1,14 +1,14 @@
-//! `elbowroom check`: is entry excluded, and what is missing.
+//! `elbowroom check`: whether the laws exclude entry, and what is missing.
 
 use elbowroom::cell::Cell;
-use elbowroom::cell::check::{EntryCheck, check as judge, recordings, table};
+use elbowroom::sim::check::{self, EntryCheck, recordings, table};
 use serde::Serialize;
 
 use crate::args::CheckArgs;
-use crate::output::{Failure, Verdict, note, print, print_json};
+use crate::output::{ExitStatus, Failure, note, print, print_json};
 
 #[derive(Serialize)]
-struct Answer<'a> {
+struct Document<'a> {
     cell: &'a str,
     checksum: &'a str,
     regions: Vec<Row<'a>>,
@@ -22,21 +22,21 @@ struct Row<'a> {
     kind: &'static str,
     excluded: bool,
     reason: &'a str,
-    /// What to write into the cell file, where something is missing.
+    /// What to write into the cell file, if something is missing.
     write: Option<&'a str>,
     warning_m: f64,
     needed_warning_m: Option<f64>,
 }
 
-pub(crate) fn check(args: &CheckArgs) -> Result<Verdict, Failure> {
+pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let checks = judge(&cell)?;
+    let checks = check::check(&cell)?;
     for w in recordings(&cell) {
         note(format_args!("warning: {w}"));
     }
     if args.json {
-        print_json(&Answer {
+        print_json(&Document {
             cell: &cell.name,
             checksum: &cell.checksum,
             regions: checks.iter().map(|c| row(&cell, c)).collect(),
@@ -44,7 +44,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Verdict, Failure> {
     } else {
         print(&table(&cell, &checks))?;
     }
-    Ok(if checks.iter().any(|c| c.is_bad(&cell)) { Verdict::Bad } else { Verdict::Good })
+    Ok(if checks.iter().any(|c| c.is_bad(&cell)) { ExitStatus::NegativeResult } else { ExitStatus::Success })
 }
 
 fn row<'a>(cell: &'a Cell, check: &'a EntryCheck) -> Row<'a> {

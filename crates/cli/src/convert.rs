@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use elbowroom::cell::Cell;
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::formats::{joints, tds};
-use elbowroom::scene::Robot;
+use elbowroom::robot::Robot;
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::{ConvertArgs, Written};
-use crate::output::{Failure, Verdict, cannot_write, note};
+use crate::output::{ExitStatus, Failure, cannot_write, note};
 
-pub(crate) fn convert(args: &ConvertArgs) -> Result<Verdict, Failure> {
+pub(crate) fn convert(args: &ConvertArgs) -> Result<ExitStatus, Failure> {
     let is_cell = args.model.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let (name, robot) = if is_cell { of_cell(args)? } else { of_model(args)? };
     std::fs::create_dir_all(&args.out).map_err(cannot_write(&args.out))?;
@@ -34,7 +34,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<Verdict, Failure> {
         let more = files.len() - 1;
         note(format_args!("wrote {} and {more} files that belong to it", path.display()));
     }
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn of_model(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
@@ -75,16 +75,16 @@ fn of_cell(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
     Ok((robot.name.clone(), robot.robot.clone()))
 }
 
-/// The model, and a file of joints with what it cannot say.
+/// The 3DS model, and a file with the joints, which 3DS cannot hold.
 fn write_tds(robot: &Robot, path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let bytes = tds::write(&robot::to_tree(robot), path)?;
     std::fs::write(path, bytes).map_err(cannot_write(path))?;
-    let beside = joints::beside(path);
+    let beside = joints::default_path(path);
     std::fs::write(&beside, joints::to_toml(&robot.chain)).map_err(cannot_write(&beside))?;
     Ok(vec![path.to_owned(), beside])
 }
 
-/// Neither a model nor what lies beside it is written over: its SRDF and its joints may be the user's own work.
+/// Files beside the model are never overwritten: its SRDF and its joints may be written by the user.
 fn keep_own(path: &Path, model: &Path) -> Result<(), Failure> {
     let folder = |p: &Path| p.canonicalize().ok().and_then(|p| p.parent().map(Path::to_owned));
     if path.exists() && folder(path) == folder(model) {

@@ -1,20 +1,22 @@
-//! The examples that come with the program, and what it does without arguments.
+//! The built-in examples, and the command without arguments.
 
 use std::path::{Path, PathBuf};
 
-use elbowroom::cell::{Cell, RunOptions, report};
+use elbowroom::cell::Cell;
+use elbowroom::report;
+use elbowroom::sim::RunOptions;
 use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
-use crate::output::{Failure, Verdict, cannot_write, color, myself, note, print, width};
+use crate::output::{ExitStatus, Failure, cannot_write, color, myself, note, print, width};
 use crate::run::{warn_of_overruns, with_progress, write_files};
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
-/// Where everything goes that was not asked to go elsewhere.
+/// Default output folder.
 const OUT: &str = "elbowroom-out";
 
 /// Runs the cell of the paper's figure 12 (S1.13) with control on and off.
-pub(crate) fn figure_12() -> Result<Verdict, Failure> {
+pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let out = PathBuf::from(OUT);
     extract(&out)?;
     let dir = out.join("figure12");
@@ -39,11 +41,11 @@ pub(crate) fn figure_12() -> Result<Verdict, Failure> {
         myself(),
         dir.display(),
     ))?;
-    Ok(if on.bad_news() { Verdict::Bad } else { Verdict::Good })
+    Ok(if on.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
 }
 
 /// Lists the examples or copies them.
-pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
+pub(crate) fn copy(args: &ExampleArgs) -> Result<ExitStatus, Failure> {
     if let Some(dir) = &args.dir {
         extract(dir)?;
         print(&format!(
@@ -52,7 +54,7 @@ pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
             myself(),
             dir.join("figure12/cell.toml").display()
         ))?;
-        return Ok(Verdict::Good);
+        return Ok(ExitStatus::Success);
     }
     for example in cells() {
         let text = example.get_file(example.path().join("cell.toml")).and_then(|f| f.contents_utf8()).unwrap_or("");
@@ -60,14 +62,14 @@ pub(crate) fn copy(args: &ExampleArgs) -> Result<Verdict, Failure> {
         print(&format!("{:14} {first}\n", example.path().display()))?;
     }
     print(&format!("\n{} example DIR copies them.\n", myself()))?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn cells() -> impl Iterator<Item = &'static Dir<'static>> {
     EXAMPLES.dirs().filter(|d| d.get_file(d.path().join("cell.toml")).is_some())
 }
 
-/// Writes the examples; files that are there and differ are the user's own and stay as they are.
+/// Writes the examples; existing files that differ belong to the user and are kept.
 fn extract(to: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(to).map_err(cannot_write(to))?;
     let mut dirs = vec![&EXAMPLES];

@@ -1,20 +1,22 @@
-//! `elbowroom inspect`: what is in a model.
+//! `elbowroom inspect`: the contents of a model.
 
 use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use elbowroom::cell::csv::read_states;
-use elbowroom::cell::inspect::{DhConvention, InspectOptions, Inspection};
+use elbowroom::analysis::query::JointStates;
+use elbowroom::cell::QueryModel;
 use elbowroom::formats::stl::write_binary;
+use elbowroom::inspect::{DhConvention, InspectOptions, Inspection};
 use elbowroom::kinematics::{ChainState, LinkId};
+use elbowroom::report::model_picture;
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::{Dh, InspectArgs, Unit};
-use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 
-pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
+pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     let options = InspectOptions {
         srdf: args.srdf.clone(),
         unit: args.unit.map(LengthUnit::from),
@@ -41,10 +43,10 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<Verdict, Failure> {
     } else {
         print(&inspection.to_string())?;
     }
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
-/// A picture, or a page with four.
+/// Writes a picture, or a page with four views.
 fn picture(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
     let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     if !(ends("png") || ends("html")) {
@@ -52,13 +54,13 @@ fn picture(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
         return Err(Failure::Wrong(what));
     }
     let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-    let written = if ends("png") { inspection.write_png(file) } else { inspection.write_page(file) };
-    written.map_err(cannot_write(path))?;
+    let write = if ends("png") { model_picture::write_png } else { model_picture::write_page };
+    write(inspection, file).map_err(cannot_write(path))?;
     note(format_args!("wrote {}", path.display()));
     Ok(())
 }
 
-/// Hull, middle and coarse triangles of every link, a file each.
+/// Writes hull, middle and coarse triangles of every link, one file each.
 fn models(inspection: &Inspection, dir: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
     let mut files = 0;
@@ -76,8 +78,8 @@ fn models(inspection: &Inspection, dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The pose of every link in the root link, a row per state and link.
-fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<Verdict, Failure> {
+/// Prints the pose of every link in the root link, one row per state and link.
+fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<ExitStatus, Failure> {
     let Some(robot) = inspection.robot() else {
         return Err(Failure::Wrong(format!(
             "{}: is a mesh; it has no joints for --states",
@@ -85,11 +87,11 @@ fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<Verdict, F
         )));
     };
     let chain = &robot.chain;
-    let states = read_states(states, &[("", chain)])?;
+    let states = JointStates::read(states, &QueryModel::of_robot(&inspection.model, robot.clone()))?;
     let mut state = ChainState::new(chain);
     let mut text = String::from("index,link,r11,r12,r13,r21,r22,r23,r31,r32,r33,x_m,y_m,z_m\n");
-    for (index, q) in states.iter().enumerate() {
-        state.q.copy_from_slice(&q[0]);
+    for index in 0..states.len() {
+        states.of(index).for_each(|(_, q)| state.q.copy_from_slice(q));
         chain.forward(&mut state);
         for (link, name) in chain.links().iter().enumerate() {
             let pose = state.link_in_root(LinkId(link));
@@ -108,7 +110,7 @@ fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<Verdict, F
         }
     }
     print(&text)?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 impl From<Dh> for DhConvention {

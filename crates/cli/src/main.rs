@@ -1,6 +1,6 @@
 //! The `elbowroom` command: parse, call, print.
 //!
-//! Exit status: 0 done and free of trouble; 1 the answer is bad news; 2 the input or the call is wrong.
+//! Exit status: 0 success; 1 negative result (a collision, a forbidden region entered, no path); 2 invalid input or call.
 
 mod args;
 mod check;
@@ -21,11 +21,11 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 
 use args::{Cli, Command};
-use output::{Failure, Verdict};
+use output::{ExitStatus, Failure};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let answer = match cli.command {
+    let result = match cli.command {
         None => example::figure_12(),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Check(args)) => check::check(&args),
@@ -40,10 +40,10 @@ fn main() -> ExitCode {
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),
     };
-    match answer {
-        // Whoever reads our output and leaves has read enough: `elbowroom … | head` is no failure.
-        Ok(Verdict::Good) | Err(Failure::Closed) => ExitCode::SUCCESS,
-        Ok(Verdict::Bad) => ExitCode::from(1),
+    match result {
+        // A reader that closes the pipe early is not a failure: `elbowroom … | head`.
+        Ok(ExitStatus::Success) | Err(Failure::Closed) => ExitCode::SUCCESS,
+        Ok(ExitStatus::NegativeResult) => ExitCode::from(1),
         Err(Failure::Wrong(message)) => {
             output::note(format_args!("elbowroom: {message}"));
             ExitCode::from(2)
@@ -51,9 +51,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn completions(shell: clap_complete::Shell) -> Result<Verdict, Failure> {
+fn completions(shell: clap_complete::Shell) -> Result<ExitStatus, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "elbowroom", &mut script);
     output::print(&String::from_utf8_lossy(&script))?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }

@@ -1,32 +1,34 @@
-//! `elbowroom map`: a cell's objects as blocked cells of joint space.
+//! `elbowroom map`: the joint-space occupancy of a cell's objects.
 
 use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
+use elbowroom::analysis::map::{self, CellMap, MapObstacle, MapRequest};
 use elbowroom::cell::Cell;
-use elbowroom::cell::map::{CellMap, MapRequest, map as ask};
+use elbowroom::cspace::GridAxis;
+use elbowroom::report::map_pictures;
 use serde::Serialize;
 
 use crate::args::MapArgs;
-use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 
-pub(crate) fn map(args: &MapArgs) -> Result<Verdict, Failure> {
+pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let map = ask(&cell, &MapRequest { robot: args.robot.clone(), model: args.model })?;
+    let map = map::map(&cell, &MapRequest { robot: args.robot.clone(), model: args.model })?;
     map.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(path) = &args.out {
         write(&map, path)?;
     }
     let pictures = match &args.png {
-        Some(folder) => Some((map.write_pictures(folder).map_err(cannot_write(folder))?, folder)),
+        Some(folder) => Some((map_pictures::write(&map, folder).map_err(cannot_write(folder))?, folder)),
         None => None,
     };
     if args.json {
         print_json(&Document::of(&map))?;
-        return Ok(Verdict::Good);
+        return Ok(ExitStatus::Success);
     }
     print(&text(&map))?;
     if let Some(path) = &args.out {
@@ -35,7 +37,7 @@ pub(crate) fn map(args: &MapArgs) -> Result<Verdict, Failure> {
     if let Some((count, folder)) = pictures {
         print(&format!("\n{count} pictures: open {}\n", folder.join("index.html").display()))?;
     }
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn write(map: &CellMap, path: &Path) -> Result<(), Failure> {
@@ -47,7 +49,7 @@ fn write(map: &CellMap, path: &Path) -> Result<(), Failure> {
     dense.write_npy(file).map_err(cannot_write(path))
 }
 
-/// As the JSON has it.
+/// The JSON document.
 #[derive(Serialize)]
 struct Document<'a> {
     robot: &'a str,
@@ -78,14 +80,14 @@ struct ObstacleRow<'a> {
 
 impl<'a> Document<'a> {
     fn of(map: &'a CellMap) -> Self {
-        let axis = |a: &'a elbowroom::cspace::Axis| AxisRow {
+        let axis = |a: &'a GridAxis| AxisRow {
             joint: a.joint(),
             min: a.min(),
             max: a.max(),
             step: a.step(),
             count: a.count(),
         };
-        let obstacle = |o: &'a elbowroom::cell::map::MapObstacle| ObstacleRow {
+        let obstacle = |o: &'a MapObstacle| ObstacleRow {
             name: &o.name,
             model: o.model.to_string(),
             blocked: o.blocks.blocked(),
@@ -103,7 +105,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// For people. Writing to a String cannot fail.
+/// The table for the terminal. Writing to a String cannot fail.
 fn text(map: &CellMap) -> String {
     let share = |blocked: u64| 100.0 * blocked as f64 / map.cells().max(1) as f64;
     let mut out = format!("{}: {} cells, {:.2} % blocked\n\n", map.robot, grouped(map.cells()), share(map.blocked));

@@ -1,23 +1,24 @@
-//! What leaves the program.
+//! Output: standard output, standard error, exit status.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-/// How the answer turned out.
+/// The exit status of a command that gave an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Verdict {
-    Good,
-    /// A collision, a forbidden region entered.
-    Bad,
+pub(crate) enum ExitStatus {
+    /// 0.
+    Success,
+    /// 1: a collision, a forbidden region entered, no path found.
+    NegativeResult,
 }
 
-/// Why there is no answer.
+/// Why a command gave no answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The input or the call is wrong, or a file cannot be written.
     Wrong(String),
-    /// Nobody reads on.
+    /// The reader of standard output closed the pipe.
     Closed,
 }
 
@@ -42,29 +43,29 @@ pub(crate) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure
     print(&format!("{text}\n"))
 }
 
-/// Tells the user something beside the answer. Where nobody listens that is no failure.
+/// Prints a message to standard error. A failed write is ignored.
 pub(crate) fn note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{message}");
 }
 
-/// What to type to call this program again: under `cargo run` it is on no search path.
+/// The command line that starts this program: under `cargo run` it is not on the search path.
 pub(crate) fn myself() -> &'static str {
     if std::env::var_os("CARGO").is_some() { "cargo run --release --" } else { "elbowroom" }
 }
 
-/// Says which file could not be written.
+/// The error for a file that could not be written.
 pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
     move |e| {
         Failure::Wrong(format!("{}: cannot be written: {e}\n  write: a folder that you may write to", path.display()))
     }
 }
 
-/// Columns of the terminal, 80 where there is none.
+/// Columns of the terminal; 80 where unknown.
 pub(crate) fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|c| *c >= 60).unwrap_or(80)
 }
 
-/// True where colours would be seen.
+/// True where standard output is a terminal that accepts colours.
 pub(crate) fn color() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }

@@ -5,29 +5,29 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::time::Duration;
 
+use elbowroom::analysis::plan::{self, PathAnswer, PathRequest, TimedPath};
 use elbowroom::cell::Cell;
-use elbowroom::cell::plan::{Motion, PathAnswer, PathRequest, plan as ask};
-use elbowroom::planner::RouteOptions;
+use elbowroom::planner::RrtConnectSettings;
 
 use crate::args::PlanArgs;
-use crate::output::{Failure, Verdict, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 
-pub(crate) fn plan(args: &PlanArgs) -> Result<Verdict, Failure> {
+pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let request = PathRequest {
         robot: args.robot.clone(),
         from: args.from.as_ref().map(|q| q.0.clone()),
         to: args.to.0.clone(),
-        options: RouteOptions {
+        options: RrtConnectSettings {
             time_limit: Duration::from_secs_f64(args.time_limit),
             clearance_m: args.clearance,
             seed: args.seed,
-            ..RouteOptions::default()
+            ..RrtConnectSettings::default()
         },
         period_s: args.period,
     };
-    let answer = ask(&cell, &request)?;
+    let answer = plan::plan(&cell, &request)?;
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
         let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
         motion.write_csv(&answer.joints, file).map_err(cannot_write(path))?;
@@ -40,17 +40,17 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<Verdict, Failure> {
             print(&format!("\n{} rows in {}\n", motion.rows.len(), path.display()))?;
         }
     }
-    Ok(if answer.found { Verdict::Good } else { Verdict::Bad })
+    Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
-/// For people. Writing to a String cannot fail.
+/// The table for the terminal. Writing to a String cannot fail.
 fn text(answer: &PathAnswer) -> String {
     let milliseconds = |us: u64| us as f64 / 1000.0;
     let Some(motion) = &answer.motion else {
         let reason = answer.reason.as_deref().unwrap_or("no path found");
         return format!("{}: {reason}\n", answer.robot);
     };
-    let Motion { waypoints, cost_rad, duration_s, stops, .. } = motion;
+    let TimedPath { waypoints, cost_rad, duration_s, stops, .. } = motion;
     let stops = match stops {
         0 => "without a stop".into(),
         1 => "one stop on the way".into(),

@@ -1,45 +1,49 @@
-//! `elbowroom query`: collision, distance, tolerance, one answer per state.
+//! `elbowroom query`: collision, distance or tolerance, one row per state.
 
 use std::io::IsTerminal;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use elbowroom::cell::Cell;
-use elbowroom::cell::query::{Ask, Row, States, Subject, Written, answer};
+use elbowroom::analysis::query::{JointStates, QueryKind, QueryRecord, QueryRow, evaluate};
+use elbowroom::cell::{Cell, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::spatial::units::LengthUnit;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::QueryArgs;
-use crate::output::{Failure, Verdict, note, print};
+use crate::output::{ExitStatus, Failure, note, print};
 
-/// From this many states on it pays to find out which pairs can never meet.
+/// From this number of states on, pairs out of reach of each other are excluded first.
 const MANY: usize = 1000;
 
-pub(crate) fn query(args: &QueryArgs) -> Result<Verdict, Failure> {
+pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     let subject = subject(args)?;
     let states = match &args.states {
-        Some(path) => States::read(path, &subject)?,
-        None => States::start(&subject),
+        Some(path) => JointStates::read(path, &subject)?,
+        None => JointStates::start(&subject),
     };
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let scene = subject.scene(states.len() >= MANY)?;
-    if scene.pairs().tested() == 0 {
+    if scene.allowed_collision_matrix().tested() == 0 {
         note(format_args!("warning: {}: there is no pair that could meet", subject.file.display()));
     }
     let mut writer = Writer::new(args, &subject, states.len());
     writer.begin()?;
     let mut outcome = Ok(());
-    answer(&scene, &states, args.ask, args.level, &mut |rows| {
+    evaluate(&scene, &states, args.ask, args.level, &mut |rows| {
         outcome = writer.rows(rows);
         outcome.is_ok()
     })?;
     outcome?;
     writer.end()?;
-    Ok(if args.ask == Ask::Collision && writer.colliding > 0 { Verdict::Bad } else { Verdict::Good })
+    Ok(if args.ask == QueryKind::Collision && writer.colliding > 0 {
+        ExitStatus::NegativeResult
+    } else {
+        ExitStatus::Success
+    })
 }
 
-fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
+fn subject(args: &QueryArgs) -> Result<QueryModel, Failure> {
     if let Some(urdf) = &args.urdf {
         let unit = args.unit.map(LengthUnit::from);
         let options = LoadOptions {
@@ -51,11 +55,11 @@ fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
         };
         let loaded = robot::load(urdf, &options)?;
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        let subject = Subject::of_robot(urdf, loaded.robot);
+        let subject = QueryModel::of_robot(urdf, loaded.robot);
         subject.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
         return Ok(subject);
     }
-    // clap asks for one of the two.
+    // clap requires one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
     if args.joints.joints.is_some() || !args.joints.joint.is_empty() {
         let what =
@@ -69,13 +73,13 @@ fn subject(args: &QueryArgs) -> Result<Subject, Failure> {
     }
     let cell = Cell::load(path)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    Ok(Subject::of_cell(&cell))
+    Ok(QueryModel::of_cell(&cell))
 }
 
-/// Prints rows as they come, and how far it has come where somebody watches.
+/// Prints rows in order, and the progress on a terminal.
 struct Writer<'a> {
     args: &'a QueryArgs,
-    subject: &'a Subject,
+    subject: &'a QueryModel,
     states: usize,
     done: usize,
     colliding: usize,
@@ -84,7 +88,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(args: &'a QueryArgs, subject: &'a Subject, states: usize) -> Self {
+    fn new(args: &'a QueryArgs, subject: &'a QueryModel, states: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
             bar.set_style(style);
@@ -94,12 +98,12 @@ impl<'a> Writer<'a> {
 
     fn begin(&self) -> Result<(), Failure> {
         if !self.args.json {
-            return print(&format!("{}\n", Written::HEADER));
+            return print(&format!("{}\n", QueryRecord::HEADER));
         }
         let (ask, tolerance) = match self.args.ask {
-            Ask::Collision => ("collision", None),
-            Ask::Distance => ("distance", None),
-            Ask::Tolerance(t) => ("tolerance", Some(t)),
+            QueryKind::Collision => ("collision", None),
+            QueryKind::Distance => ("distance", None),
+            QueryKind::Tolerance(t) => ("tolerance", Some(t)),
         };
         let model = json(&self.subject.file.display().to_string())?;
         let level = self.args.level;
@@ -110,10 +114,10 @@ impl<'a> Writer<'a> {
         ))
     }
 
-    fn rows(&mut self, rows: &[Row]) -> Result<(), Failure> {
+    fn rows(&mut self, rows: &[QueryRow]) -> Result<(), Failure> {
         let mut text = String::new();
         for row in rows {
-            let written = Written::of(row, self.subject);
+            let written = QueryRecord::of(row, self.subject);
             if self.args.json {
                 text.push_str(if self.done == 0 { "" } else { ",\n" });
                 text.push_str(&json(&written)?);
@@ -124,7 +128,7 @@ impl<'a> Writer<'a> {
             self.done += 1;
             self.colliding += usize::from(row.collides);
         }
-        self.tell();
+        self.show_progress();
         print(&text)
     }
 
@@ -133,7 +137,7 @@ impl<'a> Writer<'a> {
         if self.args.json { print(&format!("\n],\n\"colliding\": {}\n}}\n", self.colliding)) } else { Ok(()) }
     }
 
-    fn tell(&self) {
+    fn show_progress(&self) {
         let elapsed = self.begin.elapsed();
         if elapsed < Duration::from_secs(2) || !std::io::stderr().is_terminal() {
             return;

@@ -1,4 +1,4 @@
-//! `elbowroom rules`: the rules of avoidance, read, shown, written.
+//! `elbowroom rules`: reads, prints and writes the fuzzy rules of avoidance.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,7 +8,7 @@ use elbowroom::avoidance::{DEFAULT_RULES, Rules};
 use serde::Serialize;
 
 use crate::args::RulesArgs;
-use crate::output::{Failure, Verdict, cannot_write, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_write, print, print_json};
 
 /// Distances (m) and speeds of approach (m/s) of the table.
 const DISTANCES_M: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8];
@@ -32,7 +32,7 @@ struct SurfaceAnswer {
     values: Vec<Vec<f64>>,
 }
 
-pub(crate) fn rules(args: &RulesArgs) -> Result<Verdict, Failure> {
+pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
     if let Some(path) = &args.write {
         if path.exists() {
             return Err(Failure::Wrong(format!(
@@ -67,7 +67,7 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<Verdict, Failure> {
     } else {
         print(&table(&rules))?;
     }
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn read(path: &Path) -> Result<Rules, Failure> {

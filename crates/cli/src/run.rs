@@ -5,21 +5,23 @@ use std::io::{BufWriter, IsTerminal};
 use std::path::Path;
 use std::time::Duration;
 
-use elbowroom::cell::report::{self, ReportScene};
-use elbowroom::cell::run::{Progress, simulate_with};
+use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
-use elbowroom::cell::{Cell, Recording, RunOptions, RunOutcome, Summary, csv};
+use elbowroom::report::{self, ReportScene};
+use elbowroom::sim::check::overruns;
+use elbowroom::sim::run::{RunProgress, simulate_with};
+use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, csv};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::RunArgs;
-use crate::output::{Failure, Verdict, cannot_write, color, note, print, print_json, width};
+use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
 
-pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
+pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let options = RunOptions {
         monitored: !args.no_monitor,
-        evasive: !args.no_avoidance,
+        avoidance: !args.no_avoidance,
         repeat: args.repeat,
         ..RunOptions::default()
     };
@@ -37,7 +39,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
         write_files(dir, &cell, &outcome.recording, without.as_ref())?;
     }
     if args.json {
-        print_json(&Document { summary: Summary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
+        print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
     } else {
         print(&report::summary(&outcome.recording, width(), color()))?;
         if let Some(seal) = &cell.seal {
@@ -47,32 +49,32 @@ pub(crate) fn run(args: &RunArgs) -> Result<Verdict, Failure> {
             print(&format!("\nFiles: {}\n", dir.join("{report.html,trace.csv,events.csv}").display()))?;
         }
     }
-    Ok(if outcome.bad_news() { Verdict::Bad } else { Verdict::Good })
+    Ok(if outcome.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
 }
 
-/// Says before a run where robots can come to a border faster than they can stop.
+/// Warns before a run of borders that a robot can reach faster than it can stop.
 pub(crate) fn warn_of_overruns(cell: &Cell) -> Result<(), Failure> {
-    elbowroom::cell::check::overruns(cell)?.iter().for_each(|w| note(format_args!("warning: {w}")));
+    overruns(cell)?.iter().for_each(|w| note(format_args!("warning: {w}")));
     Ok(())
 }
 
-/// What a run amounted to, and of a sealed cell who sealed it.
+/// The summary of a run, and the seal of a sealed cell.
 #[derive(serde::Serialize)]
 struct Document<'a> {
     #[serde(flatten)]
-    summary: Summary,
+    summary: RunSummary,
     #[serde(skip_serializing_if = "Option::is_none")]
     seal: Option<&'a Seal>,
 }
 
-/// Runs the cell with a progress bar, which appears only where the run is long.
+/// Runs the cell with a progress bar that appears after 0.7 s.
 pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} [{elapsed_precise}]") {
         bar.set_style(style);
     }
     let begin = std::time::Instant::now();
-    let outcome = simulate_with(cell, options, &mut |p: Progress| {
+    let outcome = simulate_with(cell, options, &mut |p: RunProgress| {
         if bar.is_hidden() && std::io::stderr().is_terminal() && begin.elapsed() > Duration::from_millis(700) {
             bar.set_draw_target(ProgressDrawTarget::stderr());
         }
@@ -83,7 +85,7 @@ pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutc
     Ok(outcome?)
 }
 
-/// Writes trace, events and the report; `without` is the run without the monitor, shown beside.
+/// Writes trace, events and the report; `without` is the run without the monitor, for comparison.
 pub(crate) fn write_files(
     dir: &Path,
     cell: &Cell,

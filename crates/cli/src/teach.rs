@@ -1,9 +1,9 @@
-//! `elbowroom teach`: points that the robot was driven to become a region.
+//! `elbowroom teach`: a region from taught points.
 
 use std::fmt::Write;
 
-use elbowroom::cell::csv::read_states;
-use elbowroom::cell::{Cell, CellRobot};
+use elbowroom::analysis::query::JointStates;
+use elbowroom::cell::{Cell, CellRobot, QueryModel};
 use elbowroom::kinematics::ChainState;
 use elbowroom::monitor::Region;
 use elbowroom::monitor::teach::{self as taught, HeightDirection};
@@ -11,12 +11,12 @@ use elbowroom::proximity::Shape;
 use elbowroom::spatial::Vec3;
 
 use crate::args::{TaughtShape, TeachArgs};
-use crate::output::{Failure, Verdict, note, print};
+use crate::output::{ExitStatus, Failure, note, print};
 
-pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
+pub(crate) fn teach(args: &TeachArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     let robot = robot(&cell, args)?;
-    let points = points(robot, args)?;
+    let points = points(&cell, robot, args)?;
     if cell.regions.iter().any(|r| r.region.name == args.name) {
         return Err(Failure::Wrong(format!("{}: there is a region `{}` already", args.cell.display(), args.name)));
     }
@@ -35,7 +35,7 @@ pub(crate) fn teach(args: &TeachArgs) -> Result<Verdict, Failure> {
     accepted(&text, &cell, args)?;
     built.iter().for_each(note);
     print(&text)?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure> {
@@ -52,18 +52,18 @@ fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure>
     }
 }
 
-/// Where the TCP (or the flange) is at each state.
-fn points(robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>, Failure> {
+/// The position of the TCP (or of the flange) in each state.
+fn points(cell: &Cell, robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>, Failure> {
     let chain = &robot.robot.chain;
     let mut state = ChainState::new(chain);
-    let states = read_states(&args.states, &[(&robot.name, chain)])?;
-    let point = |q: &Vec<Vec<f64>>| {
-        state.q.copy_from_slice(&q[0]);
+    let states = JointStates::read(&args.states, &QueryModel::of_robot_in_cell(cell, robot))?;
+    let point = |index: usize| {
+        states.of(index).for_each(|(_, q)| state.q.copy_from_slice(q));
         chain.forward(&mut state);
         let flange_in_world = robot.base_in_world * state.link_in_root(robot.flange);
         if args.flange { flange_in_world.translation } else { (flange_in_world * robot.tcp_in_flange).translation }
     };
-    Ok(states.iter().map(point).collect())
+    Ok((0..states.len()).map(point).collect())
 }
 
 fn region(args: &TeachArgs, points: &[Vec3], height: Option<f64>) -> Result<Region, Failure> {
@@ -102,7 +102,7 @@ fn height_direction(
     found.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
 }
 
-/// What was built of three corners and a height, in words: nobody should have to load the cell to see on which side it is.
+/// A description of the box built from three corners and a height, with the side that it extends to.
 fn box_built(region: &Region, height: &HeightDirection, cell: &Cell) -> Vec<String> {
     let unit = cell.units.length.symbol();
     let number = |metres: f64| shown(metres / cell.units.length.to_metres(1.0));
@@ -142,12 +142,12 @@ fn box_built(region: &Region, height: &HeightDirection, cell: &Cell) -> Vec<Stri
     lines
 }
 
-/// At most four digits behind the point.
+/// At most four digits after the decimal point.
 fn shown(v: f64) -> String {
     format!("{}", (v * 1e4).round() / 1e4 + 0.0)
 }
 
-/// Nothing is printed that the cell file's reader would refuse.
+/// Rejects a region that the cell file's parser would reject.
 fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
     let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
@@ -156,13 +156,13 @@ fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.what)))
 }
 
-/// The region as it stands in a cell file.
+/// The region in cell-file syntax.
 fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn Fn(f64) -> f64) -> String {
     let mut text = format!("[region.{}]\n", key(&region.name));
     let mut line = |key: &str, value: String| {
         let _ = writeln!(text, "{key} = {value}");
     };
-    // A tenth of a micrometre is beyond any robot; so are seven digits of an angle.
+    // Rounded to 0.1 µm and to seven digits of an angle.
     let rounded = |v: f64, per_unit: f64| format!("{}", (v * per_unit).round() / per_unit + 0.0);
     let number = |metres: f64| rounded(length(metres), (1e7 / length(1.0)).round());
     let point = |p: Vec3| format!("[{}]", p.to_array().map(number).join(", "));
@@ -201,7 +201,7 @@ fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn 
     text
 }
 
-/// A TOML key: bare where it may be.
+/// A TOML key, bare if possible.
 fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare { name.to_owned() } else { format!("{name:?}") }

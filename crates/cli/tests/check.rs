@@ -2,9 +2,8 @@
 
 mod common;
 
-use std::path::Path;
-
 use common::{Answer, elbowroom, examples, keys};
+use std::path::Path;
 
 /// A carriage at 2 m/s that stops in 0.25 s, and a wall with a thin warning zone: it runs 202 mm into it by the bare law.
 const OVERRUN: &str = r#"version = 1
@@ -44,7 +43,7 @@ fn run(text: &str) -> Answer {
     elbowroom(cell(text).path(), &["run", "cell.toml", "--json"])
 }
 
-/// The thickness is the sum and what comes on top of it, which the law's approach with late answers takes
+/// The thickness is the sum and a supplement for the reaction time of the law
 /// (docs/laws.md, section 2: (v·t)²/4 over the way of braking), and 0.3 % for what is sampled.
 fn assert_close(needed: f64, sum: f64, late: f64) {
     assert!(needed >= sum && needed <= (sum + late) * 1.003, "{needed} m, the sum is {sum} m");
@@ -62,7 +61,7 @@ fn an_overrun_is_said_before_the_run() {
         let answer = run(&cured).expect(0);
         assert!(!answer.stderr.contains("overrun"), "{}", answer.stderr);
     }
-    // Without the monitor nobody expects to be stopped.
+    // No warning of overruns without the monitor.
     let free = elbowroom(cell(OVERRUN).path(), &["run", "cell.toml", "--no-monitor"]).expect(1);
     assert!(!free.stderr.contains("overrun"), "{}", free.stderr);
 }

@@ -1,4 +1,4 @@
-//! `elbowroom inspect`: what it says about the example arm.
+//! `elbowroom inspect`: its output for the example arm.
 
 mod common;
 
@@ -91,7 +91,7 @@ fn a_unit_scales_a_mesh_and_an_unknown_tip_is_refused() {
 }
 
 #[test]
-fn the_table_for_people_names_every_joint_and_mesh() {
+fn the_table_names_every_joint_and_mesh() {
     let answer = elbowroom(&examples(), &["inspect", &ns16()]).expect(0);
     for word in ["joint_1", "joint_6", "base_link", "link_6", "residual", "closed"] {
         assert!(answer.stdout.contains(word), "{word}: {}", answer.stdout);
@@ -99,13 +99,13 @@ fn the_table_for_people_names_every_joint_and_mesh() {
 }
 
 #[test]
-fn models_are_made_by_themselves_and_say_how_far_they_are_off() {
+fn resolution_models_report_their_deviation() {
     let dir = tempfile::tempdir().unwrap();
     let answer =
         elbowroom(dir.path(), &["inspect", &ns16(), "--json", "--models", "m", "--picture", "p.png"]).expect(0);
     let json = answer.json();
-    assert_eq!(json["unit_doubts"].as_array().map(Vec::len), Some(0));
-    assert!(json["meshes"].as_array().unwrap().iter().all(|m| m["open_edges"] == 0 && m["crowded_edges"] == 0));
+    assert_eq!(json["suspect_units"].as_array().map(Vec::len), Some(0));
+    assert!(json["meshes"].as_array().unwrap().iter().all(|m| m["open_edges"] == 0 && m["non_manifold_edges"] == 0));
     let levels = json["resolution"].as_array().unwrap();
     assert_eq!(levels.len(), 7);
     for l in levels {
@@ -147,7 +147,7 @@ fn cart(dir: &std::path::Path, size: f64, scale: f64) -> serde_json::Value {
 }
 
 #[test]
-fn units_are_doubted_where_they_are_wrong_and_nowhere_else() {
+fn wrong_units_are_reported_and_right_units_are_not() {
     let dir = tempfile::tempdir().unwrap();
     for (size, scale, looks_like) in [
         (300.0, 1.0, Some("mm")),
@@ -158,7 +158,7 @@ fn units_are_doubted_where_they_are_wrong_and_nowhere_else() {
         (0.02, 1.0, None),
     ] {
         let json = cart(dir.path(), size, scale);
-        let doubts = json["unit_doubts"].as_array().unwrap();
+        let doubts = json["suspect_units"].as_array().unwrap();
         assert_eq!(doubts.first().and_then(|d| d["looks_like"].as_str()), looks_like, "{size} {scale}");
         assert_eq!(doubts.len(), usize::from(looks_like.is_some()));
         assert_eq!(json["meshes"][0]["open_edges"], 3);
@@ -305,18 +305,18 @@ fn text_and_json_name_the_same_unit() {
         (0.001, "applied twice", "looks like mm applied twice"),
     ] {
         let json = scaled_ns16(dir.path(), factor, |text| text).json();
-        let doubts = json["unit_doubts"].as_array().unwrap();
+        let doubts = json["suspect_units"].as_array().unwrap();
         assert_eq!((doubts.len(), doubts[0]["looks_like"].as_str()), (1, Some(looks_like)), "{factor}: {doubts:?}");
         let said: Vec<&str> = json["warnings"].as_array().unwrap().iter().filter_map(|w| w.as_str()).collect();
         let about_units: Vec<_> = said.iter().filter(|w| w.contains("look")).collect();
         assert!(about_units.len() == 1 && about_units[0].contains(words), "{factor}: {said:?}");
     }
     let right = scaled_ns16(dir.path(), 1.0, |text| text).json();
-    assert_eq!(right["unit_doubts"], serde_json::json!([]));
+    assert_eq!(right["suspect_units"], serde_json::json!([]));
 }
 
 #[test]
-fn limits_in_degrees_are_doubted() {
+fn limits_in_degrees_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     let degrees = |text: String| {
         let mut out = String::new();
@@ -331,7 +331,7 @@ fn limits_in_degrees_are_doubted() {
         out
     };
     let json = scaled_ns16(dir.path(), 1.0, degrees).json();
-    assert_eq!(json["unit_doubts"][0]["looks_like"], "deg", "{}", json["unit_doubts"]);
+    assert_eq!(json["suspect_units"][0]["looks_like"], "deg", "{}", json["suspect_units"]);
     assert!(json["warnings"].to_string().contains("look like degrees (deg), read as radians"), "{}", json["warnings"]);
 }
 

@@ -45,7 +45,7 @@ fn map(cell: &str, args: &[&str]) -> Answer {
 }
 
 #[test]
-fn the_document_has_what_was_promised() {
+fn the_document_has_the_documented_keys() {
     let answer = map(CELL, &["--json"]).expect(0).json();
     for key in ["axes", "cells", "static_blocked", "obstacles", "blocked"] {
         assert!(keys(&answer).contains(&key), "{answer}");
@@ -130,20 +130,20 @@ fn an_example_works_without_a_map_table() {
 }
 
 #[test]
-fn what_cannot_be_is_said_with_what_to_write() {
+fn invalid_requests_are_refused_with_a_hint() {
     let error = |cell: &str, args: &[&str]| map(cell, args).expect(2).stderr;
     let unlimited = CELL.replace("min = -170, max = 170", "min = -170");
     assert!(!error(&unlimited, &[]).is_empty());
     let fine = CELL.replace("step = [5, 5, 4]", "step = 0.0001");
-    let told = error(&fine, &[]);
-    assert!(told.contains("joint_1") && told.contains("step = ") && told.contains("cell.toml:"), "{told}");
-    let told = error(CELL, &["--robot", "harm"]);
-    assert!(told.contains("harm") && told.contains("arm"), "{told}");
-    let told = error(
+    let message = error(&fine, &[]);
+    assert!(message.contains("joint_1") && message.contains("step = ") && message.contains("cell.toml:"), "{message}");
+    let message = error(CELL, &["--robot", "harm"]);
+    assert!(message.contains("harm") && message.contains("arm"), "{message}");
+    let message = error(
         &CELL.replace("joints = [", "joints = [\"joint_9\", ").replace("step = [5, 5, 4]", "joints = [\"joint_9\"]"),
         &[],
     );
-    assert!(told.contains("joint_9"), "{told}");
+    assert!(message.contains("joint_9"), "{message}");
     let twice = CELL.replace("step = [5, 5, 4]", "joints = [\"joint_1\", \"joint_1\"]");
     assert!(error(&twice, &[]).contains("once"));
 }

@@ -47,7 +47,7 @@ fn a_urdf_becomes_3ds_and_a_urdf_again_with_the_same_joints_poses_and_distances(
 }
 
 #[test]
-fn a_model_that_nothing_moves_is_inspected_and_asks_and_options_move_it() {
+fn a_model_without_joints_is_inspected_and_options_add_joints() {
     let dir = tempfile::tempdir().unwrap();
     let here = dir.path();
     let urdf = robot::load(ns16().as_ref(), &LoadOptions::default()).unwrap();
@@ -95,14 +95,14 @@ fn pictures_show_axes_and_the_page_names_them() {
 }
 
 #[test]
-fn the_robot_of_a_cell_is_converted_and_mistakes_are_told() {
+fn the_robot_of_a_cell_is_converted_and_errors_are_reported() {
     let dir = common::swing();
     let here = dir.path();
     elbowroom(here, &["convert", "cell.toml", "--out", "out"]).expect(0);
     let json = elbowroom(here, &["inspect", "out/arm.urdf", "--brief", "--json"]).expect(0).json();
     assert_eq!(json["dof"], 2);
     for (call, said) in [
-        (vec!["convert", "cell.toml", "--out", "out", "--robot", "nobody"], "--robot with one of arm"),
+        (vec!["convert", "cell.toml", "--out", "out", "--robot", "absent"], "--robot with one of arm"),
         (vec!["convert", "cell.toml", "--out", "out", "--unit", "mm"], "go with a model"),
         (vec!["convert", "out/arm.urdf", "--out", "out"], "is there already, beside the model"),
         (vec!["convert", "out/arm.urdf", "--out", "x", "--robot", "arm"], "goes with a cell file"),

@@ -1,4 +1,4 @@
-//! Links without a solid between them: a pair, whatever they look like at rest, and said where they touch there.
+//! Links without a collider between them are a tested pair; contacts at rest are warned of.
 
 mod common;
 
@@ -54,7 +54,7 @@ fn fingers_on_a_palm_without_solids_are_a_pair() {
     assert!((contact[0].1.parse::<f64>().unwrap() - 0.065).abs() < 1e-9, "{}", answer.stdout);
     assert_eq!(contact[1..], [("1", "0.0"), ("1", "0.0")], "{}", answer.stdout);
     assert_eq!(rows[1][3..5], ["f1", "f2"]);
-    // They are apart at rest: nothing to say.
+    // No contact at rest, no warning.
     assert_eq!(answer.stderr, "");
     let with_srdf = [&args[..3], &["--srdf", "grip.srdf"], &args[3..]].concat();
     let answer = elbowroom(dir.path(), &with_srdf).expect(0);
@@ -62,7 +62,7 @@ fn fingers_on_a_palm_without_solids_are_a_pair() {
 }
 
 #[test]
-fn what_touches_at_rest_is_named_with_what_to_write() {
+fn contacts_at_rest_are_named_with_a_hint() {
     let dir = folder();
     let line = "<disable_collisions link1=\"forearm\" link2=\"hand\" reason=\"Default\"/>";
     let query = elbowroom(dir.path(), &["query", "--urdf", "ball.urdf", "--ask", "collision"]).expect(1);
@@ -95,7 +95,7 @@ fn cell(model: &str, more: &str, to: &str) -> String {
 }
 
 #[test]
-fn a_run_warns_of_what_touches_from_the_start_and_reports_what_comes_to_touch() {
+fn a_run_warns_of_contacts_at_the_start_and_reports_new_contacts() {
     let dir = folder();
     let run = |text: String| {
         std::fs::write(dir.path().join("cell.toml"), text).unwrap();

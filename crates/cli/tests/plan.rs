@@ -5,7 +5,7 @@ mod common;
 use common::{Answer, elbowroom, examples, keys, with_cell};
 use serde_json::Value;
 
-/// A two-link arm whose straight way leads through a ball, and another that stands aside.
+/// A two-link arm whose straight path collides with a ball, and another arm beside it.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.arm]
@@ -34,7 +34,7 @@ fn numbers(v: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn the_document_has_what_was_promised() {
+fn the_document_has_the_documented_keys() {
     let answer = plan(CELL, &["--robot", "arm", "--from", "-1,0.1", "--to", "1,-.1", "--json"]).expect(0).json();
     for key in ["found", "waypoints", "cost_rad", "planning_us", "simplify_us", "duration_s"] {
         assert!(keys(&answer).contains(&key), "{answer}");
@@ -77,7 +77,7 @@ fn samples_are_free_within_speed_and_play_back() {
 }
 
 #[test]
-fn no_path_is_bad_news_with_the_reason() {
+fn no_path_has_exit_status_1_and_a_reason() {
     // The elbow cannot bend: the arm would have to go through the ball.
     let stiff = CELL.replace(
         "{ a = 300, min = -170, max = 170, speed = 90 }]\nlinks = [[], {",
@@ -93,7 +93,7 @@ fn no_path_is_bad_news_with_the_reason() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused_with_what_to_write() {
+fn invalid_requests_are_refused_with_a_hint() {
     let cases: [(&[&str], &[&str]); 13] = [
         (&["--robot", "arm", "--to", "0,0"], &["goal", "arm/link_2", "`ball`", "collision"]),
         (&["--robot", "arm", "--from", "0,0", "--to", "1,0"], &["start", "arm/link_2", "`ball`"]),

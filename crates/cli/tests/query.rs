@@ -57,7 +57,7 @@ fn distance_has_a_row_per_state_whatever_the_order_of_columns() {
 }
 
 #[test]
-fn only_a_collision_that_was_asked_for_is_bad_news() {
+fn only_ask_collision_has_exit_status_1() {
     let states = Some("joint_1,joint_2\n0,0\n1.5,0\n");
     let answer = query(CELL, states, &["--ask", "collision"]).expect(1);
     let lines: Vec<&str> = answer.stdout.lines().collect();
@@ -73,7 +73,7 @@ fn only_a_collision_that_was_asked_for_is_bad_news() {
 }
 
 #[test]
-fn tolerance_tells_the_nearest_pair_where_it_is_within() {
+fn tolerance_names_the_nearest_pair_within_it() {
     // Start: the arm along y; nearest to the ball is its shoulder end.
     let far = query(CELL, None, &["--ask", "tolerance=0.1"]).expect(0);
     assert!(far.stdout.lines().nth(1).unwrap().starts_with("0,0,,,,"), "{}", far.stdout);
@@ -130,7 +130,7 @@ fn wrong_states_name_file_line_and_column() {
 }
 
 #[test]
-fn calls_that_cannot_be_meant_are_refused() {
+fn contradictory_calls_are_refused() {
     let dir = with_cell(CELL);
     let urdf = examples().join("models/ns16/ns16.urdf");
     let urdf = urdf.to_str().unwrap();

@@ -154,7 +154,7 @@ fn what_is_not_edited_stays_as_it_was_written() {
     assert_eq!(read(dir.path(), "cell.toml").trim_end(), expected.trim_end());
 }
 
-/// What an operator can do with an editor, and what is then said.
+/// What an operator can do with an editor, and what is then message.
 #[test]
 fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
     let edits: &[(&str, &str, &[&str])] = &[
@@ -192,9 +192,9 @@ fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
         assert_ne!(edited, text(), "{from}");
         write(dir.path(), "cell.toml", &edited);
         refused(dir.path(), words);
-        let said = run_in(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+        let message = run_in(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
         let hex = |word: &str| word.len() >= 64 && word.chars().all(|c| c.is_ascii_hexdigit());
-        assert!(!said.split(|c: char| !c.is_ascii_alphanumeric()).any(hex), "nothing to paste:\n{said}");
+        assert!(!message.split(|c: char| !c.is_ascii_alphanumeric()).any(hex), "nothing to paste:\n{message}");
         // Nor can a class edit on top of it; only a seal helps.
         act(dir.path(), "integrator", &["change", "cell.toml", "post", "radius=60"]).expect(2);
         assert!(run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1).stdout.lines().count() > 1);
@@ -288,12 +288,12 @@ fn what_carries_a_region_is_sealed_with_it() {
                 &[&["cell.toml:", "is not as it was sealed", &format!("--as {class}")], *words].concat(),
             );
             let log = run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1);
-            let said = log.stdout + &log.stderr;
-            assert!(words.iter().all(|w| said.contains(w)), "{said}");
+            let message = log.stdout + &log.stderr;
+            assert!(words.iter().all(|w| message.contains(w)), "{message}");
             let answer = act(dir.path(), "programmer", &["seal", "cell.toml"]);
             if class == "integrator" {
-                let said = answer.expect(2).stderr;
-                assert!(said.contains(words[0]) && said.contains("that needs the integrator class"), "{said}");
+                let message = answer.expect(2).stderr;
+                assert!(message.contains(words[0]) && message.contains("that needs the integrator class"), "{message}");
                 act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(0);
             } else {
                 answer.expect(0);
@@ -371,10 +371,10 @@ fn a_seal_or_log_that_was_tampered_with_is_refused() {
                 let half = l[2].len() / 2;
                 l[2].truncate(half);
             },
-            &["cell.seal.jsonl:3:", "no entry"],
+            &["cell.seal.jsonl:3:", "not an entry"],
         ),
-        ("blanks", |l| l[2] = l[2].replacen("{\"", "{ \"", 1), &["cell.seal.jsonl:3:", "no entry"]),
-        ("another key of JSON", |l| l[2] = l[2].replacen('{', "{\"x\":1,", 1), &["cell.seal.jsonl:3:", "no entry"]),
+        ("blanks", |l| l[2] = l[2].replacen("{\"", "{ \"", 1), &["cell.seal.jsonl:3:", "not an entry"]),
+        ("another key of JSON", |l| l[2] = l[2].replacen('{', "{\"x\":1,", 1), &["cell.seal.jsonl:3:", "not an entry"]),
         ("all of it", Vec::clear, &["is empty"]),
     ];
     for (what, tamper, words) in cases {
@@ -402,8 +402,8 @@ fn a_seal_that_is_missing_is_missed() {
     // The keys without the seal.
     let dir = sealed();
     std::fs::remove_file(dir.path().join("trusted-keys.toml")).unwrap();
-    refused(dir.path(), &["is sealed by", "whose keys count"]);
-    // A cell that nobody sealed, and nobody has to.
+    refused(dir.path(), &["is sealed by", "trusted keys"]);
+    // A cell without a seal and without trusted keys.
     std::fs::remove_file(dir.path().join("cell.seal.jsonl")).unwrap();
     let json = run_in(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
     assert!(!keys(&json).contains(&"seal"));
@@ -416,27 +416,27 @@ fn the_wrong_key_and_no_key() {
     let with = |more: &[&str]| run_in(dir.path(), &[&change[..], more].concat()).expect(2).stderr;
     assert!(with(&["--as", "integrator"]).contains("--key FILE"));
     assert!(with(&["--as", "integrator", "--key", "none.key"]).contains("none.key"));
-    let said = with(&["--as", "integrator", "--key", "programmer.key"]);
-    assert!(said.contains("may act as programmer, not as integrator"), "{said}");
-    // Of the right class, but nobody's: whoever adds it to the list changes what is sealed.
+    let message = with(&["--as", "integrator", "--key", "programmer.key"]);
+    assert!(message.contains("may act as programmer, not as integrator"), "{message}");
+    // Of the right class, but not in the list of trusted keys, which is sealed too.
     run_in(dir.path(), &["region", "keygen", "--as", "integrator", "--name", "M", "--out", "m.key"]).expect(0);
-    let said = with(&["--as", "integrator", "--key", "m.key"]);
-    assert!(said.contains("does not count here"), "{said}");
+    let message = with(&["--as", "integrator", "--key", "m.key"]);
+    assert!(message.contains("does not count here"), "{message}");
     let before = read(dir.path(), "trusted-keys.toml");
     keygen(dir.path(), "integrator", "mallory");
     refused(dir.path(), &["`trusted-keys.toml`", "mallory", "was added"]);
     write(dir.path(), "cell.toml", &text().replace("radius = 50", "radius = 40"));
     let seal = ["region", "seal", "cell.toml", "--as", "integrator", "--key", "mallory.key"];
-    let said = run_in(dir.path(), &seal).expect(2).stderr;
-    assert!(said.contains("was not sealed with the cell"), "{said}");
+    let message = run_in(dir.path(), &seal).expect(2).stderr;
+    assert!(message.contains("was not sealed with the cell"), "{message}");
     write(dir.path(), "trusted-keys.toml", &before);
     write(dir.path(), "cell.toml", &text());
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
     // What is no key.
     write(dir.path(), "bad.key", "class = \"integrator\"\nname = \"X\"\nprivate = \"12\"\n");
     private(&dir.path().join("bad.key"));
-    let said = with(&["--as", "integrator", "--key", "bad.key"]);
-    assert!(said.contains("bad.key:3:") && said.contains("is no key"), "{said}");
+    let message = with(&["--as", "integrator", "--key", "bad.key"]);
+    assert!(message.contains("bad.key:3:") && message.contains("is no key"), "{message}");
 }
 
 #[cfg(unix)]
@@ -456,8 +456,8 @@ fn a_private_key_is_its_owners_alone() {
     let key = dir.path().join("integrator.key");
     assert_eq!(std::fs::metadata(&key).unwrap().permissions().mode() & 0o777, 0o600);
     std::fs::set_permissions(&key, std::fs::Permissions::from_mode(0o640)).unwrap();
-    let said = act(dir.path(), "integrator", &["change", "cell.toml", "post", "radius=60"]).expect(2).stderr;
-    assert!(said.contains("integrator.key") && said.contains("chmod 600"), "{said}");
+    let message = act(dir.path(), "integrator", &["change", "cell.toml", "post", "radius=60"]).expect(2).stderr;
+    assert!(message.contains("integrator.key") && message.contains("chmod 600"), "{message}");
     // No key is overwritten, and operators have none.
     let again = ["region", "keygen", "--as", "integrator", "--name", "X", "--out", "integrator.key"];
     run_in(dir.path(), &again).expect(2);
@@ -475,8 +475,8 @@ fn a_retired_key() {
     let first = trusted.find("name = \"integrator\"\n").unwrap();
     write(dir.path(), "trusted-keys.toml", &format!("{}retired = true\n{}", &trusted[..first], &trusted[first..]));
     refused(dir.path(), &["cell.seal.jsonl:1:", "retired", "region seal"]);
-    let said = act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(2).stderr;
-    assert!(said.contains("retired"), "{said}");
+    let message = act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("retired"), "{message}");
     run_in(dir.path(), &["region", "seal", "cell.toml", "--as", "integrator", "--key", "second.key"]).expect(0);
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
     act(dir.path(), "programmer", &["change", "cell.toml", "cart", "radius=120"]).expect(0);
@@ -490,8 +490,9 @@ fn keys_named_by_the_environment_come_before_those_beside_the_cell() {
     keygen(elsewhere.path(), "integrator", "plant");
     let trusted = elsewhere.path().join("trusted-keys.toml");
     let run = |args: &[&str]| answer(quiet(dir.path(), args).env("ELBOWROOM_TRUSTED_KEYS", &trusted).output().unwrap());
-    let said = run(&["region", "seal", "cell.toml", "--as", "integrator", "--key", "integrator.key"]).expect(2).stderr;
-    assert!(said.contains("does not count here"), "{said}");
+    let message =
+        run(&["region", "seal", "cell.toml", "--as", "integrator", "--key", "integrator.key"]).expect(2).stderr;
+    assert!(message.contains("does not count here"), "{message}");
     assert!(run(&["run", "cell.toml"]).expect(2).stderr.contains("is not sealed"));
     let key = elsewhere.path().join("plant.key");
     run(&["region", "seal", "cell.toml", "--as", "integrator", "--key", key.to_str().unwrap()]).expect(0);
@@ -615,8 +616,8 @@ fn what_is_no_edit_changes_nothing_and_says_why() {
         (&["seal", "nowhere.toml"], "nowhere.toml"),
     ];
     for (args, words) in cases {
-        let said = act(dir.path(), "integrator", args).expect(2).stderr;
-        assert!(said.contains(words), "{args:?}: {said}");
+        let message = act(dir.path(), "integrator", args).expect(2).stderr;
+        assert!(message.contains(words), "{args:?}: {message}");
         assert_eq!((read(dir.path(), "cell.toml"), read(dir.path(), "cell.seal.jsonl")), before, "{args:?}");
         assert!(!dir.path().join("cell.toml.new").exists(), "{args:?}");
     }

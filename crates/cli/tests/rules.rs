@@ -12,7 +12,7 @@ fn the_rules_are_shown_copied_changed_and_read_again() {
     assert!(table.lines().all(|l| l.chars().count() <= 100));
     elbowroom(dir.path(), &["rules", "--write", "mine.toml"]).expect(0);
     assert_eq!(elbowroom(dir.path(), &["rules", "mine.toml"]).expect(0).stdout, table);
-    // A file that is there is the user's own.
+    // An existing file is not overwritten.
     elbowroom(dir.path(), &["rules", "--write", "mine.toml"]).expect(2);
     let text = std::fs::read_to_string(dir.path().join("mine.toml")).unwrap();
     std::fs::write(
@@ -20,8 +20,11 @@ fn the_rules_are_shown_copied_changed_and_read_again() {
         text.replace("very_near and speed is stop then size is small", "very_near and speed is stop then size is huge"),
     )
     .unwrap();
-    let told = elbowroom(dir.path(), &["rules", "mine.toml"]).expect(2).stderr;
-    assert!(told.contains("mine.toml:") && told.contains("huge") && told.contains("small, medium, large"), "{told}");
+    let message = elbowroom(dir.path(), &["rules", "mine.toml"]).expect(2).stderr;
+    assert!(
+        message.contains("mine.toml:") && message.contains("huge") && message.contains("small, medium, large"),
+        "{message}"
+    );
 }
 
 #[test]

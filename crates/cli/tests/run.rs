@@ -14,7 +14,7 @@ fn a_guarded_arm_stops_before_the_region() {
 }
 
 #[test]
-fn without_the_monitor_it_enters_and_that_is_bad_news() {
+fn without_the_monitor_it_enters_with_exit_status_1() {
     let dir = swing();
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--no-monitor", "--json"]).expect(1).json();
     assert_eq!(json["regions"][0]["entered"], true);
@@ -22,7 +22,7 @@ fn without_the_monitor_it_enters_and_that_is_bad_news() {
 }
 
 #[test]
-fn a_clear_way_is_finished() {
+fn a_free_program_finishes() {
     let dir = with_cell(&SWING.replace("[90, 0]", "[-90, 0]"));
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
     assert_eq!(json["robots"][0]["finished"], true);
@@ -30,7 +30,7 @@ fn a_clear_way_is_finished() {
 }
 
 #[test]
-fn a_collision_is_bad_news() {
+fn a_collision_has_exit_status_1() {
     let text = SWING.replace("guards", "kind = \"monitored\"\nguards")
         + "\n[object.wall]\nshape = \"box\"\nat = [0, 650, 0]\nsize = [200, 400, 200]\n";
     let links = "links = [[], { capsule = { from = [0, 0, 0], to = [-300, 0, 0], radius = 40 } }]\n";
@@ -82,7 +82,7 @@ fn the_checksum_that_a_run_prints_is_the_one_the_cell_file_takes() {
 }
 
 #[test]
-fn a_mistake_names_file_and_line_and_what_to_write() {
+fn an_error_names_file_and_line_and_a_hint() {
     let dir = with_cell(&SWING.replace("radius = 50", "radios = 50"));
     let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(2);
     assert_eq!(answer.stdout, "", "no half document");

@@ -1,22 +1,21 @@
-//! The command as a whole: no arguments, examples, completions, pipes that close, and garbage.
+//! The command as a whole: no arguments, examples, completions, closed pipes, invalid files.
 
 mod common;
 
+use common::{answer, command, elbowroom, examples, swing, with_cell};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{answer, command, elbowroom, examples, swing, with_cell};
-
 #[test]
-fn without_arguments_figure_12_runs_and_leaves_its_report() {
+fn without_arguments_figure_12_runs_and_writes_its_report() {
     let dir = tempfile::tempdir().unwrap();
     let answer = elbowroom(dir.path(), &[]).expect(0);
     assert!(answer.stdout.contains("before column"), "{}", answer.stdout);
     assert!(answer.stdout.contains("passes through it"), "{}", answer.stdout);
     let report = std::fs::read_to_string(dir.path().join("elbowroom-out/figure12/report.html")).unwrap();
     assert!(report.contains("control on") && report.contains("control off"));
-    // What it tells the user to type next is a cell that runs.
+    // The command that it proposes runs.
     let next = answer.stdout.lines().find_map(|l| l.split_once("elbowroom run ")).expect("says what to type").1;
     let next: Vec<&str> = std::iter::once("run").chain(next.split(' ')).collect();
     elbowroom(dir.path(), &next).expect(0);
@@ -49,7 +48,7 @@ fn copied_examples_are_the_ones_in_the_repository() {
 }
 
 #[test]
-fn completions_know_the_verbs() {
+fn completions_list_the_verbs() {
     for shell in ["bash", "zsh", "fish"] {
         let script = elbowroom(Path::new("."), &["completions", shell]).expect(0).stdout;
         for verb in ["run", "inspect", "teach", "example"] {
@@ -60,7 +59,7 @@ fn completions_know_the_verbs() {
 }
 
 #[test]
-fn help_teaches_every_verb() {
+fn help_documents_every_verb() {
     let help = elbowroom(Path::new("."), &["--help"]).expect(0).stdout;
     assert!(help.contains("Exit status") && help.contains("Not a certified safety device."));
     for verb in ["run", "plan", "inspect", "teach", "example", "completions"] {
@@ -70,9 +69,9 @@ fn help_teaches_every_verb() {
     assert!(elbowroom(Path::new("."), &["--version"]).expect(0).stdout.starts_with("elbowroom "));
 }
 
-/// A reader that has seen enough is no failure, whatever is being printed.
+/// A reader that closes the pipe causes no failure.
 #[test]
-fn a_reader_that_leaves_is_no_failure() {
+fn a_closed_pipe_is_no_failure() {
     let dir = tempfile::tempdir().unwrap();
     let header = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n";
     let states = header.to_owned() + &"0.1,0.2,0.3,0.4,0.5,0.6\n".repeat(5_000);
@@ -90,7 +89,7 @@ fn a_reader_that_leaves_is_no_failure() {
     answer(child.wait_with_output().unwrap()).expect(0);
 }
 
-/// The same for messages: nobody reads standard error.
+/// The same for messages on standard error.
 #[cfg(target_os = "linux")]
 #[test]
 fn messages_into_a_full_device_do_not_panic() {
@@ -103,7 +102,7 @@ fn messages_into_a_full_device_do_not_panic() {
 }
 
 #[test]
-fn garbage_is_refused_with_the_file_named() {
+fn invalid_files_are_refused_by_name() {
     let dir = with_cell("");
     let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
     let noise: Vec<u8> = (0..20_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
@@ -146,7 +145,7 @@ fn garbage_is_refused_with_the_file_named() {
         let answer = elbowroom(dir.path(), &["inspect", arm.to_str().unwrap(), "--states", states]).expect(2);
         assert!(answer.stderr.contains(states), "{states}: {}", answer.stderr);
     }
-    // A place that cannot be written is the caller's mistake, too.
+    // An output folder that cannot be written is an invalid call, too.
     let swing = swing();
     write("file", b"");
     let out = dir.path().join("file/out");
@@ -154,9 +153,9 @@ fn garbage_is_refused_with_the_file_named() {
     assert!(answer.stderr.contains("cannot be written"), "{}", answer.stderr);
 }
 
-/// Files that broke other programs: a model with its report, or a refusal; never a crash.
+/// Files that broke other programs give a report or an error, never a crash.
 #[test]
-fn files_gone_wrong_in_the_wild_end_with_a_report_or_a_refusal() {
+fn known_broken_files_end_with_a_report_or_an_error() {
     let data = std::env::var_os("ELBOWROOM_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), Into::into);
     let mut folders = vec![data.join("malformed")];

@@ -1,4 +1,4 @@
-//! `elbowroom teach`: what it prints is what a cell file takes.
+//! `elbowroom teach`: its output is valid in a cell file.
 
 mod common;
 
@@ -76,7 +76,7 @@ dh = [
 links = [[], [], { sphere = { radius = 30 } }]
 "#;
 
-/// A box of the corners (joint values) taught on the gantry: its centre in the world, m, and what was said.
+/// A box of the corners (joint values) taught on the gantry: its centre in the world, m, and the answer.
 fn gantry_box(corners: &str, height: &str) -> (elbowroom::spatial::Vec3, common::Answer) {
     let dir = with_cell(GANTRY);
     std::fs::write(dir.path().join("taught.csv"), format!("joint_1,joint_2,joint_3\n{corners}")).unwrap();
@@ -105,7 +105,7 @@ fn a_positive_height_goes_up_whatever_the_order_of_corners() {
 }
 
 #[test]
-fn of_a_base_that_stands_upright_the_side_is_told_and_can_be_chosen() {
+fn the_side_of_an_upright_base_is_reported_and_can_be_chosen() {
     let corners = "0,0,0.2\n1,0,0.2\n0,0,0.8\n";
     let (one, answer) = gantry_box(corners, "400");
     assert!(answer.stderr.contains("to the side, towards ["), "{}", answer.stderr);

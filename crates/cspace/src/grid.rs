@@ -1,48 +1,48 @@
-//! Three axes together, and the numbering of cells and rows.
+//! Three axes, and the numbering of cells and rows.
 
-use crate::Axis;
+use crate::GridAxis;
 
 /// A cell by its number on each of the three axes.
-pub type Cell = [u16; 3];
+pub type CellIndex = [u16; 3];
 
 /// Three axes. A *plane* is all cells of one θ1, a *row* all cells of one θ1 and θ2; rows run along θ3.
 ///
 /// ```
-/// use elbowroom_cspace::{Axis, Grid};
-/// let axis = |name, range: f64| Axis::from_degrees(name, -range, range, 2.0);
+/// use elbowroom_cspace::{Grid, GridAxis};
+/// let axis = |name, range: f64| GridAxis::from_degrees(name, -range, range, 2.0);
 /// let grid = Grid::new([axis("a", 170.0)?, axis("b", 90.0)?, axis("c", 135.0)?]).unwrap();
 /// assert_eq!(grid.cells(), 170 * 90 * 135);
 /// assert_eq!(grid.cell([0.0, 0.0, 0.0]), Some([85, 45, 67]));
-/// # Ok::<(), elbowroom_cspace::AxisError>(())
+/// # Ok::<(), elbowroom_cspace::GridAxisError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    axes: [Axis; 3],
+    axes: [GridAxis; 3],
 }
 
-/// The table would not fit.
+/// The grid has more cells than a dense table holds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{0} x {1} x {2} cells are too many for a dense table (at most {MOST}): make the steps larger", MOST = Grid::MOST)]
+#[error("{0} x {1} x {2} cells are too many for a dense table (at most {MAX}): make the steps larger", MAX = Grid::MAX_CELLS)]
 pub struct TooManyCells(pub usize, pub usize, pub usize);
 
 impl Grid {
-    /// The largest number of cells: 2³³ bits are 1 GiB.
-    pub const MOST: usize = 1 << 33;
+    /// Most cells: 2³³ bits are 1 GiB.
+    pub const MAX_CELLS: usize = 1 << 33;
 
     /// Joins three axes: base, shoulder, elbow.
     ///
     /// # Errors
-    /// More than [`Grid::MOST`] cells.
-    pub fn new(axes: [Axis; 3]) -> Result<Self, TooManyCells> {
+    /// More than [`Grid::MAX_CELLS`] cells.
+    pub fn new(axes: [GridAxis; 3]) -> Result<Self, TooManyCells> {
         let [a, b, c] = [axes[0].count(), axes[1].count(), axes[2].count()];
-        if a * b * c > Self::MOST {
+        if a * b * c > Self::MAX_CELLS {
             return Err(TooManyCells(a, b, c));
         }
         Ok(Self { axes })
     }
 
     /// The axes.
-    pub fn axes(&self) -> &[Axis; 3] {
+    pub fn axes(&self) -> &[GridAxis; 3] {
         &self.axes
     }
 
@@ -62,13 +62,13 @@ impl Grid {
     }
 
     /// The cell of a configuration (radians), `None` where a joint is outside its limits or NaN.
-    pub fn cell(&self, q: [f64; 3]) -> Option<Cell> {
+    pub fn cell(&self, q: [f64; 3]) -> Option<CellIndex> {
         let cell = |i: usize| self.axes[i].cell(q[i]).map(|c| c as u16);
         Some([cell(0)?, cell(1)?, cell(2)?])
     }
 
-    /// Middle of a cell, radians.
-    pub fn center(&self, cell: Cell) -> [f64; 3] {
+    /// Centre of a cell, radians.
+    pub fn center(&self, cell: CellIndex) -> [f64; 3] {
         let center = |i: usize| self.axes[i].center(usize::from(cell[i]));
         [center(0), center(1), center(2)]
     }

@@ -1,10 +1,10 @@
-//! What one obstacle blocks, as intervals of rows.
+//! The cells that one obstacle blocks, as spans of rows.
 
-use crate::table::mark_row;
+use crate::bits::{for_each_run, set_range};
 
 /// Blocked cells `first..=last` of one row; `row` counts θ1 · (cells of θ2) + θ2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Span {
+pub struct RowSpan {
     /// Number of the row.
     pub row: u32,
     /// First blocked cell.
@@ -13,64 +13,55 @@ pub struct Span {
     pub last: u16,
 }
 
-/// What one obstacle blocks: spans in the order of their rows; several in one row may overlap.
+/// The cells that one obstacle blocks: spans sorted by row; several in one row may overlap.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layer {
-    pub(crate) spans: Vec<Span>,
+    pub(crate) spans: Vec<RowSpan>,
 }
 
 impl Layer {
-    /// A layer that blocks nothing.
+    /// A layer without blocked cells.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The spans, rows ascending.
-    pub fn spans(&self) -> &[Span] {
+    /// The spans, sorted by row.
+    pub fn spans(&self) -> &[RowSpan] {
         &self.spans
     }
 
-    /// Adds all that another layer blocks.
-    pub fn merge(&mut self, other: &Self) {
-        let whole = self.spans.last().zip(other.spans.first()).is_none_or(|(a, b)| a.row <= b.row);
-        self.spans.extend_from_slice(&other.spans);
-        if !whole {
-            self.spans.sort_unstable();
-        }
-    }
-
-    /// Keeps what another layer blocks too. `cells` is the number of cells of a row.
+    /// Keeps the cells that another layer blocks, too. `cells` is the number of cells of a row.
     pub fn intersect(&mut self, other: &Self, cells: usize) {
         let mut kept = Vec::with_capacity(self.spans.len().min(other.spans.len()));
         let (mut a, mut b) = (self.spans.as_slice(), other.spans.as_slice());
         let mut words = [vec![0u64; cells.div_ceil(64)], vec![0u64; cells.div_ceil(64)]];
         while let (Some(x), Some(y)) = (a.first(), b.first()) {
             let row = x.row.max(y.row);
-            let (here, there) = (group(&mut a, row), group(&mut b, row));
-            if here.is_empty() || there.is_empty() {
+            let (in_a, in_b) = (take_row(&mut a, row), take_row(&mut b, row));
+            if in_a.is_empty() || in_b.is_empty() {
                 continue;
             }
-            for (list, spans) in words.iter_mut().zip([here, there]) {
+            for (list, spans) in words.iter_mut().zip([in_a, in_b]) {
                 list.fill(0);
                 for span in spans {
-                    mark_row(list, span.first, span.last.min(cells as u16 - 1));
+                    set_range(list, span.first, span.last.min(cells as u16 - 1));
                 }
             }
             let both: Vec<u64> = words[0].iter().zip(&words[1]).map(|(a, b)| a & b).collect();
-            runs(&both, |first, last| kept.push(Span { row, first, last }));
+            for_each_run(&both, |first, last| kept.push(RowSpan { row, first, last }));
         }
         self.spans = kept;
     }
 
     /// Bytes on the heap.
     pub fn bytes(&self) -> usize {
-        self.spans.capacity() * size_of::<Span>()
+        self.spans.capacity() * size_of::<RowSpan>()
     }
 }
 
-/// Takes the spans of one row from the front of a list, and those of earlier rows with them.
+/// Removes the spans of one row and of earlier rows from the front of a list; returns those of the row.
 #[inline]
-pub(crate) fn group<'a>(spans: &mut &'a [Span], row: u32) -> &'a [Span] {
+pub(crate) fn take_row<'a>(spans: &mut &'a [RowSpan], row: u32) -> &'a [RowSpan] {
     let mut rest = *spans;
     while let [first, later @ ..] = rest
         && first.row < row
@@ -81,28 +72,9 @@ pub(crate) fn group<'a>(spans: &mut &'a [Span], row: u32) -> &'a [Span] {
     while rest.get(count).is_some_and(|span| span.row == row) {
         count += 1;
     }
-    let (here, later) = rest.split_at(count);
+    let (taken, later) = rest.split_at(count);
     *spans = later;
-    here
-}
-
-/// Runs of bits that are set.
-fn runs(words: &[u64], mut found: impl FnMut(u16, u16)) {
-    let bit = |k: usize| words.get(k / 64).is_some_and(|w| w >> (k % 64) & 1 == 1);
-    let mut k = 0;
-    while k < words.len() * 64 {
-        if words[k / 64] >> (k % 64) == 0 {
-            k = (k / 64 + 1) * 64;
-        } else if bit(k) {
-            let first = k;
-            while bit(k) {
-                k += 1;
-            }
-            found(first as u16, (k - 1) as u16);
-        } else {
-            k += 1;
-        }
-    }
+    taken
 }
 
 #[cfg(test)]
@@ -110,8 +82,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_both_block_is_kept() {
-        let span = |row, first, last| Span { row, first, last };
+    fn the_intersection_is_kept() {
+        let span = |row, first, last| RowSpan { row, first, last };
         let mut a = Layer { spans: vec![span(1, 0, 5), span(2, 60, 130), span(2, 140, 150), span(4, 0, 9)] };
         let b = Layer { spans: vec![span(0, 0, 150), span(2, 0, 62), span(2, 128, 145), span(4, 9, 9), span(5, 1, 1)] };
         a.intersect(&b, 151);

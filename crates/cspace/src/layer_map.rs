@@ -1,28 +1,30 @@
-//! Layers by name over one grid, one table for all.
+//! Named layers over one grid, and their union.
 
 use std::sync::Arc;
 
-use crate::layer::group;
-use crate::reader::{Reader, Snapshot, Window};
-use crate::table::mark_row;
-use crate::{Cell, Changes, Grid, Layer, Span, Table};
+use crate::bits::set_range;
+use crate::layer::take_row;
+use crate::map_reader::{MapReader, MapSnapshot, PublishedMap};
+use crate::{CellChanges, CellIndex, Grid, Layer, OccupancyBitmap, RowSpan};
 
-/// What obstacles block, each in a layer of its own, whoever fills them: a [`RobotFiller`](crate::RobotFiller) by way of
-/// [`Blocks::layer`](crate::Blocks::layer), or a [`JointMap`](crate::JointMap), which has a [`Filler`](crate::Filler) to it.
+/// Blocked cells of obstacles, each in a layer of its own. Layers come from a [`RobotMapBuilder`](crate::RobotMapBuilder) by
+/// [`BoxTree::to_layer`](crate::BoxTree::to_layer), or from an [`ObstacleMapBuilder`](crate::ObstacleMapBuilder), which a
+/// [`JointMap`](crate::JointMap) contains.
 ///
-/// One thread owns the map and changes it; any number of threads look at it through a [`Reader`].
+/// One thread owns the map and changes it; any number of threads read it through a [`MapReader`].
 ///
 /// ```
-/// use elbowroom_cspace::{Axis, Grid, LayerMap, Others, RobotFiller};
+/// use elbowroom_cspace::{Grid, GridAxis, LayerMap, RemainingJoints, RobotMapBuilder};
 /// use elbowroom_proximity::{Shape, Sphere};
-/// use elbowroom_scene::example;
+/// use elbowroom_robot::example;
 /// use elbowroom_spatial::{Pose, Vec3};
-/// let grid = Grid::new(["a", "b", "c"].map(|name| Axis::from_degrees(name, -90.0, 90.0, 6.0).unwrap()))?;
-/// let filler = RobotFiller::new(&example::arm()?, Pose::IDENTITY, grid.axes(), &[0, 1, 2], Others::Any)?;
+/// let grid = Grid::new(["a", "b", "c"].map(|name| GridAxis::from_degrees(name, -90.0, 90.0, 6.0).unwrap()))?;
+/// let (robot, joints) = (example::arm()?, [0, 1, 2]);
+/// let builder = RobotMapBuilder::new(&robot, Pose::IDENTITY, grid.axes(), &joints, RemainingJoints::Swept)?;
 /// let mut map = LayerMap::new(&grid);
 /// let mut ball_at = |x: f64, map: &mut LayerMap| {
 ///     let ball = (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::new(x, 0.0, 0.6)));
-///     let layer = filler.fill(&[ball])?.layer(&grid).expect("the same axes");
+///     let layer = builder.build(&[ball])?.to_layer(&grid).expect("the same axes");
 ///     let changes = map.set_layer("ball", layer);
 ///     Ok::<_, Box<dyn std::error::Error>>((changes.blocked(), changes.freed()))
 /// };
@@ -37,31 +39,32 @@ use crate::{Cell, Changes, Grid, Layer, Span, Table};
 pub struct LayerMap {
     grid: Grid,
     layers: Vec<(String, Layer)>,
-    /// What never moves.
-    fixed: Table,
-    table: Table,
-    changes: Changes,
-    /// The last update's new layer, then the one it replaced: memory that is used again.
+    /// Occupancy of the static obstacles.
+    fixed: OccupancyBitmap,
+    /// Union of `fixed` and all layers.
+    occupancy: OccupancyBitmap,
+    changes: CellChanges,
+    /// The layer that the last update replaced: its memory is reused.
     pub(crate) spare: Layer,
     row: Vec<u64>,
     version: u64,
-    window: Arc<Window>,
+    published: Arc<PublishedMap>,
 }
 
 impl LayerMap {
-    /// A map that blocks nothing.
+    /// A map without blocked cells.
     pub fn new(grid: &Grid) -> Self {
-        let table = Table::new(grid.shape());
+        let occupancy = OccupancyBitmap::new(grid.shape());
         Self {
             grid: grid.clone(),
             layers: Vec::new(),
-            fixed: table.clone(),
-            row: vec![0; table.words_per_row()],
-            changes: Changes::default(),
+            fixed: occupancy.clone(),
+            row: vec![0; occupancy.words_per_row()],
+            changes: CellChanges::default(),
             spare: Layer::new(),
             version: 0,
-            window: Arc::new(Window::new(Snapshot { table: table.clone(), version: 0 })),
-            table,
+            published: Arc::new(PublishedMap::new(MapSnapshot { occupancy: occupancy.clone(), version: 0 })),
+            occupancy,
         }
     }
 
@@ -70,23 +73,23 @@ impl LayerMap {
         &self.grid
     }
 
-    /// The table of all layers together.
-    pub fn table(&self) -> &Table {
-        &self.table
+    /// The occupancy of all layers together.
+    pub fn occupancy(&self) -> &OccupancyBitmap {
+        &self.occupancy
     }
 
-    /// Names and layers of the obstacles, in the order in which they entered.
+    /// Names and layers of the obstacles, in the order in which they were added.
     pub fn layers(&self) -> impl Iterator<Item = (&str, &Layer)> {
         self.layers.iter().map(|(name, layer)| (name.as_str(), layer))
     }
 
     /// True where a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
     pub fn is_blocked(&self, q: [f64; 3]) -> bool {
-        self.grid.cell(q).is_none_or(|cell: Cell| self.table.is_blocked(cell))
+        self.grid.cell(q).is_none_or(|cell: CellIndex| self.occupancy.is_blocked(cell))
     }
 
-    /// An obstacle enters, or moves if one of this name is there, as a layer made for this grid; the cells that changed.
-    pub fn set_layer(&mut self, name: &str, layer: Layer) -> &Changes {
+    /// Adds an obstacle as a layer built for this grid, or replaces the one of this name; returns the cells that changed.
+    pub fn set_layer(&mut self, name: &str, layer: Layer) -> &CellChanges {
         let known = self.layers.iter().position(|(other, _)| other == name);
         let index = known.unwrap_or_else(|| {
             self.layers.push((name.to_owned(), Layer::new()));
@@ -98,8 +101,8 @@ impl LayerMap {
         &self.changes
     }
 
-    /// An obstacle leaves; `None` where there was none of this name.
-    pub fn remove(&mut self, name: &str) -> Option<&Changes> {
+    /// Removes an obstacle; `None` where there is none of this name.
+    pub fn remove(&mut self, name: &str) -> Option<&CellChanges> {
         let index = self.layers.iter().position(|(other, _)| other == name)?;
         let old = std::mem::take(&mut self.layers[index].1);
         self.update(index, &old);
@@ -108,36 +111,36 @@ impl LayerMap {
         Some(&self.changes)
     }
 
-    /// Blocks cells for good, instead of those that it was told before.
-    pub fn set_fixed(&mut self, layers: &[Layer]) -> Changes {
-        let before = self.table.clone();
-        let mut fixed = Table::new(self.grid.shape());
+    /// Replaces the layers of static obstacles; returns the cells that changed.
+    pub fn set_fixed(&mut self, layers: &[Layer]) -> CellChanges {
+        let before = self.occupancy.clone();
+        let mut fixed = OccupancyBitmap::new(self.grid.shape());
         for layer in layers {
             fixed.add(layer);
         }
-        self.table = fixed.clone();
+        self.occupancy = fixed.clone();
         self.fixed = fixed;
         for (_, layer) in &self.layers {
-            self.table.add(layer);
+            self.occupancy.add(layer);
         }
-        Changes::between(&before, &self.table)
+        CellChanges::between(&before, &self.occupancy)
     }
 
-    /// Makes the present table the one that readers see.
+    /// Publishes the current occupancy to readers.
     pub fn publish(&mut self) {
         self.version += 1;
-        self.window.show(Snapshot { table: self.table.clone(), version: self.version });
+        self.published.store(MapSnapshot { occupancy: self.occupancy.clone(), version: self.version });
     }
 
-    /// A view for another thread: what was published last.
-    pub fn reader(&self) -> Reader {
-        Reader::new(Arc::clone(&self.window))
+    /// A reader of the published occupancy, for another thread.
+    pub fn reader(&self) -> MapReader {
+        MapReader::new(Arc::clone(&self.published))
     }
 
-    /// Writes the rows in which a layer differs from what it was.
+    /// Updates the rows in which a layer differs from its previous state.
     fn update(&mut self, index: usize, old: &Layer) {
-        self.changes.restart(self.table.shape());
-        match self.table.words_per_row() {
+        self.changes.reset(self.occupancy.shape());
+        match self.occupancy.words_per_row() {
             1 => self.update_short::<1>(index, old),
             2 => self.update_short::<2>(index, old),
             3 => self.update_short::<3>(index, old),
@@ -150,19 +153,19 @@ impl LayerMap {
         }
     }
 
-    /// With rows of `W` words.
+    /// For rows of `W` words.
     fn update_short<const W: usize>(&mut self, index: usize, old: &Layer) {
-        let Self { fixed, table, changes, layers, .. } = self;
+        let Self { fixed, occupancy, changes, layers, .. } = self;
         let masks = fixed.masks::<W>();
-        let (mut changed, mut others) = (Changed::new(old, &layers[index].1, table), others(layers, index));
-        let rows = table.shape()[1] as u32;
+        let (mut changed, mut others) = (ChangedRows::new(old, &layers[index].1, occupancy), others(layers, index));
+        let rows = occupancy.shape()[1] as u32;
         let (mut first, mut end, mut words): (u32, u32, &mut [[u64; W]]) = (0, 0, &mut []);
         let mut below: &[[u64; W]] = &[];
         while let Some((row, after)) = changed.next() {
             if row >= end {
                 let plane = row / rows;
                 (first, end) = (plane * rows, (plane + 1) * rows);
-                words = table.plane_mut(plane as usize).as_chunks_mut().0;
+                words = occupancy.plane_mut(plane as usize).as_chunks_mut().0;
                 below = fixed.plane(plane as usize).as_chunks().0;
             }
             let mut now = below[(row - first) as usize];
@@ -170,55 +173,55 @@ impl LayerMap {
                 masks.mark(&mut now, span);
             }
             for spans in &mut others {
-                for &span in group(spans, row) {
+                for &span in take_row(spans, row) {
                     masks.mark(&mut now, span);
                 }
             }
             let was = &mut words[(row - first) as usize];
-            changes.note(row as usize, was, &now);
+            changes.record_row(row as usize, was, &now);
             *was = now;
         }
     }
 
     fn update_long(&mut self, index: usize, old: &Layer) {
-        let Self { fixed, table, changes, layers, row: now, .. } = self;
-        let (mut changed, mut others) = (Changed::new(old, &layers[index].1, table), others(layers, index));
-        let (rows, width, last) = (table.shape()[1], table.words_per_row(), table.shape()[2] as u16 - 1);
+        let Self { fixed, occupancy, changes, layers, row: now, .. } = self;
+        let (mut changed, mut others) = (ChangedRows::new(old, &layers[index].1, occupancy), others(layers, index));
+        let (rows, width, last) = (occupancy.shape()[1], occupancy.words_per_row(), occupancy.shape()[2] as u16 - 1);
         while let Some((row, after)) = changed.next() {
             now.copy_from_slice(fixed.row(row as usize));
-            for span in after.iter().chain(others.iter_mut().flat_map(|spans| group(spans, row))) {
-                mark_row(now, span.first, span.last.min(last));
+            for span in after.iter().chain(others.iter_mut().flat_map(|spans| take_row(spans, row))) {
+                set_range(now, span.first, span.last.min(last));
             }
-            let was = &mut table.plane_mut(row as usize / rows)[row as usize % rows * width..][..width];
-            changes.note(row as usize, was, now);
+            let was = &mut occupancy.plane_mut(row as usize / rows)[row as usize % rows * width..][..width];
+            changes.record_row(row as usize, was, now);
             was.copy_from_slice(now);
         }
     }
 }
 
-/// All spans but those of one layer.
-fn others(layers: &[(String, Layer)], index: usize) -> Vec<&[Span]> {
+/// The spans of all layers but one.
+fn others(layers: &[(String, Layer)], index: usize) -> Vec<&[RowSpan]> {
     layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, layer))| layer.spans()).collect()
 }
 
 /// Rows in which two layers differ.
-struct Changed<'a> {
-    was: &'a [Span],
-    now: &'a [Span],
-    /// A layer made for another grid may know rows that this one has not.
+struct ChangedRows<'a> {
+    was: &'a [RowSpan],
+    now: &'a [RowSpan],
+    /// Number of rows of the grid: a layer built for another grid may have more.
     rows: u32,
 }
 
-impl<'a> Changed<'a> {
-    fn new(was: &'a Layer, now: &'a Layer, table: &Table) -> Self {
-        Self { was: was.spans(), now: now.spans(), rows: (table.shape()[0] * table.shape()[1]) as u32 }
+impl<'a> ChangedRows<'a> {
+    fn new(was: &'a Layer, now: &'a Layer, occupancy: &OccupancyBitmap) -> Self {
+        Self { was: was.spans(), now: now.spans(), rows: (occupancy.shape()[0] * occupancy.shape()[1]) as u32 }
     }
 
     /// The next row, and its new spans.
     #[inline]
-    fn next(&mut self) -> Option<(u32, &'a [Span])> {
+    fn next(&mut self) -> Option<(u32, &'a [RowSpan])> {
         while let Some(row) = first_row(self.was, self.now).filter(|&row| row < self.rows) {
-            let (before, after) = (group(&mut self.was, row), group(&mut self.now, row));
+            let (before, after) = (take_row(&mut self.was, row), take_row(&mut self.now, row));
             if before != after {
                 return Some((row, after));
             }
@@ -227,7 +230,7 @@ impl<'a> Changed<'a> {
     }
 }
 
-fn first_row(a: &[Span], b: &[Span]) -> Option<u32> {
+fn first_row(a: &[RowSpan], b: &[RowSpan]) -> Option<u32> {
     match (a.first(), b.first()) {
         (Some(a), Some(b)) => Some(a.row.min(b.row)),
         (one, other) => one.or(other).map(|span| span.row),

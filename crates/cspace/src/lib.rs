@@ -1,46 +1,52 @@
-//! Obstacles as blocked cells of joint space: which joint values would touch something.
+//! Obstacles in configuration space: which joint values are in collision.
 //!
-//! Three joints (base, shoulder, elbow) are cut into cells ([`Axis`], [`Grid`]); a [`Table`] has one bit per cell. A cell is
-//! blocked if *any* configuration in its box touches, never by its middle alone (S2, "Real-time joint-space models").
+//! Joints are divided into cells ([`GridAxis`], [`Grid`]); an [`OccupancyBitmap`] has one bit per cell of three joints (base,
+//! shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision, not by its centre alone (S2,
+//! "Real-time joint-space models").
 //!
-//! Two ways to fill them:
+//! Two builders compute blocked cells:
 //!
-//! | | [`Filler`], [`JointMap`] | [`RobotFiller`] |
+//! | | [`ObstacleMapBuilder`], [`JointMap`] | [`RobotMapBuilder`] |
 //! | --- | --- | --- |
 //! | robot | two capsules and a sphere in a plane ([`PlanarArm`]) | any chain of links, any solids, 1 to 8 joints |
 //! | obstacles | convex | any: meshes, floors |
 //! | time, 2 degrees | some hundredths of a millisecond | tenths of a second |
-//! | answer | rows of intervals ([`Layer`]) | a tree of boxes ([`Blocks`]) |
+//! | result | spans of rows ([`Layer`]) | a tree of boxes ([`BoxTree`]) |
 
-mod arm;
-mod axis;
-mod changes;
-mod fill;
+mod bits;
+mod cell_changes;
+mod convex_obstacle;
+mod cuboid;
 mod grid;
+mod grid_axis;
+mod joint_convention;
+mod joint_map;
 mod layer;
 mod layer_map;
-mod map;
-mod model;
+mod map_reader;
 mod npy;
-mod obstacle;
-mod reader;
-mod robot;
-mod seed;
-mod signs;
-mod table;
+mod obstacle_model;
+mod occupancy_bitmap;
+mod planar_arm;
+mod planar_map;
+mod robot_map;
+mod seed_expansion;
 
-pub use arm::{ArmError, PlanarArm};
-pub use axis::{Axis, AxisError, MOST_CELLS};
-pub use changes::Changes;
-pub use fill::{FillError, Filler};
-pub use grid::{Cell, Grid, TooManyCells};
-pub use layer::{Layer, Span};
+pub use cell_changes::CellChanges;
+pub use convex_obstacle::{ConvexObstacle, ConvexObstacleError};
+pub use grid::{CellIndex, Grid, TooManyCells};
+pub use grid_axis::{AxisParameter, GridAxis, GridAxisError, MAX_AXIS_CELLS};
+pub use joint_convention::JointConvention;
+pub use joint_map::JointMap;
+pub use layer::{Layer, RowSpan};
 pub use layer_map::LayerMap;
-pub use map::JointMap;
-pub use model::{Model, UnknownModel, spheres_until};
-pub use obstacle::{Obstacle, ObstacleError};
-pub use reader::{Reader, Snapshot};
-pub use robot::{Block, Blocks, Dense, FillCounts, MOST_JOINTS, Others, RobotFiller, RobotMapError};
-pub use seed::{Expansion, expand};
-pub use signs::JointSigns;
-pub use table::Table;
+pub use map_reader::{MapReader, MapSnapshot};
+pub use obstacle_model::{ObstacleModel, UnknownObstacleModel, spheres_until};
+pub use occupancy_bitmap::OccupancyBitmap;
+pub use planar_arm::{ArmDimension, ArmError, PlanarArm};
+pub use planar_map::{ObstacleMapBuilder, ObstacleMapError};
+pub use robot_map::{
+    BoxTree, CellBox, MAX_JOINTS, OccupancyArray, RemainingJoints, RobotMapBuilder, RobotMapError, RobotMapSettings,
+    RobotMapStats,
+};
+pub use seed_expansion::{SeedExpansion, expand_from_seeds};

@@ -1,14 +1,14 @@
-//! Tables as NumPy reads them.
+//! Occupancy as NumPy files.
 
-use crate::Table;
+use crate::OccupancyBitmap;
 
-/// What stands before the numbers of a `.npy` file of `uint8`, C order (NumPy's format, version 1.0).
+/// Header of a `.npy` file of `uint8`, C order (NumPy's format, version 1.0).
 pub(crate) fn header(shape: &[usize]) -> Vec<u8> {
     let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
-    // One axis keeps its comma, as Python writes tuples.
+    // A Python tuple of one number ends with a comma.
     let sizes = sizes.join(", ") + if shape.len() == 1 { "," } else { "" };
     let text = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({sizes}), }}");
-    // Magic, version, length; then the text, padded so that the numbers begin at a multiple of 64.
+    // Magic, version, length; then the text, padded so that the data begins at a multiple of 64.
     let before = 10;
     let padded = (before + text.len() + 1).next_multiple_of(64) - before;
     let mut out = Vec::with_capacity(before + padded);
@@ -20,14 +20,14 @@ pub(crate) fn header(shape: &[usize]) -> Vec<u8> {
     out
 }
 
-impl Table {
-    /// The table as a `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 blocked.
+impl OccupancyBitmap {
+    /// A `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 blocked.
     ///
     /// ```
-    /// use elbowroom_cspace::{Span, Table};
-    /// let mut table = Table::new([2, 3, 5]);
-    /// table.block(Span { row: 5, first: 4, last: 4 });
-    /// let npy = table.to_npy();
+    /// use elbowroom_cspace::{OccupancyBitmap, RowSpan};
+    /// let mut occupancy = OccupancyBitmap::new([2, 3, 5]);
+    /// occupancy.block(RowSpan { row: 5, first: 4, last: 4 });
+    /// let npy = occupancy.to_npy();
     /// assert!(npy.starts_with(b"\x93NUMPY\x01\x00"));
     /// assert_eq!(npy.len(), 128 + 30);
     /// assert_eq!(npy[128..].iter().position(|&b| b == 1), Some(29));

@@ -1,26 +1,26 @@
-//! Boxes and convex polyhedra: no miss, little blocked needlessly.
+//! Boxes and convex polyhedra: no contact is missed, few cells are blocked needlessly.
 
 mod common;
 
 use std::sync::Arc;
 
-use common::{Random, fill, grid, grid_of, misses, needless};
-use elbowroom_cspace::{Grid, Obstacle, PlanarArm};
+use common::{Random, fill, grid, grid_of, missed_contacts, needless_share};
+use elbowroom_cspace::{ConvexObstacle, Grid, PlanarArm};
 use elbowroom_proximity::ConvexHull;
 use elbowroom_spatial::{Pose, Vec3};
 
 const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
-fn cuboid(at: [f64; 3], rpy: [f64; 3], half: [f64; 3]) -> Obstacle {
-    Obstacle::cuboid(Pose::from_xyz_rpy(at, rpy), Vec3::from(half)).unwrap()
+fn cuboid(at: [f64; 3], rpy: [f64; 3], half: [f64; 3]) -> ConvexObstacle {
+    ConvexObstacle::cuboid(Pose::from_xyz_rpy(at, rpy), Vec3::from(half)).unwrap()
 }
 
 /// The baseline's box.
-fn baseline(shrink: f64) -> Obstacle {
+fn baseline(shrink: f64) -> ConvexObstacle {
     cuboid([1.3, 0.4, 0.9], [0.0, 0.0, 30f64.to_radians()], [0.25 - shrink, 0.2 - shrink, 0.3 - shrink])
 }
 
-fn hard_cases() -> Vec<Obstacle> {
+fn hard_cases() -> Vec<ConvexObstacle> {
     vec![
         baseline(0.0),
         cuboid([1.3, 0.4, 0.9], [0.4, 0.7, 0.5], [0.25, 0.2, 0.3]), // tilted
@@ -28,7 +28,7 @@ fn hard_cases() -> Vec<Obstacle> {
         cuboid([0.1, -0.2, 1.9], [0.5, -0.4, 0.3], [0.5, 0.3, 0.2]), // over it and tilted
         cuboid([0.0, 0.45, 1.5], [0.0, 0.0, 0.0], [0.3, 0.4, 0.2]), // its edge at the axis
         cuboid([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9], [0.2, 0.3, 0.2]), // behind the base
-        cuboid([0.5, 0.0, 0.9], [0.1, 0.2, 0.0], [0.3, 0.3, 0.3]),  // holds the shoulder
+        cuboid([0.5, 0.0, 0.9], [0.1, 0.2, 0.0], [0.3, 0.3, 0.3]),  // contains the shoulder
         cuboid([2.5, 0.0, 0.7], [0.0, 0.3, 0.1], [0.1, 0.1, 0.1]),  // at the end of the reach
         cuboid([1.5, 0.0, 0.9], [0.0, 0.0, 0.2], [0.01, 1.5, 0.01]), // a bar across: several arcs
         cuboid([1.4, 0.0, 0.9], [0.0, 0.0, 0.0], [1.2, 0.02, 0.02]), // a bar along
@@ -57,26 +57,26 @@ fn random_pose(random: &mut Random) -> Pose {
     Pose::from_xyz_rpy([at.x, at.y, at.z], [rpy.x, rpy.y, random.within(-3.0, 3.0)])
 }
 
-fn random_obstacle(random: &mut Random) -> Obstacle {
+fn random_obstacle(random: &mut Random) -> ConvexObstacle {
     let pose = random_pose(random);
     let size = [0.01, 0.1, 0.3, 1.0, 4.0][random.below(5)];
     if random.below(2) == 0 {
         let half = (random.vector(size)).abs();
-        Obstacle::cuboid(pose, half).unwrap()
+        ConvexObstacle::cuboid(pose, half).unwrap()
     } else {
         let hull = random_hull(random, size);
-        Obstacle::hull(pose, hull).unwrap()
+        ConvexObstacle::hull(pose, hull).unwrap()
     }
 }
 
-fn check(arm: &PlanarArm, grid: &Grid, obstacle: &Obstacle, samples: (usize, usize), random: &mut Random) {
-    let table = fill(arm, grid, obstacle);
-    let missed = misses(arm, grid, &table, obstacle, samples, random);
-    assert_eq!(missed, 0, "step {}: {obstacle:?} blocks {}", grid.axes()[0].step().to_degrees(), table.blocked());
+fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: (usize, usize), random: &mut Random) {
+    let occupancy = fill(arm, grid, obstacle);
+    let missed = missed_contacts(arm, grid, &occupancy, obstacle, samples, random);
+    assert_eq!(missed, 0, "step {}: {obstacle:?} blocks {}", grid.axes()[0].step().to_degrees(), occupancy.blocked());
 }
 
 #[test]
-fn no_configuration_that_touches_a_hard_box_lies_in_a_free_cell() {
+fn no_contact_with_a_hard_box_lies_in_a_free_cell() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     for step in [2.0, 5.0] {
         for obstacle in &hard_cases() {
@@ -86,7 +86,7 @@ fn no_configuration_that_touches_a_hard_box_lies_in_a_free_cell() {
 }
 
 #[test]
-fn no_configuration_that_touches_a_random_solid_lies_in_a_free_cell() {
+fn no_contact_with_a_random_solid_lies_in_a_free_cell() {
     let mut random = Random(77);
     for round in 0..48 {
         let step = [3.0, 4.0, 7.0, 12.0][round % 4];
@@ -109,15 +109,15 @@ fn a_hundred_thousand_configurations_of_the_baseline() {
 }
 
 #[test]
-fn solids_smaller_by_2_mm_would_be_noticed() {
+fn the_oracle_detects_solids_smaller_by_2_mm() {
     let mut random = Random(7);
     let grid = grid(2.0);
     let places =
         [([1.3, 0.4, 0.9], [0.0, 0.0, 0.52]), ([1.3, 0.4, 0.9], [0.4, 0.7, 0.5]), ([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9])];
     for (at, rpy) in places {
-        let table = fill(&ARM, &grid, &cuboid(at, rpy, [0.248, 0.198, 0.298]));
+        let occupancy = fill(&ARM, &grid, &cuboid(at, rpy, [0.248, 0.198, 0.298]));
         let whole = cuboid(at, rpy, [0.25, 0.2, 0.3]);
-        assert!(misses(&ARM, &grid, &table, &whole, (0, 20_000), &mut random) > 0, "{at:?}");
+        assert!(missed_contacts(&ARM, &grid, &occupancy, &whole, (0, 20_000), &mut random) > 0, "{at:?}");
     }
 }
 
@@ -126,11 +126,11 @@ fn few_cells_are_blocked_needlessly() {
     let mut random = Random(11);
     let grid = grid(2.0);
     for (i, obstacle) in hard_cases().iter().enumerate() {
-        let table = fill(&ARM, &grid, obstacle);
+        let occupancy = fill(&ARM, &grid, obstacle);
         let samples = if i == 0 { 4000 } else { 500 };
-        let share = needless(&ARM, &grid, &table, obstacle, samples, &mut random);
-        println!("case {i}: {} blocked, {:.2} % needlessly", table.blocked(), share * 100.0);
-        // A floor that only the wrist reaches blocks a thin shell: nearly every cell is at the border.
+        let share = needless_share(&ARM, &grid, &occupancy, obstacle, samples, &mut random);
+        println!("case {i}: {} blocked, {:.2} % needlessly", occupancy.blocked(), share * 100.0);
+        // A floor that only the wrist reaches blocks a thin shell: nearly every cell is at the boundary.
         let most = [0.006, 0.03, 0.06][usize::from(i > 0) + usize::from(i == 11)];
         assert!(share <= most, "case {i}: {share}");
     }

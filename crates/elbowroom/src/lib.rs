@@ -1,27 +1,34 @@
-//! Collision awareness for industrial robot cells: what a Rust user writes in `Cargo.toml`.
+//! Collision awareness for industrial robot cells: the crate that a Rust user names in `Cargo.toml`.
 //!
-//! | room | what happens in it |
+//! [`prelude`] has the names that most programs need. Everything else is in one module per crate of the workspace:
+//!
+//! | module | contents |
 //! | --- | --- |
-//! | [`spatial`] | poses, motions, boxes, units |
-//! | [`proximity`] | shapes and the questions between two of them |
-//! | [`kinematics`] | chains of joints: forward, inverse, Jacobian, Denavit-Hartenberg, any point of a surface as the end of a chain |
-//! | [`scene`] | robots and objects together |
+//! | [`spatial`] | poses, frame motions, bounding boxes, units |
+//! | [`proximity`] | shapes, and collision, distance, penetration and continuous collision detection between two of them |
+//! | [`kinematics`] | joint chains: forward, inverse, Jacobian, Denavit-Hartenberg, any surface point as end effector |
+//! | [`robot`] | a robot as data: chain, colliders, disabled pairs |
+//! | [`scene`] | robots and objects together: collision and distance queries, allowed collision matrix |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS |
-//! | [`monitor`] | interference regions, checked every control tick |
-//! | [`cspace`] | obstacles as blocked cells of joint space |
-//! | [`planner`] | ways around, on the joint-space map or in the exact scene |
-//! | [`avoidance`] | reacting while moving: fuzzy rules, evasion, the way back |
-//! | [`vision`] | camera frames and point clouds to obstacles with an identity |
-//! | [`cell`] | a whole cell from one file, run in simulated time, with its report |
+//! | [`monitor`] | interference regions, checked in every control tick |
+//! | [`cspace`] | obstacles as occupied cells of joint space |
+//! | [`planner`] | paths on the joint-space map or in the exact scene, replanning, time parametrization |
+//! | [`avoidance`] | reactive avoidance: fuzzy rules, least-squares evasion, return to the path |
+//! | [`vision`] | camera frames and point clouds to tracked obstacles |
+//! | [`perception`] | camera frames to a joint-space map, and the map to a replanned motion |
+//! | [`cell`] | the cell file and the model it describes |
+//! | [`sim`] | the programs of a cell in simulated time under the monitor; whether the laws exclude entry |
+//! | [`analysis`] | collision, distance, maps and paths of a cell that does not run |
+//! | [`inspect`] | the contents of a robot model or mesh file |
+//! | [`report`] | HTML reports, plots, pictures, and the summary for a terminal |
 //!
 //! # A guarded controller
 //!
-//! A controller ticks a [`monitor::Monitor`] with each joint snapshot and obeys the override it answers:
+//! A controller calls [`monitor::Monitor::tick`] with each joint snapshot and applies the returned speed override:
 //!
 //! ```
-//! use elbowroom::kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
-//! use elbowroom::monitor::{Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, Volume};
-//! use elbowroom::spatial::{Pose, Rotation, Vec3, units::{deg, mm}};
+//! use elbowroom::kinematics::{JointKind, Limits, dh::ClassicalRow};
+//! use elbowroom::prelude::*;
 //!
 //! let row = |joint: &str, a: f64| ClassicalRow {
 //!     joint: joint.into(), kind: JointKind::Revolute, a, alpha: 0.0, d: 0.0, theta: 0.0,
@@ -43,37 +50,104 @@
 //!     })?,
 //!     None,
 //! )?;
-//! let far = monitor.tick(&Snapshot::still(0.000, &[deg(0.0), deg(0.0)]));
+//! let far = monitor.tick(&Snapshot::stationary(0.000, &[deg(0.0), deg(0.0)]));
 //! assert_eq!(far.speed_override, 1.0);
 //! let mut slowest: f64 = 1.0;
 //! for i in 1..=50 {
 //!     let q = [deg(f64::from(i)), deg(0.0)];
-//!     slowest = slowest.min(monitor.tick(&Snapshot::still(0.01 * f64::from(i), &q)).speed_override);
+//!     slowest = slowest.min(monitor.tick(&Snapshot::stationary(0.01 * f64::from(i), &q)).speed_override);
 //! }
 //! assert!(slowest < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Collision and distance
+//!
+//! A [`scene::Scene`] is constant and shared between threads; each thread has its own [`scene::SceneState`] and
+//! [`scene::Checker`]:
+//!
+//! ```
+//! use elbowroom::prelude::*;
+//! use elbowroom::robot::example;
+//!
+//! let mut builder = Scene::builder();
+//! builder.robot("arm", example::arm()?, Pose::IDENTITY);
+//! let scene = builder.build()?;
+//! let state = SceneState::new(&scene);
+//! let mut checker = Checker::new(&scene, CheckerOptions::default());
+//! assert!(checker.collides(&state).is_none());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # A collision-free path
+//!
+//! RRT-Connect for any number of joints, on the exact scene; every segment is proven by continuous collision detection:
+//!
+//! ```
+//! use elbowroom::prelude::*;
+//! use elbowroom::robot::example;
+//!
+//! let mut builder = Scene::builder();
+//! let arm = builder.robot("arm", example::arm()?, Pose::IDENTITY);
+//! let scene = builder.build()?;
+//! let state = SceneState::new(&scene);
+//! let path = RrtConnect::new(&scene, arm)?.plan(&state, &[0.5, 0.4, 0.3], &RrtConnectSettings::default())?;
+//! assert_eq!(path.waypoints.last().unwrap(), &[0.5, 0.4, 0.3]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # A whole cell
 //!
-//! [`cell::Cell::load`] reads the cell file of `docs/cell-file.md`; [`cell::simulate`] runs its programs under the
-//! monitor. The `elbowroom` command does the same from a shell.
+//! [`cell::Cell::load`] reads a cell file (`docs/cell-file.md`); [`sim::simulate`] runs its programs under the monitor. The
+//! `elbowroom` command does the same from a shell.
+//!
+//! ```
+//! use elbowroom::prelude::*;
+//!
+//! let cell = Cell::parse("rail.toml", r#"
+//! version = 1
+//! units = { length = "mm", angle = "deg" }
+//! [robot.rail]
+//! dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+//! [region.end]
+//! shape = "plane"
+//! origin = [0, 0, 1000]
+//! x = [0, 1, 1000]
+//! y = [1, 0, 1000]
+//! warning = 300
+//! guards = ["tcp"]
+//! [program.rail]
+//! steps = [{ move = "joint", to = [1500], speed = 50 }]
+//! "#)?;
+//! let run = simulate(&cell, &RunOptions::default())?.recording;
+//! assert!(!run.robots[0].finished && !run.regions[0].entered); // stopped at the border
+//! println!("{}", elbowroom::report::summary(&run, 80, false));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! This is not a certified safety device.
+
+pub mod prelude;
 
 /// The README's examples must compile.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;
 
+pub use elbowroom_analysis as analysis;
 pub use elbowroom_avoidance as avoidance;
 pub use elbowroom_cell as cell;
 pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
+pub use elbowroom_inspect as inspect;
 pub use elbowroom_kinematics as kinematics;
 pub use elbowroom_monitor as monitor;
+pub use elbowroom_perception as perception;
 pub use elbowroom_planner as planner;
 pub use elbowroom_proximity as proximity;
+pub use elbowroom_report as report;
+pub use elbowroom_robot as robot;
 pub use elbowroom_scene as scene;
+pub use elbowroom_sim as sim;
 pub use elbowroom_spatial as spatial;
 pub use elbowroom_vision as vision;

@@ -1,9 +1,9 @@
 //! Mutation fuzzing of one reader: `cargo run --release -p elbowroom-formats --example fuzz -- PARSER SECONDS [DIR [SEED]]`.
 //!
 //! PARSER is one of stl obj dae gltf ply off 3ds urdf srdf mesh. Damages the built-in samples and the files of DIR (those
-//! of the parser's kind below 64 KiB), and counts panics, readings slower than 2 s, and results larger than the
-//! input can justify. Cap the memory from outside (`ulimit -v`). Exit status 1 if anything was found; the input is
-//! kept in the temporary directory.
+//! of the parser's kind below 64 KiB), and counts panics, readings slower than 2 s, and results too large for the
+//! input. Limit the memory from outside (`ulimit -v`). The exit status is 1 if anything was found; the input is kept in
+//! the temporary directory.
 
 #[path = "../tests/common/corpus.rs"]
 mod corpus;
@@ -57,7 +57,7 @@ fn is_of_kind(path: &Path, parser: &str) -> bool {
 #[derive(Default)]
 struct Report {
     executions: u64,
-    sound: u64,
+    valid: u64,
     findings: u64,
     slowest: Duration,
     largest: usize,
@@ -65,10 +65,10 @@ struct Report {
 
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { executions, sound, findings, slowest, largest } = self;
+        let Self { executions, valid, findings, slowest, largest } = self;
         write!(
             f,
-            "{executions} executions, {sound} of them loaded, {findings} findings, slowest {slowest:.1?}, largest result {largest} bytes"
+            "{executions} executions, {valid} of them loaded, {findings} findings, slowest {slowest:.1?}, largest result {largest} bytes"
         )
     }
 }
@@ -90,7 +90,7 @@ fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Random) ->
             Ok(Ok(size)) if size > (1 << 20) + 200 * bytes.len() => Some("outsized"),
             Ok(_) if elapsed > SLOW => Some("slow"),
             Ok(result) => {
-                report.sound += u64::from(result.is_ok());
+                report.valid += u64::from(result.is_ok());
                 report.largest = report.largest.max(result.unwrap_or(0));
                 None
             }

@@ -1,4 +1,4 @@
-//! How long each URDF below a directory takes to load: `cargo run --release -p elbowroom-formats --example load_times -- DIR`.
+//! Loading time of each URDF below a directory: `cargo run --release -p elbowroom-formats --example load_times -- DIR`.
 //!
 //! Best of five, files in the cache of the operating system: milliseconds without and with visual meshes.
 

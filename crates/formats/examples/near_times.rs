@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_proximity::{Cuboid, Shape};
-use elbowroom_scene::{Checker, LevelOfDetail, Object, Options, Robot, Scene, SceneMotion, SceneState, Selection};
+use elbowroom_robot::{Robot, RobotId};
+use elbowroom_scene::{Checker, CheckerOptions, LevelOfDetail, Object, Scene, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
 
 fn main() {
@@ -19,26 +20,27 @@ fn main() {
         [("all pairs", Selection::All, Selection::All), ("with objects", Selection::Robots, Selection::Objects)]
     {
         for (states, path) in [("smooth", smooth(&scene, &mut r)), ("random", random(&scene, &mut r))] {
-            let mut checker = Checker::new(&scene, Options::default());
-            let (mut near, mut coming, mut told, mut state) = (Vec::new(), Vec::new(), 0_u32, SceneState::new(&scene));
+            let mut checker = Checker::new(&scene, CheckerOptions::default());
+            let (mut near, mut approaching, mut reported, mut state) =
+                (Vec::new(), Vec::new(), 0_u32, SceneState::new(&scene));
             let (mut motion, policy) =
                 (SceneMotion::new(&scene), LevelOfDetail { within_m: margin, ..Default::default() });
             for (q, next) in path.iter().zip(path.iter().skip(1)) {
-                state.set_q(&scene, 0, q).expect("a state");
-                let mut ask = checker.between(one, other);
-                near.push(timed(|| ask.near(&state, margin, |_| told += 1)));
+                state.set_q(&scene, RobotId(0), q).expect("a state");
+                let mut query = checker.between(one, other);
+                near.push(timed(|| query.distances_within(&state, margin, |_| reported += 1)));
                 // A hundred steps in two seconds, no joint faster than 2 rad/s.
                 let qd: Vec<f64> = q.iter().zip(next).map(|(a, b)| ((b - a) * 50.0).clamp(-2.0, 2.0)).collect();
-                motion.set_qd(&scene, &state, 0, &qd).expect("velocities");
-                coming.push(timed(|| ask.approaching(&state, &motion, &policy, 1.0, |_| {})));
+                motion.set_qd(&scene, &state, RobotId(0), &qd).expect("velocities");
+                approaching.push(timed(|| query.approaching(&state, &motion, &policy, 1.0, |_| {})));
             }
-            let told = f64::from(told) / near.len() as f64;
-            for (name, times) in [("near", &mut near), ("approaching", &mut coming)] {
+            let reported = f64::from(reported) / near.len() as f64;
+            for (name, times) in [("near", &mut near), ("approaching", &mut approaching)] {
                 times.sort_by(f64::total_cmp);
                 let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
                 let (median, most) = (at(0.5), at(0.99));
                 eprintln!(
-                    "{selected:>12}, {states}, {name:<11}: {told:4.1} told, {median:7.1} µs median, {most:7.1} µs 99 %"
+                    "{selected:>12}, {states}, {name:<11}: {reported:4.1} reported, {median:7.1} µs median, {most:7.1} µs 99 %"
                 );
             }
         }
@@ -46,15 +48,15 @@ fn main() {
 }
 
 /// Microseconds.
-fn timed(question: impl FnOnce()) -> f64 {
+fn timed(query: impl FnOnce()) -> f64 {
     let started = Instant::now();
-    question();
+    query();
     started.elapsed().as_secs_f64() * 1e6
 }
 
 /// The robot with four boxes and one of its own links as a mesh around it.
 fn among(robot: Robot) -> Scene {
-    let part = robot.bodies.iter().flatten().map(|b| b.shape.clone()).find(|s| matches!(s, Shape::Mesh(_)));
+    let part = robot.colliders.iter().flatten().map(|b| b.shape.clone()).find(|s| matches!(s, Shape::Mesh(_)));
     let reach = 1.0;
     let cuboid = |x, y, z| Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) * reach });
     let mut builder = Scene::builder();

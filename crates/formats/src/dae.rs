@@ -1,7 +1,7 @@
-//! COLLADA 1.4 and 1.5: the triangles of the scene, moved by its nodes, in metres.
+//! COLLADA 1.4 and 1.5: the triangles of the scene in world coordinates, in metres.
 //!
-//! One entry per node that shows geometry. Read: units, up axis, `matrix translate rotate scale` of nested and
-//! instanced nodes, `triangles polylist polygons tristrips trifans`, skins in their bind shape. Passed over:
+//! One entry per node with geometry. Read: units, up axis, `matrix translate rotate scale` of nested and
+//! instanced nodes, `triangles polylist polygons tristrips trifans`, skins in their bind shape. Ignored:
 //! materials, lights, cameras, animations, lines. Refused: `skew`, `lookat`, references into other files.
 
 mod geometry;
@@ -12,26 +12,26 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use crate::error::Warnings;
-use crate::mesh::{LoadedMeshes, UpAxis};
-use crate::scan::show;
-use crate::transform::Affine;
-use crate::{FormatError, source as bytes_source, xml};
+use crate::affine::Affine;
+use crate::error::WarningList;
+use crate::mesh_data::{LoadedMeshes, UpAxis};
+use crate::tokens::show;
+use crate::{FormatError, input, xml};
 
 /// Parses a COLLADA file, its unit applied; a file that states none is in metres.
 ///
 /// # Errors
-/// Unsound XML, references to nothing, corners that do not exist, numbers that are none, nodes in a circle.
+/// Invalid XML, references to missing elements, missing vertices, invalid numbers, nodes in a cycle.
 pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
-    bytes_source::check_content(bytes, file)?;
-    let text = bytes_source::text(bytes, file)?;
+    input::check_content(bytes, file)?;
+    let text = input::text(bytes, file)?;
     let document = xml::parse(&text, file)?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
         let what = format!("the root element is <{}>, not <COLLADA>", show(root.tag_name().name().as_bytes()));
         return Err(FormatError::new(file, xml::line(root), what).hint("a COLLADA file, exported as .dae"));
     }
-    let mut warnings = Warnings::default();
+    let mut warnings = WarningList::default();
     let asset = xml::child(root, "asset");
     let metres = unit_in_metres(asset, file)?;
     let upright = match up {
@@ -53,10 +53,10 @@ fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, Forma
     })
 }
 
-/// The turn that makes the stated up axis +z (COLLADA 1.4.1, `up_axis`).
-fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut Warnings) -> Affine {
+/// The rotation of the stated up axis to +z (COLLADA 1.4.1, `up_axis`).
+fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut WarningList) -> Affine {
     let Some(node) = asset.and_then(|a| xml::child(a, "up_axis")) else {
-        // The specification's default.
+        // The default of the specification.
         return Affine::rotation(Y_UP);
     };
     match node.text().unwrap_or_default().trim() {

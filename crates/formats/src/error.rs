@@ -1,4 +1,4 @@
-//! What is wrong with a file, where, and what to write instead.
+//! Errors and warnings about files: the fault, its position, and what to write instead.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -14,28 +14,28 @@ use std::path::{Path, PathBuf};
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FormatError {
-    /// The file at fault.
+    /// The file.
     pub file: PathBuf,
-    /// Its line, counted from 1; `None` where lines make no sense (binary files, missing files).
+    /// Its line, counted from 1; `None` without lines (binary files, missing files).
     pub line: Option<usize>,
-    /// What is wrong.
+    /// The fault.
     pub what: String,
-    /// What to write instead, where that can be said.
+    /// What to write instead, where that is known.
     pub write_instead: Option<String>,
 }
 
-/// A sound model, but its user should know.
+/// Something that the user of a valid model should know.
 ///
 /// Displayed like [`FormatError`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// The file that it is about.
+    /// The file.
     pub file: PathBuf,
     /// Its line, counted from 1.
     pub line: Option<usize>,
-    /// What is odd.
+    /// The fact.
     pub what: String,
-    /// What to write instead, where that can be said.
+    /// What to write instead, where that is known.
     pub write_instead: Option<String>,
 }
 
@@ -102,22 +102,22 @@ impl fmt::Display for Warning {
 
 impl std::error::Error for FormatError {}
 
-/// Collects warnings, but not millions of them.
+/// Collects warnings, up to a limit.
 #[derive(Debug, Default)]
-pub(crate) struct Warnings {
+pub(crate) struct WarningList {
     list: Vec<Warning>,
-    left_off: usize,
+    dropped: usize,
 }
 
-impl Warnings {
-    const MOST: usize = 200;
+impl WarningList {
+    const MAX_COUNT: usize = 200;
 
-    /// Builds the warning only when there is room for it: finding a line costs a scan of the file.
+    /// Builds the warning only below the limit: determining a line scans the file.
     pub(crate) fn push_with(&mut self, make: impl FnOnce() -> Warning) {
-        if self.list.len() < Self::MOST {
+        if self.list.len() < Self::MAX_COUNT {
             self.list.push(make());
         } else {
-            self.left_off += 1;
+            self.dropped += 1;
         }
     }
 
@@ -132,8 +132,8 @@ impl Warnings {
     }
 
     pub(crate) fn finish(mut self, file: &Path) -> Vec<Warning> {
-        if self.left_off > 0 {
-            self.list.push(Warning::new(file, None, format!("{} more warnings are left off", self.left_off)));
+        if self.dropped > 0 {
+            self.list.push(Warning::new(file, None, format!("{} more warnings are dropped", self.dropped)));
         }
         self.list
     }

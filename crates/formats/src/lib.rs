@@ -1,8 +1,8 @@
-//! Files to models, and back. Hostile input ends here.
+//! Files to models, and back. Hostile input is refused here.
 //!
 //! | file | module | notes |
 //! | --- | --- | --- |
-//! | URDF, SRDF | [`robot`], [`urdf`], [`srdf`] | lines in every message; `package://` looked for beside the file and upward; written too |
+//! | URDF, SRDF | [`robot`], [`urdf`], [`srdf`] | line numbers in every message; `package://` searched beside the file and upward; written too |
 //! | 3DS, glTF as robots | [`robot`], [`nodetree`], [`joints`] | joints from tracks or from a file |
 //! | STL | [`stl`] | binary and ASCII; written as binary |
 //! | OBJ | [`obj`] | polygons, objects, groups |
@@ -10,15 +10,20 @@
 //! | glTF, GLB | [`gltf`] | node transforms, sparse accessors, strips and fans |
 //! | PLY | [`ply`] | ASCII, both binary byte orders |
 //! | OFF | [`off`] | ASCII |
+//! | PCD | [`pcd`] | points; ASCII, binary, compressed |
 //! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
+//! | joint states, trajectories | [`joint_states`] | CSV; columns in any order, errors with file and line |
+//! | tables of numbers | [`number_table`] | CSV with a header |
+//! | PNG | [`png`] | grey, RGB, alpha, palettes, 8 and 16 bits, interlaced; written too |
+//! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
 //!
-//! Everything comes out in metres and radians. A file either becomes a sound model, with [`Warning`]s where its user
-//! should know something, or a [`FormatError`] that names the file, the line, what is wrong and what to write
-//! instead. No reader panics, recurses on the input, or allocates more than in proportion to the file: counts are
-//! compared with the bytes that are there before anything is reserved, and instances are limited.
+//! All models are in metres and radians. A file either becomes a valid model, with [`Warning`]s, or gives a
+//! [`FormatError`] that names the file, the line, the fault and what to write instead. No reader panics, recurses on the
+//! input, or allocates more than in proportion to the file: counts are compared with the remaining bytes before memory is
+//! reserved, and instances are limited.
 //!
-//! The readers of meshes are ours and not libraries': they keep double precision, lines for messages, and one entry
-//! per object, and they check every count of a hostile file.
+//! The readers of meshes are part of this crate instead of libraries: they keep double precision, line numbers for
+//! messages, and one entry per object, and they check every count of a hostile file.
 //!
 //! ```no_run
 //! use elbowroom_formats::{mesh, robot};
@@ -30,29 +35,41 @@
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
 
+mod affine;
+mod csv;
+mod cycles;
 pub mod dae;
 mod error;
 pub mod gltf;
+pub mod image;
+mod input;
+pub mod joint_states;
 pub mod joints;
 pub mod mesh;
+mod mesh_data;
 mod names;
 pub mod nodetree;
+pub mod number_table;
 pub mod obj;
 pub mod off;
+pub mod pcd;
 pub mod ply;
+pub mod png;
+pub mod pnm;
 mod polygon;
 mod resolve;
 pub mod robot;
-mod scan;
-mod source;
 pub mod srdf;
 pub mod stl;
 pub mod tds;
-mod transform;
+mod tokens;
 pub mod urdf;
 mod xml;
 
 pub use error::{FormatError, Warning};
-pub use mesh::{LoadedMeshes, MeshData, units_suspicion};
+pub use input::read_file;
+pub use joint_states::{JointStateOptions, JointStateRobot, JointStates};
+pub use mesh::{LoadedMeshes, MeshData, unit_warning};
 pub use nodetree::NodeTree;
+pub use number_table::{NumberTable, TimedRow};
 pub use robot::{LoadOptions, LoadedRobot};

@@ -1,99 +1,17 @@
-//! Mesh files of any kind: by content first, extension second.
+//! Mesh files of any format: detected by content first, extension second.
 
 use std::path::Path;
 
-use elbowroom_proximity::TriMesh;
+use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
-use elbowroom_spatial::{Aabb, Vec3};
 
+pub use crate::mesh_data::{LoadedMeshes, MeshData, UpAxis};
 use crate::nodetree::NodeTree;
-use crate::{FormatError, Warning, dae, gltf, obj, off, ply, source, stl, tds};
+use crate::{FormatError, Warning, dae, gltf, input, obj, off, ply, stl, tds};
 
-/// The most vertices or triangles that a file may unfold into, instances counted.
-pub(crate) const MOST_ELEMENTS: usize = 20_000_000;
-
-/// Triangles of one object.
-///
-/// Every index is below `vertices.len()` and every coordinate is finite; degenerate and duplicate triangles stay.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct MeshData {
-    /// The object's name in the file, or the file's stem.
-    pub name: String,
-    /// Corners in metres, in the file's own frame.
-    pub vertices: Vec<Vec3>,
-    /// Corners of each triangle, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl MeshData {
-    /// The box around all corners; empty where there are none.
-    pub fn aabb(&self) -> Aabb {
-        Aabb::from_points(self.vertices.iter().copied())
-    }
-
-    /// Multiplies every corner by a factor per axis; a mirror image keeps its outside outside.
-    ///
-    /// ```
-    /// use elbowroom_formats::MeshData;
-    /// use elbowroom_spatial::Vec3;
-    /// let mut mesh = MeshData {
-    ///     name: "flag".into(),
-    ///     vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
-    ///     triangles: vec![[0, 1, 2]],
-    /// };
-    /// mesh.scale(Vec3::new(-1.0, 1.0, 1.0));
-    /// assert_eq!(mesh.triangles, [[0, 2, 1]]);
-    /// ```
-    pub fn scale(&mut self, factors: Vec3) {
-        self.vertices.iter_mut().for_each(|v| *v = v.scale(factors));
-        if factors.x * factors.y * factors.z < 0.0 {
-            self.flip();
-        }
-    }
-
-    pub(crate) fn flip(&mut self) {
-        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-
-    /// The mesh as a solid of the proximity room.
-    ///
-    /// # Errors
-    /// Where the proximity room refuses the mesh; `file` is named in the message.
-    pub fn into_trimesh(self, file: &Path) -> Result<TriMesh, FormatError> {
-        let name = self.name;
-        TriMesh::new(self.vertices, self.triangles)
-            .map_err(|e| FormatError::new(file, None, format!("the object `{name}` is no solid: {e}")))
-    }
-}
-
-/// What a mesh file holds.
-#[derive(Debug, Clone, Default)]
-pub struct LoadedMeshes {
-    /// One entry per object, whatever its materials; never empty, and none without triangles.
-    pub meshes: Vec<MeshData>,
-    /// What its user should know.
-    pub warnings: Vec<Warning>,
-}
-
-impl LoadedMeshes {
-    /// The box around everything.
-    pub fn aabb(&self) -> Aabb {
-        self.meshes.iter().fold(Aabb::EMPTY, |all, m| all.union(&m.aabb()))
-    }
-}
-
-/// What to do with the up axis that a COLLADA file states.
+/// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum UpAxis {
-    /// Turn the mesh so that up is +z, as a file opened on its own should stand.
-    ToZ,
-    /// Leave the numbers as they are, as rviz and `MoveIt` do for meshes of a URDF.
-    Ignore,
-}
-
-/// A file format that this room reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum MeshFormat {
     /// STL, binary or ASCII.
     Stl,
     /// Wavefront OBJ.
@@ -110,20 +28,20 @@ pub enum Format {
     Tds,
 }
 
-impl Format {
-    /// Whether the format itself fixes the unit of its numbers, so that a user's `--unit` has no say.
+impl MeshFormat {
+    /// Whether the format defines the unit of its numbers, so that the option `--unit` has no effect.
     pub fn states_its_unit(self) -> bool {
         matches!(self, Self::Dae | Self::Gltf)
     }
 }
 
-/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS, told apart by content first and extension second.
+/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS, detected by content first and extension second.
 ///
-/// `unit` is the unit of formats that state none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
-/// turned so that its up axis is +z. One entry per object.
+/// `unit` is the unit of formats that define none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
+/// rotated so that its up axis is +z. One entry per object.
 ///
 /// # Errors
-/// A file that cannot be read, is of another kind, damaged, or has no triangles.
+/// A file that cannot be read, is of another format, damaged, or has no triangles.
 ///
 /// ```
 /// use elbowroom_formats::mesh;
@@ -140,34 +58,34 @@ pub fn load(path: &Path, unit: Option<LengthUnit>) -> Result<LoadedMeshes, Forma
     load_with(path, unit, UpAxis::ToZ)
 }
 
-/// As [`load`], with a say about the up axis.
+/// As [`load`], with a choice about the up axis.
 ///
 /// # Errors
 /// As [`load`].
 pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
-    let bytes = source::read(path)?;
+    let bytes = input::read(path)?;
     let mut loaded = parse(&bytes, path, unit, up)?;
-    if let Some(w) = units_suspicion(loaded.aabb().extent()) {
+    if let Some(w) = unit_warning(loaded.aabb().extent()) {
         loaded.warnings.push(Warning { file: path.to_owned(), ..w });
     }
     Ok(loaded)
 }
 
-/// Parses the content of a mesh file; `file` is named in messages, gives the format where the content does not, and
-/// is where a glTF's buffers are looked for.
+/// Parses the content of a mesh file; `file` is named in messages, determines the format where the content does not, and
+/// is the path to which the buffers of a glTF are relative.
 ///
 /// # Errors
 /// As [`load`].
 pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
     let format = detect(bytes, file)?;
     let mut loaded = match format {
-        Format::Stl => stl::parse(bytes, file),
-        Format::Obj => obj::parse(bytes, file),
-        Format::Dae => dae::parse(bytes, file, up),
-        Format::Gltf => gltf::parse(bytes, file),
-        Format::Ply => ply::parse(bytes, file),
-        Format::Off => off::parse(bytes, file),
-        Format::Tds => tds::parse(bytes, file).map(NodeTree::flatten),
+        MeshFormat::Stl => stl::parse(bytes, file),
+        MeshFormat::Obj => obj::parse(bytes, file),
+        MeshFormat::Dae => dae::parse(bytes, file, up),
+        MeshFormat::Gltf => gltf::parse(bytes, file),
+        MeshFormat::Ply => ply::parse(bytes, file),
+        MeshFormat::Off => off::parse(bytes, file),
+        MeshFormat::Tds => tds::parse(bytes, file).map(NodeTree::flatten),
     }?;
     apply_unit(&mut loaded, format, file, unit);
     loaded.meshes.retain(|m| !m.triangles.is_empty());
@@ -179,7 +97,7 @@ pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) ->
     Ok(loaded)
 }
 
-fn apply_unit(loaded: &mut LoadedMeshes, format: Format, file: &Path, unit: Option<LengthUnit>) {
+fn apply_unit(loaded: &mut LoadedMeshes, format: MeshFormat, file: &Path, unit: Option<LengthUnit>) {
     let Some(unit) = unit else { return };
     if format.states_its_unit() {
         let what = format!("states its own unit; the unit {} asked for is not applied", unit.symbol());
@@ -190,7 +108,7 @@ fn apply_unit(loaded: &mut LoadedMeshes, format: Format, file: &Path, unit: Opti
     loaded.meshes.iter_mut().for_each(|m| m.scale(Vec3::splat(factor)));
 }
 
-/// A transform or a unit may have pushed finite numbers over the edge.
+/// A transform or a unit may have made finite numbers infinite.
 fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError> {
     for mesh in &loaded.meshes {
         if let Some(i) = mesh.vertices.iter().position(|v| !v.is_finite()) {
@@ -201,16 +119,16 @@ fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError
     Ok(())
 }
 
-/// Doubt about the unit of something of this extent (metres per axis): a robot is rarely larger than 20 m or smaller
-/// than 5 mm. `None` where there is no doubt. The warning names no file.
+/// A warning where an extent (metres per axis) suggests a wrong unit: a robot is rarely larger than 20 m or smaller than
+/// 5 mm. The warning names no file.
 ///
 /// ```
-/// use elbowroom_formats::mesh::units_suspicion;
+/// use elbowroom_formats::mesh::unit_warning;
 /// use elbowroom_spatial::Vec3;
-/// assert!(units_suspicion(Vec3::new(350.0, 120.0, 80.0)).is_some());
-/// assert!(units_suspicion(Vec3::new(0.35, 0.12, 0.08)).is_none());
+/// assert!(unit_warning(Vec3::new(350.0, 120.0, 80.0)).is_some());
+/// assert!(unit_warning(Vec3::new(0.35, 0.12, 0.08)).is_none());
 /// ```
-pub fn units_suspicion(extent: Vec3) -> Option<Warning> {
+pub fn unit_warning(extent: Vec3) -> Option<Warning> {
     let largest = extent.max_element();
     if largest > 20.0 {
         return Some(Warning::new("", None, format!("is {largest:.4} m large: is its unit right?")).hint(
@@ -224,51 +142,51 @@ pub fn units_suspicion(extent: Vec3) -> Option<Warning> {
     })
 }
 
-/// Finds out what kind of file this is.
+/// Detects the format of a file.
 ///
 /// # Errors
-/// Where it is none that this room reads; the message says what it is, where that can be told.
-pub fn detect(bytes: &[u8], file: &Path) -> Result<Format, FormatError> {
-    source::check_content(bytes, file)?;
-    let decoded = source::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();
+/// A file of another format; the message names the format where it is known.
+pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
+    input::check_content(bytes, file)?;
+    let decoded = input::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();
     let head = decoded.trim_ascii_start();
     if let Some(format) = by_magic(bytes, head) {
         return Ok(format);
     }
-    if let Some((kind, hint)) = known_but_not_read(head) {
+    if let Some((kind, hint)) = unsupported_format(head) {
         return Err(FormatError::new(file, None, format!("is {kind}")).hint(hint));
     }
     if head.starts_with(b"<") || bytes.starts_with(b"<\0") {
         return if contains(&decoded, b"COLLADA") || extension_is(file, "dae") {
-            Ok(Format::Dae)
+            Ok(MeshFormat::Dae)
         } else {
             Err(FormatError::new(file, 1, "is XML, but not COLLADA").hint(READABLE))
         };
     }
-    by_extension(file).or_else(|| looks_like_obj(head).then_some(Format::Obj)).ok_or_else(|| {
+    by_extension(file).or_else(|| has_obj_vertices(head).then_some(MeshFormat::Obj)).ok_or_else(|| {
         FormatError::new(file, None, "is of no kind that can be read, by content or by extension").hint(READABLE)
     })
 }
 
 const READABLE: &str = "a mesh as STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS";
 
-fn by_magic(bytes: &[u8], head: &[u8]) -> Option<Format> {
+fn by_magic(bytes: &[u8], head: &[u8]) -> Option<MeshFormat> {
     if bytes.starts_with(b"glTF") || (head.starts_with(b"{") && contains(head, b"\"")) {
-        return Some(Format::Gltf);
+        return Some(MeshFormat::Gltf);
     }
     if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
-        return Some(Format::Ply);
+        return Some(MeshFormat::Ply);
     }
     if off::is_header(head) {
-        return Some(Format::Off);
+        return Some(MeshFormat::Off);
     }
     if tds::is_header(bytes) {
-        return Some(Format::Tds);
+        return Some(MeshFormat::Tds);
     }
-    (stl::is_ascii(head) || stl::is_exact_binary(bytes)).then_some(Format::Stl)
+    (stl::is_ascii(head) || stl::is_exact_binary(bytes)).then_some(MeshFormat::Stl)
 }
 
-fn known_but_not_read(head: &[u8]) -> Option<(&'static str, &'static str)> {
+fn unsupported_format(head: &[u8]) -> Option<(&'static str, &'static str)> {
     [
         (&b"#VRML"[..], "VRML", READABLE),
         (b"#Inventor", "an Open Inventor file", READABLE),
@@ -290,16 +208,16 @@ fn known_but_not_read(head: &[u8]) -> Option<(&'static str, &'static str)> {
     })
 }
 
-fn by_extension(file: &Path) -> Option<Format> {
+fn by_extension(file: &Path) -> Option<MeshFormat> {
     [
-        ("stl", Format::Stl),
-        ("obj", Format::Obj),
-        ("dae", Format::Dae),
-        ("gltf", Format::Gltf),
-        ("glb", Format::Gltf),
-        ("ply", Format::Ply),
-        ("off", Format::Off),
-        ("3ds", Format::Tds),
+        ("stl", MeshFormat::Stl),
+        ("obj", MeshFormat::Obj),
+        ("dae", MeshFormat::Dae),
+        ("gltf", MeshFormat::Gltf),
+        ("glb", MeshFormat::Gltf),
+        ("ply", MeshFormat::Ply),
+        ("off", MeshFormat::Off),
+        ("3ds", MeshFormat::Tds),
     ]
     .into_iter()
     .find(|(extension, _)| extension_is(file, extension))
@@ -310,7 +228,7 @@ fn extension_is(file: &Path, extension: &str) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-fn looks_like_obj(head: &[u8]) -> bool {
+fn has_obj_vertices(head: &[u8]) -> bool {
     head.split(|&b| b == b'\n').any(|l| l.starts_with(b"v ") || l.starts_with(b"v\t"))
 }
 

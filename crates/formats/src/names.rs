@@ -1,17 +1,17 @@
-//! Names that nothing else bears.
+//! Unique names, and lists of names.
 
 use std::collections::{HashMap, HashSet};
 
-/// Gives out names, each only once.
+/// Makes names unique.
 #[derive(Debug, Default)]
-pub(crate) struct Names {
+pub(crate) struct UniqueNames {
     taken: HashSet<String>,
-    /// The number that is tried next behind a name: counting from 2 again each time would take quadratic time.
+    /// The next suffix of each name: counting from 2 each time would take quadratic time.
     next: HashMap<String, usize>,
 }
 
-impl Names {
-    /// The name itself, or with the first number behind it that makes it new.
+impl UniqueNames {
+    /// The name, or with the first numeric suffix that makes it unique.
     pub(crate) fn unique(&mut self, name: &str) -> String {
         if self.taken.insert(name.to_owned()) {
             return name.to_owned();
@@ -27,20 +27,31 @@ impl Names {
     }
 }
 
+/// More names than this are not listed.
+const MAX_LISTED: usize = 40;
+
+/// The first names in backticks, and the number of the others.
+pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.map(|n| format!("`{n}`")).collect();
+    let more = names.len().saturating_sub(MAX_LISTED);
+    let tail = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{}{tail}", names[..names.len() - more].join(", "))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Names;
+    use super::UniqueNames;
 
     #[test]
-    fn names_that_repeat_are_numbered_past_those_that_are_there() {
-        let mut names = Names::default();
+    fn repeated_names_are_numbered_past_existing_ones() {
+        let mut names = UniqueNames::default();
         let given = ["a", "a_3", "a", "a", "a", "a_2", "b"].map(|n| names.unique(n));
         assert_eq!(given, ["a", "a_3", "a_2", "a_4", "a_5", "a_2_2", "b"]);
     }
 
     #[test]
-    fn a_hundred_thousand_of_one_name_are_no_trouble() {
-        let mut names = Names::default();
+    fn a_hundred_thousand_equal_names_are_numbered_quickly() {
+        let mut names = UniqueNames::default();
         let start = std::time::Instant::now();
         let last = (0..100_000).map(|_| names.unique("link")).last();
         assert_eq!(last.as_deref(), Some("link_100000"));

@@ -1,11 +1,11 @@
-//! A model as a tree of frames that carry meshes and may be animated: what 3DS and glTF have in common.
+//! A model as a tree of frames with meshes and animations: the common representation of 3DS and glTF.
 
 use std::path::Path;
 
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
-use crate::mesh::{LoadedMeshes, MeshData};
-use crate::transform::Affine;
+use crate::affine::Affine;
+use crate::mesh_data::{LoadedMeshes, MeshData};
 use crate::{FormatError, Warning};
 
 /// Frames with meshes, parents before their children.
@@ -22,7 +22,7 @@ use crate::{FormatError, Warning};
 pub struct NodeTree {
     /// The model's name, or the file's stem.
     pub name: String,
-    /// Every node stands behind its parent.
+    /// Parents come before their children.
     pub nodes: Vec<Node>,
     /// What the user should know.
     pub warnings: Vec<Warning>,
@@ -33,27 +33,27 @@ pub struct NodeTree {
 pub struct Node {
     /// Its name in the file; may repeat.
     pub name: String,
-    /// Index of the node that carries it; `None` at the top.
+    /// Index of its parent; `None` at the top.
     pub parent: Option<usize>,
-    /// Its frame at rest in its parent's, or the world's at the top (m). In a 3DS file the origin is the pivot.
+    /// Its rest frame in that of its parent, or in the world at the top (m). In a 3DS file the origin is the pivot.
     pub in_parent: Pose,
-    /// Objects in its frame (m), any scale of the file applied.
+    /// Meshes in its frame (m), with the scale of the file applied.
     pub meshes: Vec<MeshData>,
-    /// How it moves, in order of time; empty where it does not. In a 3DS file the first key is the frame at rest.
-    pub track: Vec<Key>,
+    /// Its animation in order of time; empty where it does not move. In a 3DS file the first key is the rest frame.
+    pub track: Vec<Keyframe>,
 }
 
-/// Where a node is at a time.
+/// The frame of a node at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
+pub struct Keyframe {
     /// Seconds.
     pub time_s: f64,
-    /// The node's frame in its parent's.
+    /// The node's frame in that of its parent.
     pub in_parent: Pose,
 }
 
 impl Node {
-    /// A node without meshes that does not move.
+    /// A node without meshes and without animation.
     pub fn new(name: impl Into<String>, parent: Option<usize>, in_parent: Pose) -> Self {
         Self { name: name.into(), parent, in_parent, ..Self::default() }
     }
@@ -65,13 +65,13 @@ impl NodeTree {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// Adds a node; the answer is its index.
+    /// Adds a node and returns its index.
     pub fn push(&mut self, node: Node) -> usize {
         self.nodes.push(node);
         self.nodes.len() - 1
     }
 
-    /// The frame of every node at rest in the world. A parent that does not stand before its child counts as the world.
+    /// The rest frame of every node in the world. A parent that does not come before its child counts as the world.
     pub fn in_world(&self) -> Vec<Pose> {
         let mut all: Vec<Pose> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
@@ -81,7 +81,7 @@ impl NodeTree {
         all
     }
 
-    /// Indices of the nodes that a node carries itself; `None`: of those at the top.
+    /// Indices of the children of a node; of the nodes at the top for `None`.
     pub fn children(&self, of: Option<usize>) -> impl Iterator<Item = usize> + '_ {
         self.nodes.iter().enumerate().filter(move |(_, n)| n.parent == of).map(|(i, _)| i)
     }
@@ -100,7 +100,7 @@ impl NodeTree {
         }
     }
 
-    /// The box around all meshes at rest, in the world.
+    /// The bounding box of all meshes at rest, in the world.
     pub fn aabb(&self) -> Aabb {
         let frames = self.in_world();
         let points = self
@@ -111,7 +111,7 @@ impl NodeTree {
         Aabb::from_points(points)
     }
 
-    /// All meshes at rest, in the world, without the tree.
+    /// All meshes at rest, in the world.
     pub(crate) fn flatten(self) -> LoadedMeshes {
         let frames = self.in_world();
         let mut meshes = Vec::new();
@@ -124,7 +124,7 @@ impl NodeTree {
         LoadedMeshes { meshes, warnings: self.warnings }
     }
 
-    /// Refuses frames and corners that a scale has pushed over the edge.
+    /// Refuses frames and vertices that a scale has made infinite.
     pub(crate) fn check_finite(&self, file: &Path) -> Result<(), FormatError> {
         let frames = self.in_world();
         for (node, frame) in self.nodes.iter().zip(&frames) {
@@ -139,19 +139,19 @@ impl NodeTree {
     }
 }
 
-/// The rigid part of an affine map: its origin, and its axes made orthonormal, x first. What is left over (scale,
-/// shear, mirror) belongs into the meshes.
+/// The rigid part of an affine transform: its origin, and its axes made orthonormal, x first. The rest (scale, shear,
+/// mirror) is applied to the meshes.
 pub(crate) fn rigid(map: &Affine) -> Pose {
     let column = |c: usize| Vec3::new(map.0[0][c], map.0[1][c], map.0[2][c]);
     let x = if map.is_mirror() { -column(0) } else { column(0) };
     Pose::new(Rotation::from_x_and_xy(x, column(1)).unwrap_or(Rotation::IDENTITY), column(3))
 }
 
-/// The value at a time, blended between neighbours; `None` without keys. Keys stand in order of time.
-pub(crate) fn sample<T: Copy>(keys: &[(f64, T)], time: f64, blend: impl Fn(T, T, f64) -> T) -> Option<T> {
+/// The value at a time, interpolated between the neighbouring keys; `None` without keys. Keys are in order of time.
+pub(crate) fn sample<T: Copy>(keys: &[(f64, T)], time: f64, interpolate: impl Fn(T, T, f64) -> T) -> Option<T> {
     let after = keys.partition_point(|(t, _)| *t < time);
     match (after.checked_sub(1).and_then(|i| keys.get(i)), keys.get(after)) {
-        (Some((t0, a)), Some((t1, b))) => Some(blend(*a, *b, (time - t0) / (t1 - t0))),
+        (Some((t0, a)), Some((t1, b))) => Some(interpolate(*a, *b, (time - t0) / (t1 - t0))),
         (Some((_, v)), None) | (None, Some((_, v))) => Some(*v),
         (None, None) => None,
     }

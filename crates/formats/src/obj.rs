@@ -1,38 +1,38 @@
-//! Wavefront OBJ: polygons of any size, relative indices, joined lines.
+//! Wavefront OBJ: polygons of any size, relative indices, continued lines.
 //!
-//! One entry per object: by `o` where the file has any, else by `g`; a name that returns continues its object.
-//! Materials, normals, texture coordinates, points and lines are passed over.
+//! One entry per object: by `o` where the file has any, else by `g`; a repeated name continues its object.
+//! Materials, normals, texture coordinates, points and lines are ignored.
 
 use std::collections::HashMap;
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::error::Warnings;
-use crate::mesh::{LoadedMeshes, MeshData};
-use crate::scan::{Lines, integer, show, vector};
-use crate::{FormatError, Warning, polygon, source};
+use crate::error::WarningList;
+use crate::mesh_data::{LoadedMeshes, MeshData, split_vertices};
+use crate::tokens::{Lines, integer, show, vector};
+use crate::{FormatError, Warning, input, polygon};
 
 /// Parses an OBJ file. Numbers are taken as metres.
 ///
 /// # Errors
-/// Faces without corners, corners that do not exist, numbers that are none.
+/// Faces without corners, missing vertices, invalid numbers.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    source::check_content(bytes, file)?;
-    let text = source::text_bytes(bytes, file)?;
+    input::check_content(bytes, file)?;
+    let text = input::text_bytes(bytes, file)?;
     let joined = join_lines(&text);
-    let mut reader = Reader::new(file);
+    let mut parser = ObjParser::new(file);
     for (line, content) in Lines::new(&joined) {
         let content = content.split(|&b| b == b'#').next().unwrap_or(content).trim_ascii();
         if !content.is_empty() {
-            reader.statement(line, content)?;
+            parser.statement(line, content)?;
         }
     }
-    reader.finish()
+    parser.finish()
 }
 
-/// A backslash before a line's end joins it to the next. The end stays in the text as blanks plus a line ending after
-/// the joined line, so that later lines keep their numbers.
+/// Joins lines that end with a backslash to the next line. Their line ends follow after the joined line, so that later
+/// lines keep their numbers.
 fn join_lines(text: &[u8]) -> std::borrow::Cow<'_, [u8]> {
     if !text.contains(&b'\\') {
         return text.into();
@@ -62,11 +62,11 @@ fn join_lines(text: &[u8]) -> std::borrow::Cow<'_, [u8]> {
 struct Face {
     object: usize,
     line: usize,
-    /// Where its corners end in `corners`; they begin where those of the face before end.
+    /// End of its corners in `corners`; they begin at the end of the face before.
     end: usize,
 }
 
-struct Reader<'a> {
+struct ObjParser<'a> {
     file: &'a Path,
     vertices: Vec<Vec3>,
     corners: Vec<u32>,
@@ -75,12 +75,12 @@ struct Reader<'a> {
     index_of: HashMap<String, usize>,
     object: usize,
     has_objects: bool,
-    warnings: Warnings,
+    warnings: WarningList,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ObjParser<'a> {
     fn new(file: &'a Path) -> Self {
-        let name = source::stem(file);
+        let name = input::stem(file);
         Self {
             file,
             vertices: Vec::new(),
@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
             names: vec![name],
             object: 0,
             has_objects: false,
-            warnings: Warnings::default(),
+            warnings: WarningList::default(),
         }
     }
 
@@ -102,7 +102,7 @@ impl<'a> Reader<'a> {
             Some(b"o") => self.object_statement(&content[1..]),
             Some(b"g") if !self.has_objects => self.select(&content[1..]),
             Some(b"surf" | b"curv" | b"curv2") => self.warnings.push_with(|| {
-                Warning::new(self.file, line, "a free-form curve or surface is passed over").hint("polygons: f 1 2 3")
+                Warning::new(self.file, line, "a free-form curve or surface is ignored").hint("polygons: f 1 2 3")
             }),
             Some(word) if self.vertices.is_empty() && self.faces.is_empty() && !is_keyword(word) => {
                 let what = format!("`{}` is no OBJ statement: is this an OBJ file?", show(word));
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// With the first `o`, what groups had divided before comes together again: `o` is the object.
+    /// The first `o` merges the groups before it: objects take precedence over groups.
     fn object_statement(&mut self, name: &[u8]) {
         if !self.has_objects {
             self.has_objects = true;
@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
         })?;
         let known = i64::try_from(self.vertices.len()).unwrap_or(i64::MAX);
         let from_zero = if index < 0 { known.saturating_add(index) } else { index - 1 };
-        // Vertices may follow later, so only what can never be is refused here.
+        // Vertices may follow later, so only negative indices are refused here.
         u32::try_from(from_zero).map_err(|_| {
             let what = format!("the corner {index} does not exist: there are {known} vertices before this line");
             FormatError::new(self.file, line, what).hint("vertices count from 1; -1 is the last one before the line")
@@ -188,24 +188,8 @@ impl<'a> Reader<'a> {
             return Err(FormatError::new(self.file, None, what).hint("faces: f 1 2 3"));
         }
         meshes.retain(|m| !m.triangles.is_empty());
-        keep_used_vertices(&self.vertices, &mut meshes);
+        split_vertices(&self.vertices, &mut meshes);
         Ok(LoadedMeshes { meshes, warnings: self.warnings.finish(self.file) })
-    }
-}
-
-/// Gives every object its own vertices, in the order of its triangles.
-pub(crate) fn keep_used_vertices(vertices: &[Vec3], meshes: &mut [MeshData]) {
-    let mut new_index = vec![(u32::MAX, 0); vertices.len()];
-    for (m, mesh) in meshes.iter_mut().enumerate() {
-        for corner in mesh.triangles.iter_mut().flatten() {
-            let (owner, index) = &mut new_index[*corner as usize];
-            if *owner != m as u32 {
-                *owner = m as u32;
-                *index = mesh.vertices.len() as u32;
-                mesh.vertices.push(vertices[*corner as usize]);
-            }
-            *corner = *index;
-        }
     }
 }
 
@@ -244,8 +228,8 @@ mod tests {
         let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n 2 \\\r\n 3\nf 1 2 9\n";
         let error = parse(text, Path::new("a.obj")).unwrap_err();
         assert_eq!(error.line, Some(7));
-        let sound = parse(&text[..text.len() - 8], Path::new("a.obj")).unwrap();
-        assert_eq!(sound.meshes[0].triangles, [[0, 1, 2]]);
+        let valid = parse(&text[..text.len() - 8], Path::new("a.obj")).unwrap();
+        assert_eq!(valid.meshes[0].triangles, [[0, 1, 2]]);
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! Object File Format, ASCII: `OFF`, with the prefixes `ST`, `C` and `N` whose numbers are passed over.
+//! Object File Format, ASCII: `OFF`, with the prefixes `ST`, `C` and `N`, whose numbers are ignored.
 
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::mesh::{LoadedMeshes, MeshData};
-use crate::scan::{Lines, integer, show, vector};
-use crate::{FormatError, polygon, source};
+use crate::mesh_data::{LoadedMeshes, MeshData};
+use crate::tokens::{Lines, integer, show, vector};
+use crate::{FormatError, input, polygon};
 
 pub(crate) fn is_header(head: &[u8]) -> bool {
     let word = head.split(|b| b.is_ascii_whitespace() || *b == b'#').next().unwrap_or_default();
@@ -16,10 +16,10 @@ pub(crate) fn is_header(head: &[u8]) -> bool {
 /// Parses an OFF file. Numbers are taken as metres.
 ///
 /// # Errors
-/// More elements announced than the file can hold, corners that do not exist, numbers that are none, binary OFF.
+/// More elements announced than the file can hold, missing vertices, invalid numbers, binary OFF.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    source::check_content(bytes, file)?;
-    let text = source::text_bytes(bytes, file)?;
+    input::check_content(bytes, file)?;
+    let text = input::text_bytes(bytes, file)?;
     let mut lines = Lines::new(&text);
     let (vertex_count, face_count) = counts(&mut lines, file)?;
     let mut vertices = Vec::with_capacity(vertex_count);
@@ -37,7 +37,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
         })?;
         polygon::triangulate(&vertices, &corners, &mut triangles);
     }
-    let mesh = MeshData { name: source::stem(file), vertices, triangles };
+    let mesh = MeshData { name: input::stem(file), vertices, triangles };
     Ok(LoadedMeshes { meshes: vec![mesh], warnings: Vec::new() })
 }
 
@@ -52,8 +52,8 @@ fn next<'a>(lines: &mut Lines<'a>, file: &Path, of: impl Fn() -> String) -> Resu
     })
 }
 
-/// The numbers of vertices and faces, on the header's line or the next; what cannot fit into the file is refused
-/// before anything is allocated.
+/// The numbers of vertices and faces, on the header's line or the next; counts that the file cannot hold are refused before
+/// anything is allocated.
 fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatError> {
     let (mut line, mut content) = next(lines, file, || "its counts".to_owned())?;
     let mut rest: Vec<&[u8]> = words(content).collect();
@@ -80,7 +80,7 @@ fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatEr
         })
     };
     let (vertices, faces) = (count(0, "vertices")?, count(1, "faces")?);
-    // The shortest vertex is `0 0 0` and a line's end, the shortest face `0` and a line's end.
+    // The shortest vertex is `0 0 0` and a line end, the shortest face `0` and a line end.
     let needed = vertices.saturating_mul(6).saturating_add(faces.saturating_mul(2));
     if needed > lines.remaining_bytes() + 2 {
         let what = format!(

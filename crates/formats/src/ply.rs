@@ -1,49 +1,48 @@
 //! Stanford PLY: ASCII and both binary byte orders; polygons and triangle strips.
 
+mod body;
 mod header;
-mod values;
 
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::mesh::{LoadedMeshes, MeshData};
-use crate::{FormatError, polygon, source};
+use crate::mesh_data::{LoadedMeshes, MeshData};
+use crate::{FormatError, input, polygon};
+use body::BodyReader;
 use header::{Element, Header};
-use values::Values;
 
 /// Parses a PLY file. Numbers are taken as metres.
 ///
 /// # Errors
-/// Headers that make no sense, more elements announced than the file can hold, corners that do not exist, numbers
-/// that are none.
+/// Invalid headers, more elements announced than the file can hold, missing vertices, invalid numbers.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    source::check_content(bytes, file)?;
+    input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
-    let mut values = Values::new(body, header.encoding, header.lines, file);
-    let mut mesh = MeshData { name: source::stem(file), ..MeshData::default() };
-    let mut faces = Polygons::default();
-    let mut strips = Polygons { are_strips: true, ..Polygons::default() };
+    let mut body_reader = BodyReader::new(body, header.encoding, header.lines, file);
+    let mut mesh = MeshData { name: input::stem(file), ..MeshData::default() };
+    let mut faces = FaceLists::default();
+    let mut strips = FaceLists { are_strips: true, ..FaceLists::default() };
     for element in &header.elements {
-        values.check_room(element)?;
+        body_reader.check_remaining(element)?;
         match element.name.as_str() {
             "vertex" => {
-                read_vertices(&mut values, element, file, &mut mesh.vertices)?;
-                refuse_no_places(&values, &mesh.vertices)?;
+                read_vertices(&mut body_reader, element, file, &mut mesh.vertices)?;
+                refuse_non_finite(&body_reader, &mesh.vertices)?;
             }
-            "face" => faces.read(&mut values, element)?,
-            "tristrips" => strips.read(&mut values, element)?,
-            _ => skip(&mut values, element)?,
+            "face" => faces.read(&mut body_reader, element)?,
+            "tristrips" => strips.read(&mut body_reader, element)?,
+            _ => skip(&mut body_reader, element)?,
         }
     }
     faces.triangulate(&mut mesh, file)?;
     strips.triangulate(&mut mesh, file)?;
-    refuse_bare_points(&header, &mesh, file)?;
+    refuse_point_cloud(&header, &mesh, file)?;
     Ok(LoadedMeshes { meshes: vec![mesh], warnings: Vec::new() })
 }
 
-/// The vertices of a PLY file, faces or not, as they are written: sensors write NaN where they measured nothing. Numbers are
-/// taken as metres.
+/// Parses the vertices of a PLY file as they are written, with or without faces: sensors write NaN where they measured
+/// nothing. Numbers are taken as metres.
 ///
 /// ```
 /// let text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
@@ -53,33 +52,33 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Headers that make no sense, more elements announced than the file can hold, words that are no numbers.
+/// Invalid headers, more elements announced than the file can hold, words that are no numbers.
 pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
-    source::check_content(bytes, file)?;
+    input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
-    let mut values = Values::new(body, header.encoding, header.lines, file);
+    let mut body_reader = BodyReader::new(body, header.encoding, header.lines, file);
     let mut points = Vec::new();
     for element in &header.elements {
-        values.check_room(element)?;
+        body_reader.check_remaining(element)?;
         if element.name == "vertex" {
-            read_vertices(&mut values, element, file, &mut points)?;
+            read_vertices(&mut body_reader, element, file, &mut points)?;
             break;
         }
-        skip(&mut values, element)?;
+        skip(&mut body_reader, element)?;
     }
     Ok(points)
 }
 
-fn refuse_no_places(values: &Values<'_>, vertices: &[Vec3]) -> Result<(), FormatError> {
+fn refuse_non_finite(body_reader: &BodyReader<'_>, vertices: &[Vec3]) -> Result<(), FormatError> {
     match vertices.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
-        Some(i) => Err(values
-            .error(format!("vertex {i} (from 0) is no place: {:?}", vertices[i]))
+        Some(i) => Err(body_reader
+            .error(format!("vertex {i} (from 0) is not finite: {:?}", vertices[i]))
             .hint("finite numbers; export the mesh again")),
     }
 }
 
-fn refuse_bare_points(header: &Header, mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
+fn refuse_point_cloud(header: &Header, mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
     if !mesh.triangles.is_empty() {
         return Ok(());
     }
@@ -88,20 +87,20 @@ fn refuse_bare_points(header: &Header, mesh: &MeshData, file: &Path) -> Result<(
         .hint("element face N and property list uchar int vertex_indices; or a mesh exported as a surface"))
 }
 
-fn skip(values: &mut Values<'_>, element: &Element) -> Result<(), FormatError> {
+fn skip(body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), FormatError> {
     if element.properties.is_empty() {
         return Ok(());
     }
     for _ in 0..element.count {
         for property in &element.properties {
-            values.skip(property)?;
+            body_reader.skip(property)?;
         }
     }
     Ok(())
 }
 
 fn read_vertices(
-    values: &mut Values<'_>,
+    body_reader: &mut BodyReader<'_>,
     element: &Element,
     file: &Path,
     out: &mut Vec<Vec3>,
@@ -119,8 +118,8 @@ fn read_vertices(
         let mut v = Vec3::ZERO.to_array();
         for (p, property) in element.properties.iter().enumerate() {
             match axes.iter().position(|&a| a == p) {
-                Some(axis) => v[axis] = values.scalar(property.kind)?,
-                None => values.skip(property)?,
+                Some(axis) => v[axis] = body_reader.scalar(property.kind)?,
+                None => body_reader.skip(property)?,
             }
         }
         out.push(v.into());
@@ -128,32 +127,32 @@ fn read_vertices(
     Ok(())
 }
 
-/// Corner lists, kept until all vertices are known: faces may come first.
+/// Lists of corners, kept until all vertices are read: faces may come first.
 #[derive(Default)]
-struct Polygons {
+struct FaceLists {
     are_strips: bool,
     corners: Vec<f64>,
     ends: Vec<usize>,
 }
 
-impl Polygons {
-    fn read(&mut self, values: &mut Values<'_>, element: &Element) -> Result<(), FormatError> {
+impl FaceLists {
+    fn read(&mut self, body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), FormatError> {
         let list = element
             .properties
             .iter()
             .position(|p| ["vertex_indices", "vertex_index"].contains(&p.name.as_str()) && p.list_count.is_some());
         let list = list.ok_or_else(|| {
-            values
+            body_reader
                 .error_at(element.line, format!("the element `{}` does not list its vertices", element.name))
                 .hint("property list uchar int vertex_indices")
         })?;
         for _ in 0..element.count {
             for (p, property) in element.properties.iter().enumerate() {
                 if p == list {
-                    values.list(property, &mut self.corners)?;
+                    body_reader.list(property, &mut self.corners)?;
                     self.ends.push(self.corners.len());
                 } else {
-                    values.skip(property)?;
+                    body_reader.skip(property)?;
                 }
             }
         }
@@ -170,7 +169,7 @@ impl Polygons {
                 if exists {
                     polygon_corners.push(corner as u32);
                 } else if self.are_strips && corner == -1.0 {
-                    strip(&polygon_corners, &mut mesh.triangles);
+                    polygon::strip(&polygon_corners, &mut mesh.triangles);
                     polygon_corners.clear();
                 } else {
                     let what = format!(
@@ -181,7 +180,7 @@ impl Polygons {
                 }
             }
             if self.are_strips {
-                strip(&polygon_corners, &mut mesh.triangles);
+                polygon::strip(&polygon_corners, &mut mesh.triangles);
             } else {
                 polygon::triangulate(&mesh.vertices, &polygon_corners, &mut mesh.triangles);
             }
@@ -189,11 +188,4 @@ impl Polygons {
         }
         Ok(())
     }
-}
-
-/// Every corner from the third makes a triangle with the two before it; every other one is turned over.
-pub(crate) fn strip(corners: &[u32], out: &mut Vec<[u32; 3]>) {
-    out.extend(
-        corners.windows(3).enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }),
-    );
 }

@@ -1,16 +1,16 @@
-//! Polygons to triangles.
+//! Triangulation of polygons, fans and strips.
 //!
-//! Convex polygons become a fan; concave ones are cut by ear clipping (Meisters, "Polygons have ears", American
+//! Convex polygons become a fan; concave ones are triangulated by ear clipping (Meisters, "Polygons have ears", American
 //! Mathematical Monthly 82, 1975) in the plane of their Newell normal.
 
 use elbowroom_spatial::Vec3;
 
-/// Tests of a point against an ear that a polygon may cost, per corner: hostile polygons must not take minutes.
-const TESTS_PER_CORNER: usize = 1000;
+/// Upper bound on point-in-ear tests per corner, against hostile polygons.
+const MAX_TESTS_PER_CORNER: usize = 1000;
 
-/// Appends the triangles of a polygon, in its own winding. Fewer than three corners give none.
+/// Appends the triangles of a polygon, with its winding. Fewer than three corners give none.
 ///
-/// What cannot be cut (corners that cross, or lie on one line) becomes a fan, so that no corner is lost.
+/// What has no ears (crossing edges, collinear corners) becomes a fan, so that no corner is lost.
 /// Every index must be below `vertices.len()`.
 pub(crate) fn triangulate(vertices: &[Vec3], polygon: &[u32], out: &mut Vec<[u32; 3]>) {
     match *polygon {
@@ -23,11 +23,19 @@ pub(crate) fn triangulate(vertices: &[Vec3], polygon: &[u32], out: &mut Vec<[u32
     }
 }
 
-fn fan(polygon: &[u32], out: &mut Vec<[u32; 3]>) {
-    out.extend(polygon[1..].windows(2).map(|w| [polygon[0], w[0], w[1]]));
+/// Appends the triangles of a fan around its first vertex.
+pub(crate) fn fan(polygon: &[u32], out: &mut Vec<[u32; 3]>) {
+    out.extend(polygon.get(1..).unwrap_or_default().windows(2).map(|w| [polygon[0], w[0], w[1]]));
 }
 
-/// The corners in the coordinate plane that their normal is nearest to, counter-clockwise.
+/// Appends the triangles of a strip: each vertex from the third on with the two before it, every other one reversed.
+pub(crate) fn strip(vertices: &[u32], out: &mut Vec<[u32; 3]>) {
+    out.extend(
+        vertices.windows(3).enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }),
+    );
+}
+
+/// The corners projected along the coordinate axis nearest to their normal, counter-clockwise.
 fn flatten(vertices: &[Vec3], polygon: &[u32]) -> Option<Vec<[f64; 2]>> {
     let corner = |i: usize| vertices[polygon[i % polygon.len()] as usize];
     let normal =
@@ -57,7 +65,7 @@ fn is_convex(flat: &[[f64; 2]]) -> bool {
 
 fn clip_ears(flat: &[[f64; 2]], polygon: &[u32], out: &mut Vec<[u32; 3]>) {
     let mut left: Vec<usize> = (0..flat.len()).collect();
-    let mut budget = TESTS_PER_CORNER * flat.len();
+    let mut budget = MAX_TESTS_PER_CORNER * flat.len();
     let (mut at, mut misses) = (0, 0);
     while left.len() > 3 && misses < left.len() && budget > 0 {
         let n = left.len();
@@ -100,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arrow_head_keeps_its_notch() {
+    fn a_concave_polygon_is_triangulated() {
         let vertices: Vec<Vec3> =
             [[0.0, 0.0], [2.0, -2.0], [0.0, 2.0], [-2.0, -2.0]].map(|[x, z]| Vec3::new(x, 1.0, z)).to_vec();
         for turn in 0..4 {
@@ -113,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_made_of_less_than_three_corners() {
+    fn fewer_than_three_corners_give_no_triangle() {
         let mut out = Vec::new();
         triangulate(&[Vec3::ZERO, Vec3::X], &[0, 1], &mut out);
         assert!(out.is_empty());
@@ -143,7 +151,7 @@ mod tests {
 
         /// Any corners at all, repeated and crossing: n - 2 triangles, only of given corners.
         #[test]
-        fn any_polygon_gives_n_minus_two(xs in prop::collection::vec((-2..3i8, -2..3i8, -1..2i8), 1..12),
+        fn any_polygon_gives_n_minus_two_triangles(xs in prop::collection::vec((-2..3i8, -2..3i8, -1..2i8), 1..12),
                                          polygon in prop::collection::vec(any::<prop::sample::Index>(), 3..30)) {
             let vertices: Vec<Vec3> = xs.iter().map(|&(x, y, z)| Vec3::new(f64::from(x), f64::from(y), f64::from(z))).collect();
             let polygon: Vec<u32> = polygon.iter().map(|i| i.index(vertices.len()) as u32).collect();

@@ -1,16 +1,16 @@
-//! From the `filename` of a URDF to a file on disk.
+//! Resolves the `filename` of a URDF to a file.
 
 use std::path::{Path, PathBuf};
 
-/// Directories above the file that are searched, and entries of each that are looked into for a `package.xml`.
-const MOST_LEVELS: usize = 24;
-const MOST_ENTRIES: usize = 2000;
+/// Directories above the file that are searched, and entries of each that are searched for a `package.xml`.
+const MAX_LEVELS: usize = 24;
+const MAX_ENTRIES: usize = 2000;
 
-/// Finds the file that a reference means, or says where it was looked for.
+/// The file of a reference, or a description of the search.
 ///
-/// `package://NAME/PATH` (and `model://`) is looked for in every directory from `base` upward: in a directory called
-/// NAME, or one whose `package.xml` has that name, there or directly below. `file://` is absolute, all else relative
-/// to `base`. The case of the last part of the path may differ.
+/// `package://NAME/PATH` (and `model://`) is searched in every directory from `base` upward: in a directory named NAME, or
+/// with a `package.xml` of that name, there or directly below. `file://` is absolute, all else relative to `base`. The
+/// case of the last component of the path may differ.
 pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
     let reference = reference.trim();
     let try_both =
@@ -19,15 +19,15 @@ pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
         let text = text.replace('\\', "/");
         match text.split_once("://") {
             Some(("package" | "model", rest)) => in_package(rest, base),
-            Some(("file", rest)) => existing(Path::new(rest)),
+            Some(("file", rest)) => existing_file(Path::new(rest)),
             Some(_) => None,
-            None => existing(&base.join(&text)),
+            None => existing_file(&base.join(&text)),
         }
     });
-    found.ok_or_else(|| where_looked(reference, base))
+    found.ok_or_else(|| describe_search(reference, base))
 }
 
-fn where_looked(reference: &str, base: &Path) -> String {
+fn describe_search(reference: &str, base: &Path) -> String {
     match reference.split_once("://") {
         Some(("package" | "model", rest)) => {
             let (name, path) = rest.split_once('/').unwrap_or((rest, ""));
@@ -47,24 +47,24 @@ fn where_looked(reference: &str, base: &Path) -> String {
 
 fn in_package(rest: &str, base: &Path) -> Option<PathBuf> {
     let (name, path) = rest.split_once('/')?;
-    package_directories(name, base).find_map(|directory| existing(&directory.join(path.trim_start_matches('/'))))
+    package_directories(name, base).find_map(|directory| existing_file(&directory.join(path.trim_start_matches('/'))))
 }
 
 fn package_directories<'a>(name: &'a str, base: &Path) -> impl Iterator<Item = PathBuf> + 'a {
     let start = std::path::absolute(base).unwrap_or_else(|_| base.to_owned());
-    let levels: Vec<PathBuf> = start.ancestors().take(MOST_LEVELS).map(Path::to_owned).collect();
+    let levels: Vec<PathBuf> = start.ancestors().take(MAX_LEVELS).map(Path::to_owned).collect();
     let by_directory = levels.clone().into_iter().flat_map(move |level| {
         let is_itself = level.file_name().is_some_and(|n| n == name) || package_name(&level).as_deref() == Some(name);
         let below = level.join(name);
         [is_itself.then_some(level), below.is_dir().then_some(below)].into_iter().flatten()
     });
-    // Reading every neighbour's package.xml comes last: it is the slow and the rare case.
-    by_directory.chain(levels.into_iter().flat_map(move |level| neighbours_called(name, &level)))
+    // Reading the package.xml of every subdirectory is slow and comes last.
+    by_directory.chain(levels.into_iter().flat_map(move |level| subdirectories_named(name, &level)))
 }
 
-fn neighbours_called(name: &str, level: &Path) -> Vec<PathBuf> {
+fn subdirectories_named(name: &str, level: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(level) else { return Vec::new() };
-    let directories = entries.flatten().take(MOST_ENTRIES).map(|e| e.path());
+    let directories = entries.flatten().take(MAX_ENTRIES).map(|e| e.path());
     let mut found: Vec<PathBuf> = directories.filter(|d| package_name(d).as_deref() == Some(name)).collect();
     found.sort();
     found
@@ -82,22 +82,22 @@ fn package_name(directory: &Path) -> Option<String> {
     Some(crate::xml::child(document.root_element(), "name")?.text()?.trim().to_owned())
 }
 
-/// The path if it is a file, or its only neighbour whose name differs in case alone.
-fn existing(path: &Path) -> Option<PathBuf> {
+/// The path if it is a file, or the only file in the directory whose name differs in case alone.
+fn existing_file(path: &Path) -> Option<PathBuf> {
     if path.is_file() {
         return Some(path.to_owned());
     }
     let wanted = path.file_name()?;
     let entries = std::fs::read_dir(path.parent()?).ok()?;
     let mut same =
-        entries.flatten().take(MOST_ENTRIES).filter(|e| e.file_name().eq_ignore_ascii_case(wanted)).map(|e| e.path());
+        entries.flatten().take(MAX_ENTRIES).filter(|e| e.file_name().eq_ignore_ascii_case(wanted)).map(|e| e.path());
     match (same.next(), same.next()) {
         (Some(only), None) if only.is_file() => Some(only),
         _ => None,
     }
 }
 
-/// `%20` and its like to characters; what is no code stays.
+/// Decodes `%20` and the like; other text stays.
 pub(crate) fn percent_decode(text: &str) -> String {
     let mut out = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

@@ -1,39 +1,41 @@
-//! SRDF: the link pairs that are never tested. Groups, states and end effectors are passed over.
+//! SRDF: the link pairs that are not tested. Groups, states and end effectors are ignored.
 
 use std::path::Path;
 
-use crate::error::Warnings;
-use crate::scan::show;
-use crate::{FormatError, Warning, source, xml};
+use roxmltree::Node;
 
-/// What an SRDF says about collisions.
+use crate::error::WarningList;
+use crate::tokens::{LineIndex, show};
+use crate::{FormatError, Warning, input, xml};
+
+/// The collision settings of an SRDF.
 #[derive(Debug, Clone, Default)]
 pub struct Srdf {
-    /// The robot that it is for, where it says so.
+    /// Name of the robot, where it is stated.
     pub robot: Option<String>,
     /// In the file's order.
     pub disabled: Vec<DisabledPair>,
-    /// What its user should know.
+    /// What the user should know.
     pub warnings: Vec<Warning>,
 }
 
 /// One `<disable_collisions>`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DisabledPair {
-    /// One link.
+    /// The first link.
     pub link1: String,
-    /// The other.
+    /// The second link.
     pub link2: String,
-    /// Why, in the file's words; empty where it does not say.
+    /// The reason as written; empty where none is stated.
     pub reason: String,
-    /// Its line.
+    /// Its line in the file.
     pub line: usize,
 }
 
 /// Parses an SRDF. `file` is named in messages.
 ///
 /// # Errors
-/// Unsound XML, another root element than `<robot>`, pairs without their links.
+/// Malformed XML, another root element than `<robot>`, pairs without their links.
 ///
 /// ```
 /// use elbowroom_formats::srdf;
@@ -43,23 +45,23 @@ pub struct DisabledPair {
 /// # Ok::<(), elbowroom_formats::FormatError>(())
 /// ```
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
-    source::check_content(bytes, file)?;
-    let text = source::text(bytes, file)?;
+    input::check_content(bytes, file)?;
+    let text = input::text(bytes, file)?;
     let document = xml::parse(&text, file)?;
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
         let what = format!("the root element is <{}>, not <robot>", show(root.tag_name().name().as_bytes()));
         return Err(FormatError::new(file, xml::line(root), what).hint("<robot name=\"arm\"> … </robot>"));
     }
-    let mut warnings = Warnings::default();
+    let mut warnings = WarningList::default();
     if xml::child(root, "link").is_some() && xml::child(root, "disable_collisions").is_none() {
         warnings.push(
-            Warning::new(file, xml::line(root), "looks like a URDF, not an SRDF")
+            Warning::new(file, xml::line(root), "is a URDF rather than an SRDF")
                 .hint("<disable_collisions link1=\"…\" link2=\"…\" reason=\"…\"/>"),
         );
     }
     for node in xml::children(root, "disable_default_collisions") {
-        let what = "<disable_default_collisions> is passed over";
+        let what = "<disable_default_collisions> is ignored";
         warnings.push_with(|| Warning::new(file, xml::line(node), what).hint("one <disable_collisions> for each pair"));
     }
     let mut disabled = Vec::new();
@@ -73,7 +75,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
         let reason = node.attribute("reason").unwrap_or_default().to_owned();
         disabled.push((node, DisabledPair { link1: link("link1")?, link2: link("link2")?, reason, line: 0 }));
     }
-    let lines = xml::LineIndex::new(&text);
-    let disabled = disabled.into_iter().map(|(n, pair)| DisabledPair { line: lines.line(n), ..pair }).collect();
+    let lines = LineIndex::new(&text);
+    let line = |node: Node<'_, '_>| lines.line_at(node.range().start);
+    let disabled = disabled.into_iter().map(|(node, pair)| DisabledPair { line: line(node), ..pair }).collect();
     Ok(Srdf { robot: root.attribute("name").map(str::to_owned), disabled, warnings: warnings.finish(file) })
 }

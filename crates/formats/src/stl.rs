@@ -1,7 +1,7 @@
 //! STL, binary and ASCII.
 //!
 //! Some binary files begin with `solid`, so the size decides first: a file of exactly `84 + 50·n` bytes, with n at
-//! byte 80, is binary. Normals are not read: the winding of the corners says where outside is.
+//! byte 80, is binary. Normals are not read: the winding determines the outside.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -9,10 +9,10 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::error::Warnings;
-use crate::mesh::{LoadedMeshes, MeshData};
-use crate::scan::{Words, show, vector};
-use crate::{FormatError, Warning, polygon, source};
+use crate::error::WarningList;
+use crate::mesh_data::{LoadedMeshes, MeshData};
+use crate::tokens::{Tokens, show, vector};
+use crate::{FormatError, Warning, input, polygon};
 
 const HEADER: usize = 84;
 const FACET: usize = 50;
@@ -34,27 +34,27 @@ fn promised_size(bytes: &[u8]) -> Option<usize> {
 /// Parses an STL file; one entry per `solid` of an ASCII file, one for a binary file. Numbers are taken as metres.
 ///
 /// # Errors
-/// Truncated files, words that do not belong, numbers that are none.
+/// Truncated files, unexpected words, invalid numbers.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    source::check_content(bytes, file)?;
-    let text = source::text_bytes(bytes, file)?;
+    input::check_content(bytes, file)?;
+    let text = input::text_bytes(bytes, file)?;
     let head = &text[..text.len().min(2048)];
     let is_text = is_ascii(head.trim_ascii_start()) && !is_exact_binary(bytes) && !head.contains(&0);
     if is_text { parse_ascii(&text, file) } else { parse_binary(bytes, file) }
 }
 
-/// Corners given per triangle become shared vertices where they are bitwise equal.
+/// Merges bitwise equal corners of triangles to shared vertices.
 #[derive(Default)]
-struct Builder {
+struct VertexMerger {
     mesh: MeshData,
-    seen: HashMap<[u64; 3], u32>,
+    index_of: HashMap<[u64; 3], u32>,
 }
 
-impl Builder {
+impl VertexMerger {
     fn vertex(&mut self, v: Vec3) -> u32 {
-        // Adding zero turns -0 into 0, which is the same place.
+        // Adding zero converts -0 to 0.
         let key = v.to_array().map(|x| (x + 0.0).to_bits());
-        *self.seen.entry(key).or_insert_with(|| {
+        *self.index_of.entry(key).or_insert_with(|| {
             self.mesh.vertices.push(v);
             self.mesh.vertices.len() as u32 - 1
         })
@@ -79,8 +79,8 @@ fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> 
         warnings.push(Warning::new(file, None, what));
     }
     let mut builder =
-        Builder { mesh: MeshData { name: source::stem(file), ..MeshData::default() }, ..Builder::default() };
-    builder.seen.reserve(count / 2);
+        VertexMerger { mesh: MeshData { name: input::stem(file), ..MeshData::default() }, ..VertexMerger::default() };
+    builder.index_of.reserve(count / 2);
     builder.mesh.triangles.reserve(count);
     for (i, facet) in bytes[HEADER..size].chunks_exact(FACET).enumerate() {
         let mut triangle = [0; 3];
@@ -90,7 +90,7 @@ fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> 
                 return Err(FormatError::new(
                     file,
                     None,
-                    format!("triangle {i} (from 0) has a corner that is no place: {v:?}"),
+                    format!("triangle {i} (from 0) has a corner that is not finite: {v:?}"),
                 )
                 .hint("finite numbers; export the mesh again"));
             }
@@ -106,14 +106,14 @@ fn floats(raw: &[u8]) -> Vec3 {
     Vec3::new(at(0), at(4), at(8))
 }
 
-struct Ascii<'a> {
-    words: Words<'a>,
+struct AsciiReader<'a> {
+    words: Tokens<'a>,
     file: &'a Path,
-    warnings: Warnings,
+    warnings: WarningList,
 }
 
 fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    let mut reader = Ascii { words: Words::new(bytes), file, warnings: Warnings::default() };
+    let mut reader = AsciiReader { words: Tokens::new(bytes), file, warnings: WarningList::default() };
     let mut meshes = Vec::new();
     while let Some(word) = reader.words.next() {
         if !word.eq_ignore_ascii_case(b"solid") {
@@ -130,7 +130,7 @@ fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     Ok(LoadedMeshes { meshes, warnings: reader.warnings.finish(file) })
 }
 
-impl Ascii<'_> {
+impl AsciiReader<'_> {
     fn unexpected(&self, word: &[u8], instead: &str) -> FormatError {
         FormatError::new(self.file, self.words.line(), format!("`{}` does not belong here", show(word))).hint(instead)
     }
@@ -150,8 +150,8 @@ impl Ascii<'_> {
 
     fn solid(&mut self) -> Result<MeshData, FormatError> {
         let name = String::from_utf8_lossy(self.words.rest_of_line()).into_owned();
-        let mut builder = Builder::default();
-        builder.mesh.name = if name.is_empty() { source::stem(self.file) } else { name };
+        let mut builder = VertexMerger::default();
+        builder.mesh.name = if name.is_empty() { input::stem(self.file) } else { name };
         loop {
             match self.words.next() {
                 Some(word) if word.eq_ignore_ascii_case(b"facet") => self.facet(&mut builder)?,
@@ -171,8 +171,8 @@ impl Ascii<'_> {
         Ok(builder.mesh)
     }
 
-    fn facet(&mut self, builder: &mut Builder) -> Result<(), FormatError> {
-        // The normal may be anything, `-nan(ind)` included: it is not used.
+    fn facet(&mut self, builder: &mut VertexMerger) -> Result<(), FormatError> {
+        // The normal is not used and may be anything, `-nan(ind)` included.
         let mut words_of_normal = 0;
         while self.words.peek().is_some_and(|w| !w.eq_ignore_ascii_case(b"outer")) && words_of_normal < 4 {
             self.words.next();
@@ -202,7 +202,7 @@ impl Ascii<'_> {
     }
 }
 
-/// Writes a binary STL of all meshes together; numbers are metres, rounded to single precision as the format demands.
+/// Writes a binary STL of all meshes together; numbers are metres, rounded to single precision as the format requires.
 ///
 /// Triangles with an index out of range are an error.
 ///

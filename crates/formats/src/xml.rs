@@ -1,17 +1,17 @@
-//! XML with lines in every message.
+//! XML with the line in every message.
 
 use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::FormatError;
-use crate::scan::show;
+use crate::tokens::show;
 
-/// More nodes than any robot or mesh has; bounds the memory of the tree (a node takes about 100 bytes).
-const MOST_NODES: u32 = 4_000_000;
+/// Largest number of nodes, which bounds the memory of the tree (a node takes about 100 bytes).
+const MAX_NODES: u32 = 4_000_000;
 
 pub(crate) fn parse<'a>(text: &'a str, file: &Path) -> Result<Document<'a>, FormatError> {
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|e| explain(&e, text, file))
 }
 
@@ -33,7 +33,7 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
             FormatError::new(file, None, "has a document type definition").hint("the file without its <!DOCTYPE …>")
         }
         roxmltree::Error::NodesLimitReached => {
-            FormatError::new(file, None, format!("has more than {MOST_NODES} XML nodes")).hint("a smaller model")
+            FormatError::new(file, None, format!("has more than {MAX_NODES} XML nodes")).hint("a smaller model")
         }
         roxmltree::Error::UnclosedRootNode | roxmltree::Error::UnexpectedEndOfStream => {
             let last = text.lines().count();
@@ -41,60 +41,47 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
                 .hint("the closing tags; or copy the file again")
         }
         roxmltree::Error::InvalidChar(b'"' | b'\'', b'<', _) => {
-            at("is not sound XML: a `<` inside an attribute's value, or a quotation mark is missing".into())
+            at("is not well-formed XML: a `<` inside an attribute's value, or a quotation mark is missing".into())
                 .hint("&lt; for a < inside quotation marks")
         }
-        _ => at(format!("is not sound XML: {}", without_position(&error.to_string())))
+        _ => at(format!("is not well-formed XML: {}", without_position(&error.to_string())))
             .hint("check the tags around this line"),
     }
 }
 
-/// The message without its trailing `at LINE:COLUMN`, which stands in front of it already.
+/// The message without its trailing `at LINE:COLUMN`.
 fn without_position(message: &str) -> &str {
     let is_position = |tail: &str| tail.bytes().all(|b| b.is_ascii_digit() || b == b':');
     message.rsplit_once(" at ").filter(|(_, tail)| is_position(tail)).map_or(message, |(what, _)| what)
 }
 
-/// The line of a node's begin.
+/// The line on which a node begins; for many nodes see [`LineIndex`](crate::tokens::LineIndex).
 pub(crate) fn line(node: Node<'_, '_>) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
-/// The line of an attribute, or of its node where it has none of that name.
+/// The line of an attribute, or of the node where it has no such attribute.
 pub(crate) fn attribute_line(node: Node<'_, '_>, name: &str) -> usize {
     let start = node.attribute_node(name).map_or(node.range().start, |a| a.range().start);
     node.document().text_pos_at(start).row as usize
 }
 
-/// Child elements of a local name, whatever their namespace.
+/// Child elements with a local name, in any namespace.
 pub(crate) fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(move |c| c.is_element() && c.tag_name().name() == name)
 }
 
-/// The first child element of a local name.
+/// The first child element with a local name.
 pub(crate) fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
     children(node, name).next()
 }
 
-/// All text directly in a node; comments and the like may divide it.
+/// All text directly in a node, also where comments divide it.
 pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
     let mut pieces = node.children().filter(Node::is_text).filter_map(|t| t.text());
     match (pieces.next(), pieces.next()) {
         (None, _) => "".into(),
         (Some(only), None) => only.into(),
         (Some(first), Some(second)) => [first, second].into_iter().chain(pieces).collect::<Vec<_>>().join(" ").into(),
-    }
-}
-
-/// Where lines begin, for lines of many nodes: [`line`] scans the whole text before the node.
-pub(crate) struct LineIndex(Vec<usize>);
-
-impl LineIndex {
-    pub(crate) fn new(text: &str) -> Self {
-        Self(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect())
-    }
-
-    pub(crate) fn line(&self, node: Node<'_, '_>) -> usize {
-        self.0.partition_point(|&newline| newline < node.range().start) + 1
     }
 }

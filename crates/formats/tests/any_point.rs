@@ -1,21 +1,21 @@
-//! Random points of real robots' surfaces are brought to where they can be; few of them here, 10⁵ for each robot with
+//! Inverse kinematics of random points on the surfaces of real robots; few of them here, 10⁵ for each robot with
 //! `ELBOWROOM_LONG=1`. The example of the same name prints the table.
 #![allow(clippy::print_stdout)]
 
-#[path = "../examples/any_point/judge.rs"]
+#[path = "../examples/any_point/problem.rs"]
 #[allow(dead_code)]
-mod judge;
+mod problem;
 #[path = "../examples/any_point/surface.rs"]
 mod surface;
 
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_kinematics::LinkId;
 
-use judge::{Line, Question, measure};
+use problem::{IkProblem, SolverResults, measure};
 use surface::{Random, Surface};
 
 #[test]
-fn real_surfaces_are_brought_where_they_can_be() {
+fn reachable_surface_points_are_reached() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), Into::into);
     if !data.is_dir() {
@@ -29,16 +29,16 @@ fn real_surfaces_are_brought_where_they_can_be() {
         let robot = robot::load(&path, &LoadOptions::default()).unwrap().robot;
         let mut random = Random(7);
         for with_normal in [false, true] {
-            let mut whole = Line::default();
+            let mut whole = SolverResults::default();
             for link in (0..robot.chain.links().len()).map(LinkId) {
                 let moves = robot.chain.path(link).iter().any(|j| robot.chain.joints()[j.0].kind.moves());
-                if !moves || robot.bodies[link.0].is_empty() {
+                if !moves || robot.colliders[link.0].is_empty() {
                     continue;
                 }
-                let surface = Surface::of(&robot.bodies[link.0]);
-                let draw = |_| Question::draw(&robot.chain, link, &surface, with_normal, &mut random);
-                let questions: Vec<Question> = (0..points_per_link).filter_map(draw).collect();
-                whole.add(measure(&robot.chain, &questions));
+                let surface = Surface::of(&robot.colliders[link.0]);
+                let draw = |_| IkProblem::draw(&robot.chain, link, &surface, with_normal, &mut random);
+                let problems: Vec<IkProblem> = (0..points_per_link).filter_map(draw).collect();
+                whole.add(measure(&robot.chain, &problems));
             }
             println!("{}", whole.text(name, "all", with_normal));
             assert!(whole.asked() > points_per_link * 5);

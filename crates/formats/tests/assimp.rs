@@ -1,4 +1,4 @@
-//! 3DS read as assimp reads it.
+//! 3DS files against assimp.
 //!
 //! Needs the program `assimp` (in the package `cmeel-assimp`, which comes with `pin`) beside the Python that
 //! `ELBOWROOM_PYTHON` names, or on the search path; says so and passes without.
@@ -8,14 +8,14 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use elbowroom_formats::nodetree::{Key, Node, NodeTree};
+use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::{MeshData, tds};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use serde_json::Value;
 
 type Matrix = [[f64; 4]; 3];
 
-/// The program; `None` and one line where there is none.
+/// The program; `None` and a message where it is missing.
 fn assimp() -> Option<PathBuf> {
     let beside = std::env::var_os("ELBOWROOM_PYTHON").map(|p| PathBuf::from(p).with_file_name("assimp"));
     let beside = beside.filter(|p| p.is_file()).unwrap_or_else(|| "assimp".into());
@@ -26,7 +26,7 @@ fn assimp() -> Option<PathBuf> {
     None
 }
 
-/// A node as assimp sees it: name, name of its parent, frame in the world (z up), triangles in the world.
+/// A node as read by assimp: name, name of its parent, frame in the world (z up), triangles in the world.
 struct Theirs {
     name: String,
     parent: Option<String>,
@@ -79,7 +79,7 @@ fn read(program: &Path, file: &Path) -> Vec<Theirs> {
     assert!(status.status.success(), "{}", String::from_utf8_lossy(&status.stdout));
     let scene: Value = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
     let meshes: Vec<_> = scene["meshes"].as_array().unwrap().iter().map(triangles).collect();
-    // Assimp puts y up; back again.
+    // Assimp rotates y up; this rotates z up.
     let upright = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0]];
     let root = after(&upright, &matrix(&scene["rootnode"]["transformation"]));
     let mut all = Vec::new();
@@ -108,7 +108,7 @@ fn ours(node: &Node, in_world: &Pose) -> Vec<[Vec3; 3]> {
     node.meshes.iter().flat_map(of).collect()
 }
 
-/// Every triangle of one list is in the other, corners in the same sense.
+/// Every triangle of one list is in the other, with the same winding.
 fn assert_same_triangles(a: &[[Vec3; 3]], b: &[[Vec3; 3]], tolerance: f64, name: &str) {
     assert_eq!(a.len(), b.len(), "{name}");
     let same =
@@ -137,7 +137,7 @@ fn the_nine_files_are_read_as_assimp_reads_them() {
         let tolerance = 1e-5 * largest(&tree);
         let (mut objects, mut triangles) = (0, 0);
         for (node, in_world) in tree.nodes.iter().zip(tree.in_world()) {
-            // Without a keyframer, assimp calls objects by number.
+            // Without a keyframer, assimp names objects by number.
             let same = |t: &&Theirs| t.name == node.name || (theirs.len() == 1 && t.name == "3DSMesh_0");
             let their = theirs.iter().find(same).unwrap_or_else(|| panic!("{name}: {}", node.name));
             let parent = node.parent.map(|p| tree.nodes[p].name.clone());
@@ -146,8 +146,8 @@ fn the_nine_files_are_read_as_assimp_reads_them() {
             objects += node.meshes.len();
             triangles += here.len();
             if parent.as_deref() == Some("Camera01") {
-                // Assimp forgets that a camera looks at its target, and puts what hangs on it elsewhere. The object was
-                // saved where it is at the first frame: its vertices in the file are the truth.
+                // Assimp ignores the targets of cameras, and so displaces their children. The object was saved at the
+                // first frame: its vertices in the file are the ground truth.
                 assert_eq!(here.len(), their.triangles.len());
                 assert!(node.track.is_empty(), "its keys are in the frame of a camera that moves");
                 let saved = Vec3::new(-54.409_576, -97.347_855, 1.635_066);
@@ -162,7 +162,7 @@ fn the_nine_files_are_read_as_assimp_reads_them() {
     }
 }
 
-/// Three links with turned and scaled frames, and pivots.
+/// Three links with rotated and scaled frames, and pivots.
 fn chain() -> Vec<u8> {
     let mut tree = NodeTree::new("chain");
     for i in 0..3_u32 {
@@ -172,7 +172,7 @@ fn chain() -> Vec<u8> {
         let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y * 0.5, Vec3::Z * 0.2];
         node.meshes.push(MeshData { name: node.name.clone(), vertices, triangles: vec![[0, 1, 2], [0, 3, 1]] });
         let turned = Pose::new(in_parent.rotation * Rotation::from_axis_angle(Vec3::Z, 0.5), in_parent.translation);
-        node.track = vec![Key { time_s: 0.0, in_parent }, Key { time_s: 1.0, in_parent: turned }];
+        node.track = vec![Keyframe { time_s: 0.0, in_parent }, Keyframe { time_s: 1.0, in_parent: turned }];
         tree.push(node);
     }
     let mut bytes = tds::write(&tree, "chain.3ds".as_ref()).unwrap();

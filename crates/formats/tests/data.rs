@@ -1,4 +1,4 @@
-//! Every file of the real data either loads or gives a message.
+//! Every file of the data set either loads or gives a message.
 
 mod common;
 
@@ -20,12 +20,12 @@ fn outcome(path: &Path) -> Result<String, String> {
         "urdf" => {
             let loaded =
                 robot::load(path, &LoadOptions { load_visuals: true, ..LoadOptions::default() }).map_err(text)?;
-            let count = |bodies: &[Vec<elbowroom_scene::Body>]| {
+            let count = |bodies: &[Vec<elbowroom_robot::Collider>]| {
                 let meshes =
                     bodies.iter().flatten().filter_map(|b| if let Shape::Mesh(m) = &b.shape { Some(m) } else { None });
                 meshes.fold((0, 0), |(n, t), m| (n + 1, t + m.triangles().len()))
             };
-            let (collision, visual) = (count(&loaded.robot.bodies), count(&loaded.robot.visuals));
+            let (collision, visual) = (count(&loaded.robot.colliders), count(&loaded.robot.visuals));
             let mut line = format!(
                 "{} links, {} dof, collision {} meshes {} triangles, visual {} meshes {} triangles, {} warnings",
                 loaded.robot.chain.links().len(),
@@ -62,7 +62,7 @@ fn outcome(path: &Path) -> Result<String, String> {
 }
 
 #[test]
-fn every_file_loads_or_says_why_not() {
+fn every_file_loads_or_gives_a_reason() {
     let Some(data) = common::data() else { return };
     let skip = ["md", "txt", "yaml", "xml", "mtl", "rob", "octree", ""];
     for directory in ["malformed", "mesh", "urdf", "cell"] {
@@ -102,9 +102,9 @@ fn counted_elsewhere(sources: &str, name: &str) -> Option<(usize, usize)> {
 }
 
 /// Every robot: as many triangles as another library counts, the same by package as by relative paths, and an SRDF
-/// that knows its links.
+/// with its links.
 #[test]
-fn robots_are_complete() {
+fn urdf_robots_are_complete() {
     let Some(data) = common::data() else { return };
     let sources = std::fs::read_to_string(data.join("SOURCES.md")).unwrap_or_default();
     let mut compared = 0;
@@ -114,10 +114,10 @@ fn robots_are_complete() {
         let srdf = Some(directory.path().join(format!("{name}.srdf"))).filter(|p| p.exists());
         let options = LoadOptions { load_visuals: true, srdf, ..LoadOptions::default() };
         let loaded = robot::load(&path, &options).unwrap_or_else(|e| panic!("{e}"));
-        let triangles = |bodies: &[Vec<elbowroom_scene::Body>]| -> usize {
+        let triangles = |bodies: &[Vec<elbowroom_robot::Collider>]| -> usize {
             bodies.iter().flatten().map(|b| if let Shape::Mesh(m) = &b.shape { m.triangles().len() } else { 0 }).sum()
         };
-        let counts = (triangles(&loaded.robot.bodies), triangles(&loaded.robot.visuals));
+        let counts = (triangles(&loaded.robot.colliders), triangles(&loaded.robot.visuals));
         if let Some(expected) = counted_elsewhere(&sources, &name) {
             assert_eq!(counts, expected, "{name}");
             compared += 1;
@@ -125,7 +125,7 @@ fn robots_are_complete() {
         assert!(!loaded.warnings.iter().any(|w| w.what.contains("no link")), "{name}: {:?}", loaded.warnings);
         let by_package = robot::load(&directory.path().join(format!("{name}.package.urdf")), &options);
         if let Ok(by_package) = by_package {
-            let again = (triangles(&by_package.robot.bodies), triangles(&by_package.robot.visuals));
+            let again = (triangles(&by_package.robot.colliders), triangles(&by_package.robot.visuals));
             assert_eq!(again, counts, "{name} by package");
         } else {
             assert!(!directory.path().join(format!("{name}.package.urdf")).exists(), "{name}: {by_package:?}");

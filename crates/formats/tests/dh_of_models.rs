@@ -1,5 +1,5 @@
-//! Denavit-Hartenberg tables of every robot of the data, out of URDF, 3DS and glTF models: their product is the model's
-//! forward kinematics (S4.3). The 3DS and glTF models have no tracks; a file of joints, made of the URDF, names theirs.
+//! Denavit-Hartenberg tables of every robot of the data set, from URDF, 3DS and glTF models: their product is the model's
+//! forward kinematics (S4.3). The 3DS and glTF models have no tracks; a file of joints is made from the URDF.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::joints;
 use elbowroom_formats::robot::{self, LoadOptions};
-use elbowroom_kinematics::dh::{DirectTable, ModifiedTable, Table};
-use elbowroom_kinematics::frames::Frames;
+use elbowroom_kinematics::dh::{DirectTable, GeneralizedTable, ModifiedTable};
+use elbowroom_kinematics::frames::FrameChain;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_spatial::Pose;
 
@@ -28,8 +28,8 @@ fn difference(a: &Pose, b: &Pose) -> f64 {
 
 /// Largest difference from forward kinematics at the link: generalized, direct, modified, frames.
 fn worst(chain: &Chain, tip: LinkId) -> [f64; 4] {
-    let (generalized, direct) = (Table::extract(chain, tip), DirectTable::extract(chain, tip));
-    let (modified, frames) = (ModifiedTable::extract(chain, tip), Frames::extract(chain, tip));
+    let (generalized, direct) = (GeneralizedTable::extract(chain, tip), DirectTable::extract(chain, tip));
+    let (modified, frames) = (ModifiedTable::extract(chain, tip), FrameChain::extract(chain, tip));
     let mut state = ChainState::new(chain);
     let mut worst = [0.0_f64; 4];
     for index in 0..STATES {
@@ -73,7 +73,7 @@ fn every_urdf_has_its_tables() {
             if path.extension().is_none_or(|e| e != "urdf") || path.to_string_lossy().ends_with(".package.urdf") {
                 continue;
             }
-            // Some name meshes that are not there: only the joints count here.
+            // Some refer to missing meshes: only the joints are needed here.
             let Ok(model) = elbowroom_formats::urdf::parse(&std::fs::read(&path).unwrap(), &path) else { continue };
             let chain = robot::chain(&model, &path).unwrap();
             check(&path.strip_prefix(&data).unwrap().display().to_string(), &chain);
@@ -104,32 +104,32 @@ fn chain_of(path: &Path, joints: Option<PathBuf>) -> Chain {
     robot::load(path, &LoadOptions { joints, ..LoadOptions::default() }).unwrap().robot.chain
 }
 
-/// The link of the last joint by the model's table is where the URDF has it, to the single precision of the files.
+/// The pose of the last joint's link by the model's table agrees with the URDF within the single precision of the files.
 fn same_robot(urdf: &Chain, model: &Chain) {
     let last = urdf.joints()[urdf.active_joints()[5].0].child;
     let name = &urdf.links()[last.0];
-    let table = Table::extract(model, model.link(name).unwrap());
+    let table = GeneralizedTable::extract(model, model.link(name).unwrap());
     let mut state = ChainState::new(urdf);
     for index in 0..STATES {
         state.q.copy_from_slice(&spread(urdf, index));
         urdf.forward(&mut state);
-        // Joints in the order of the way, whatever they are called.
+        // Joints in the order of the path, whatever their names.
         let way: Vec<&str> = table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
         let value = |joint: &str| state.q[way.iter().position(|w| *w == joint).unwrap()];
         assert!(difference(&table.tip_in_root(value), &state.link_in_root(last)) < 1e-5);
     }
 }
 
-/// The KR150 of the examples, a 3DS file, as it is and written and read again: seven local frames, base and six joints, are seven
-/// rows of the shape of the paper's table 1 (S4.4).
+/// The KR150 of the examples, a 3DS file, as it is and after writing and reading: seven local frames, base and six joints,
+/// are seven rows of the form of table 1 (S4.4).
 #[test]
-fn the_kr150_of_the_examples_has_the_papers_shape() {
+fn the_kr150_of_the_examples_has_the_published_geometry() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/models/kr150/kr150.3ds");
     let loaded = robot::load(&path, &LoadOptions::default()).unwrap().robot;
     let dir = tempfile::tempdir().unwrap();
     let tds = dir.path().join("kr150.3ds");
     std::fs::write(&tds, elbowroom_formats::tds::write(&robot::to_tree(&loaded), &tds).unwrap()).unwrap();
-    std::fs::write(joints::beside(&tds), joints::to_toml(&loaded.chain)).unwrap();
+    std::fs::write(joints::default_path(&tds), joints::to_toml(&loaded.chain)).unwrap();
     for (kind, chain) in [("as it is", loaded.chain.clone()), ("written again", chain_of(&tds, None))] {
         let last = loaded.chain.joints()[loaded.chain.active_joints()[5].0].child;
         let tip = chain.link(&loaded.chain.links()[last.0]).unwrap();
@@ -139,7 +139,7 @@ fn the_kr150_of_the_examples_has_the_papers_shape() {
         let joints: Vec<&str> = direct.table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints.len(), 6);
         assert_eq!(direct.frames[1..7], joints, "base, then a row for every joint");
-        // The lengths of robots.md, wherever they are found.
+        // The lengths of robots.md, in any row.
         for length in [0.75, 0.35, 1.25, 0.055, 1.1] {
             let found = direct.table.rows.iter().flat_map(|r| [r.a, r.b, r.d]);
             assert!(found.into_iter().any(|v| (v.abs() - length).abs() < 1e-6), "{length} is not in the table");

@@ -1,4 +1,4 @@
-//! Whatever the bytes: a sound model or a message, never a panic.
+//! Any bytes give a valid model or a message, never a panic.
 
 #[path = "common/corpus.rs"]
 mod corpus;
@@ -11,7 +11,7 @@ use elbowroom_spatial::Vec3;
 use proptest::prelude::*;
 
 #[test]
-fn the_samples_are_sound() {
+fn the_samples_are_valid() {
     for parser in PARSERS {
         for (i, sample) in samples(parser).iter().enumerate() {
             let size = run(parser, sample).unwrap_or_else(|e| panic!("{parser} {i}: {e}"));
@@ -20,9 +20,9 @@ fn the_samples_are_sound() {
     }
 }
 
-/// Every prefix of a sound file.
+/// Every prefix of a valid file.
 #[test]
-fn truncation_anywhere_is_survived() {
+fn truncation_anywhere_does_not_panic() {
     for parser in PARSERS {
         for sample in samples(parser) {
             for length in 0..sample.len() {
@@ -46,7 +46,7 @@ proptest! {
     }
 
     #[test]
-    fn damaged_files_are_survived(seed in 1..u64::MAX) {
+    fn damaged_files_do_not_panic(seed in 1..u64::MAX) {
         let mut random = Random(seed);
         for parser in PARSERS {
             let list = samples(parser);
@@ -54,13 +54,13 @@ proptest! {
             let other = list[random.below(list.len())].clone();
             mutate(&mut random, &mut bytes, &other);
             if let Ok(size) = run(parser, &bytes) {
-                // Sixteen times is what polygons with shared corners unfold into at most.
+                // Polygons with shared corners expand to at most sixteen times the size.
                 prop_assert!(size <= 65536 + 64 * bytes.len(), "{} bytes became {size}", bytes.len());
             }
         }
     }
 
-    /// Written and read again: the same corners, in single precision, in the same order.
+    /// After writing and reading: the same corners in single precision, in the same order.
     #[test]
     fn binary_stl_survives_a_round_trip(corners in prop::collection::vec(prop::array::uniform3(-1e3..1e3f32), 3..40),
                                         faces in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60)) {
@@ -79,9 +79,9 @@ proptest! {
     }
 }
 
-/// Deep nesting must not use up the stack, and millions of small things not the memory or an hour.
+/// Deep nesting must not overflow the stack, and millions of small elements must take neither the memory nor an hour.
 #[test]
-fn towers_and_crowds_are_survived() {
+fn deep_and_wide_trees_are_handled() {
     let deep = 200_000;
     let nested = |open: &str, close: &str| format!("{}{}", open.repeat(deep), close.repeat(deep));
     let robot = format!("<robot><link name=\"a\"/>{}</robot>", nested("<x>", "</x>"));
@@ -105,9 +105,9 @@ fn towers_and_crowds_are_survived() {
     assert!(run("urdf", format!("<robot><link name=\"l0\"/>{chain}</robot>").as_bytes()).is_ok());
 }
 
-/// Nodes that instance the next one twice would be 2^40 objects.
+/// Nodes that instance the next one twice would expand to 2^40 objects.
 #[test]
-fn nodes_that_double_are_refused() {
+fn exponential_node_instances_are_refused() {
     let node =
         |i| format!("<node id=\"n{i}\"><instance_node url=\"#n{0}\"/><instance_node url=\"#n{0}\"/></node>", i + 1);
     let nodes = (0..40).map(node).collect::<Vec<_>>().concat();
@@ -120,9 +120,9 @@ fn nodes_that_double_are_refused() {
     assert!(run("dae", circle.as_bytes()).is_err());
 }
 
-/// Files that are small for what they ask: each must be refused or read within seconds.
+/// Small files that announce large contents: each must be refused or read within seconds.
 #[test]
-fn small_files_that_ask_for_much_are_quick() {
+fn small_files_that_expand_are_refused_quickly() {
     let started = std::time::Instant::now();
     let attributes: Vec<String> = (0..20_000).map(|i| format!("a{i}=\"\" ")).collect();
     drop(run("urdf", format!("<robot {}/>", attributes.concat()).as_bytes()));
@@ -147,7 +147,7 @@ fn small_files_that_ask_for_much_are_quick() {
 
 /// Counts near 2^64 must not overflow a sum.
 #[test]
-fn counts_at_the_edge_are_refused() {
+fn overflowing_counts_are_refused() {
     let text = String::from_utf8(samples("gltf").remove(0)).unwrap();
     for count in ["18446744073709551615", "9223372036854775808"] {
         assert!(run("gltf", text.replace("\"count\":3", &format!("\"count\":{count}")).as_bytes()).is_err());

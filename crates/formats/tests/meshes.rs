@@ -1,4 +1,4 @@
-//! Numbers, units, axes and transforms of mesh files, and how robots use them.
+//! Numbers, units, axes and transforms of mesh files, alone and in robots.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ fn binary_stl_may_begin_with_solid() {
     let mut bytes = brick_stl();
     bytes[..6].copy_from_slice(b"solid ");
     assert_eq!(parse("a.stl", &bytes, UpAxis::ToZ).meshes[0].triangles.len(), 12);
-    // With bytes after its end it is no exact size any more, but still no text.
+    // With bytes after its end it has not the exact size, but is no text either.
     bytes.extend([0; 7]);
     bytes[10] = 0;
     let loaded = parse("a.stl", &bytes, UpAxis::ToZ);
@@ -86,12 +86,12 @@ fn units_apply_where_the_format_has_none() {
 }
 
 #[test]
-fn collada_axes_turn_only_when_asked() {
+fn collada_axes_are_converted_only_on_request() {
     let node = "<node><instance_geometry url=\"#g\"/></node>";
     let load = |axis: &str, up| parse("a.dae", brick_dae("", axis, node).as_bytes(), up);
     let kept = load("<up_axis>Y_UP</up_axis>", UpAxis::Ignore).aabb();
     assert!(close(kept.max, Vec3::new(1.0, 2.0, 3.0)));
-    // Up was y, towards the viewer was z: up becomes z, towards the viewer -y.
+    // Up is y and the viewer's direction z in the file: they become z and -y.
     for axis in ["<up_axis>Y_UP</up_axis>", ""] {
         let turned = load(axis, UpAxis::ToZ);
         assert!(
@@ -99,7 +99,7 @@ fn collada_axes_turn_only_when_asked() {
         );
         assert!((volume(&turned.meshes[0]) - 6.0).abs() < 1e-9);
     }
-    // Up was x, right -y, towards the viewer z.
+    // Up is x, right -y, and the viewer's direction z in the file.
     let turned = load("<up_axis>X_UP</up_axis>", UpAxis::ToZ);
     assert!(close(turned.aabb().min, Vec3::new(-2.0, -3.0, 0.0)) && close(turned.aabb().max, Vec3::new(0.0, 0.0, 1.0)));
     assert!((volume(&turned.meshes[0]) - 6.0).abs() < 1e-9);
@@ -153,7 +153,7 @@ fn ply_is_the_same_in_all_three_encodings() {
 }
 
 #[test]
-fn gltf_nodes_move_mirror_and_merge() {
+fn gltf_nodes_are_transformed_mirrored_and_merged() {
     // Three points, three indices; one primitive as triangles, one as a strip; a mirrored node under a moved one.
     let json = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],
         "nodes":[{"children":[1],"translation":[1,2,3]},{"mesh":0,"name":"flag","scale":[-1,2,1]}],
@@ -204,7 +204,7 @@ fn robots_scale_share_and_mirror_their_meshes() {
     let options =
         LoadOptions { load_visuals: true, srdf: Some(directory.path().join("r.srdf")), ..LoadOptions::default() };
     let loaded = robot::load(&path, &options).unwrap();
-    let meshes: Vec<_> = loaded.robot.bodies[0]
+    let meshes: Vec<_> = loaded.robot.colliders[0]
         .iter()
         .map(|b| if let Shape::Mesh(m) = &b.shape { Arc::clone(m) } else { panic!("{}", b.name) })
         .collect();

@@ -1,4 +1,4 @@
-//! What is wrong with a URDF or an SRDF, on which line, and what to write instead.
+//! Messages about URDF and SRDF files: the fault, its line, and what to write instead.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use elbowroom_formats::{FormatError, srdf, urdf};
 
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n";
 
-/// A joint from a to b on lines 5 to 8, in front of what is given.
+/// A joint from a to b on lines 5 to 8, before the given text.
 fn with_joint(kind: &str, inside: &str, after: &str) -> String {
     format!(
         "{HEAD}<joint name=\"j\" type=\"{kind}\">\n<parent link=\"a\"/>\n<child link=\"b\"/>\n{inside}</joint>\n{after}</robot>\n"
@@ -18,7 +18,7 @@ fn refused(text: &str) -> FormatError {
 }
 
 #[test]
-fn every_mistake_has_its_line_and_its_advice() {
+fn every_error_names_its_line_and_a_remedy() {
     let limit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\"/>\n";
     let joint_k = |parent: &str, child: &str| {
         format!("<joint name=\"k\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>\n")
@@ -50,8 +50,8 @@ fn every_mistake_has_its_line_and_its_advice() {
         (with_joint("fixed", "<origin\n xyz=\"0 nan 0\"/>\n", ""), 9, "not finite", "three finite numbers"),
         (with_joint("fixed", "<origin rpy=\"0 0 1,5\"/>\n", ""), 8, "not made of numbers", "three"),
         (with_joint("revolute", &format!("{limit}<mimic joint=\"x\"/>\n"), ""), 9, "no joint `x`", "name of a joint"),
-        (with_joint("revolute", &format!("{limit}<mimic joint=\"j\"/>\n"), ""), 5, "circle", "without <mimic>"),
-        (with_joint("fixed", "", &joint_k("b", "a")), 9, "circle", "tree"),
+        (with_joint("revolute", &format!("{limit}<mimic joint=\"j\"/>\n"), ""), 5, "cycle", "without <mimic>"),
+        (with_joint("fixed", "", &joint_k("b", "a")), 9, "cycle", "tree"),
         (with_joint("fixed", "", &joint_k("a", "b")), 9, "already the child", "one joint for each child"),
         (with_joint("fixed", "", &joint_k("b", "b")), 9, "itself", "two different"),
         (with_joint("fixed", "", &joint_k("b", "world")), 9, "no link `world`", "<link name=\"world\"/>"),
@@ -79,7 +79,7 @@ fn every_mistake_has_its_line_and_its_advice() {
 }
 
 #[test]
-fn a_namespace_for_all_is_no_stranger() {
+fn a_default_namespace_is_accepted() {
     let text = with_joint("fixed", "", "").replace("<robot name", "<robot xmlns=\"http://www.ros.org\" name");
     let model = urdf::parse(text.as_bytes(), Path::new("arm.urdf")).unwrap();
     assert!(model.warnings.is_empty(), "{:?}", model.warnings);
@@ -104,7 +104,7 @@ fn utf16_and_latin1_are_read() {
     let latin1 =
         text.replace("version=\"1.0\"", "version=\"1.0\" encoding=\"ISO-8859-1\"").replace("name=\"r\"", "name=\"r?\"");
     let latin1: Vec<u8> = latin1.into_bytes().into_iter().map(|b| if b == b'?' { 0xe4 } else { b }).collect();
-    // Both question marks of the XML declaration turn into letters, too: put them back.
+    // Both question marks of the XML declaration were replaced too.
     let mut latin1 = latin1;
     latin1[1] = b'?';
     let end = latin1.iter().position(|&b| b == b'>').unwrap();
@@ -113,7 +113,7 @@ fn utf16_and_latin1_are_read() {
 }
 
 #[test]
-fn srdf_mistakes_have_their_line() {
+fn srdf_errors_name_their_line() {
     let parse = |text: &str| srdf::parse(text.as_bytes(), Path::new("arm.srdf"));
     let error = parse("<robot>\n<disable_collisions link1=\"a\"/>\n</robot>").unwrap_err();
     assert_eq!((error.line, error.what.contains("link2")), (Some(2), true));

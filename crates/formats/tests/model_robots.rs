@@ -1,15 +1,15 @@
-//! Robots out of 3DS and glTF models: tracks, files of joints, and the way back as URDF and 3DS.
+//! Robots from 3DS and glTF models: tracks, files of joints, and export as URDF and 3DS.
 
 mod common;
 
 use std::path::Path;
 
-use elbowroom_formats::nodetree::{Key, Node, NodeTree};
+use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_formats::{LoadedRobot, MeshData, joints, tds};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
 use elbowroom_proximity::Shape;
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 fn box_mesh(name: &str) -> MeshData {
@@ -28,7 +28,7 @@ fn one(track: impl Fn(Pose) -> Vec<Pose>) -> NodeTree {
     let rest = Pose::from_xyz_rpy([0.3, -0.2, 0.5], [0.4, -0.6, 1.1]);
     let mut link = Node::new("link", Some(0), rest);
     link.meshes.push(box_mesh("link"));
-    let key = |(i, in_parent): (usize, Pose)| Key { time_s: i as f64, in_parent };
+    let key = |(i, in_parent): (usize, Pose)| Keyframe { time_s: i as f64, in_parent };
     link.track = track(rest).into_iter().enumerate().map(key).collect();
     tree.push(link);
     tree
@@ -39,7 +39,7 @@ fn load(tree: &NodeTree, options: &LoadOptions, side: Option<&str>) -> Result<Lo
     let file = dir.path().join("one.3ds");
     std::fs::write(&file, tds::write(tree, &file).unwrap()).unwrap();
     if let Some(side) = side {
-        std::fs::write(joints::beside(&file), side).unwrap();
+        std::fs::write(joints::default_path(&file), side).unwrap();
     }
     robot::load(&file, options).map_err(|e| e.to_string().replace(&dir.path().display().to_string(), ""))
 }
@@ -54,7 +54,7 @@ fn turned(rest: Pose, axis: Vec3, degrees: &[f64]) -> Vec<Pose> {
 }
 
 #[test]
-fn a_turning_track_is_a_revolute_joint_with_the_ends_of_its_keys() {
+fn a_rotation_track_is_a_revolute_joint_limited_by_its_keys() {
     let axis = Vec3::new(0.6, 0.0, 0.8);
     let loaded = bare(&one(|rest| turned(rest, axis, &[0.0, 60.0, 100.0, 20.0, -70.0, -130.0, -50.0, 0.0])));
     let joint = &loaded.robot.chain.joints()[0];
@@ -63,14 +63,14 @@ fn a_turning_track_is_a_revolute_joint_with_the_ends_of_its_keys() {
     assert!((joint.limits.lower.to_degrees() + 130.0).abs() < 1e-3, "{:?}", joint.limits);
     assert!((joint.limits.upper.to_degrees() - 100.0).abs() < 1e-3, "{:?}", joint.limits);
     assert!(
-        loaded.warnings.iter().any(|w| w.what.contains("`link` turns about [0.6, 0, 0.8]")),
+        loaded.warnings.iter().any(|w| w.what.contains("`link` rotates about [0.6, 0, 0.8]")),
         "{:?}",
         loaded.warnings
     );
 }
 
 #[test]
-fn a_whole_turn_is_endless_and_a_slide_is_prismatic() {
+fn a_full_turn_is_continuous_and_a_translation_is_prismatic() {
     let loaded = bare(&one(|rest| turned(rest, Vec3::Z, &[0.0, 90.0, 180.0, 270.0, 360.0])));
     assert_eq!(loaded.robot.chain.joints()[0].kind, JointKind::Continuous);
     let slide = |rest: Pose| [0.0, 0.7, -0.1].map(|x| rest * Pose::from_translation(Vec3::Y * x)).to_vec();
@@ -81,7 +81,7 @@ fn a_whole_turn_is_endless_and_a_slide_is_prismatic() {
     assert!((joint.limits.lower + 0.1).abs() < 1e-5 && (joint.limits.upper - 0.7).abs() < 1e-5);
 }
 
-/// A node that turns about a point that is not its origin.
+/// A node that rotates about a point other than its origin.
 #[test]
 fn the_centre_of_a_track_becomes_the_links_origin() {
     let (axis, at) = (Vec3::X, Vec3::new(0.0, 0.4, -0.3));
@@ -97,7 +97,7 @@ fn the_centre_of_a_track_becomes_the_links_origin() {
     state.q[0] = 0.5;
     chain.forward(&mut state);
     let link = chain.link("link").unwrap();
-    let body = &loaded.robot.bodies[link.0][0];
+    let body = &loaded.robot.colliders[link.0][0];
     let right = about(tree.nodes[1].in_parent, 0.5_f64.to_degrees());
     let Shape::Mesh(mesh) = &body.shape else { panic!("no mesh") };
     for (v, raw) in mesh.vertices().iter().zip(&tree.nodes[1].meshes[0].vertices) {
@@ -107,7 +107,7 @@ fn the_centre_of_a_track_becomes_the_links_origin() {
 }
 
 #[test]
-fn a_track_that_is_no_joints_is_fixed_and_says_why() {
+fn a_track_that_is_not_a_joint_is_fixed_with_a_warning() {
     let twice = |rest: Pose| {
         let mut poses = turned(rest, Vec3::Z, &[0.0, 40.0]);
         poses.push(poses[1] * Pose::new(Rotation::from_axis_angle(Vec3::X, 0.7), Vec3::ZERO));
@@ -116,8 +116,8 @@ fn a_track_that_is_no_joints_is_fixed_and_says_why() {
     let loaded = bare(&one(twice));
     assert_eq!(loaded.robot.chain.dof(), 0);
     let said = loaded.warnings.iter().map(|w| w.what.clone()).collect::<String>();
-    assert!(said.contains("turns about [0, 0, 1] at first, but about [1, 0, 0] between 1.00 s and 2.00 s"), "{said}");
-    // The file of joints has the last word.
+    assert!(said.contains("rotates about [0, 0, 1] at first, but about [1, 0, 0] between 1.00 s and 2.00 s"), "{said}");
+    // The file of joints overrides the track.
     let side = "units = { length = \"mm\", angle = \"deg\" }\n[joint.link]\naxis = \"z\"\nmin = -10\nmax = 40\n";
     let loaded = load(&one(twice), &LoadOptions::default(), Some(side)).unwrap();
     assert_eq!(loaded.robot.chain.dof(), 1);
@@ -129,18 +129,18 @@ fn a_track_that_is_no_joints_is_fixed_and_says_why() {
             .collect()
     };
     let said = bare(&one(spiral)).warnings.iter().map(|w| w.what.clone()).collect::<String>();
-    assert!(said.contains("turns about [0, 0, 1] and slides at once"), "{said}");
+    assert!(said.contains("rotates about [0, 0, 1] and translates at once"), "{said}");
 }
 
 #[test]
-fn nothing_that_moves_is_asked_for_with_a_file_to_fill_in() {
+fn a_model_without_joints_gives_a_joint_file_to_fill_in() {
     let loaded = bare(&one(|_| Vec::new()));
     assert_eq!((loaded.robot.chain.dof(), loaded.robot.chain.joints().len()), (0, 1));
     let asked = loaded.warnings.iter().find(|w| w.what.starts_with("no joint moves")).expect("a warning");
     assert!(asked.what.contains("`link`") && !asked.what.contains("`base`"), "{asked}");
     let skeleton = asked.write_instead.as_ref().unwrap();
     assert!(skeleton.contains("on base, origin at [0.3, -0.2, 0.5] m"), "{skeleton}");
-    // What is printed works as soon as the axis is filled in, and says so before.
+    // The printed template is valid once the axis is filled in.
     let toml = skeleton.split_once('\n').unwrap().1;
     let error = load(&one(|_| Vec::new()), &LoadOptions::default(), Some(toml)).unwrap_err();
     assert!(error.contains("one.joints.toml:3: `axis` is still to be filled in"), "{error}");
@@ -164,16 +164,16 @@ fn axes_in_other_frames_and_other_origins() {
         let at = Vec3::new(0.1, 0.0, 0.2);
         let at = if frame == "node" { rest.transform_point(at) } else { at };
         assert!(joint.origin.translation.distance(at) < 1e-6, "{frame}");
-        // The solids stay where they were.
+        // The geometry does not move.
         let mut state = ChainState::new(chain);
         chain.forward(&mut state);
-        let place = state.link_in_root(link) * loaded.robot.bodies[link.0][0].in_link;
+        let place = state.link_in_root(link) * loaded.robot.colliders[link.0][0].in_link;
         assert!(place.translation.distance(rest.translation) < 1e-6, "{frame}");
     }
 }
 
 #[test]
-fn mistakes_in_joints_are_answered_with_file_and_line() {
+fn errors_in_joints_name_file_and_line() {
     let units = "units = { length = \"mm\", angle = \"deg\" }\n";
     for (side, said) in [
         ("[joint.link]\naxis = \"z\"\n".to_owned(), "no `units`"),
@@ -205,7 +205,7 @@ fn mistakes_in_joints_are_answered_with_file_and_line() {
 }
 
 #[test]
-fn several_tops_get_a_root_and_equal_names_numbers() {
+fn several_roots_get_a_common_root_and_equal_names_are_numbered() {
     let mut tree = NodeTree::new("one");
     for x in [0.0, 1.0] {
         let mut node = Node::new("part", None, Pose::from_translation(Vec3::X * x));
@@ -217,7 +217,7 @@ fn several_tops_get_a_root_and_equal_names_numbers() {
     assert_eq!(loaded.robot.chain.root(), LinkId(2));
 }
 
-/// A glTF of a base and a link that turns about its y axis in three keys; `edit` changes the JSON.
+/// A glTF of a base and a link that rotates about its y axis in three keys; `edit` changes the JSON.
 fn animated(edit: impl Fn(String) -> String, values: &[f32]) -> Result<LoadedRobot, String> {
     use base64::Engine as _;
     let corners = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.2, 0.0];
@@ -243,7 +243,7 @@ fn animated(edit: impl Fn(String) -> String, values: &[f32]) -> Result<LoadedRob
     robot::load(&file, &LoadOptions::default()).map_err(|e| e.to_string())
 }
 
-/// A turn about y as a quaternion.
+/// A rotation about y as a quaternion.
 fn about_y(degrees: f32) -> [f32; 4] {
     let (sine, cosine) = (0.5 * degrees.to_radians()).sin_cos();
     [0.0, sine, 0.0, cosine]
@@ -260,7 +260,7 @@ fn animations_of_gltf_are_joints() {
         assert!((joint.limits.lower.to_degrees() + 20.0).abs() < 1e-3, "{:?}", joint.limits);
         assert!(joint.origin.translation.distance(Vec3::Z * 0.5) < 1e-7);
         let link = loaded.robot.chain.link("link").unwrap();
-        let Shape::Mesh(mesh) = &loaded.robot.bodies[link.0][0].shape else { panic!("no mesh") };
+        let Shape::Mesh(mesh) = &loaded.robot.colliders[link.0][0].shape else { panic!("no mesh") };
         assert!(mesh.vertices()[1].distance(Vec3::X * 0.4) < 1e-7, "the scale is in the mesh");
     };
     check(animated(|j| j, &keys).unwrap());
@@ -271,8 +271,8 @@ fn animations_of_gltf_are_joints() {
     check(animated(cubic, &spline).unwrap());
     for (values, said) in [
         (keys[..8].to_vec(), "fewer values than times"),
-        ([about_y(0.0), zero, zero].concat(), "a rotation that is none"),
-        ([about_y(0.0), [f32::NAN; 4], zero].concat(), "a number that is none"),
+        ([about_y(0.0), zero, zero].concat(), "a rotation that is no unit quaternion"),
+        ([about_y(0.0), [f32::NAN; 4], zero].concat(), "a number that is not finite"),
     ] {
         let error = animated(|j| j, &values).unwrap_err();
         assert!(error.contains(said) && error.contains("animation 0, channel 0"), "{error}");
@@ -280,7 +280,7 @@ fn animations_of_gltf_are_joints() {
     let error = animated(|j| j.replace("VEC4", "VEC3"), &keys).unwrap_err();
     assert!(error.contains("values of 3 numbers instead of 4"), "{error}");
     let error = animated(|j| j.replace("\"sampler\":0", "\"sampler\":7"), &keys).unwrap_err();
-    assert!(error.contains("not valid"), "{error}");
+    assert!(error.contains("sampler 7, which does not exist"), "{error}");
     let error = animated(|j| j.replace("{\"node\":1", "{\"node\":7"), &keys).unwrap_err();
     assert!(error.contains("moves node 7, which does not exist"), "{error}");
     assert!(animated(|j| j.replace("\"rotation\"", "\"roll\""), &keys).is_ok());
@@ -327,8 +327,8 @@ fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
     worst
 }
 
-fn corners(bodies: &[Body]) -> Vec<[Vec3; 3]> {
-    let of = |b: &Body| match &b.shape {
+fn corners(bodies: &[Collider]) -> Vec<[Vec3; 3]> {
+    let of = |b: &Collider| match &b.shape {
         Shape::Mesh(m) => {
             let corner = |i: u32| b.in_link.transform_point(m.vertices()[i as usize]);
             m.triangles().iter().map(|t| t.map(corner)).collect::<Vec<_>>()
@@ -345,10 +345,10 @@ fn corners_apart(a: &[[Vec3; 3]], b: &[[Vec3; 3]]) -> f64 {
     pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
-/// Solids of a link and of what hangs fixed at the same place below it.
+/// Colliders of a link and of the links fixed to it at the same pose.
 fn solids(robot: &Robot, link: &str) -> Vec<[Vec3; 3]> {
     let chain = &robot.chain;
-    let mut all = corners(&robot.bodies[chain.link(link).unwrap().0]);
+    let mut all = corners(&robot.colliders[chain.link(link).unwrap().0]);
     for joint in chain.joints().iter().filter(|j| j.kind == JointKind::Fixed && chain.links()[j.parent.0] == link) {
         let below = solids(robot, &chain.links()[joint.child.0]);
         all.extend(below.into_iter().map(|t| t.map(|v| joint.origin.transform_point(v))));
@@ -396,7 +396,7 @@ fn the_derived_3ds_and_glb_are_their_urdf_again_with_a_file_of_joints() {
             assert!(off < 1e-6, "{name} {link}: {off}");
             triangles += a.len();
             let id = urdf.chain.link(link).unwrap().0;
-            let sources = [corners(&urdf.visuals[id]), corners(&urdf.bodies[id])];
+            let sources = [corners(&urdf.visuals[id]), corners(&urdf.colliders[id])];
             let same = sources.iter().any(|s| s.len() == a.len() && corners_apart(&a, s) < 1e-6);
             assert!(same, "{name} {link}: {} triangles; the URDF has {:?}", a.len(), sources.each_ref().map(Vec::len));
         }
@@ -404,7 +404,7 @@ fn the_derived_3ds_and_glb_are_their_urdf_again_with_a_file_of_joints() {
     }
 }
 
-/// Exported and read again.
+/// The robot after export and loading.
 fn round_trip(robot: &Robot, name: &str, links: &[&str]) -> (f64, f64, f64) {
     let dir = tempfile::tempdir().unwrap();
     let files = robot::write_urdf(robot, dir.path(), name).unwrap();
@@ -415,13 +415,13 @@ fn round_trip(robot: &Robot, name: &str, links: &[&str]) -> (f64, f64, f64) {
         assert_eq!((&a.name, a.kind, a.limits, a.mimic), (&b.name, b.kind, b.limits, b.mimic));
     }
     let mut off: f64 = 0.0;
-    for (a, b) in robot.bodies.iter().zip(&again.bodies) {
+    for (a, b) in robot.colliders.iter().zip(&again.colliders) {
         assert_eq!(a.len(), b.len());
         off = off.max(corners_apart(&corners(a), &corners(b)));
     }
     let path = dir.path().join(format!("{name}.3ds"));
     std::fs::write(&path, tds::write(&robot::to_tree(robot), &path).unwrap()).unwrap();
-    std::fs::write(joints::beside(&path), joints::to_toml(&robot.chain)).unwrap();
+    std::fs::write(joints::default_path(&path), joints::to_toml(&robot.chain)).unwrap();
     let by_tds = robot::load(&path, &LoadOptions::default()).unwrap().robot;
     (apart(&robot.chain, &again.chain, links), off, apart(&robot.chain, &by_tds.chain, links))
 }
@@ -463,7 +463,7 @@ fn tracks_alone_carry_axes_and_limits_of_an_exported_robot() {
         let link = &urdf.chain.links()[joint.child.0];
         let same = &chain.joints()[chain.parent_joint(chain.link(link).unwrap()).unwrap().0];
         assert_eq!(same.kind, joint.kind);
-        // The sense is that of the first motion, which is up where there is an up; and zero is in the range.
+        // The direction is that of the first motion, upward where the range allows it; and zero is in the range.
         let sense = if joint.limits.upper > 0.0 { 1.0 } else { -1.0 };
         assert!(same.axis.distance(joint.axis * sense) < 1e-5, "{link}: {:?} {:?}", same.axis, joint.axis);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-4;

@@ -1,4 +1,4 @@
-//! Paths that are no files, and counts that are no truth.
+//! Paths that are no regular files, and wrong counts.
 
 use elbowroom_formats::mesh;
 
@@ -16,7 +16,7 @@ fn announced_counts_are_checked_against_the_bytes() {
         ),
         ("c.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\nabc".into(), Some(3), "have no x"),
         ("d.ply", "ply\nformat ascii 1.0\nelement other 4000000000\nend_header\nabc".into(), None, "no faces"),
-        ("e.obj", "v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n".into(), Some(3), "no place"),
+        ("e.obj", "v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n".into(), Some(3), "not finite"),
         (
             "f.stl",
             "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n".into(),
@@ -36,15 +36,15 @@ fn announced_counts_are_checked_against_the_bytes() {
 }
 
 #[test]
-fn directories_and_missing_files_are_no_meshes() {
+fn directories_and_missing_files_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     assert!(mesh::load(directory.path(), None).unwrap_err().what.contains("not a file"));
     assert!(mesh::load(&directory.path().join("none.stl"), None).unwrap_err().what.contains("cannot be read"));
 }
 
-/// A pipe would never end.
+/// Reading a pipe might never end.
 #[cfg(unix)]
 #[test]
-fn devices_are_no_meshes() {
+fn devices_are_refused() {
     assert!(mesh::load("/dev/zero".as_ref(), None).unwrap_err().what.contains("not a file"));
 }

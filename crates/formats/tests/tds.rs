@@ -5,7 +5,7 @@ mod waving;
 
 use std::path::Path;
 
-use elbowroom_formats::nodetree::{Key, Node, NodeTree};
+use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::{MeshData, mesh, tds};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use proptest::prelude::*;
@@ -43,7 +43,7 @@ fn assert_same(a: &NodeTree, b: &NodeTree, tolerance: f64) {
 }
 
 #[test]
-fn a_tree_comes_back_with_frames_meshes_and_tracks() {
+fn a_tree_round_trips_with_frames_meshes_and_tracks() {
     let tree = waving();
     assert_same(&tree, &again(&tree), 1e-5);
     assert!(again(&tree).warnings.is_empty());
@@ -69,7 +69,7 @@ fn flag(at: [f64; 3], rpy: [f64; 3]) -> NodeTree {
 }
 
 #[test]
-fn the_pivot_is_put_to_the_nodes_origin() {
+fn the_pivot_becomes_the_origin_of_the_node() {
     let mut bytes = tds::write(&flag([1.0, 2.0, 3.0], [0.4, 0.5, 0.6]), FILE.as_ref()).unwrap();
     patch(&mut bytes, [0x13, 0xb0, 18, 0, 0, 0], &floats(&[0.25, -0.5, 0.0]));
     let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
@@ -94,7 +94,7 @@ fn scale_goes_into_the_meshes_and_frames_stay_rigid() {
 }
 
 #[test]
-fn the_master_scale_divides_and_is_told() {
+fn the_master_scale_divides_with_a_warning() {
     let mut bytes = tds::write(&flag([1.0, 2.0, 3.0], [0.0; 3]), FILE.as_ref()).unwrap();
     patch(&mut bytes, [0x00, 0x01, 10, 0, 0, 0], &floats(&[4.0]));
     let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
@@ -104,15 +104,15 @@ fn the_master_scale_divides_and_is_told() {
 }
 
 #[test]
-fn keys_that_turn_far_get_keys_in_between() {
+fn large_rotations_between_keys_get_intermediate_keys() {
     let mut tree = flag([0.0; 3], [0.0; 3]);
-    let key = |i: u32, angle: f64| Key {
+    let key = |i: u32, angle: f64| Keyframe {
         time_s: f64::from(i),
         in_parent: Pose::new(Rotation::from_axis_angle(Vec3::Z, angle), Vec3::ZERO),
     };
     tree.nodes[0].track = vec![key(0, 0.0), key(1, 1.0)];
     let mut bytes = tds::write(&tree, FILE.as_ref()).unwrap();
-    // The second key's angle: six and a half radians, more than a whole turn.
+    // The second key's angle: six and a half radians, more than a full turn.
     let second = bytes.windows(2).position(|w| w == [0x21, 0xb0]).unwrap() + 6 + 14 + 22 + 6;
     bytes[second..second + 4].copy_from_slice(&6.5f32.to_le_bytes());
     let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
@@ -125,7 +125,7 @@ fn keys_that_turn_far_get_keys_in_between() {
 }
 
 #[test]
-fn what_is_too_large_for_one_object_is_split() {
+fn meshes_too_large_for_one_object_are_split() {
     let mut tree = NodeTree::new("big");
     let mut node = Node::new("grid", None, Pose::IDENTITY);
     let vertices: Vec<Vec3> =
@@ -148,7 +148,7 @@ fn what_is_too_large_for_one_object_is_split() {
 }
 
 #[test]
-fn trees_that_are_none_are_not_written() {
+fn invalid_trees_are_not_written() {
     let mut tree = flag([0.0; 3], [0.0; 3]);
     tree.nodes[0].parent = Some(0);
     assert!(tds::write(&tree, FILE.as_ref()).unwrap_err().to_string().contains("before its parent"));
@@ -160,13 +160,13 @@ fn trees_that_are_none_are_not_written() {
 }
 
 #[test]
-fn circles_and_missing_parents_end_at_the_top_with_a_warning() {
+fn cycles_and_missing_parents_become_roots_with_a_warning() {
     let bytes = tds::write(&waving(), FILE.as_ref()).unwrap();
     let parents: Vec<usize> =
         bytes.windows(2).enumerate().filter(|(_, w)| *w == [0x10, 0xb0]).map(|(i, _)| i).collect();
-    for (wrong, said) in [(1u16, "hangs on itself"), (77, "does not exist")] {
+    for (wrong, said) in [(1u16, "is its own ancestor"), (77, "does not exist")] {
         let mut bytes = bytes.clone();
-        // The name of the second is `flag`: head, five bytes, two flags.
+        // The name of the second is `flag`: header, five bytes, two flags.
         let at = parents[1] + 6 + 5 + 4;
         bytes[at..at + 2].copy_from_slice(&wrong.to_le_bytes());
         let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
@@ -176,7 +176,7 @@ fn circles_and_missing_parents_end_at_the_top_with_a_warning() {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_refused_or_read_never_more() {
+fn a_truncated_file_is_refused_or_read_in_part() {
     let bytes = tds::write(&waving(), FILE.as_ref()).unwrap();
     let whole = tds::parse(&bytes, FILE.as_ref()).unwrap();
     let mut refused = 0;
@@ -193,7 +193,7 @@ fn a_file_cut_anywhere_is_refused_or_read_never_more() {
 }
 
 #[test]
-fn no_flipped_bit_brings_the_reader_down() {
+fn no_flipped_bit_panics() {
     let bytes = tds::write(&waving(), FILE.as_ref()).unwrap();
     for at in 0..bytes.len() * 8 {
         let mut bytes = bytes.clone();
@@ -205,14 +205,14 @@ fn no_flipped_bit_brings_the_reader_down() {
 }
 
 #[test]
-fn a_3ds_file_is_known_by_its_content_and_loads_as_a_mesh() {
+fn a_3ds_file_is_recognized_by_its_content_and_loads_as_a_mesh() {
     let bytes = tds::write(&waving(), FILE.as_ref()).unwrap();
-    assert_eq!(mesh::detect(&bytes, "flag".as_ref()).unwrap(), mesh::Format::Tds);
+    assert_eq!(mesh::detect(&bytes, "flag".as_ref()).unwrap(), mesh::MeshFormat::Tds);
     let loaded = mesh::parse(&bytes, Path::new("flag"), None, mesh::UpAxis::ToZ).unwrap();
     let world = waving().in_world()[1];
     assert!(loaded.meshes[0].vertices[1].distance(world.transform_point(Vec3::X)) < 1e-5);
-    let nothing = mesh::parse(b"MM\x06\0\0\0", Path::new("a.3ds"), None, mesh::UpAxis::ToZ).unwrap_err();
-    assert!(nothing.to_string().contains("no triangles"), "{nothing}");
+    let empty = mesh::parse(b"MM\x06\0\0\0", Path::new("a.3ds"), None, mesh::UpAxis::ToZ).unwrap_err();
+    assert!(empty.to_string().contains("no triangles"), "{empty}");
 }
 
 fn pose() -> impl Strategy<Value = Pose> {
@@ -225,7 +225,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_tree_comes_back(nodes in prop::collection::vec((pose(), any::<prop::sample::Index>(), pose(), any::<bool>()), 1..12)) {
+    fn any_tree_round_trips(nodes in prop::collection::vec((pose(), any::<prop::sample::Index>(), pose(), any::<bool>()), 1..12)) {
         let mut tree = NodeTree::new("a");
         for (i, (in_parent, parent, moved, solid)) in nodes.into_iter().enumerate() {
             let parent = parent.index(i + 1).checked_sub(1);
@@ -233,11 +233,11 @@ proptest! {
             if solid {
                 let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
                 node.meshes.push(MeshData { name: format!("n{i}"), vertices, triangles: vec![[0, 1, 2]] });
-                node.track = vec![Key { time_s: 0.0, in_parent }, Key { time_s: 1.0, in_parent: moved }];
+                node.track = vec![Keyframe { time_s: 0.0, in_parent }, Keyframe { time_s: 1.0, in_parent: moved }];
             }
             tree.push(node);
         }
-        // Children follow their parents in the file's own order.
+        // Children follow their parents in the order of the file.
         let again = again(&tree);
         for (name, world) in tree.nodes.iter().map(|n| &n.name).zip(tree.in_world()) {
             let i = again.find(name).unwrap();
@@ -277,9 +277,9 @@ fn object(name: &str) -> Vec<u8> {
     chunk(0x4000, &[name.as_bytes(), &[0], &mesh[..]].concat())
 }
 
-/// Looking through all nodes for each camera, or through all nodes for each object, would take 10¹¹ comparisons here.
+/// Searching all nodes for each camera, or for each object, would take 10¹¹ comparisons here.
 #[test]
-fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_in_no_time() {
+fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_quickly() {
     const MANY: usize = 200_000;
     let mut nodes = Vec::new();
     for i in 0..MANY {
@@ -287,7 +287,7 @@ fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_in_no_time() {
         nodes.extend(node(0xb005, &format!("l{i}"), [0.0; 3]));
     }
     for i in (0..MANY).step_by(2) {
-        // To the right, and for a second of the same name to the left, which does not count.
+        // To the right; a second target of the same name, to the left, is ignored.
         nodes.extend(node(0xb004, &format!("c{i}"), [1.0, 0.0, 0.0]));
         nodes.extend(node(0xb004, &format!("c{i}"), [-1.0, 0.0, 0.0]));
     }
@@ -296,7 +296,7 @@ fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_in_no_time() {
     let start = std::time::Instant::now();
     let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
     let took = start.elapsed();
-    // Targets carry nothing, so they are no nodes.
+    // Targets have no children, so they are dropped.
     assert_eq!(tree.nodes.len(), 3 * MANY);
     let look = |i: usize| tree.nodes[2 * i].in_parent.transform_vector(-Vec3::Z);
     assert_eq!((tree.nodes[MANY].name.as_str(), tree.nodes[2 * MANY].name.as_str()), ("c100000", "o0"));
@@ -307,7 +307,7 @@ fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_in_no_time() {
 }
 
 #[test]
-fn nodes_of_one_name_are_written_in_no_time() {
+fn nodes_of_one_name_are_written_quickly() {
     let mut tree = NodeTree::new("a");
     tree.nodes = vec![Node::new("bolt", None, Pose::IDENTITY); 65_000];
     let start = std::time::Instant::now();

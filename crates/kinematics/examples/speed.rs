@@ -1,4 +1,4 @@
-//! How long forward kinematics takes: `cargo run --release -p elbowroom-kinematics --example speed`.
+//! Times of forward kinematics: `cargo run --release -p elbowroom-kinematics --example speed`.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/common/mod.rs"]
@@ -9,11 +9,11 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::inverse::{Options, Solver};
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Six turning axes as in most URDF files: axes along z, y, y, x, y, x, and a fixed flange.
+/// Six revolute axes as in most URDF files: axes along z, y, y, x, y, x, and a fixed flange.
 fn urdf_like() -> Chain {
     let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::X, Vec3::Y, Vec3::X, Vec3::Z];
     let offsets = [(0.0, 0.45), (0.15, 0.0), (0.0, 0.6), (0.0, 0.1), (0.6, 0.0), (0.0, 0.0), (0.1, 0.0)]
@@ -90,7 +90,7 @@ fn report(label: &str, chain: &Chain) {
     common::Random(1).state(chain, &mut state.q);
     chain.forward(&mut state);
     let target = state.link_in_root(tip);
-    let mut solver = Solver::new(chain, tip, Pose::IDENTITY, Options::default());
+    let mut solver = IkSolver::new(chain, tip, Pose::IDENTITY, IkOptions::default());
     let near: Vec<f64> = state.q.iter().map(|v| v + 1e-3).collect();
     let mut q = near.clone();
     let refine = nanoseconds(|_| {

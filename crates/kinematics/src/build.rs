@@ -1,19 +1,18 @@
-//! From loose links and joints to a checked tree.
+//! From links and joints to a checked chain.
 
 use std::collections::HashMap;
 
-use crate::chain::Drive;
-use crate::forward::Step;
-use crate::{Chain, ChainError, Joint, JointId, JointKind, LinkId};
+use crate::forward_step::ForwardStep;
+use crate::{Chain, ChainError, Joint, JointCoupling, JointEnd, JointId, JointKind, LinkId};
 
 impl Chain {
-    /// Checks the links and joints and makes a chain of them. Joints may come in any order; their axes are normalized,
-    /// the bounds of continuous joints are taken away, and mimics of mimics are followed to the free joint.
+    /// Checks the links and joints and makes a chain of them. Joints may be in any order. Axes are normalized, position limits of
+    /// continuous joints removed, and mimics of mimics resolved to the independent joint.
     ///
     /// # Errors
-    /// [`ChainError`] says which link or joint is at fault: no or several roots, circles, a link with two parents or
-    /// unknown, names used twice, an axis without direction, bounds out of order, mimics of nothing, of fixed joints
-    /// or of each other, and numbers that are not finite.
+    /// [`ChainError`] names the link or joint: no root or several, cycles, a link with two parents or unknown, names used twice, an
+    /// axis without direction, limits out of order, mimics of unknown or fixed joints or of each other, and numbers that are not
+    /// finite.
     pub fn new(name: impl Into<String>, links: Vec<String>, mut joints: Vec<Joint>) -> Result<Self, ChainError> {
         let link_by_name = index_names(&links).map_err(|name| ChainError::DuplicateLink { name })?;
         let joint_by_name =
@@ -26,8 +25,8 @@ impl Chain {
         let order = outwards(&links, &joints, root)?;
         let active: Vec<JointId> =
             (0..joints.len()).filter(|&i| joints[i].kind.moves() && joints[i].mimic.is_none()).map(JointId).collect();
-        let drives = (0..joints.len()).map(|i| drive(&joints, &active, i)).collect::<Result<Vec<_>, _>>()?;
-        let steps = order.iter().map(|&j| Step::new(&joints[j.0], drives[j.0])).collect();
+        let couplings = (0..joints.len()).map(|i| coupling(&joints, &active, i)).collect::<Result<Vec<_>, _>>()?;
+        let steps = order.iter().map(|&j| ForwardStep::new(&joints[j.0], couplings[j.0])).collect();
         Ok(Self {
             name: name.into(),
             link_by_name: link_by_name.into_iter().map(|(n, i)| (n, LinkId(i))).collect(),
@@ -38,7 +37,7 @@ impl Chain {
             parent_joint,
             order,
             active,
-            drives,
+            couplings,
             steps,
         })
     }
@@ -55,7 +54,7 @@ fn index_names<'a>(names: impl IntoIterator<Item = &'a String>) -> Result<HashMa
 }
 
 fn check_joint(joint: &mut Joint, links: usize) -> Result<(), ChainError> {
-    for (end, link) in [("parent", joint.parent), ("child", joint.child)] {
+    for (end, link) in [(JointEnd::Parent, joint.parent), (JointEnd::Child, joint.child)] {
         if link.0 >= links {
             return Err(ChainError::UnknownLink { joint: joint.name.clone(), link: link.0, end, count: links });
         }
@@ -75,7 +74,7 @@ fn check_joint(joint: &mut Joint, links: usize) -> Result<(), ChainError> {
         joint.limits.upper = f64::INFINITY;
     }
     let (lower, upper) = (joint.limits.lower, joint.limits.upper);
-    // A range that is a single infinity holds no number.
+    // A range of a single infinity contains no number.
     if !(lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY) {
         return Err(ChainError::BadLimits { joint: joint.name.clone(), lower, upper });
     }
@@ -112,39 +111,39 @@ fn single_root(links: &[String], parent_joint: &[Option<JointId>]) -> Result<Lin
     }
 }
 
-/// Breadth first from the root. With one parent per link, a link that is not met lies on a circle or behind one.
+/// Breadth-first order from the root. With one parent per link, a link that is not visited lies on a cycle or behind one.
 fn outwards(links: &[String], joints: &[Joint], root: LinkId) -> Result<Vec<JointId>, ChainError> {
-    let mut carried: Vec<Vec<JointId>> = vec![Vec::new(); links.len()];
+    let mut children: Vec<Vec<JointId>> = vec![Vec::new(); links.len()];
     for (i, joint) in joints.iter().enumerate() {
-        carried[joint.parent.0].push(JointId(i));
+        children[joint.parent.0].push(JointId(i));
     }
-    let mut met = vec![false; links.len()];
-    met[root.0] = true;
-    let mut order = carried[root.0].clone();
+    let mut visited = vec![false; links.len()];
+    visited[root.0] = true;
+    let mut order = children[root.0].clone();
     let mut next = 0;
     while let Some(&joint) = order.get(next) {
         let child = joints[joint.0].child;
-        met[child.0] = true;
-        order.extend_from_slice(&carried[child.0]);
+        visited[child.0] = true;
+        order.extend_from_slice(&children[child.0]);
         next += 1;
     }
-    match met.iter().position(|m| !m) {
-        Some(lost) => Err(ChainError::Cycle { link: links[lost].clone() }),
+    match visited.iter().position(|m| !m) {
+        Some(unreached) => Err(ChainError::Cycle { link: links[unreached].clone() }),
         None => Ok(order),
     }
 }
 
-/// Follows mimics to the free joint: `q = m₁(m₂·q₀ + o₂) + o₁`.
-fn drive(joints: &[Joint], active: &[JointId], start: usize) -> Result<Option<Drive>, ChainError> {
+/// Resolves mimics to the independent joint: `q = m₁(m₂·q₀ + o₂) + o₁`.
+fn coupling(joints: &[Joint], active: &[JointId], start: usize) -> Result<Option<JointCoupling>, ChainError> {
     if !joints[start].kind.moves() {
         return Ok(None);
     }
     let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
-    // A way longer than the number of joints has met one twice.
+    // More steps than joints visit one of them twice.
     for _ in 0..=joints.len() {
         let Some(mimic) = joints[at].mimic else {
             let index = active.iter().position(|j| j.0 == at).unwrap_or(0);
-            return Ok(Some(Drive { index, multiplier, offset }));
+            return Ok(Some(JointCoupling { index, multiplier, offset }));
         };
         offset += multiplier * mimic.offset;
         multiplier *= mimic.multiplier;

@@ -1,24 +1,16 @@
-//! The constant model.
+//! A kinematic chain: a constant tree of links and joints.
 
 use std::collections::HashMap;
 
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::forward::Step;
-use crate::{Joint, JointId, JointKind, LinkId};
-
-/// A joint's value as a function of the independent values: `multiplier · q[index] + offset`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Drive {
-    pub index: usize,
-    pub multiplier: f64,
-    pub offset: f64,
-}
+use crate::forward_step::ForwardStep;
+use crate::{Joint, JointCoupling, JointId, JointKind, LinkId};
 
 /// A tree of links and joints, immutable. Built and checked by [`Chain::new`].
 ///
-/// Links and joints keep the order of the file. The vector `q` holds one value per *independent* joint (neither fixed
-/// nor mimic), in file order, too: see [`Chain::active_joints`].
+/// Links and joints keep the order of the file. The vector `q` has one value per *independent* joint (neither fixed nor mimic),
+/// in file order, too: see [`Chain::active_joints`].
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(crate) name: String,
@@ -32,9 +24,9 @@ pub struct Chain {
     pub(crate) order: Vec<JointId>,
     pub(crate) active: Vec<JointId>,
     /// Per joint; `None` where fixed.
-    pub(crate) drives: Vec<Option<Drive>>,
+    pub(crate) couplings: Vec<Option<JointCoupling>>,
     /// `order` again, prepared for the forward pass.
-    pub(crate) steps: Vec<Step>,
+    pub(crate) steps: Vec<ForwardStep>,
 }
 
 impl Chain {
@@ -63,7 +55,7 @@ impl Chain {
         &self.active
     }
 
-    /// The joints from the root outwards: every joint comes after the joint its parent hangs on.
+    /// The joints from the root outwards: every joint follows the joint that carries its parent.
     pub fn topological_order(&self) -> &[JointId] {
         &self.order
     }
@@ -78,17 +70,17 @@ impl Chain {
         self.joint_by_name.get(name).copied()
     }
 
-    /// The one link without parent.
+    /// The link without parent.
     pub fn root(&self) -> LinkId {
         self.root
     }
 
-    /// The joint that carries the link; `None` for the root and for links that are not of this chain.
+    /// The joint whose child is the link; `None` for the root and for links that are not of this chain.
     pub fn parent_joint(&self, link: LinkId) -> Option<JointId> {
         self.parent_joint.get(link.0).copied().flatten()
     }
 
-    /// Links that carry no joint, in file order.
+    /// Links that are no parent, in file order.
     pub fn leaves(&self) -> Vec<LinkId> {
         let mut is_leaf = vec![true; self.links.len()];
         for joint in &self.joints {
@@ -122,6 +114,27 @@ impl Chain {
         path
     }
 
+    /// The joints on the path from one link to the other: those above the first link only, from the root outwards, then those
+    /// above the second link only.
+    pub fn joints_between(&self, a: LinkId, b: LinkId) -> Vec<JointId> {
+        let (a, b) = (self.path(a), self.path(b));
+        let common = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
+        a[common..].iter().chain(&b[common..]).copied().collect()
+    }
+
+    /// True where a joint between the root and the link moves it.
+    pub fn is_movable(&self, link: LinkId) -> bool {
+        let mut at = link;
+        while let Some(id) = self.parent_joint(at) {
+            let joint = &self.joints[id.0];
+            if joint.kind.moves() {
+                return true;
+            }
+            at = joint.parent;
+        }
+        false
+    }
+
     /// Lower bounds of `q`, rad or m; −∞ where unlimited.
     pub fn lower(&self) -> Vec<f64> {
         self.active.iter().map(|j| self.joints[j.0].limits.lower).collect()
@@ -132,26 +145,28 @@ impl Chain {
         self.active.iter().map(|j| self.joints[j.0].limits.upper).collect()
     }
 
-    /// Where the joint's value stands in `q`; `None` for fixed and mimic joints.
+    /// Index of the joint's value in `q`; `None` for fixed and mimic joints.
     pub fn q_index(&self, joint: JointId) -> Option<usize> {
         self.active.iter().position(|&j| j == joint)
     }
 
-    /// The independent joint that a mimic joint follows in the end, through mimics of mimics, with the multiplier and
-    /// offset (rad or m) of the whole way; `None` where the joint is free or fixed.
+    /// The independent joint that a mimic joint follows, through mimics of mimics, with the total multiplier and offset (rad or m);
+    /// `None` where the joint is independent or fixed.
     pub fn mimic_source(&self, joint: JointId) -> Option<crate::Mimic> {
         self.joints.get(joint.0)?.mimic?;
-        let drive = self.drives[joint.0]?;
-        Some(crate::Mimic { joint: self.active[drive.index], multiplier: drive.multiplier, offset: drive.offset })
+        let c = self.couplings[joint.0]?;
+        Some(crate::Mimic { joint: self.active[c.index], multiplier: c.multiplier, offset: c.offset })
+    }
+
+    /// The joint's value as a function of `q`, through mimics of mimics; `None` where the joint is fixed or not of this chain.
+    pub fn coupling(&self, joint: JointId) -> Option<JointCoupling> {
+        self.couplings.get(joint.0).copied().flatten()
     }
 
     /// Value (rad or m) of any joint at `q`: its own entry, what it mimics, or 0 where fixed.
     /// NaN where `q` is too short.
     pub fn joint_value(&self, joint: JointId, q: &[f64]) -> f64 {
-        match self.drives.get(joint.0) {
-            Some(Some(d)) => q.get(d.index).map_or(f64::NAN, |v| d.multiplier * v + d.offset),
-            _ => 0.0,
-        }
+        self.coupling(joint).map_or(0.0, |c| c.value(q))
     }
 
     /// The pose of a joint's child in its parent at the joint value `value` (rad or m).
@@ -161,11 +176,7 @@ impl Chain {
             JointKind::Fixed => j.origin,
             JointKind::Prismatic => j.origin * Pose::from_translation(j.axis * value),
             JointKind::Revolute | JointKind::Continuous => {
-                j.origin
-                    * Pose::new(
-                        elbowroom_spatial::Rotation::from_axis_angle(j.axis, value),
-                        elbowroom_spatial::Vec3::ZERO,
-                    )
+                j.origin * Pose::new(Rotation::from_axis_angle(j.axis, value), Vec3::ZERO)
             }
         }
     }

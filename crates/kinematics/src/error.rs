@@ -1,10 +1,12 @@
-//! What may be wrong with a chain.
+//! Errors of a chain.
 
-/// Why links and joints do not make a chain. Every message names the culprit and says what to write instead.
+use std::fmt;
+
+/// Why links and joints do not make a chain. Every message names the link or joint and says what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChainError {
-    /// Nothing to stand on.
+    /// There is no link.
     #[error("the chain has no links; name at least its root link")]
     NoLinks,
     /// Two links of one name.
@@ -25,14 +27,14 @@ pub enum ChainError {
     UnknownLink {
         /// The joint.
         joint: String,
-        /// The index it asks for.
+        /// The given index.
         link: usize,
-        /// `parent` or `child`.
-        end: &'static str,
-        /// How many links there are.
+        /// Which end of the joint.
+        end: JointEnd,
+        /// Number of links.
         count: usize,
     },
-    /// A link hangs on two joints.
+    /// A link is the child of two joints.
     #[error(
         "link `{link}` is the child of both `{first}` and `{second}`; a link has one parent, so turn one of the joints around or split the link"
     )]
@@ -52,15 +54,15 @@ pub enum ChainError {
         /// The links without parent.
         roots: Vec<String>,
     },
-    /// Joints lead in a circle.
+    /// Joints form a cycle.
     #[error(
-        "joints lead in a circle through link `{link}`; a chain is a tree, so remove a joint of the circle (a closed linkage is described by a mimic joint)"
+        "joints form a cycle through link `{link}`; a chain is a tree, so remove a joint of the cycle (a closed linkage is described by a mimic joint)"
     )]
     Cycle {
-        /// A link of the circle.
+        /// A link of the cycle.
         link: String,
     },
-    /// The axis points nowhere.
+    /// The axis has no direction.
     #[error(
         "joint `{joint}` has the axis ({x}, {y}, {z}), which is no direction; write a finite vector other than zero, e.g. 0 0 1"
     )]
@@ -80,7 +82,7 @@ pub enum ChainError {
         /// The joint.
         joint: String,
     },
-    /// Bounds out of order or NaN.
+    /// Limits out of order or NaN.
     #[error(
         "joint `{joint}` may move from {lower} to {upper}; write the smaller bound as lower (leave both out where there is none)"
     )]
@@ -92,12 +94,12 @@ pub enum ChainError {
         /// As given, rad or m.
         upper: f64,
     },
-    /// A mimic joint follows nobody.
+    /// A mimic joint follows an unknown joint.
     #[error("joint `{joint}` mimics joint {source_joint}, which does not exist; name a joint of this chain")]
     UnknownMimic {
-        /// The joint that follows.
+        /// The mimic joint.
         joint: String,
-        /// The index it asks for.
+        /// The given index.
         source_joint: usize,
     },
     /// A mimic joint follows a fixed one.
@@ -105,25 +107,45 @@ pub enum ChainError {
         "joint `{joint}` mimics `{source_joint}`, which is fixed; make `{joint}` fixed, or name a joint that moves"
     )]
     MimicOfFixed {
-        /// The joint that follows.
+        /// The mimic joint.
         joint: String,
         /// The fixed joint.
         source_joint: String,
     },
     /// Mimic joints follow each other.
-    #[error("joint `{joint}` mimics itself, directly or through others; one joint of such a circle has to be free")]
+    #[error(
+        "joint `{joint}` mimics itself, directly or through others; one joint of such a cycle has to be independent"
+    )]
     MimicCycle {
-        /// A joint of the circle.
+        /// A joint of the cycle.
         joint: String,
     },
-    /// Factor or offset is no number.
+    /// Multiplier or offset is not finite.
     #[error("joint `{joint}` mimics with multiplier {multiplier} and offset {offset}; both must be finite")]
     BadMimic {
-        /// The joint that follows.
+        /// The mimic joint.
         joint: String,
         /// As given.
         multiplier: f64,
         /// As given.
         offset: f64,
     },
+}
+
+/// One end of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointEnd {
+    /// The parent link.
+    Parent,
+    /// The child link.
+    Child,
+}
+
+impl fmt::Display for JointEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Parent => "parent",
+            Self::Child => "child",
+        })
+    }
 }

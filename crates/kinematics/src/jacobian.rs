@@ -1,4 +1,4 @@
-//! How the tip answers to each joint.
+//! The geometric Jacobian.
 
 use elbowroom_spatial::Vec3;
 
@@ -7,7 +7,7 @@ use crate::{Chain, ChainState, JointKind, LinkId};
 impl Chain {
     /// Geometric Jacobian of the point `point_in_link` (m, in the link's frame) at the poses of the last
     /// [`Chain::forward`]: `out[i]` is the velocity of the point (x, y, z, m/s) and the angular velocity of the link (x, y, z,
-    /// rad/s), both in the root's frame, per unit of `qd[i]`. Mimic joints count for the joint that they follow.
+    /// rad/s), both in the root's frame, per unit of `qd[i]`. The shares of mimic joints are added to those of the joint that they follow.
     /// Does not allocate.
     ///
     /// `out` has [`Chain::dof`] columns; a longer one is zeroed beyond, a shorter one lacks the last columns.
@@ -33,10 +33,14 @@ impl Chain {
         while let Some(id) = self.parent_joint(at) {
             let joint = &self.joints[id.0];
             at = joint.parent;
-            let Some(drive) = self.drives[id.0] else { continue };
-            let Some(column) = out.get_mut(drive.index) else { continue };
+            let Some(coupling) = self.couplings[id.0] else {
+                continue;
+            };
+            let Some(column) = out.get_mut(coupling.index) else {
+                continue;
+            };
             let child_in_root = &state.poses[joint.child.0];
-            let axis = (child_in_root.rotation * joint.axis) * drive.multiplier;
+            let axis = (child_in_root.rotation * joint.axis) * coupling.multiplier;
             let (linear, angular) = if joint.kind == JointKind::Prismatic {
                 (axis, Vec3::ZERO)
             } else {

@@ -1,4 +1,4 @@
-//! What a chain is made of.
+//! Joints: indices, kinds, limits, mimics.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -10,39 +10,39 @@ pub struct LinkId(pub usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JointId(pub usize);
 
-/// How a joint moves its child.
+/// The kind of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JointKind {
-    /// Not at all.
+    /// Does not move.
     Fixed,
-    /// Turns about its axis between limits (rad).
+    /// Rotates about its axis between limits (rad).
     Revolute,
-    /// Turns about its axis without limits (rad).
+    /// Rotates about its axis without limits (rad).
     Continuous,
-    /// Slides along its axis between limits (m).
+    /// Translates along its axis between limits (m).
     Prismatic,
 }
 
 impl JointKind {
-    /// True for the kinds that turn: revolute and continuous.
+    /// True for the kinds that rotate: revolute and continuous.
     pub fn turns(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous)
     }
 
-    /// True for the kinds that move at all.
+    /// True for all kinds but fixed.
     pub fn moves(self) -> bool {
         self != Self::Fixed
     }
 }
 
-/// What a joint may do, in rad or m (and per second, per second squared); effort in N·m or N.
+/// Limits of a joint, in rad or m (and per second, per second squared); effort in N·m or N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Smallest value; −∞ where there is none.
+    /// Smallest value; −∞ without a limit.
     pub lower: f64,
-    /// Largest value; +∞ where there is none.
+    /// Largest value; +∞ without a limit.
     pub upper: f64,
-    /// Largest speed, rad/s or m/s; `None` where unknown (a 0 in a file means unknown, too).
+    /// Largest speed, rad/s or m/s; `None` where unknown (0 in a file means unknown, too).
     pub velocity: Option<f64>,
     /// Largest acceleration, rad/s² or m/s²; `None` where unknown.
     pub acceleration: Option<f64>,
@@ -55,17 +55,17 @@ impl Limits {
     pub const UNLIMITED: Self =
         Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: None, acceleration: None, effort: None };
 
-    /// From `lower` to `upper` (rad or m), nothing else known.
+    /// From `lower` to `upper` (rad or m), other limits unknown.
     pub const fn range(lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..Self::UNLIMITED }
     }
 
-    /// From `-bound` to `bound` (rad or m), nothing else known.
+    /// From `-bound` to `bound` (rad or m), other limits unknown.
     pub const fn symmetric(bound: f64) -> Self {
         Self::range(-bound, bound)
     }
 
-    /// True where `value` (rad or m) lies between the bounds, or beyond by at most `tolerance`. NaN does not.
+    /// True where `value` (rad or m) is within the limits, or beyond them by at most `tolerance`. False for NaN.
     pub fn contains(&self, value: f64, tolerance: f64) -> bool {
         value >= self.lower - tolerance && value <= self.upper + tolerance
     }
@@ -82,23 +82,49 @@ pub struct Mimic {
     pub offset: f64,
 }
 
-/// A joint between two links. The child's frame is the joint's frame, turned or moved along `axis` by the joint's value.
+/// A joint's value as a function of the independent joint values: `multiplier · q[index] + offset`. The identity of one entry
+/// of `q` for every joint that is neither fixed nor mimic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointCoupling {
+    /// Index in `q`.
+    pub index: usize,
+    /// Factor on that value.
+    pub multiplier: f64,
+    /// Added afterwards, rad or m.
+    pub offset: f64,
+}
+
+impl JointCoupling {
+    /// The joint's value, rad or m. NaN where `q` is too short, so that a mistake cannot pass for a pose.
+    #[inline]
+    pub fn value(&self, q: &[f64]) -> f64 {
+        q.get(self.index).map_or(f64::NAN, |v| self.multiplier * v + self.offset)
+    }
+
+    /// The joint's rate (rad/s or m/s, or their derivatives) from those of `q`. NaN where `qd` is too short.
+    #[inline]
+    pub fn rate(&self, qd: &[f64]) -> f64 {
+        qd.get(self.index).map_or(f64::NAN, |v| self.multiplier * v)
+    }
+}
+
+/// A joint between two links. The child's frame is the joint's frame, rotated about or translated along `axis` by the joint's value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Unique among the chain's joints.
     pub name: String,
-    /// How it moves.
+    /// Its kind.
     pub kind: JointKind,
-    /// The link it sits on.
+    /// The parent link.
     pub parent: LinkId,
-    /// The link it carries.
+    /// The child link.
     pub child: LinkId,
     /// The child's frame in the parent's, at value 0.
     pub origin: Pose,
     /// Unit axis in the joint's frame. [`Chain::new`](crate::Chain::new) normalizes it; ignored where fixed.
     pub axis: Vec3,
-    /// What it may do. [`Chain::new`](crate::Chain::new) takes the bounds away from continuous joints.
+    /// Its limits. [`Chain::new`](crate::Chain::new) removes the position limits of continuous joints.
     pub limits: Limits,
-    /// Whom it follows; ignored where fixed.
+    /// The joint that it follows; ignored where fixed.
     pub mimic: Option<Mimic>,
 }

@@ -1,14 +1,17 @@
-//! Chains of joints: where every link is, how it moves, and which joint values bring a tip to a target.
+//! Kinematic chains: forward kinematics, Jacobians, inverse kinematics, Denavit-Hartenberg tables, motion bounds.
 //!
 //! A [`Chain`] is constant: a tree of links and joints, checked once. A [`ChainState`] is mutable and belongs to one
-//! thread: joint values in, poses and motions of all links out. Nothing allocates after both have been built.
+//! thread: joint values in, poses and velocities of all links out. Nothing allocates after both have been built.
 //!
-//! | question | where |
+//! | task | where |
 //! | --- | --- |
-//! | which joint values bring a tip to a pose | [`inverse`] |
-//! | how any point of a surface moves, and which joint values bring it somewhere | [`point`] |
-//! | what is the Denavit-Hartenberg table of a chain, and the chain of a table | [`dh`] |
-//! | the same as frames with a centre and a rotation about a vector | [`frames`] |
+//! | poses, velocities, accelerations of links | [`Chain::forward`], [`Chain::forward_motion`] |
+//! | Jacobian of a point of a link | [`Chain::jacobian`] |
+//! | joint values that bring a tip to a pose | [`inverse`] |
+//! | forward and inverse kinematics of any point of a surface | [`surface_ik`] |
+//! | Denavit-Hartenberg table of a chain, and chain of a table | [`dh`] |
+//! | upper bounds on the motion of a link's points | [`motion_bound`] |
+//! | a chain as frames with a centre and a rotation about a vector | [`frames`] |
 //!
 //! ```
 //! use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
@@ -40,14 +43,16 @@ mod chain;
 pub mod dh;
 mod error;
 mod forward;
+mod forward_step;
 pub mod frames;
 pub mod inverse;
 mod jacobian;
 mod joint;
-pub mod point;
+pub mod motion_bound;
 mod state;
+pub mod surface_ik;
 
 pub use chain::Chain;
-pub use error::ChainError;
-pub use joint::{Joint, JointId, JointKind, Limits, LinkId, Mimic};
+pub use error::{ChainError, JointEnd};
+pub use joint::{Joint, JointCoupling, JointId, JointKind, Limits, LinkId, Mimic};
 pub use state::ChainState;

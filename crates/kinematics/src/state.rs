@@ -1,10 +1,10 @@
-//! The mutable part: joint values in, poses and motions out.
+//! The mutable part of a chain: joint values in, poses and velocities out.
 
-use elbowroom_spatial::{Motion, Pose};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::{Chain, LinkId};
 
-/// Joint values of a chain and what follows from them. All memory is taken by [`ChainState::new`].
+/// Joint values of a chain and the poses, velocities and accelerations of its links. [`ChainState::new`] allocates all memory.
 #[derive(Debug, Clone)]
 pub struct ChainState {
     /// Values of the independent joints, rad or m, in the order of [`Chain::active_joints`].
@@ -14,18 +14,18 @@ pub struct ChainState {
     /// Their accelerations, rad/s² or m/s².
     pub qdd: Vec<f64>,
     pub(crate) poses: Vec<Pose>,
-    pub(crate) motions: Vec<Motion>,
+    pub(crate) motions: Vec<FrameMotion>,
 }
 
 impl ChainState {
-    /// All joints at zero and at rest, poses computed. (Zero may lie outside a joint's limits: nothing is clamped.)
+    /// All joints at zero and at rest, poses computed. Zero may lie outside a joint's limits: nothing is clamped.
     pub fn new(chain: &Chain) -> Self {
         let mut state = Self {
             q: vec![0.0; chain.dof()],
             qd: vec![0.0; chain.dof()],
             qdd: vec![0.0; chain.dof()],
             poses: vec![Pose::IDENTITY; chain.links().len()],
-            motions: vec![Motion::REST; chain.links().len()],
+            motions: vec![FrameMotion::REST; chain.links().len()],
         };
         chain.forward(&mut state);
         state
@@ -40,13 +40,23 @@ impl ChainState {
         self.poses[link.0]
     }
 
-    /// How the link moves, seen from and expressed in the root link's frame, at the link frame's origin, as of the last
+    /// Velocity and acceleration of the link's frame, seen from and expressed in the root link's frame, as of the last
     /// [`Chain::forward_motion`].
     ///
     /// # Panics
     /// Where the link is not of the chain that the state was made for.
     #[inline]
-    pub fn link_motion(&self, link: LinkId) -> Motion {
+    pub fn link_motion(&self, link: LinkId) -> FrameMotion {
         self.motions[link.0]
+    }
+
+    /// Velocity (m/s, in the root's frame) of the point of a link that is at `point_in_root` (m) now, as of the last
+    /// [`Chain::forward_motion`].
+    ///
+    /// # Panics
+    /// Where the link is not of the chain that the state was made for.
+    #[inline]
+    pub fn point_velocity(&self, link: LinkId, point_in_root: Vec3) -> Vec3 {
+        self.motions[link.0].velocity_at(point_in_root - self.poses[link.0].translation)
     }
 }

@@ -1,13 +1,13 @@
-//! Nothing on the way of a control tick takes memory. Without the test harness: its threads
-//! take memory, too, and the counter counts the whole process.
+//! Nothing that a control tick calls allocates. Without the test harness, because its threads allocate, too, and the counter
+//! counts the whole process.
 mod common;
 
 use std::alloc::System;
 
 use common::Random;
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::inverse::{Method, Options, Solver};
-use elbowroom_kinematics::point::{Options as PointOptions, PointChain, SurfacePoint};
+use elbowroom_kinematics::inverse::{IkMethod, IkOptions, IkSolver};
+use elbowroom_kinematics::surface_ik::{OrientedPoint, PointChain, SurfaceIkOptions};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits};
 use elbowroom_spatial::{Pose, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -38,15 +38,16 @@ fn arm(wrist_offset: f64) -> Chain {
 }
 
 fn main() {
-    for (wrist_offset, method) in [(0.0, Method::SphericalWrist), (0.1, Method::Numeric)] {
+    for (wrist_offset, method) in [(0.0, IkMethod::SphericalWrist), (0.1, IkMethod::Numeric)] {
         let chain = arm(wrist_offset);
         let mut state = ChainState::new(&chain);
-        let mut solver = Solver::new(&chain, chain.tip(), Pose::from_translation(Vec3::Z * 0.2), Options::default());
+        let mut solver =
+            IkSolver::new(&chain, chain.tip(), Pose::from_translation(Vec3::Z * 0.2), IkOptions::default());
         assert_eq!(solver.method(), method);
         let (tip, mut columns, mut q) = (chain.tip(), [[0.0; 6]; 6], vec![0.0; 6]);
         let mut random = Random(5);
         let mut refined = 0;
-        let mut point = PointChain::new(&chain, tip, Vec3::X, Some(Vec3::X), PointOptions::default()).unwrap();
+        let mut point = PointChain::new(&chain, tip, Vec3::X, Some(Vec3::X), SurfaceIkOptions::default()).unwrap();
         let (mut three, mut five, mut reached) = ([[0.0; 3]; 6], [[0.0; 5]; 6], 0);
         let region = Region::new(ALLOCATOR);
         for round in 0..1000 {
@@ -61,7 +62,7 @@ fn main() {
             random.state(&chain, &mut q);
             reached += usize::from(point.solve(&there, &mut q).is_ok());
             // Out of reach: all starts are used up.
-            let far = SurfacePoint { point_in_root: there.point_in_root + Vec3::Z * 9.0, ..there };
+            let far = OrientedPoint { point_in_root: there.point_in_root + Vec3::Z * 9.0, ..there };
             assert!(point.solve(&far, &mut q).is_err());
             let _ = point.refine(&there, &mut q, 5);
             random.state(&chain, &mut state.q);
@@ -79,7 +80,7 @@ fn main() {
         let used = region.change();
         assert_eq!((used.allocations, used.reallocations, used.deallocations), (0, 0, 0));
         assert!(refined > 990 && reached > 990, "{refined} {reached}");
-        // The guard itself works.
+        // The counter itself works.
         let region = Region::new(ALLOCATOR);
         assert_eq!(std::hint::black_box(vec![1_u8; 100]).len(), 100);
         assert!(region.change().allocations > 0);

@@ -1,4 +1,4 @@
-//! Denavit-Hartenberg tables: their product is the chain, whatever the axes; classical where classical suffices.
+//! Denavit-Hartenberg tables: their product is the chain for any axes; classical where classical suffices.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -7,12 +7,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::awkward::{awkward_chain, awkward_offset, awkward_rotation};
 use common::{Random, robots};
-use elbowroom_kinematics::dh::{ClassicalRow, Row, Table};
+use elbowroom_kinematics::dh::{ClassicalRow, GeneralizedRow, GeneralizedTable};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::Pose;
 
 /// S4.3, written out as 4×4 matrices: the oracle.
-fn product(rows: &[Row], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
+fn product(rows: &[GeneralizedRow], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
     type M = [[f64; 4]; 4];
     let times =
         |a: M, b: M| -> M { std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum())) };
@@ -41,7 +41,7 @@ fn product(rows: &[Row], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
     })
 }
 
-fn worst(chain: &Chain, table: &Table, tip: LinkId, random: &mut Random, states: usize) -> f64 {
+fn worst(chain: &Chain, table: &GeneralizedTable, tip: LinkId, random: &mut Random, states: usize) -> f64 {
     let mut state = ChainState::new(chain);
     let mut worst: f64 = 0.0;
     for _ in 0..states {
@@ -66,14 +66,14 @@ fn awkward_chains() {
     let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
     for _ in 0..if long { 100_000 } else { 20_000 } {
         let chain = awkward_chain(&mut random);
-        let table = Table::extract(&chain, chain.tip());
+        let table = GeneralizedTable::extract(&chain, chain.tip());
         let residual = worst(&chain, &table, chain.tip(), &mut random, 3);
         assert!(residual < 1e-9, "{residual} {table:#?} {:#?}", chain.joints());
         assert!(table.residual < 1e-9, "{}", table.residual);
         largest = largest.max(residual);
         with_b += table.rows.iter().filter(|r| r.b != 0.0).count();
         auxiliary += table.rows.iter().filter(|r| r.joint.is_none()).count();
-        // One row per moving joint, in order, bearing its name.
+        // One row per moving joint, in order, with its name.
         let names: Vec<_> = table.rows.iter().filter_map(|r| r.joint.clone()).collect();
         let moving = chain.path(chain.tip()).into_iter().map(|j| &chain.joints()[j.0]);
         let expected: Vec<_> = moving.filter(|j| j.kind != JointKind::Fixed).map(|j| j.name.clone()).collect();
@@ -86,7 +86,7 @@ fn awkward_chains() {
     println!("largest residual {largest:.1e}, {with_b} rows with b, {auxiliary} rows without joint");
 }
 
-/// With every axis well apart from parallel, b is needed in no row but the one that ends at the tip.
+/// Where no axes are nearly parallel, b is needed only in the row that ends at the tip.
 #[test]
 fn classical_where_classical_suffices() {
     let mut random = Random(1);
@@ -105,7 +105,7 @@ fn classical_where_classical_suffices() {
             })
             .collect();
         let chain = Chain::from_dh("classical", &rows).unwrap();
-        let table = Table::extract(&chain, chain.tip());
+        let table = GeneralizedTable::extract(&chain, chain.tip());
         assert!(table.rows.iter().all(|r| r.b.abs() < 1e-9), "{rows:#?} {table:#?}");
         assert!(table.residual < 1e-12, "{}", table.residual);
         assert_eq!(table.rows.len(), n, "a row per joint and none beside: {rows:#?} {table:#?}");
@@ -130,17 +130,17 @@ fn a_chain_from_classical_rows_is_their_product() {
         let chain = Chain::from_dh("six", &rows).unwrap();
         assert_eq!(chain.dof(), 6);
         assert_eq!(chain.links()[chain.tip().0], "link_6");
-        let given = Table { rows: rows.iter().map(Row::from).collect(), residual: 0.0 };
+        let given = GeneralizedTable { rows: rows.iter().map(GeneralizedRow::from).collect(), residual: 0.0 };
         assert!(worst(&chain, &given, chain.tip(), &mut random, 3) < 1e-13);
         // And the frame of every row is a link.
-        let middle = Table { rows: given.rows[..3].to_vec(), residual: 0.0 };
+        let middle = GeneralizedTable { rows: given.rows[..3].to_vec(), residual: 0.0 };
         assert!(worst(&chain, &middle, chain.link("link_3").unwrap(), &mut random, 3) < 1e-13);
     }
 }
 
-/// α = ±π/2 and θ offsets as in robots.md: the KR125 of S2 comes back with its own lengths.
+/// α = ±π/2 and θ offsets as in robots.md: the KR125 of S2 is recovered with its own lengths.
 #[test]
-fn the_table_of_a_known_robot_is_found_again() {
+fn the_table_of_a_known_robot_is_recovered() {
     let table = [
         (0.410, -FRAC_PI_2, 0.865, 0.0),
         (1.000, 0.0, 0.0, 0.0),
@@ -160,7 +160,7 @@ fn the_table_of_a_known_robot_is_found_again() {
     };
     let rows: Vec<_> = table.into_iter().enumerate().map(row).collect();
     let chain = Chain::from_dh("kr125", &rows).unwrap();
-    let found = Table::extract(&chain, chain.tip());
+    let found = GeneralizedTable::extract(&chain, chain.tip());
     assert!(found.residual < 1e-14);
     assert_eq!(found.rows.len(), 6);
     for (found, given) in found.rows.iter().zip(&rows) {
@@ -170,11 +170,11 @@ fn the_table_of_a_known_robot_is_found_again() {
 }
 
 #[test]
-fn tables_become_chains_again() {
+fn tables_round_trip_to_chains() {
     let mut random = Random(77);
     for _ in 0..500 {
         let chain = awkward_chain(&mut random);
-        let table = Table::extract(&chain, chain.tip());
+        let table = GeneralizedTable::extract(&chain, chain.tip());
         let again = table.to_chain("again").unwrap();
         let (mut a, mut b) = (ChainState::new(&chain), ChainState::new(&again));
         for v in &mut a.q {
@@ -197,7 +197,7 @@ fn a_point_on_a_surface_can_be_the_end_of_the_table() {
     for _ in 0..500 {
         let chain = awkward_chain(&mut random);
         let tool_in_tip = Pose::new(awkward_rotation(&mut random), awkward_offset(&mut random));
-        let table = Table::extract_to(&chain, chain.tip(), tool_in_tip);
+        let table = GeneralizedTable::extract_to(&chain, chain.tip(), tool_in_tip);
         assert!(table.residual < 1e-9);
         let mut state = ChainState::new(&chain);
         for v in &mut state.q {
@@ -217,7 +217,7 @@ fn every_real_robot_has_a_table() {
         let chain = common::load(&path);
         let mut random = Random(5);
         for tip in chain.leaves() {
-            let table = Table::extract(&chain, tip);
+            let table = GeneralizedTable::extract(&chain, tip);
             let residual = worst(&chain, &table, tip, &mut random, 200);
             assert!(residual < 1e-9 && table.residual < 1e-9, "{name} {residual}");
             if tip == chain.tip() {

@@ -1,5 +1,5 @@
-//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of the paper: each product is
-//! forward kinematics, whatever the axes, and each goes there and back.
+//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of S4: each product is
+//! forward kinematics for any axes, and each round-trips.
 //!
 //! 10⁵ chains with `ELBOWROOM_LONG=1`.
 #![allow(clippy::print_stdout)]
@@ -10,8 +10,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::awkward::{awkward_chain, awkward_offset, awkward_rotation};
 use common::{Random, robots};
-use elbowroom_kinematics::dh::{ClassicalRow, DirectTable, ModifiedRow, ModifiedTable, Row, Table};
-use elbowroom_kinematics::frames::{Axis, Frame, Frames, Motion};
+use elbowroom_kinematics::dh::{
+    ClassicalRow, DirectTable, GeneralizedRow, GeneralizedTable, ModifiedRow, ModifiedTable,
+};
+use elbowroom_kinematics::frames::{FrameAxis, FrameChain, JointMotion, LocalFrame};
 use elbowroom_kinematics::{Chain, ChainError, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -51,7 +53,7 @@ fn about_vector(u: Vec3, t: f64) -> Matrix {
     m
 }
 
-/// What is added to an angle and to a length by a joint value.
+/// What a joint value adds to an angle and to a length.
 fn shares(kind: JointKind, q: f64) -> (f64, f64) {
     match kind {
         JointKind::Fixed => (0.0, 0.0),
@@ -61,7 +63,7 @@ fn shares(kind: JointKind, q: f64) -> (f64, f64) {
 }
 
 /// S4.3, as 4×4 matrices.
-fn generalized(rows: &[Row], value: &dyn Fn(&str) -> f64) -> Matrix {
+fn generalized(rows: &[GeneralizedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
     rows.iter().fold(UNIT, |at, r| {
         let (turn, slide) = shares(r.kind, r.joint.as_deref().map_or(0.0, value));
         [about(2, r.theta + turn), along(2, r.d + slide), along(0, r.a), along(1, r.b), about(0, r.alpha)]
@@ -79,12 +81,14 @@ fn modified(rows: &[ModifiedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
 }
 
 /// Equations 1 to 4 of S4, as 4×4 matrices.
-fn paper(frames: &[Frame], value: &dyn Fn(&str) -> f64) -> Matrix {
+fn paper(frames: &[LocalFrame], value: &dyn Fn(&str) -> f64) -> Matrix {
     frames.iter().fold(UNIT, |at, frame| {
         let center = (0..3).map(|i| along(i, frame.centre[i])).fold(UNIT, times);
         let rotation = about_vector(frame.axis / frame.axis.length(), frame.angle);
         let fixed = times(times(at, center), rotation);
-        let Some(motion) = &frame.motion else { return fixed };
+        let Some(motion) = &frame.motion else {
+            return fixed;
+        };
         let q = value(&motion.joint);
         let d = motion.displacement(q);
         assert!([d.alpha, d.beta, d.gamma, d.c.x, d.c.y, d.c.z].iter().filter(|v| **v != 0.0).count() <= 1);
@@ -102,22 +106,22 @@ fn short(worst: [f64; 4]) -> String {
     worst.map(|w| format!("{w:.1e}")).join(" ")
 }
 
-/// All forms of the way to one tip.
+/// All forms of the transform to one tip.
 struct Forms {
-    generalized: Table,
+    generalized: GeneralizedTable,
     direct: DirectTable,
     modified: ModifiedTable,
-    frames: Frames,
+    frames: FrameChain,
     tool_in_tip: Pose,
 }
 
 impl Forms {
     fn of(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         Self {
-            generalized: Table::extract_to(chain, tip, tool_in_tip),
+            generalized: GeneralizedTable::extract_to(chain, tip, tool_in_tip),
             direct: DirectTable::extract_to(chain, tip, tool_in_tip),
             modified: ModifiedTable::extract_to(chain, tip, tool_in_tip),
-            frames: Frames::extract(chain, tip),
+            frames: FrameChain::extract(chain, tip),
             tool_in_tip,
         }
     }
@@ -138,7 +142,7 @@ impl Forms {
                 difference(&modified(&self.modified.rows, &value), expected),
                 difference(&paper(&self.frames.frames, &value), tip_in_root),
             ];
-            // And the products that the crate makes itself.
+            // And the products computed by the crate.
             let theirs = [self.direct.table.tip_in_root(value), self.modified.tip_in_root(value)];
             assert!(theirs.iter().all(|t| t.translation.distance(expected.translation) < 1e-9));
             assert!(self.frames.tip_in_root(value).translation.distance(tip_in_root.translation) < 1e-12);
@@ -203,7 +207,7 @@ fn awkward_chains_in_all_forms() {
     println!("direct: {auxiliary} auxiliary frames, {with_b} rows with b");
 }
 
-/// Rows of every convention to a chain, and the chain to rows of every convention: the same product all the way.
+/// Rows of every convention to a chain, and the chain to rows of every convention: the same product every time.
 #[test]
 fn tables_to_chains_to_tables() {
     let mut random = Random(5);
@@ -217,19 +221,19 @@ fn tables_to_chains_to_tables() {
             let joint = (kind != JointKind::Fixed).then(|| format!("j{i}"));
             let [alpha, theta] = [0, 1].map(|_| angle(random));
             let [a, b, d] = [0, 1, 2].map(|_| length(random));
-            Row { joint, kind, alpha, a, b, theta, d }
+            GeneralizedRow { joint, kind, alpha, a, b, theta, d }
         };
-        let rows: Vec<Row> = (0..n).map(|i| row(i, &mut random)).collect();
+        let rows: Vec<GeneralizedRow> = (0..n).map(|i| row(i, &mut random)).collect();
         let q: Vec<f64> = (0..n).map(|_| random.range(-PI, PI)).collect();
         let value = |name: &str| q[name[1..].parse::<usize>().unwrap()];
 
-        let given = Table { rows: rows.clone(), residual: 0.0 };
+        let given = GeneralizedTable { rows: rows.clone(), residual: 0.0 };
         let product = generalized(&rows, &value);
         check_round(&given.to_chain("given").unwrap(), &product, &value);
-        // Other brackets around the same factors.
+        // The same factors, regrouped.
         let craig = ModifiedTable::from(&given);
         assert!(same(&product, &modified(&craig.rows, &value)) < 1e-14);
-        assert!(same(&product, &generalized(&Table::from(&craig).rows, &value)) < 1e-14);
+        assert!(same(&product, &generalized(&GeneralizedTable::from(&craig).rows, &value)) < 1e-14);
 
         let turned: Vec<ModifiedRow> = rows
             .iter()
@@ -251,11 +255,12 @@ fn same(a: &Matrix, b: &Matrix) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The chain is the product, and all that is extracted from it is, too, through a chain once more.
+/// The chain equals the product, and so does all that is extracted from it, converted to a chain once more.
 fn check_round(chain: &Chain, product: &Matrix, value: &dyn Fn(&str) -> f64) {
     assert!(difference(product, tip_at(chain, value)) < 1e-12);
-    let (generalized, modified) = (Table::extract(chain, chain.tip()), ModifiedTable::extract(chain, chain.tip()));
-    let (direct, frames) = (DirectTable::extract(chain, chain.tip()), Frames::extract(chain, chain.tip()));
+    let (generalized, modified) =
+        (GeneralizedTable::extract(chain, chain.tip()), ModifiedTable::extract(chain, chain.tip()));
+    let (direct, frames) = (DirectTable::extract(chain, chain.tip()), FrameChain::extract(chain, chain.tip()));
     for again in [
         generalized.to_chain("generalized").unwrap(),
         modified.to_chain("modified").unwrap(),
@@ -267,7 +272,7 @@ fn check_round(chain: &Chain, product: &Matrix, value: &dyn Fn(&str) -> f64) {
     }
 }
 
-/// The last link, whatever carries it.
+/// The last link.
 fn tip_at(chain: &Chain, value: &dyn Fn(&str) -> f64) -> Pose {
     let mut state = ChainState::new(chain);
     for (v, id) in state.q.iter_mut().zip(chain.active_joints()) {
@@ -327,7 +332,7 @@ fn kr150() -> Chain {
 
 /// Seven local frames, the base and six joints, are seven rows a, b, d, α, θ (S4.4); what the last joint carries follows.
 #[test]
-fn the_kr150_has_the_shape_of_the_papers_table() {
+fn the_kr150_has_the_shape_of_table_1_of_s4() {
     let mut models = vec![("dimensions", kr150())];
     models.extend(common::robot("kuka_kr150_2").map(|chain| ("kuka_kr150_2", chain)));
     let mut shown = Vec::new();
@@ -337,15 +342,15 @@ fn the_kr150_has_the_shape_of_the_papers_table() {
         shown.push(direct.to_string());
         let expected = ["base_link", "joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6"];
         assert_eq!(direct.frames[..7], expected);
-        // The link's own frame is turned against its axis by what one row cannot say.
+        // One row cannot describe the rotation between the link's own frame and its axis.
         assert_eq!(direct.frames[7..], ["link_6*", "link_6"]);
         assert!(direct.table.residual < 1e-12);
         let seven = &direct.table.rows[..7];
-        // The first row is the base, all zeros, as in the paper; the second is the height of axis 1.
+        // The first row is the base, all zeros, as in S4; the second is the height of axis 1.
         let r = &seven[0];
         assert_eq!((r.a, r.b, r.d, r.alpha, r.theta), (0.0, 0.0, 0.0, 0.0, 0.0));
         assert!((seven[1].d - 0.75).abs() < 1e-12 && seven[1].a == 0.0 && seven[1].b == 0.0);
-        // Lengths are the robot's, whichever of a, b, d they are found in.
+        // The lengths are the robot's, in whichever of a, b, d they are.
         for (row, length) in seven[1..].iter().zip([0.75, 0.35, 1.25, 0.055, 1.1, 0.23]) {
             assert!((Vec3::new(row.a, row.b, row.d).length() - length).abs() < 1e-12, "{row:?} {length}");
             let quarters = row.alpha / FRAC_PI_2;
@@ -354,15 +359,15 @@ fn the_kr150_has_the_shape_of_the_papers_table() {
         let joints: Vec<_> = seven.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints, ["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5"]);
         assert_eq!(direct.table.rows[7].joint.as_deref(), Some("joint_a6"));
-        // Seven frames of the paper's equations, too.
-        assert_eq!(Frames::extract(&chain, chain.link("link_6").unwrap()).frames.len(), 7);
+        // Seven frames of the equations of S4, too.
+        assert_eq!(FrameChain::extract(&chain, chain.link("link_6").unwrap()).frames.len(), 7);
     }
     assert!(shown.iter().all(|s| *s == shown[0]), "the same robot, the same table, whatever the file's rounding");
 }
 
 /// Craig's table of the PUMA 560 (1986, figure 3.21) by its lengths: α 0, −90, 0, −90, 90, −90.
 #[test]
-fn the_modified_table_of_a_known_robot_is_found_again() {
+fn the_modified_table_of_a_known_robot_is_recovered() {
     let (a2, a3, d3, d4) = (0.4318, 0.0203, 0.1244, 0.4318);
     let table = [
         (0.0, 0.0, 0.0),
@@ -404,33 +409,34 @@ fn the_modified_table_of_a_known_robot_is_found_again() {
 }
 
 #[test]
-fn frames_of_a_model_make_a_chain_or_say_why_not() {
-    let motion = |along, reversed| Motion {
+fn frames_of_a_model_make_a_chain_or_an_error() {
+    let motion = |along, reversed| JointMotion {
         joint: "a1".into(),
         kind: JointKind::Revolute,
         along,
         reversed,
         limits: Limits::symmetric(2.0),
     };
-    let turning = Frame {
+    let turning = LocalFrame {
         axis: Vec3::new(0.0, 0.0, 2.0),
         angle: FRAC_PI_2,
-        motion: Some(motion(Axis::Y, true)),
-        ..Frame::fixed("arm", Vec3::Z)
+        motion: Some(motion(FrameAxis::Y, true)),
+        ..LocalFrame::fixed("arm", Vec3::Z)
     };
-    let arm = Frames { frames: vec![turning.clone(), Frame::fixed("hand", Vec3::X)] };
+    let arm = FrameChain { frames: vec![turning.clone(), LocalFrame::fixed("hand", Vec3::X)] };
     let chain = arm.to_chain("arm").unwrap();
     assert_eq!(chain.links(), ["global", "arm", "hand"]);
     assert_eq!(chain.upper(), [2.0]);
-    // Turned by 90° about z, then by −0.5 about the new y: the hand at x = 1 rises by sin 0.5.
+    // Rotated by 90° about z, then by −0.5 about the new y: the hand at x = 1 rises by sin 0.5.
     let hand = arm.tip_in_root(|_| 0.5).translation;
     assert!(hand.distance(Vec3::new(0.0, 0.5_f64.cos(), 1.0 + 0.5_f64.sin())) < 1e-15);
     assert!(tip_at(&chain, &|_| 0.5).translation.distance(hand) < 1e-15);
 
-    let lost = Frame { axis: Vec3::ZERO, ..turning.clone() };
+    let lost = LocalFrame { axis: Vec3::ZERO, ..turning.clone() };
     assert!(lost.transform(0.0).rotation.rows()[0][0].is_nan());
-    let made = Frames { frames: vec![lost] }.to_chain("lost");
+    let made = FrameChain { frames: vec![lost] }.to_chain("lost");
     assert!(matches!(made, Err(ChainError::BadAxis { .. })), "{made:?}");
-    let spoiled = Frames { frames: vec![Frame { centre: Vec3::splat(f64::NAN), ..turning }] }.to_chain("spoiled");
+    let spoiled =
+        FrameChain { frames: vec![LocalFrame { centre: Vec3::splat(f64::NAN), ..turning }] }.to_chain("spoiled");
     assert!(matches!(spoiled, Err(ChainError::BadOrigin { .. })), "{spoiled:?}");
 }

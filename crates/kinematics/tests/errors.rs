@@ -1,4 +1,4 @@
-//! Every way in which links and joints may fail to make a chain, and what the message says about it.
+//! All errors of links and joints that do not make a chain, with their messages.
 mod common;
 
 use elbowroom_kinematics::{Chain, ChainError, Joint, JointId, JointKind, Limits, LinkId, Mimic};
@@ -51,7 +51,7 @@ fn two_roots_are_both_named() {
 }
 
 #[test]
-fn circles_with_and_without_a_root() {
+fn cycles_with_and_without_a_root() {
     let all = vec![joint("x", 0, 1), joint("y", 1, 0)];
     assert!(matches!(build(&["a", "b"], all), Err(ChainError::Cycle { .. })));
     let beside = vec![joint("x", 1, 2), joint("y", 2, 1)];
@@ -69,7 +69,7 @@ fn two_parents_and_unknown_links() {
 }
 
 #[test]
-fn axes_origins_and_limits_must_mean_something() {
+fn axes_origins_and_limits_must_be_valid() {
     for axis in [Vec3::ZERO, Vec3::new(f64::NAN, 0.0, 1.0), Vec3::new(f64::INFINITY, 0.0, 0.0)] {
         let bad = Joint { axis, ..joint("x", 0, 1) };
         assert!(matches!(build(&["a", "b"], vec![bad]), Err(ChainError::BadAxis { .. })), "{axis:?}");
@@ -99,7 +99,7 @@ fn mimics_of_nothing_of_fixed_joints_and_of_each_other() {
     assert!(matches!(build(&links, with([mimic(0, 1.0, 0.0), None, None])), Err(ChainError::MimicCycle { .. })));
     let ring = with([mimic(1, 1.0, 0.0), mimic(2, 1.0, 0.0), mimic(0, 1.0, 0.0)]);
     assert!(matches!(build(&links, ring), Err(ChainError::MimicCycle { .. })));
-    // Leads into a circle without being part of it.
+    // Leads into a cycle without being part of it.
     let lasso = with([mimic(1, 1.0, 0.0), mimic(2, 1.0, 0.0), mimic(1, 1.0, 0.0)]);
     assert!(matches!(build(&links, lasso), Err(ChainError::MimicCycle { .. })));
     assert!(matches!(build(&links, with([None, mimic(0, f64::NAN, 0.0), None])), Err(ChainError::BadMimic { .. })));
@@ -109,7 +109,7 @@ fn mimics_of_nothing_of_fixed_joints_and_of_each_other() {
 }
 
 #[test]
-fn a_mimic_of_a_mimic_follows_the_free_joint() {
+fn a_mimic_of_a_mimic_follows_the_independent_joint() {
     let joints = vec![
         Joint { mimic: mimic(1, 2.0, 0.1), ..joint("follower", 1, 2) },
         Joint { mimic: mimic(2, -3.0, 0.2), ..joint("middle", 2, 3) },
@@ -126,8 +126,8 @@ fn a_mimic_of_a_mimic_follows_the_free_joint() {
 }
 
 #[test]
-fn the_tip_is_the_leaf_with_most_joints_that_follow_nobody() {
-    // root ─ a ─ b(mimic) ─ c(mimic)   and   root ─ d ─ e: the shorter branch has more joints of its own.
+fn the_tip_is_the_leaf_with_most_joints_that_are_no_mimics() {
+    // root ─ a ─ b(mimic) ─ c(mimic)   and   root ─ d ─ e: the shorter branch has more joints that are no mimics.
     let joints = vec![
         joint("a", 0, 1),
         Joint { mimic: mimic(0, 1.0, 0.0), ..joint("b", 1, 2) },

@@ -1,34 +1,15 @@
-//! What an inverse must do beyond succeeding: all branches, nearest first, limits, singular poses, honest failures.
+//! Requirements on inverse kinematics beyond success rates: all branches, nearest first, limits, singular poses, exact errors.
 mod common;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use common::{Random, robots};
+use common::{Random, robots, serial};
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::inverse::{IkError, Method, Options, Solver, Task};
+use elbowroom_kinematics::inverse::{IkError, IkMethod, IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-fn serial(joints: &[(JointKind, Pose, Vec3, Limits)]) -> Chain {
-    let joints: Vec<Joint> = joints
-        .iter()
-        .enumerate()
-        .map(|(i, &(kind, origin, axis, limits))| Joint {
-            name: format!("j{i}"),
-            kind,
-            parent: LinkId(i),
-            child: LinkId(i + 1),
-            origin,
-            axis,
-            limits,
-            mimic: None,
-        })
-        .collect();
-    let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
-    Chain::new("serial", links, joints).unwrap()
-}
-
-/// Ortho-parallel basis and spherical wrist with every frame turned at random: nothing of the geometry is along an axis.
+/// Ortho-parallel basis and spherical wrist with every frame rotated at random: nothing of the geometry is along an axis.
 fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
     let lateral = random.range(-0.2, 0.2) * random.below(2) as f64;
     let points = [
@@ -40,10 +21,10 @@ fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
         Vec3::new(0.0, 0.0, random.range(0.0, 0.1)),
     ];
     let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::Z, Vec3::Y, Vec3::Z];
-    // What the file shows: model frame k = file frame k · hidden(k)
+    // In the file: model frame k = file frame k · hidden(k)
     let hidden: Vec<Rotation> = (0..7).map(|_| random.pose().rotation).collect();
     let mut joints = Vec::new();
-    let mut before = random.pose().rotation; // the base itself is turned
+    let mut before = random.pose().rotation; // the base itself is rotated
     for k in 0..6 {
         let bend = Rotation::from_axis_angle(axes[k], random.range(-2.0, 2.0)); // zero positions anywhere
         let origin = Pose::new(before * bend * hidden[k].inverse(), before * points[k]);
@@ -70,8 +51,8 @@ fn tip_at(chain: &Chain, q: &[f64]) -> Pose {
     state.link_in_root(chain.tip())
 }
 
-fn solver(chain: &Chain) -> Solver {
-    Solver::new(chain, chain.tip(), Pose::IDENTITY, Options::default())
+fn solver(chain: &Chain) -> IkSolver {
+    IkSolver::new(chain, chain.tip(), Pose::IDENTITY, IkOptions::default())
 }
 
 fn same_modulo_turns(a: &[f64], b: &[f64], tolerance: f64) -> bool {
@@ -86,12 +67,12 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn spherical_wrists_are_seen_through_any_disguise() {
+fn spherical_wrists_are_detected_in_any_frames() {
     let mut random = Random(2);
     for _ in 0..300 {
         let chain = disguised_wrist_arm(&mut random, PI);
         let mut solver = solver(&chain);
-        assert_eq!(solver.method(), Method::SphericalWrist);
+        assert_eq!(solver.method(), IkMethod::SphericalWrist);
         for _ in 0..5 {
             let (mut q, mut seed) = (vec![0.0; 6], vec![0.0; 6]);
             random.state(&chain, &mut q);
@@ -116,7 +97,7 @@ fn real_spherical_wrists_give_all_branches() {
     for (name, path) in robots() {
         let chain = common::load(&path);
         let mut solver = solver(&chain);
-        if solver.method() != Method::SphericalWrist {
+        if solver.method() != IkMethod::SphericalWrist {
             continue;
         }
         let mut random = Random(8);
@@ -132,9 +113,11 @@ fn real_spherical_wrists_give_all_branches() {
 }
 
 #[test]
-fn singular_poses_are_answered() {
+fn singular_poses_have_solutions() {
     for name in ["comau_ns16arc", "kuka_kr150_2", "abb_irb2400", "staubli_tx60", "fanuc_m10ia", "ur5e", "panda"] {
-        let Some(chain) = common::robot(name) else { return };
+        let Some(chain) = common::robot(name) else {
+            return;
+        };
         let mut solver = solver(&chain);
         let (lower, upper) = (chain.lower(), chain.upper());
         let n = chain.dof();
@@ -165,7 +148,7 @@ fn singular_poses_are_answered() {
 }
 
 #[test]
-fn a_seed_on_the_answer_is_the_answer() {
+fn a_seed_on_the_solution_is_the_solution() {
     for (name, path) in robots() {
         let chain = common::load(&path);
         let mut solver = solver(&chain);
@@ -209,7 +192,7 @@ fn full_turns_follow_the_seed_within_the_limits() {
         })
         .collect();
     let chain = serial(&endless);
-    let mut solver = Solver::new(&chain, chain.tip(), Pose::IDENTITY, Options::default());
+    let mut solver = IkSolver::new(&chain, chain.tip(), Pose::IDENTITY, IkOptions::default());
     let q = [0.3, -0.4, 0.5, 0.6, 0.7, 0.8];
     let seed: Vec<f64> = q.iter().map(|v| v + 40.0 * TAU + 0.01).collect();
     let answer = solver.solve(&tip_at(&chain, &q), &seed).unwrap();
@@ -217,7 +200,7 @@ fn full_turns_follow_the_seed_within_the_limits() {
 }
 
 #[test]
-fn failures_say_what_is_the_matter() {
+fn errors_name_the_cause() {
     let mut random = Random(20);
     let chain = disguised_wrist_arm(&mut random, PI);
     let mut closed = solver(&chain);
@@ -228,30 +211,30 @@ fn failures_say_what_is_the_matter() {
     }
     assert!(closed.solve_all(&far, &[0.0; 6]).is_empty());
     for seed in [&[0.0; 5][..], &[0.0; 7], &[f64::NAN; 6], &[f64::INFINITY; 6]] {
-        assert!(matches!(closed.solve(&Pose::IDENTITY, seed), Err(IkError::BadInput(_))));
+        assert!(matches!(closed.solve(&Pose::IDENTITY, seed), Err(IkError::SeedLength | IkError::SeedNotFinite)));
         assert!(closed.solve_all(&Pose::IDENTITY, seed).is_empty());
     }
     let nowhere = Pose::from_translation(Vec3::splat(f64::NAN));
-    assert!(matches!(closed.solve(&nowhere, &[0.0; 6]), Err(IkError::BadInput(_))));
+    assert!(matches!(closed.solve(&nowhere, &[0.0; 6]), Err(IkError::TargetNotFinite)));
     let mut q = [0.0; 6];
     assert!(!closed.refine(&nowhere, &mut q) && !closed.refine(&far, &mut q));
 
-    // A planar arm that could, if only its elbow could bend.
+    // A planar arm that reaches the target only with an elbow beyond its limits.
     let z = Vec3::Z;
     let stiff = serial(&[
         (JointKind::Revolute, Pose::IDENTITY, z, Limits::symmetric(3.0)),
         (JointKind::Revolute, Pose::from_translation(Vec3::X), z, Limits::range(-0.1, 0.1)),
         (JointKind::Fixed, Pose::from_translation(Vec3::X), z, Limits::UNLIMITED),
     ]);
-    let options = Options { task: Task::Position, ..Options::default() };
-    let mut planar = Solver::new(&stiff, stiff.tip(), Pose::IDENTITY, options);
+    let options = IkOptions { task: IkTask::Position, ..IkOptions::default() };
+    let mut planar = IkSolver::new(&stiff, stiff.tip(), Pose::IDENTITY, options);
     match planar.solve(&Pose::from_translation(Vec3::new(1.0, 0.5, 0.0)), &[0.0; 2]) {
         Err(IkError::Limits { joint, value, upper, .. }) => {
             assert!(joint == "j1" && value.abs() > upper);
         }
         other => panic!("{other:?}"),
     }
-    // Off its plane: within reach, yet no.
+    // Off its plane: within reach, but without a solution.
     match planar.solve(&Pose::from_translation(Vec3::new(1.0, 0.5, 0.2)), &[0.0; 2]) {
         Err(IkError::NoConvergence { position_error_m, .. }) => assert!(position_error_m > 0.15),
         other => panic!("{other:?}"),
@@ -259,7 +242,7 @@ fn failures_say_what_is_the_matter() {
 }
 
 #[test]
-fn absurd_numbers_neither_hang_nor_pass() {
+fn extreme_numbers_terminate_without_success() {
     let mut random = Random(21);
     let wrist = disguised_wrist_arm(&mut random, PI);
     let as_endless = |chain: &Chain, drop_wrist: bool| {
@@ -301,7 +284,7 @@ fn absurd_numbers_neither_hang_nor_pass() {
 }
 
 #[test]
-fn fewer_than_six_axes_reach_positions_and_what_poses_they_can() {
+fn fewer_than_six_axes_reach_positions_and_possible_poses() {
     let (y, z) = (Vec3::Y, Vec3::Z);
     let limits = Limits::symmetric(3.0);
     let chain = serial(&[
@@ -313,18 +296,18 @@ fn fewer_than_six_axes_reach_positions_and_what_poses_they_can() {
     let q = [0.5, 0.7, 0.3];
     let target = tip_at(&chain, &q);
     let mut pose = solver(&chain);
-    assert_eq!(pose.method(), Method::Numeric);
+    assert_eq!(pose.method(), IkMethod::Numeric);
     let answer = pose.solve(&target, &[0.1; 3]).unwrap();
     assert!(answer.position_error_m < 1e-12 && answer.angle_error_rad < 1e-12);
     let turned = Pose::new(Rotation::from_rpy(0.0, 2.0, 0.0), target.translation);
     assert!(pose.solve(&turned, &[0.1; 3]).is_err());
-    let options = Options { task: Task::Position, ..Options::default() };
-    let answer = Solver::new(&chain, chain.tip(), Pose::IDENTITY, options).solve(&turned, &[0.1; 3]).unwrap();
+    let options = IkOptions { task: IkTask::Position, ..IkOptions::default() };
+    let answer = IkSolver::new(&chain, chain.tip(), Pose::IDENTITY, options).solve(&turned, &[0.1; 3]).unwrap();
     assert!(answer.position_error_m < 1e-9 && answer.angle_error_rad > 0.1, "{answer:?}");
 }
 
 #[test]
-fn locked_joints_stay_and_joints_beside_the_path_keep_their_seed() {
+fn locked_joints_stay_and_joints_off_the_path_keep_their_seed() {
     let limits = Limits::symmetric(3.0);
     let (y, z) = (Vec3::Y, Vec3::Z);
     let up = Pose::from_translation(z * 0.4);
@@ -336,7 +319,7 @@ fn locked_joints_stay_and_joints_beside_the_path_keep_their_seed() {
     let answer = solver.solve(&target, &[0.0; 7]).unwrap();
     assert_eq!(answer.q[2], 0.25);
 
-    // A gripper on the third link: its joint is none of the tip's business.
+    // A gripper on the third link: its joint does not move the tip.
     let mut joints = chain.joints().to_vec();
     let mut links = chain.links().to_vec();
     links.push("finger".into());
@@ -345,13 +328,13 @@ fn locked_joints_stay_and_joints_beside_the_path_keep_their_seed() {
     let gripping = Chain::new("gripping", links, joints).unwrap();
     let mut seed = vec![0.0; 8];
     seed[0] = 1.234;
-    let mut solver = Solver::new(&gripping, gripping.link("l7").unwrap(), Pose::IDENTITY, Options::default());
+    let mut solver = IkSolver::new(&gripping, gripping.link("l7").unwrap(), Pose::IDENTITY, IkOptions::default());
     let again = solver.solve(&target, &seed).unwrap();
     assert_eq!((again.q[0], &again.q[1..]), (1.234, &answer.q[..]));
 }
 
 #[test]
-fn mimic_joints_on_the_way_are_followed() {
+fn mimic_joints_on_the_path_are_followed() {
     let limits = Limits::symmetric(2.5);
     let (y, z) = (Vec3::Y, Vec3::Z);
     let up = Pose::from_translation(z * 0.4);
@@ -361,7 +344,7 @@ fn mimic_joints_on_the_way_are_followed() {
     let chain = Chain::new("mimic", (0..8).map(|i| format!("l{i}")).collect(), joints).unwrap();
     assert_eq!(chain.dof(), 6);
     let mut solver = solver(&chain);
-    assert_eq!(solver.method(), Method::Numeric);
+    assert_eq!(solver.method(), IkMethod::Numeric);
     let mut random = Random(30);
     let (mut q, mut seed, mut found) = (vec![0.0; 6], vec![0.0; 6], 0);
     for _ in 0..200 {
@@ -378,7 +361,7 @@ fn mimic_joints_on_the_way_are_followed() {
 }
 
 #[test]
-fn the_same_question_gets_the_same_answer() {
+fn the_same_input_gets_the_same_solution() {
     let rows: Vec<ClassicalRow> = (0..7)
         .map(|i| ClassicalRow {
             joint: format!("j{i}"),

@@ -1,12 +1,12 @@
-//! Poses against a naive product of matrices, motions and Jacobians against finite differences, on random trees and
-//! on every real robot.
+//! Poses against a direct product of matrices, velocities and Jacobians against finite differences, on random trees and on
+//! every real robot.
 #![allow(clippy::print_stdout)]
 
 mod common;
 
 use common::{Random, robots};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
-use elbowroom_spatial::{Motion, Pose, Vec3};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 use proptest::prelude::*;
 
 type Matrix = [[f64; 4]; 4];
@@ -35,11 +35,13 @@ fn about(axis: Vec3, angle: f64) -> Matrix {
     m
 }
 
-/// Recursively, from the link to the root, mimics by following names: nothing in common with the product's pass.
-fn naive(chain: &Chain, q: &[f64], link: LinkId) -> Matrix {
-    let Some(joint) = chain.joints().iter().find(|j| j.child == link) else { return matrix(&Pose::IDENTITY) };
-    let before = product(&naive(chain, q, joint.parent), &matrix(&joint.origin));
-    let value = naive_value(chain, q, joint);
+/// Recursively, from the link to the root, mimics by following names: independent of the crate's pass.
+fn direct(chain: &Chain, q: &[f64], link: LinkId) -> Matrix {
+    let Some(joint) = chain.joints().iter().find(|j| j.child == link) else {
+        return matrix(&Pose::IDENTITY);
+    };
+    let before = product(&direct(chain, q, joint.parent), &matrix(&joint.origin));
+    let value = direct_value(chain, q, joint);
     match joint.kind {
         JointKind::Fixed => before,
         JointKind::Prismatic => product(&before, &matrix(&Pose::from_translation(joint.axis * value))),
@@ -47,9 +49,9 @@ fn naive(chain: &Chain, q: &[f64], link: LinkId) -> Matrix {
     }
 }
 
-fn naive_value(chain: &Chain, q: &[f64], joint: &Joint) -> f64 {
+fn direct_value(chain: &Chain, q: &[f64], joint: &Joint) -> f64 {
     match joint.mimic {
-        Some(m) => m.multiplier * naive_value(chain, q, &chain.joints()[m.joint.0]) + m.offset,
+        Some(m) => m.multiplier * direct_value(chain, q, &chain.joints()[m.joint.0]) + m.offset,
         None => chain.joint(&joint.name).and_then(|id| chain.q_index(id)).map_or(0.0, |i| q[i]),
     }
 }
@@ -84,7 +86,7 @@ fn random_tree(random: &mut Random) -> Chain {
     Chain::new("tree", (0..n).map(|i| format!("link {i}")).collect(), joints).unwrap()
 }
 
-fn shake(random: &mut Random, chain: &Chain) -> ChainState {
+fn random_state(random: &mut Random, chain: &Chain) -> ChainState {
     let mut state = ChainState::new(chain);
     for i in 0..chain.dof() {
         state.q[i] = random.range(-3.0, 3.0);
@@ -109,7 +111,7 @@ fn check_poses(chain: &Chain, state: &mut ChainState) {
     let only_poses = state.clone();
     chain.forward_motion(state);
     for link in (0..chain.links().len()).map(LinkId) {
-        let (pose, expected) = (state.link_in_root(link), naive(chain, &state.q, link));
+        let (pose, expected) = (state.link_in_root(link), direct(chain, &state.q, link));
         assert_eq!(pose, only_poses.link_in_root(link));
         for (row, wanted) in pose.to_rows().iter().flatten().zip(expected.iter().flatten()) {
             assert!((row - wanted).abs() < 1e-12, "{} {row} {wanted}", chain.links()[link.0]);
@@ -121,7 +123,7 @@ fn check_motions(chain: &Chain, state: &ChainState) {
     let h = 1e-5;
     let (before, after) = (moved(chain, state, -h), moved(chain, state, h));
     for link in (0..chain.links().len()).map(LinkId) {
-        let Motion { velocity, angular_velocity, acceleration, angular_acceleration } = state.link_motion(link);
+        let FrameMotion { velocity, angular_velocity, acceleration, angular_acceleration } = state.link_motion(link);
         let (a, b) = (before.link_in_root(link), after.link_in_root(link));
         let (va, vb) = (before.link_motion(link), after.link_motion(link));
         let size = 1.0 + velocity.length() + acceleration.length() + angular_acceleration.length() * 4.0;
@@ -173,10 +175,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn random_trees_move_as_they_should(seed: u64) {
+    fn random_trees_match_matrices_and_finite_differences(seed: u64) {
         let mut random = Random(seed);
         let chain = random_tree(&mut random);
-        let mut state = shake(&mut random, &chain);
+        let mut state = random_state(&mut random, &chain);
         check_poses(&chain, &mut state);
         check_motions(&chain, &state);
         let link = LinkId(random.below(chain.links().len()));
@@ -184,8 +186,8 @@ proptest! {
     }
 
     #[test]
-    fn moving_the_root_frame_moves_nothing_else(seed: u64) {
-        // The same tree hung on a turned base: all poses and motions turn with it.
+    fn a_moved_root_frame_moves_everything_alike(seed: u64) {
+        // The same tree on a rotated base: all poses and velocities rotate with it.
         let mut random = Random(seed);
         let chain = random_tree(&mut random);
         let base = random.pose();
@@ -203,7 +205,7 @@ proptest! {
             mimic: None,
         });
         let hung = Chain::new("hung", links, joints).unwrap();
-        let mut state = shake(&mut random, &chain);
+        let mut state = random_state(&mut random, &chain);
         let mut turned = ChainState::new(&hung);
         (turned.q, turned.qd, turned.qdd) = (state.q.clone(), state.qd.clone(), state.qdd.clone());
         chain.forward_motion(&mut state);
@@ -218,12 +220,12 @@ proptest! {
 }
 
 #[test]
-fn every_real_robot_moves_as_it_should() {
+fn every_real_robot_matches_matrices_and_finite_differences() {
     for (name, path) in robots() {
         let chain = common::load(&path);
         let mut random = Random(11);
         for _ in 0..20 {
-            let mut state = shake(&mut random, &chain);
+            let mut state = random_state(&mut random, &chain);
             random.state(&chain, &mut state.q);
             check_poses(&chain, &mut state);
             check_motions(&chain, &state);

@@ -1,7 +1,7 @@
-//! How long a tick takes when every link is guarded as its exact mesh:
+//! Duration of a tick where every link is guarded as its exact mesh:
 //! `cargo run --release -p elbowroom-monitor --example mesh_tick`.
 //!
-//! An RX60B of 23,012 triangles moves among 20 regions, beside a second one whose seven links are regions that move.
+//! An RX60B of 23,012 triangles moves among 20 regions, beside a second one whose seven links are dynamic regions.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -15,10 +15,12 @@ use std::time::Instant;
 use common::{Random, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_monitor::{Configuration, ConfigurationParts, Monitor, Part, Region, Snapshot, Source, SourceId, Volume};
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, Monitor, Part, Region, Snapshot, SourceId, SourceState, Volume,
+};
 use elbowroom_proximity::Shape;
-use elbowroom_scene::Robot;
-use elbowroom_spatial::{Motion, Pose, Rotation, Vec3};
+use elbowroom_robot::Robot;
+use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 
 const TICKS: u32 = 20_000;
 
@@ -28,11 +30,11 @@ fn joints(t: f64, phase: f64) -> [f64; 6] {
     [wave(0.5, 1.2), 0.3 + wave(0.7, 0.6), 0.8 + wave(0.6, 0.8), wave(0.9, 2.0), wave(0.8, 1.5), wave(1.0, 3.0)]
 }
 
-/// Every mesh of the arm as a volume; the base, which stands still, with it.
+/// Every mesh of the arm as a volume, including the stationary base.
 fn volumes(robot: &Robot) -> Vec<Volume> {
-    let bodies = robot.bodies.iter().enumerate();
+    let bodies = robot.colliders.iter().enumerate();
     let each = bodies.flat_map(|(link, bodies)| bodies.iter().map(move |b| (link, b)));
-    let volume = |(link, b): (usize, &elbowroom_scene::Body)| Volume {
+    let volume = |(link, b): (usize, &elbowroom_robot::Collider)| Volume {
         name: b.name.clone(),
         part: Part::Arm,
         link: LinkId(link),
@@ -42,7 +44,7 @@ fn volumes(robot: &Robot) -> Vec<Volume> {
     each.map(volume).collect()
 }
 
-/// Spheres, cylinders and boxes in the arm's reach, a warning zone of 10 cm around each.
+/// Spheres, cylinders and boxes within reach of the arm, each with a warning zone of 10 cm.
 fn regions() -> Vec<Region> {
     let mut r = Random(5);
     let one = |i: usize| {
@@ -91,14 +93,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             let t = 0.002 * f64::from(i);
             neighbour.q.copy_from_slice(&joints(t, 1.0));
             robot.chain.forward(&mut neighbour);
-            let at = |v: &Volume| Source {
+            let at = |v: &Volume| SourceState {
                 pose: base * neighbour.link_in_root(v.link) * v.in_link,
-                motion: Motion::default(),
+                motion: FrameMotion::default(),
                 stamp_s: t,
             };
-            let sources: Vec<Source> = own.iter().map(at).collect();
+            let sources: Vec<SourceState> = own.iter().map(at).collect();
             let q = joints(t, 0.0);
-            let snapshot = Snapshot { sources: &sources, ..Snapshot::still(t, &q) };
+            let snapshot = Snapshot { sources: &sources, ..Snapshot::stationary(t, &q) };
             let start = Instant::now();
             let report = monitor.tick(&snapshot);
             times.push(start.elapsed().as_nanos() as f64 / 1e3);
@@ -107,7 +109,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             near += u64::from(report.measured_pairs);
         }
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+        let at = |fraction: f64| times[((times.len() - 1) as f64 * fraction) as usize];
         println!(
             "{apart:10} m  {:7.1}  {:9.1}  {:6.1}  {:8.1}  {:6.1}  {:4.0} %  {:5.0} %",
             near as f64 / f64::from(TICKS),

@@ -1,6 +1,6 @@
-//! How long a tick takes: `cargo run --release -p elbowroom-monitor --example tick_time`.
+//! Duration of a tick: `cargo run --release -p elbowroom-monitor --example tick_time`.
 //!
-//! A six-axis arm with eight volumes moves among regions; each line is another set of regions.
+//! A six-axis arm with eight volumes moves among regions; each line is one set of regions.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -15,25 +15,25 @@ use elbowroom_spatial::{Rotation, Vec3};
 
 const TICKS: u32 = 50_000;
 
-/// The arm's motion.
+/// The motion of the arm.
 fn joints(t: f64) -> [f64; 6] {
     [1.2 * (0.9 * t).sin(), 0.6 * (1.1 * t).sin(), 0.8 * (0.7 * t).cos(), (0.5 * t).sin(), t.cos(), t.sin()]
 }
 
-/// Its velocities.
+/// The velocities of the motion.
 fn velocities(t: f64) -> [f64; 6] {
     let h = 1e-6;
     let (before, after) = (joints(t - h), joints(t + h));
     std::array::from_fn(|i| (after[i] - before[i]) / (2.0 * h))
 }
 
-/// Of these regions those that the arm never touches while it moves: a cell that runs.
+/// The regions that the arm never touches while it moves.
 fn untouched(regions: Vec<Region>, count: usize) -> Vec<Region> {
     let mut m = Monitor::new(configuration(arm(), arm_volumes(), regions.clone()), None).expect("valid");
     let mut touched = vec![false; regions.len()];
     for i in 0..TICKS / 50 {
         let t = 0.1 * f64::from(i);
-        m.tick(&Snapshot::still(t, &joints(t)));
+        m.tick(&Snapshot::stationary(t, &joints(t)));
         let mut inside = |r: usize| touched[r] |= m.is_inside(RegionId(r));
         (0..regions.len()).for_each(&mut inside);
     }
@@ -41,7 +41,7 @@ fn untouched(regions: Vec<Region>, count: usize) -> Vec<Region> {
     free.take(count).collect()
 }
 
-/// Spheres, cylinders and boxes of 4 to 20 cm in a shell around the arm's base, each with a warning zone of 10 cm.
+/// Spheres, cylinders and boxes of 4 to 20 cm in a shell around the base of the arm, each with a warning zone of 10 cm.
 fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
     let mut r = Random(17);
     let one = |i: usize| {
@@ -66,8 +66,8 @@ fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
     for i in 0..TICKS {
         let (q, intent) = (joints(t), velocities(t));
         let now_s = 0.002 * f64::from(i);
-        // It goes all of its way, whatever it is told, so slowly that nothing is noticed: one way for all laws and versions.
-        let s = Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::still(now_s, &q) };
+        // The same slow motion for all laws and versions, whatever override is requested.
+        let s = Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
         let begin = Instant::now();
         let report = std::hint::black_box(m.tick(std::hint::black_box(&s)));
         times.push(begin.elapsed().as_nanos());
@@ -75,7 +75,7 @@ fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
         t += 4e-4;
     }
     times.sort_unstable();
-    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize] as f64 / 1000.0;
+    let at = |fraction: f64| times[((times.len() - 1) as f64 * fraction) as usize] as f64 / 1000.0;
     let mean_pairs = pairs as f64 / f64::from(TICKS);
     println!("{name:46} {:8.2} {:8.2} {:8.2} {:8.2} {mean_pairs:9.1}", at(0.5), at(0.99), at(0.999), at(1.0));
 }
@@ -86,7 +86,7 @@ fn main() {
         reaction_s: 0.01,
         period_s: 0.002,
         joint_deceleration: vec![30.0; 6],
-        // The motion below asks for 1.2 rad/s² at most.
+        // The motion below needs at most 1.2 rad/s².
         joint_acceleration: vec![2.0; 6],
     };
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() };
@@ -95,7 +95,7 @@ fn main() {
     measure("100 around the arm, never touched", free[..100].to_vec(), Laws::default());
     measure("1,000 around the arm, never touched", free.clone(), Laws::default());
     measure("1,000 around the arm, never touched, all laws", free, all.clone());
-    measure("1,000 in the arm's way, often touched", regions(1000, 0.3, 1.6), Laws::default());
-    measure("1,000 in the arm's way, all laws", regions(1000, 0.3, 1.6), all);
+    measure("1,000 around the arm, often touched", regions(1000, 0.3, 1.6), Laws::default());
+    measure("1,000 around the arm, often touched, all laws", regions(1000, 0.3, 1.6), all);
     measure("10,000 far (3 to 30 m)", regions(10_000, 3.0, 30.0), Laws::default());
 }

@@ -1,46 +1,46 @@
-//! A fingerprint of a configuration (S1.12, W.9).
+//! Checksum of a configuration (S1.12, W.9).
 
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use sha2::{Digest, Sha256};
 
-use crate::{Configuration, Kind, Laws, Life, Part, Region, SourceSpec, Volume};
+use crate::{Configuration, Laws, Life, Part, Region, RegionKind, SourceSpec, Volume};
 
 impl Configuration {
-    /// SHA-256 (hex) over everything that decides an override: chain, volumes, regions and laws, bit by bit. Equal
-    /// configurations have equal checksums on every machine; any change of a number changes it.
+    /// SHA-256 (hex) over all bits that determine an override: chain, volumes, regions, sources and laws. Equal configurations
+    /// have equal checksums on every machine; a change of any number changes it.
     pub fn checksum(&self) -> String {
-        let mut sink = Sink(Sha256::new());
-        sink.robot(self);
-        sink.list(&self.regions, Sink::region);
-        sink.list(&self.sources, Sink::source);
-        sink.laws(&self.laws);
-        sink.hex()
+        let mut hasher = Hasher(Sha256::new());
+        hasher.robot(self);
+        hasher.list(&self.regions, Hasher::region);
+        hasher.list(&self.sources, Hasher::source);
+        hasher.laws(&self.laws);
+        hasher.hex()
     }
 
-    /// SHA-256 (hex) over what the checksum covers besides regions and what they follow: chain, volumes and laws.
+    /// SHA-256 (hex) over the part of the configuration without regions and sources: chain, volumes and laws.
     pub fn robot_checksum(&self) -> String {
-        let mut sink = Sink(Sha256::new());
-        sink.robot(self);
-        sink.laws(&self.laws);
-        sink.hex()
+        let mut hasher = Hasher(Sha256::new());
+        hasher.robot(self);
+        hasher.laws(&self.laws);
+        hasher.hex()
     }
 }
 
 impl Region {
-    /// SHA-256 (hex) over everything that the region is, bit by bit.
+    /// SHA-256 (hex) over all bits of the region.
     pub fn checksum(&self) -> String {
-        let mut sink = Sink(Sha256::new());
-        sink.region(self);
-        sink.hex()
+        let mut hasher = Hasher(Sha256::new());
+        hasher.region(self);
+        hasher.hex()
     }
 }
 
-/// Writes values one after the other, each with its length or tag, so that no two configurations read alike.
-struct Sink(Sha256);
+/// Hashes values in order, each with its length or a tag, so that the bytes of two configurations differ.
+struct Hasher(Sha256);
 
-impl Sink {
+impl Hasher {
     fn hex(self) -> String {
         let digits = self.0.finalize().into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
         digits.filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
@@ -55,7 +55,7 @@ impl Sink {
     }
 
     fn number(&mut self, v: f64) {
-        // -0 and 0 are one number.
+        // -0 and 0 are equal.
         self.0.update((v + 0.0).to_bits().to_le_bytes());
     }
 
@@ -177,12 +177,12 @@ impl Sink {
         self.pose(&region.anchor);
         self.pose(&region.shape_in_anchor);
         match region.kind {
-            Kind::Forbidden => self.tag(0),
-            Kind::Monitored { slow_to } => {
+            RegionKind::Forbidden => self.tag(0),
+            RegionKind::Monitored { slow_to } => {
                 self.tag(1);
                 self.optional(slow_to);
             }
-            Kind::Exchange { slot } => {
+            RegionKind::Exchange { slot } => {
                 self.tag(2);
                 self.count(slot.0);
             }

@@ -1,18 +1,18 @@
 //! The override laws, one function each (S1, eqs. 1-4 and beyond). `docs/laws.md` shows their plots.
 
-/// Which laws a monitor obeys. The default is the paper's law alone: `v = v₀ · clamp(d / δ, 0, 1)`.
+/// The laws of a monitor. The default is the law of S1 alone: `v = v₀ · clamp(d / δ, 0, 1)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laws {
-    /// True: a volume whose gap to a region grows is not held back by it. Off by default because it needs the
-    /// program's [`intent`](crate::Snapshot::intent) to release a robot that stands still.
+    /// True: a region does not limit a volume whose distance from it increases. Off by default, because it needs the program's
+    /// [`intent`](crate::Snapshot::intent) to release a stationary robot.
     pub direction_aware: bool,
-    /// Largest share of v₀ while a direction-aware robot leaves a region from inside.
+    /// Largest fraction of v₀ while a robot leaves a region from inside, with the direction-aware law.
     pub recovery: f64,
-    /// Never faster than a stop before the border allows.
+    /// Limits the override so that a stop ends before the border.
     pub stopping_distance: Option<Stopping>,
-    /// Largest change of the override per second; 0 for unlimited. Faults and contact stop at once all the same.
+    /// Largest change of the override per second; 0 for unlimited. Faults and contact stop at once in any case.
     pub override_rate: f64,
-    /// Input older than this (s) is override 0.
+    /// Age (s) beyond which input is stale: the override is 0.
     pub stale_s: f64,
 }
 
@@ -22,26 +22,26 @@ impl Default for Laws {
     }
 }
 
-/// How a robot stops, and how its programs accelerate: what the stopping-distance law assumes.
+/// Assumptions of the stopping-distance law: how the robot stops, and how its programs accelerate.
 ///
 /// The robot stops along its programmed path. Its **stop time** is the longest that any joint needs by itself,
-/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`Stopping::joint_deceleration`]. It is assumed that while the robot runs faster than the
-/// override that it was told, at the latest [`Stopping::reaction_s`] after it was told, `n` falls by at least one second per
-/// second, whatever the program does meanwhile.
+/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`Stopping::joint_deceleration`]. While the robot runs faster than the commanded override,
+/// from [`Stopping::reaction_s`] after the command at the latest, `n` is assumed to fall by at least one second per second,
+/// whatever the program does meanwhile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stopping {
-    /// Time (s) from the monitor's answer to the first deceleration, at most.
+    /// Longest time (s) from a commanded override to the first deceleration.
     pub reaction_s: f64,
-    /// Longest time (s) from one answer to the next. A controller that waits longer for an answer must stop by itself.
+    /// Longest time (s) between two commanded overrides. A controller that waits longer must stop by itself.
     pub period_s: f64,
-    /// Deceleration that each joint can be trusted to reach, rad/s² or m/s².
+    /// Guaranteed deceleration of each joint, rad/s² or m/s².
     pub joint_deceleration: Vec<f64>,
-    /// Acceleration that no program asks of a joint more than, at override 1, rad/s² or m/s²: with it the law knows how fast a
-    /// path can bend towards a region.
+    /// Largest acceleration of each joint in any program at override 1, rad/s² or m/s²: it bounds how fast a path can bend
+    /// towards a region.
     pub joint_acceleration: Vec<f64>,
 }
 
-/// The warning zone's law, `clamp(d / δ, 0, 1)` (S1, eqs. 1-3 in one line); with δ = 0 it is 0 inside and 1 outside.
+/// The law of the warning zone, `clamp(d / δ, 0, 1)` (S1, eqs. 1-3); with δ = 0 it is 0 inside and 1 outside.
 ///
 /// ```
 /// use elbowroom_monitor::laws::warning_factor;
@@ -54,12 +54,12 @@ pub fn warning_factor(distance_m: f64, warning_m: f64) -> f64 {
     if distance_m >= warning_m && distance_m > 0.0 {
         return 1.0;
     }
-    // A NaN distance compares false above and below: it must read as contact.
+    // A NaN distance compares false above and below: it counts as contact.
     if distance_m > 0.0 { distance_m / warning_m } else { 0.0 }
 }
 
-/// A speed zone's override: `slow_to` inside (never more than `programmed`), rising linearly to `programmed` at the
-/// warning zone's outer border.
+/// The override of a speed zone: `slow_to` inside (at most `programmed`), rising linearly to `programmed` at the outer border
+/// of the warning zone.
 ///
 /// ```
 /// use elbowroom_monitor::laws::speed_zone;
@@ -73,7 +73,7 @@ pub fn speed_zone(distance_m: f64, warning_m: f64, slow_to: f64, programmed: f64
     inside + (programmed - inside) * warning_factor(distance_m, warning_m)
 }
 
-/// The stop time (s) of these joint velocities: the longest that any joint needs to come to rest by itself,
+/// The stop time (s) of these joint velocities: the longest time that any joint needs to come to rest by itself,
 /// `max |q̇ᵢ| / aᵢ`.
 ///
 /// ```
@@ -82,32 +82,32 @@ pub fn speed_zone(distance_m: f64, warning_m: f64, slow_to: f64, programmed: f64
 /// ```
 #[inline]
 pub fn stop_time(velocity: &[f64], deceleration: &[f64]) -> f64 {
-    velocity.iter().zip(deceleration).fold(0.0, |most: f64, (v, a)| most.max(v.abs() / a))
+    velocity.iter().zip(deceleration).fold(0.0, |longest: f64, (v, a)| longest.max(v.abs() / a))
 }
 
-/// How much of the program's time (s, at override 1) passes at most while a robot comes to rest from the override `sigma`.
+/// Upper bound of the program time (s, at override 1) that passes while a robot comes to rest from the override `sigma`.
 ///
-/// `full_stop_s` is the stop time m of the program's own velocities, and `growth` bounds how fast m can change by the
-/// program's time, `α = max Aᵢ / aᵢ` with the program's accelerations Aᵢ and the joints' decelerations aᵢ. While the stop
-/// time `n = σ·m` falls by a second per second, `∫ m du = n²/2` over the program's time u; with `m(u) ≥ m − α·u` that gives
+/// `full_stop_s` is the stop time m of the program's own velocities, and `growth` bounds the rate of change of m by program
+/// time, `α = max Aᵢ / aᵢ` with the program's accelerations Aᵢ and the joints' decelerations aᵢ. While the stop time
+/// `n = σ·m` falls by one second per second, `∫ m du = n²/2` over the program time u; with `m(u) ≥ m − α·u` this gives
 /// `u ≤ (m/α) · (1 − √(1 − α·σ²))`, and `σ²·m` bounds it in every case: a stop takes no longer than n, at no more than σ.
 ///
 /// ```
 /// use elbowroom_monitor::laws::stopping_program_time;
 /// assert_eq!(stopping_program_time(1.0, 0.5, 0.0), 0.25); // no acceleration: half of the stop time
-/// assert_eq!(stopping_program_time(1.0, 0.5, 4.0), 0.5); // the program may slow down as fast as the robot brakes
+/// assert_eq!(stopping_program_time(1.0, 0.5, 4.0), 0.5); // the program may decelerate as fast as the robot brakes
 /// ```
 #[inline]
 pub fn stopping_program_time(sigma: f64, full_stop_s: f64, growth: f64) -> f64 {
-    let (square, share) = (sigma * sigma, growth * sigma * sigma);
-    if share >= 1.0 {
+    let (square, product) = (sigma * sigma, growth * sigma * sigma);
+    if product >= 1.0 {
         return square * full_stop_s;
     }
     // (1 − √(1 − y)) / y without cancellation.
-    square * full_stop_s / (1.0 + (1.0 - share).sqrt())
+    square * full_stop_s / (1.0 + (1.0 - product).sqrt())
 }
 
-/// The override moved from `previous` towards `wanted` by at most `rate` per second; `rate` 0 is unlimited.
+/// The override changed from `previous` towards `requested` by at most `rate` per second; `rate` 0 is unlimited.
 ///
 /// ```
 /// use elbowroom_monitor::laws::rate_limited;
@@ -115,12 +115,12 @@ pub fn stopping_program_time(sigma: f64, full_stop_s: f64, growth: f64) -> f64 {
 /// assert_eq!(rate_limited(1.0, 0.0, 0.0, 0.01), 0.0);
 /// ```
 #[inline]
-pub fn rate_limited(previous: f64, wanted: f64, rate: f64, dt_s: f64) -> f64 {
+pub fn rate_limited(previous: f64, requested: f64, rate: f64, dt_s: f64) -> f64 {
     if rate <= 0.0 {
-        return wanted;
+        return requested;
     }
     let step = rate * dt_s;
-    wanted.clamp(previous - step, previous + step)
+    requested.clamp(previous - step, previous + step)
 }
 
 #[cfg(test)]
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_reads_as_contact() {
+    fn nan_counts_as_contact() {
         assert_eq!(warning_factor(f64::NAN, 0.2), 0.0);
     }
 

@@ -1,9 +1,10 @@
 //! Interference regions, checked every control tick (S1).
 //!
-//! An **interference region** is a solid that a robot must not enter ([`Kind::Forbidden`]), that it reports
-//! ([`Kind::Monitored`]) or that it shares with others ([`Kind::Exchange`]). Around it lies a **warning zone** in which
-//! the speed override falls with the distance. A [`Monitor`] answers one question per control tick: how fast may this
-//! robot go now, and why. It works on **virtual TCPs**: for each region the closest point of the guarded volume.
+//! An **interference region** is a solid that a robot must not enter ([`RegionKind::Forbidden`]), that it reports
+//! ([`RegionKind::Monitored`]) or that it shares with other robots ([`RegionKind::Exchange`]). A **warning zone** surrounds
+//! it, in which the speed override falls with the distance. In every control tick a [`Monitor`] computes the largest speed
+//! override that the laws allow, and the reason for it, from **virtual TCPs**: for each region the closest point of the
+//! guarded volumes.
 //!
 //! ```
 //! use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -34,54 +35,63 @@
 //!     })?,
 //!     None,
 //! )?;
-//! let report = monitor.tick(&Snapshot::still(0.0, &[1.4]));
+//! let report = monitor.tick(&Snapshot::stationary(0.0, &[1.4]));
 //! assert!((report.speed_override - 0.5).abs() < 1e-12); // 0.1 m left of a 0.2 m warning zone
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The tick neither allocates, nor locks, nor panics; input that is stale, out of order, not a number or implausible
-//! is override 0 with a [`Reason`]. This is not a certified safety device.
+//! is override 0 with a [`OverrideReason`]. This is not a certified safety device.
 
 mod access;
-mod bound;
-mod brake_watch;
-mod broad;
+mod braking_check;
+mod broad_phase;
+mod carried_volume;
 mod checksum;
-mod commands;
-mod config;
-mod events;
-mod gaps;
-mod gauge;
+mod configuration;
+mod configuration_edit;
+mod distance_bound;
+mod event;
+mod guarded_distance;
 mod interlock;
 pub mod laws;
 mod monitor;
+mod override_history;
+mod override_law;
 mod placement;
-mod presence;
+mod point_motion;
 mod recovery;
 mod region;
+mod region_clearance;
+mod region_distance;
+mod region_sweep;
 mod report;
-mod seat;
 mod snapshot;
-mod source_watch;
+mod source_check;
+mod source_limits;
 mod stopping;
-mod sweep;
+mod taught_points;
 pub mod teach;
-mod verdict;
+mod tick_context;
 mod volume;
+mod volume_region_pair;
+mod warm_start_cache;
 mod watchdog;
-mod witness;
+mod zone_client;
+mod zone_state;
 
-pub use access::{AccessClass, Edit, EditError, SwitchError};
-pub use config::{ConfigError, Configuration, ConfigurationParts};
-pub use events::{Event, EventKind};
-pub use gauge::Gauge;
-pub use interlock::{Board, Grant, RobotSlot, SlotId, Stay, group_overlapping};
+pub use access::{AccessClass, SwitchError};
+pub use configuration::{ConfigError, Configuration, ConfigurationParts};
+pub use configuration_edit::{ConfigurationEdit, EditError};
+pub use event::{Event, EventKind};
+pub use interlock::{Grant, Occupancy, RobotSlot, SlotId, ZoneArbiter, group_overlapping};
 pub use laws::{Laws, Stopping};
 pub use monitor::Monitor;
-pub use region::{Guards, Kind, Life, Region, RegionId, SourceId};
-pub use report::{Fault, Reason, TickReport, VirtualTcp};
-pub use seat::ExchangeState;
-pub use snapshot::{Snapshot, Source};
-pub use source_watch::{SourceLimits, SourceSpec};
-pub use sweep::{Least, Sweep};
+pub use region::{Guards, Life, Region, RegionId, RegionKind, SourceId};
+pub use region_distance::RegionDistance;
+pub use region_sweep::{ClosestApproach, RegionSweep};
+pub use report::{Fault, OverrideReason, TickReport, VirtualTcp};
+pub use snapshot::{Snapshot, SourceState};
+pub use source_limits::{SourceLimits, SourceSpec};
 pub use volume::{Part, Volume, VolumeModel, arm_volumes};
+pub use zone_client::ExchangeState;

@@ -1,115 +1,142 @@
-//! The way out of a region for a robot that is inside.
+//! Recovery: whether the program of a robot inside a region leads out of it.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::{Escape, escape};
+use elbowroom_proximity::{Penetration, penetration};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::gaps::Pair;
-use crate::verdict::{Judge, LOOKAHEAD_S};
+use crate::placement::Placement;
+use crate::tick_context::TickContext;
+use crate::volume_region_pair::VolumeRegionPair;
 
-/// Depth must shrink by more than this (m) over [`LOOKAHEAD_S`] to count as shrinking.
-const LEAST_M: f64 = 5e-6;
-/// Where the program leads along a face, it may lead away from that face by this share of its way: curves of the path.
-const SLOPE: f64 = 2e-3;
-/// A path that leads along a face may leave its straight course by so much (m) over [`LOOKAHEAD_S`].
-const CURVE_M: f64 = 5e-4;
-/// How far ahead (s) the slope is looked at.
-const NEAR_S: f64 = 1e-3;
-/// Looks along the way out.
-const LOOKS: u32 = 16;
+/// Settings of the recovery test.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RecoverySettings {
+    /// Smallest decrease of the penetration depth within the lookahead time, m.
+    min_decrease_m: f64,
+    /// Largest increase of the depth, as a fraction of the travel, where the program moves along a face: curvature of the
+    /// path.
+    slope: f64,
+    /// Largest increase of the depth within the lookahead time, m.
+    max_increase_m: f64,
+    /// Prediction time for the slope at the present position, s.
+    near_s: f64,
+    /// Number of samples along the predicted motion.
+    samples: u32,
+}
 
-/// True where the program leads out of the region, never deeper on the way: at once by the nearest side, or farther on by
-/// another one. `soon` are the poses of volume and region [`LOOKAHEAD_S`] later.
-pub(crate) fn leads_out(judge: &Judge<'_>, pair: &Pair, intent: &ChainState, soon: (&Pose, &Pose)) -> bool {
+impl Default for RecoverySettings {
+    fn default() -> Self {
+        Self { min_decrease_m: 5e-6, slope: 2e-3, max_increase_m: 5e-4, near_s: 1e-3, samples: 16 }
+    }
+}
+
+/// True where the program leads out of the region without going deeper: by the nearest side within the lookahead time, or
+/// by another side farther on.
+pub(crate) fn leads_out(
+    tick: &TickContext<'_>,
+    settings: &RecoverySettings,
+    pair: &VolumeRegionPair,
+    intent: &ChainState,
+    predicted: &Placement,
+) -> bool {
     let (v, r) = (pair.volume, pair.region);
-    let (volume, region) = (&judge.config.volumes[v].shape, &judge.config.regions[r].shape);
-    let Some(out) = escape(volume, &judge.now.volume_in_world[v], region, &judge.now.region_in_world[r]) else {
+    let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
+    let (volume_predicted, region_predicted) = (&predicted.volume_in_world[v], &predicted.region_in_world[r]);
+    let Some(now) = penetration(volume, &tick.now.volume_in_world[v], region, &tick.now.region_in_world[r]) else {
         return false;
     };
-    match escape(volume, soon.0, region, soon.1) {
-        Some(then) if then.depth + LEAST_M < out.depth => true,
-        // More than the curve of a path explains.
-        Some(then) if then.depth > out.depth + CURVE_M => false,
-        Some(_) => leads_out_ahead(judge, pair, intent, &out),
-        // At the border there is no depth left to shrink; and whoever is out soon may be so behind a thin plate.
+    match penetration(volume, volume_predicted, region, region_predicted) {
+        Some(then) if then.depth + settings.min_decrease_m < now.depth => true,
+        // More than the curvature of a path explains.
+        Some(then) if then.depth > now.depth + settings.max_increase_m => false,
+        Some(_) => leads_out_ahead(tick, settings, pair, intent, &now),
+        // At the border no depth is left to decrease; and a volume beyond a thin plate has passed through it.
         None => {
-            judge.moves_along(pair, intent, out.direction)
-                && !elbowroom_proximity::within(volume, soon.0, region, soon.1, (LEAST_M - out.depth).max(0.0))
+            let margin_m = (settings.min_decrease_m - now.depth).max(0.0);
+            tick.leaves_along(pair, intent, now.direction)
+                && !elbowroom_proximity::within(volume, volume_predicted, region, region_predicted, margin_m)
         }
     }
 }
 
-/// True where the volume, going on as it moves now, comes out without being deeper on the way than it is now.
-fn leads_out_ahead(judge: &Judge<'_>, pair: &Pair, intent: &ChainState, out: &Escape) -> bool {
+/// True where the volume, continuing its present motion, leaves the region without going deeper than it is.
+fn leads_out_ahead(
+    tick: &TickContext<'_>,
+    settings: &RecoverySettings,
+    pair: &VolumeRegionPair,
+    intent: &ChainState,
+    now: &Penetration,
+) -> bool {
     let (v, r) = (pair.volume, pair.region);
-    let center = judge.now.volume_box[v].center();
-    let twist = Twist::of(judge, pair, intent, center);
-    let speed = judge.now.volume_box[v].extent().length() * 0.5 * twist.turning.length() + twist.velocity.length();
-    if !(speed > LEAST_M / LOOKAHEAD_S) {
+    let center = tick.now.volume_box[v].center();
+    let twist = Twist::of(tick, pair, intent, center);
+    let speed =
+        tick.now.volume_box[v].extent().length() * 0.5 * twist.angular_velocity.length() + twist.velocity.length();
+    if !(speed > settings.min_decrease_m / tick.direction.lookahead_s) {
         return false;
     }
-    let real = judge.velocity_of(&judge.now.chain, v, pair.separation.on_a);
-    if real.dot(out.direction) < -SLOPE * real.length() {
+    let real = tick.volume_point_velocity(&tick.now.chain, v, pair.separation.on_a);
+    if real.dot(now.direction) < -settings.slope * real.length() {
         return false;
     }
-    let depth_at = |ahead_s: f64| {
-        let moved = twist.after(ahead_s) * judge.now.volume_in_world[v];
-        let (volume, region) = (&judge.config.volumes[v].shape, &judge.config.regions[r].shape);
-        escape(volume, &moved, region, &judge.now.region_in_world[r]).map(|e| e.depth)
+    let depth_after = |time_s: f64| {
+        let moved = twist.displacement(time_s) * tick.now.volume_in_world[v];
+        let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
+        penetration(volume, &moved, region, &tick.now.region_in_world[r]).map(|e| e.depth)
     };
-    let deeper = |depth: f64, ahead_s: f64| depth > out.depth + SLOPE * speed * ahead_s + 1e-9;
-    if depth_at(NEAR_S).is_some_and(|depth| deeper(depth, NEAR_S)) {
+    let is_deeper = |depth: f64, time_s: f64| depth > now.depth + settings.slope * speed * time_s + 1e-9;
+    if depth_after(settings.near_s).is_some_and(|depth| is_deeper(depth, settings.near_s)) {
         return false;
     }
-    let boxes = judge.now.volume_box[v].extent().length()
-        + if judge.now.region_box[r].extent().is_finite() { judge.now.region_box[r].extent().length() } else { 0.0 };
-    let horizon_s = (boxes + 20.0 * out.depth) / speed;
-    for look in 1..=LOOKS {
-        let ahead_s = horizon_s * f64::from(look) / f64::from(LOOKS);
-        match depth_at(ahead_s) {
+    let boxes = tick.now.volume_box[v].extent().length()
+        + if tick.now.region_box[r].extent().is_finite() { tick.now.region_box[r].extent().length() } else { 0.0 };
+    let horizon_s = (boxes + 20.0 * now.depth) / speed;
+    for sample in 1..=settings.samples {
+        let time_s = horizon_s * f64::from(sample) / f64::from(settings.samples);
+        match depth_after(time_s) {
             None => return true,
-            // A straight course is not the program's: farther on it is only to be seen that it does not lead in.
-            Some(depth) if deeper(depth, 10.0 * ahead_s) => return false,
+            // The program's path is not straight: farther on, only a clear increase counts.
+            Some(depth) if is_deeper(depth, 10.0 * time_s) => return false,
             Some(_) => {}
         }
     }
     false
 }
 
-/// A rigid motion that goes on as it is, relative to the region.
+/// A constant twist of a volume relative to a region.
 struct Twist {
     center: Vec3,
     velocity: Vec3,
-    turning: Vec3,
+    angular_velocity: Vec3,
 }
 
 impl Twist {
-    fn of(judge: &Judge<'_>, pair: &Pair, intent: &ChainState, center: Vec3) -> Self {
-        let region = &judge.config.regions[pair.region];
-        let base = &judge.config.base_in_world;
-        let link = judge.config.volumes[pair.volume].link;
-        let source = region.follow.and_then(|s| judge.snapshot.sources.get(s.0));
-        let (region_velocity, region_turning) = source.map_or((Vec3::ZERO, Vec3::ZERO), |s| {
-            (s.motion.velocity_at(center - s.pose.translation), s.motion.angular_velocity)
-        });
+    fn of(tick: &TickContext<'_>, pair: &VolumeRegionPair, intent: &ChainState, center: Vec3) -> Self {
+        let region = &tick.config.regions[pair.region];
+        let base = &tick.config.base_in_world;
+        let link = tick.config.volumes[pair.volume].link;
+        let region_angular_velocity =
+            region.source_state(tick.snapshot.sources).map_or(Vec3::ZERO, |s| s.motion.angular_velocity);
         Self {
             center,
-            velocity: judge.velocity_of(intent, pair.volume, center) - region_velocity,
-            turning: base.transform_vector(intent.link_motion(link).angular_velocity) - region_turning,
+            velocity: tick.volume_point_velocity(intent, pair.volume, center)
+                - tick.region_point_velocity(pair.region, center),
+            angular_velocity: base.transform_vector(intent.link_motion(link).angular_velocity)
+                - region_angular_velocity,
         }
     }
 
-    /// The motion of the world that carries the volume there: exponential of the twist.
-    fn after(&self, time_s: f64) -> Pose {
-        let turn = self.turning * time_s;
+    /// The displacement of the volume in the world after some time: the exponential of the twist.
+    fn displacement(&self, time_s: f64) -> Pose {
+        let turn = self.angular_velocity * time_s;
         let angle = turn.length();
         let (a, b) = if angle < 1e-4 {
             (0.5, 1.0 / 6.0)
         } else {
             ((1.0 - angle.cos()) / (angle * angle), (angle - angle.sin()) / (angle * angle * angle))
         };
-        let way = self.velocity * time_s;
-        let moved = way + turn.cross(way) * a + turn.cross(turn.cross(way)) * b;
+        let straight = self.velocity * time_s;
+        let moved = straight + turn.cross(straight) * a + turn.cross(turn.cross(straight)) * b;
         let rotation = Rotation::from_rotation_vector(turn);
         Pose::new(rotation, self.center + moved - rotation * self.center)
     }

@@ -1,12 +1,10 @@
-//! Interference regions: what they are, not how they are checked.
+//! Interference regions as data.
 
-use std::sync::Arc;
-
-use elbowroom_proximity::{Cuboid, Cylinder, HalfSpace, Shape, ShapeError, Sphere, TriMesh};
+use elbowroom_proximity::{Cuboid, Cylinder, HalfSpace, Shape, Sphere};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::SlotId;
-use crate::teach::{self, TeachError};
+use crate::taught_points::{TeachError, plane_rotation};
+use crate::{SlotId, SourceState};
 
 /// Index of a region in its [`Configuration`](crate::Configuration).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -16,24 +14,24 @@ pub struct RegionId(pub usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SourceId(pub usize);
 
-/// What happens at a region (S1.2).
+/// How a region affects the robot (S1.2).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// The override reaches 0 at the surface.
+pub enum RegionKind {
+    /// The override falls to 0 at the surface.
     Forbidden,
-    /// Outputs are raised; nothing is slowed, unless `slow_to` makes it a speed zone.
+    /// Outputs are switched on; the override is not reduced unless `slow_to` makes the region a speed zone.
     Monitored {
-        /// Largest override inside, 0..1, ramped through the warning zone.
+        /// Largest override inside, 0..1, with a linear ramp in the warning zone.
         slow_to: Option<f64>,
     },
-    /// Forbidden to all but the robot that holds the slot (S1.8).
+    /// Forbidden to all robots except the holder of the slot (S1.8).
     Exchange {
-        /// The lock that guards it on the shared [`Board`](crate::Board).
+        /// Its lock in the shared [`ZoneArbiter`](crate::ZoneArbiter).
         slot: SlotId,
     },
 }
 
-impl Kind {
+impl RegionKind {
     /// `forbidden`, `monitored` or `exchange`.
     pub fn name(self) -> &'static str {
         match self {
@@ -47,9 +45,9 @@ impl Kind {
 /// Who may switch a region (S1.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Life {
-    /// Always active; only the integrator class edits it.
+    /// Always active; only the integrator class may edit it.
     Permanent,
-    /// Switched by programs; starts inactive.
+    /// Switched by programs; inactive at first.
     Temporary,
 }
 
@@ -63,14 +61,14 @@ impl Life {
     }
 }
 
-/// Which parts of the robot count for a region.
+/// The parts of the robot that a region guards against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Guards {
-    /// The tool centre point alone.
+    /// The tool centre point.
     pub tcp: bool,
     /// The tool's volume.
     pub tool: bool,
-    /// The links, with tool and load.
+    /// The links with tool and load.
     pub arm: bool,
 }
 
@@ -89,48 +87,48 @@ impl Default for Guards {
     }
 }
 
-/// A solid with a warning zone around it.
+/// A solid with a warning zone.
 ///
 /// `anchor` is the frame of the region's characteristic point (S1.6: sphere: centre; cylinder: centre of the bottom
-/// base; plane: origin; parallelepiped: centre of the bottom base). A region that follows a source rides on it: its
-/// anchor is then given in the source's frame.
+/// base; plane: origin; parallelepiped: centre of the bottom base). The anchor of a dynamic region, which follows a source,
+/// is given in the source's frame.
 #[derive(Debug, Clone)]
 pub struct Region {
-    /// Unique in the configuration.
+    /// Name, unique in the configuration.
     pub name: String,
     /// The solid.
     pub shape: Shape,
     /// Characteristic frame, in the world or in the source that the region follows.
     pub anchor: Pose,
-    /// Where the shape's own frame stands in the characteristic frame.
+    /// Pose of the shape's frame in the characteristic frame.
     pub shape_in_anchor: Pose,
-    /// What happens there.
-    pub kind: Kind,
+    /// Effect on the robot.
+    pub kind: RegionKind,
     /// Who may switch it.
     pub life: Life,
     /// Thickness δ of the warning zone, metres; 0 for none.
     pub warning_m: f64,
-    /// Whose distance counts.
+    /// The parts of the robot that it guards against.
     pub guards: Guards,
-    /// What carries it, where it moves.
+    /// The source of motion that it follows; `None` for a static region.
     pub follow: Option<SourceId>,
-    /// How far (m) beyond a boundary the robot must be before an output falls again.
+    /// Distance (m) beyond a boundary at which the outputs are switched off again.
     pub hysteresis_m: f64,
-    /// Digital output (0..63) raised while the robot is inside.
+    /// Digital output (0..63) that is on while the robot is inside.
     pub output: Option<u8>,
-    /// Digital output (0..63) raised while the robot is inside or in the warning zone.
+    /// Digital output (0..63) that is on while the robot is inside or in the warning zone.
     pub warning_output: Option<u8>,
 }
 
 impl Region {
-    /// Any solid at a pose that is also its characteristic frame.
+    /// Any solid; `anchor` is both the pose of the shape and its characteristic frame.
     pub fn solid(name: impl Into<String>, shape: Shape, anchor: Pose) -> Self {
         Self {
             name: name.into(),
             shape,
             anchor,
             shape_in_anchor: Pose::IDENTITY,
-            kind: Kind::Forbidden,
+            kind: RegionKind::Forbidden,
             life: Life::Permanent,
             warning_m: 0.0,
             guards: Guards::default(),
@@ -146,7 +144,7 @@ impl Region {
         Self::solid(name, Shape::Sphere(Sphere { radius }), Pose::from_translation(center))
     }
 
-    /// A cylinder on the base circle around `base` (m), its axis along z of `rotation`.
+    /// A cylinder whose base circle is centred at `base` (m), with its axis along z of `rotation`.
     pub fn cylinder(name: impl Into<String>, base: Vec3, radius: f64, height: f64, rotation: Rotation) -> Self {
         let half_length = height / 2.0;
         Self {
@@ -160,18 +158,18 @@ impl Region {
     /// # Errors
     /// [`TeachError`] where the three points lie on a line.
     pub fn plane(name: impl Into<String>, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Self, TeachError> {
-        let rotation = teach::plane_rotation(origin, on_x, in_xy)?;
+        let rotation = plane_rotation(origin, on_x, in_xy)?;
         Ok(Self::solid(name, Shape::HalfSpace(HalfSpace), Pose::new(rotation, origin)))
     }
 
-    /// A box from its lower-left base corner to its upper-right top corner, parallel to the axes (m).
+    /// A box parallel to the axes, from two opposite corners (m).
     pub fn cuboid_from_corners(name: impl Into<String>, from: Vec3, to: Vec3) -> Self {
         let (low, high) = (from.min(to), from.max(to));
-        let middle = (low + high) * 0.5;
-        Self::cuboid(name, Vec3::new(middle.x, middle.y, low.z), high - low, Rotation::IDENTITY)
+        let center = (low + high) * 0.5;
+        Self::cuboid(name, Vec3::new(center.x, center.y, low.z), high - low, Rotation::IDENTITY)
     }
 
-    /// A box on the centre of its bottom (m), turned by `rotation` about it.
+    /// A box with the centre of its bottom at `base_center` (m), rotated about it.
     pub fn cuboid(name: impl Into<String>, base_center: Vec3, size: Vec3, rotation: Rotation) -> Self {
         let half_extents = size * 0.5;
         Self {
@@ -180,57 +178,57 @@ impl Region {
         }
     }
 
-    /// A closed mesh, in the frame of its file.
-    pub fn mesh(name: impl Into<String>, mesh: Arc<TriMesh>, anchor: Pose) -> Self {
-        Self::solid(name, Shape::Mesh(mesh), anchor)
-    }
-
     /// With a warning zone of this thickness (m).
     #[must_use]
     pub fn warning(self, warning_m: f64) -> Self {
         Self { warning_m, ..self }
     }
 
-    /// Of another kind than forbidden.
+    /// With this kind; the default is forbidden.
     #[must_use]
-    pub fn kind(self, kind: Kind) -> Self {
+    pub fn kind(self, kind: RegionKind) -> Self {
         Self { kind, ..self }
     }
 
-    /// Monitored, with nothing slowed.
+    /// Monitored, without a speed limit.
     #[must_use]
     pub fn monitored(self) -> Self {
-        self.kind(Kind::Monitored { slow_to: None })
+        self.kind(RegionKind::Monitored { slow_to: None })
     }
 
-    /// Of another life than permanent.
+    /// With this life; the default is permanent.
     #[must_use]
     pub fn life(self, life: Life) -> Self {
         Self { life, ..self }
     }
 
-    /// Guarding other parts than the arm.
+    /// Guarding against these parts; the default is the arm.
     #[must_use]
     pub fn guards(self, guards: Guards) -> Self {
         Self { guards, ..self }
     }
 
-    /// Riding on a source.
+    /// Following a source of motion.
     #[must_use]
     pub fn follow(self, source: SourceId) -> Self {
         Self { follow: Some(source), ..self }
     }
 
-    /// Beyond this distance (m) the region asks nothing of the robot.
+    /// State of the source that the region follows.
+    pub(crate) fn source_state<'a>(&self, sources: &'a [SourceState]) -> Option<&'a SourceState> {
+        self.follow.and_then(|source| sources.get(source.0))
+    }
+
+    /// Distance (m) beyond which the region has no effect.
     pub(crate) fn reach(&self) -> f64 {
         self.warning_m + self.hysteresis_m
     }
 
-    /// Why the region cannot be used, where it cannot.
-    pub(crate) fn fault(&self) -> Option<String> {
+    /// Why the region is invalid, if it is.
+    pub(crate) fn problem(&self) -> Option<String> {
         let positive = |v: f64| v.is_finite() && v >= 0.0;
         if let Err(e) = self.shape.validate() {
-            return Some(shape_fault(&e));
+            return Some(e.to_string());
         }
         if !self.anchor.is_finite() || !self.shape_in_anchor.is_finite() {
             return Some("its position is not a finite number".into());
@@ -241,7 +239,7 @@ impl Region {
         if !positive(self.hysteresis_m) {
             return Some(format!("hysteresis must be 0 or more, not {}", self.hysteresis_m));
         }
-        if let Kind::Monitored { slow_to: Some(s) } = self.kind
+        if let RegionKind::Monitored { slow_to: Some(s) } = self.kind
             && !(0.0..=1.0).contains(&s)
         {
             return Some(format!("slow_to must lie between 0 and 1, not {s}"));
@@ -249,8 +247,4 @@ impl Region {
         let channel = [self.output, self.warning_output].into_iter().flatten().find(|c| *c > 63);
         channel.map(|c| format!("output {c} does not exist; channels are 0 to 63"))
     }
-}
-
-fn shape_fault(e: &ShapeError) -> String {
-    e.to_string()
 }

@@ -1,4 +1,4 @@
-//! What a tick answers.
+//! Result of a tick.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use elbowroom_spatial::Vec3;
 
 use crate::RegionId;
 
-/// The answer of one tick: fixed size, plain data.
+/// The result of one tick: plain data of fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickReport {
-    /// Time stamp of the snapshot it answers, s.
+    /// Time stamp of the snapshot, s.
     pub stamp_s: f64,
-    /// The speed override to obey, 0..1, the programmed override in it.
+    /// The speed override to apply, 0..1; it includes the programmed override.
     pub speed_override: f64,
-    /// Why it is what it is.
-    pub reason: Reason,
-    /// The virtual TCP that asks for the smallest override, where one asks for any.
+    /// Why the override has this value.
+    pub reason: OverrideReason,
+    /// The virtual TCP that requests the smallest override, where one limits it.
     pub governing: Option<VirtualTcp>,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,
-    /// Pairs of volume and region that were measured exactly in this tick.
+    /// Number of pairs of volume and region whose exact distance was computed in this tick.
     pub measured_pairs: u32,
 }
 
@@ -42,25 +42,25 @@ pub struct VirtualTcp {
     pub acceleration: Vec3,
 }
 
-/// Why an override is what it is.
+/// Why the speed override has its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Reason {
-    /// No region asks for less than the programmed override.
+pub enum OverrideReason {
+    /// No region requests less than the programmed override.
     Free,
-    /// A forbidden region is near.
+    /// A forbidden region limits the override.
     Region(RegionId),
-    /// A speed zone is near.
+    /// A speed zone limits the override.
     SpeedZone(RegionId),
-    /// An exchange region is near that another robot holds.
+    /// An exchange region that is not granted to this robot limits the override.
     Waiting(RegionId),
-    /// The override is still rising or falling at its largest rate.
+    /// The override is rising or falling at its largest rate.
     Rate,
-    /// The input cannot be trusted.
+    /// The input is invalid.
     Fault(Fault),
 }
 
-impl Reason {
-    /// The region that governs, where one does.
+impl OverrideReason {
+    /// The region that limits the override, where one does.
     pub fn region(self) -> Option<RegionId> {
         match self {
             Self::Region(r) | Self::SpeedZone(r) | Self::Waiting(r) => Some(r),
@@ -69,7 +69,7 @@ impl Reason {
     }
 }
 
-impl fmt::Display for Reason {
+impl fmt::Display for OverrideReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Free => write!(f, "free"),
@@ -82,16 +82,16 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Input that stops the robot (P.6).
+/// Invalid input, which stops the robot (P.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// Older than the configured age.
+    /// Older than [`Laws::stale_s`](crate::Laws).
     Stale,
-    /// Its time stamp lies before that of the snapshot before, or in the future.
+    /// The time stamp lies before that of the previous snapshot, or in the future.
     Backwards,
     /// A number is NaN or infinite.
     NotFinite,
-    /// A slice has not one entry per joint, or per source.
+    /// A slice does not have one entry per joint, or per source.
     WrongLength,
     /// The programmed override is not within 0..1.
     ProgrammedOverride,
@@ -100,24 +100,24 @@ pub enum Fault {
         /// Index of the joint in `q`.
         joint: usize,
     },
-    /// A joint is faster than it can be, or jumped farther than it can since the snapshot before.
+    /// A joint is implausibly fast, or has moved implausibly far since the previous snapshot.
     TooFast {
         /// Index of the joint in `q`.
         joint: usize,
     },
-    /// The stopping-distance law is on, and no velocity is known yet: none was given, and this is the first position.
+    /// The stopping-distance law is on and no velocity is known: none was given, and this is the first position.
     NoVelocity,
-    /// The joint values have not changed by a bit although the robot was told to move: the reading is frozen.
+    /// The joint values are bitwise constant although the robot is commanded to move: the reading is frozen.
     Frozen,
-    /// The robot brakes less than was stated ([`Stopping`](crate::Stopping)).
+    /// The robot brakes less than stated in [`Stopping`](crate::Stopping).
     Braking,
     /// The source of motion that an active region follows is stale or not finite.
     Source {
         /// The region.
         region: RegionId,
     },
-    /// The source of motion that an active region follows is farther away than it can be by now, or than the motion that it
-    /// states explains.
+    /// The source of motion that an active region follows has moved farther than its limits, or than its reported motion,
+    /// allow.
     SourceJump {
         /// The region.
         region: RegionId,
@@ -125,8 +125,8 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// True where the snapshot's times were found to be in order: others may have no meaning.
-    pub(crate) fn knows_the_time(self) -> bool {
+    /// True where the time stamps of the snapshot are valid.
+    pub(crate) fn has_valid_time(self) -> bool {
         use Fault::{BeyondLimits, Braking, Frozen, NoVelocity, Source, SourceJump, TooFast};
         matches!(
             self,
@@ -146,7 +146,7 @@ impl fmt::Display for Fault {
             Self::BeyondLimits { joint } => write!(f, "joint {joint} is beyond its limits"),
             Self::TooFast { joint } => write!(f, "joint {joint} moves faster than it can"),
             Self::NoVelocity => write!(f, "no joint velocities are known yet"),
-            Self::Frozen => write!(f, "joint values do not change although the robot is told to move"),
+            Self::Frozen => write!(f, "joint values do not change although the robot is reported to move"),
             Self::Braking => write!(f, "the robot brakes less than its stated deceleration"),
             Self::Source { region } => write!(f, "the source that region {} follows is lost", region.0),
             Self::SourceJump { region } => {

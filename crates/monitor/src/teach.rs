@@ -1,53 +1,16 @@
-//! Regions from taught points: the robot is driven to characteristic points and they are recorded (S1.9).
+//! Regions from taught points: the robot is driven to characteristic points, whose positions are recorded (S1.9).
 //!
-//! Every function refuses points that do not determine its shape, and says which of them are to blame.
+//! Every function refuses points that do not determine its shape; the error names the points.
 
 use elbowroom_spatial::{Rotation, Vec3};
 
 use crate::Region;
+use crate::taught_points::{PARALLEL_SINE, require_distinct, require_not_collinear, require_positive};
 
-/// Points nearer than this (m) count as one: a robot repeats to about 0.05 mm.
-const SAME_POINT_M: f64 = 1e-4;
-/// Directions within this sine of each other count as parallel.
-const PARALLEL: f64 = 1e-3;
-/// A base whose normal is so near to level (sine of 5°) has no upper side: taught by hand, it may lean to either.
-const UPRIGHT: f64 = 0.087;
+pub use crate::taught_points::{Dimension, PointTriple, TaughtPoint, TeachError};
 
-/// Why taught points were refused.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TeachError {
-    /// Two points coincide.
-    #[error("{a} and {b} are the same point (within 0.1 mm); teach {b} elsewhere")]
-    SamePoint {
-        /// First point.
-        a: &'static str,
-        /// Second point.
-        b: &'static str,
-    },
-    /// Three points lie on a line.
-    #[error("{what} lie on a line; teach one of them beside it")]
-    Collinear {
-        /// Which points.
-        what: &'static str,
-    },
-    /// Four points lie in a plane.
-    #[error("the four surface points lie in a plane; teach one of them off it")]
-    Coplanar,
-    /// A size came out as zero or less.
-    #[error("the {what} would be {value_m} m; it must be larger than 0.1 mm")]
-    Size {
-        /// Which size.
-        what: &'static str,
-        /// What came out, m.
-        value_m: f64,
-    },
-    /// A point is not a finite number.
-    #[error("{what} is not a finite point")]
-    NotFinite {
-        /// Which point.
-        what: &'static str,
-    },
-}
+/// Sine (of 5°) of the normal's elevation below which a base counts as upright: a taught base may lean to either side.
+const UPRIGHT_SINE: f64 = 0.087;
 
 /// A sphere from its centre and one point of its surface (m).
 ///
@@ -63,7 +26,7 @@ pub enum TeachError {
 /// # Ok::<(), teach::TeachError>(())
 /// ```
 pub fn sphere_from_center(name: &str, center: Vec3, surface: Vec3) -> Result<Region, TeachError> {
-    distinct([("the centre", center), ("the surface point", surface)])?;
+    require_distinct([(TaughtPoint::Centre, center), (TaughtPoint::Surface, surface)])?;
     Ok(Region::sphere(name, center, center.distance(surface)))
 }
 
@@ -72,12 +35,12 @@ pub fn sphere_from_center(name: &str, center: Vec3, surface: Vec3) -> Result<Reg
 /// # Errors
 /// [`TeachError`] where points coincide, three lie on a line or all in a plane.
 pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, TeachError> {
-    let names = ["the first point", "the second point", "the third point", "the fourth point"];
-    distinct(std::array::from_fn::<_, 4, _>(|i| (names[i], points[i])))?;
+    let names = [TaughtPoint::First, TaughtPoint::Second, TaughtPoint::Third, TaughtPoint::Fourth];
+    require_distinct(std::array::from_fn::<_, 4, _>(|i| (names[i], points[i])))?;
     let [a, b, c] = [points[1] - points[0], points[2] - points[0], points[3] - points[0]];
-    off_line(a, b, "the first three surface points")?;
+    require_not_collinear(a, b, PointTriple::Surface)?;
     let volume = a.dot(b.cross(c));
-    if volume.abs() < PARALLEL * a.length() * b.length() * c.length() {
+    if volume.abs() < PARALLEL_SINE * a.length() * b.length() * c.length() {
         return Err(TeachError::Coplanar);
     }
     // The centre x solves 2·a·x = |a|², likewise for b and c, measured from the first point.
@@ -87,16 +50,16 @@ pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, Teach
 }
 
 /// A cylinder from the centre of its base, a point of the base's rim and a point at the height of its top (m).
-/// Its axis is perpendicular to the world's XY plane, as in the paper, upwards or downwards.
+/// Its axis is perpendicular to the world's XY plane, as in S1, upwards or downwards.
 ///
 /// # Errors
-/// [`TeachError`] where radius or height would be zero.
+/// [`TeachError`] where radius or height is zero.
 pub fn cylinder(name: &str, base: Vec3, rim: Vec3, top: Vec3) -> Result<Region, TeachError> {
-    distinct([("the base centre", base), ("the rim point", rim), ("the top point", top)])?;
+    require_distinct([(TaughtPoint::BaseCentre, base), (TaughtPoint::Rim, rim), (TaughtPoint::Top, top)])?;
     let radius = (rim.x - base.x).hypot(rim.y - base.y);
     let height = (top.z - base.z).abs();
-    positive("radius", radius)?;
-    positive("height", height)?;
+    require_positive(Dimension::Radius, radius)?;
+    require_positive(Dimension::Height, height)?;
     let bottom = Vec3::new(base.x, base.y, base.z.min(top.z));
     Ok(Region::cylinder(name, bottom, radius, height, Rotation::IDENTITY))
 }
@@ -112,19 +75,19 @@ pub fn plane(name: &str, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Region
 /// A box parallel to the world's axes from two opposite corners (m).
 ///
 /// # Errors
-/// [`TeachError`] where an edge would have no length.
+/// [`TeachError`] where an edge has no length.
 pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, TeachError> {
-    distinct([("the first corner", from), ("the second corner", to)])?;
+    require_distinct([(TaughtPoint::FirstCorner, from), (TaughtPoint::SecondCorner, to)])?;
     let size = (to - from).abs();
-    positive("length along x", size.x)?;
-    positive("length along y", size.y)?;
-    positive("length along z", size.z)?;
+    require_positive(Dimension::LengthX, size.x)?;
+    require_positive(Dimension::LengthY, size.y)?;
+    require_positive(Dimension::LengthZ, size.z)?;
     Ok(Region::cuboid_from_corners(name, from, to))
 }
 
 /// A box of any orientation from three corners of its base (the first is shared by both edges) and a height (m).
-/// The second edge is squared up to the first. The height goes where [`height_direction`] says: up where it is positive, down
-/// where it is negative, whatever the order of the corners.
+/// The second edge is made perpendicular to the first. A positive height points up and a negative one down, in any order of
+/// the corners ([`height_direction`]).
 ///
 /// # Errors
 /// [`TeachError`] where the corners lie on a line or the height is zero.
@@ -148,77 +111,53 @@ pub fn cuboid_from_base(
     across: Vec3,
     height: f64,
 ) -> Result<Region, TeachError> {
-    positive("height", height.abs())?;
+    require_positive(Dimension::Height, height.abs())?;
     let direction = height_direction(corner, along, across, height)?.direction;
-    let collinear = TeachError::Collinear { what: "the three base corners" };
-    let taught = Rotation::from_x_and_xy(along - corner, across - corner).ok_or(collinear)?;
+    let collinear = TeachError::Collinear(PointTriple::BaseCorners);
+    let taught = Rotation::from_x_and_xy(along - corner, across - corner).ok_or(collinear.clone())?;
     let length = corner.distance(along);
     let width = taught.y_axis().dot(across - corner);
-    positive("width", width)?;
-    let middle = corner + taught.x_axis() * (length / 2.0) + taught.y_axis() * (width / 2.0);
-    // The box stands on its lower side, and its z axis is up. Where it has no up, it stands on what was taught.
-    let lower = if direction.z < 0.0 { middle + direction * height.abs() } else { middle };
+    require_positive(Dimension::Width, width)?;
+    let center = corner + taught.x_axis() * (length / 2.0) + taught.y_axis() * (width / 2.0);
+    // The anchor lies on the lower side with its z axis up. An upright base has no lower side: there it is the taught side.
+    let lower = if direction.z < 0.0 { center + direction * height.abs() } else { center };
     let up = if direction.z < 0.0 { -direction } else { direction };
     let rotation = if taught.z_axis().dot(up) > 0.0 {
         taught
     } else {
-        // Turned over about the first edge.
-        Rotation::from_x_and_xy(taught.x_axis(), -taught.y_axis())
-            .ok_or(TeachError::Collinear { what: "the three base corners" })?
+        // Rotated by half a turn about the first edge.
+        Rotation::from_x_and_xy(taught.x_axis(), -taught.y_axis()).ok_or(collinear)?
     };
     Ok(Region::cuboid(name, lower, Vec3::new(length, width, height.abs()), rotation))
 }
 
-/// Where the height of a taught box goes.
+/// Direction of the height of a taught box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightDirection {
-    /// Unit vector in the world, from the taught base into the box, at a right angle to the base.
+    /// Unit vector in the world, from the taught base into the box, perpendicular to the base.
     pub direction: Vec3,
-    /// True where the base stands upright, within 5°: it has no upper side, and the order of the corners decides.
+    /// True where the base is upright within 5°: it has no upper side, and the order of the corners decides.
     pub upright_base: bool,
 }
 
-/// The direction in which [`cuboid_from_base`] builds: at a right angle to the base, against gravity (the world's -z) where
-/// the height is positive and with it where it is negative. A base that stands upright has no upper side. There a positive
-/// height goes along the first edge (corner to `along`) × the second (corner to `across`), a negative one the other way.
+/// The direction of the height in [`cuboid_from_base`]: perpendicular to the base, upwards (the world's +z) where the height
+/// is positive and downwards where it is negative. An upright base has no upper side; there a positive height points along
+/// the first edge (corner to `along`) × the second (corner to `across`), a negative one against it.
 ///
 /// # Errors
 /// [`TeachError`] where the corners coincide or lie on a line.
 pub fn height_direction(corner: Vec3, along: Vec3, across: Vec3, height: f64) -> Result<HeightDirection, TeachError> {
-    distinct([("the first corner", corner), ("the second corner", along), ("the third corner", across)])?;
-    let what = "the three base corners";
-    off_line(along - corner, across - corner, what)?;
-    let normal = (along - corner).cross(across - corner).try_normalize().ok_or(TeachError::Collinear { what })?;
-    let upright_base = normal.z.abs() < UPRIGHT;
+    require_distinct([
+        (TaughtPoint::FirstCorner, corner),
+        (TaughtPoint::SecondCorner, along),
+        (TaughtPoint::ThirdCorner, across),
+    ])?;
+    let triple = PointTriple::BaseCorners;
+    require_not_collinear(along - corner, across - corner, triple)?;
+    let normal = (along - corner).cross(across - corner).try_normalize().ok_or(TeachError::Collinear(triple))?;
+    let upright_base = normal.z.abs() < UPRIGHT_SINE;
     let positive = if normal.z < 0.0 && !upright_base { -normal } else { normal };
     Ok(HeightDirection { direction: if height < 0.0 { -positive } else { positive }, upright_base })
-}
-
-pub(crate) fn plane_rotation(origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Rotation, TeachError> {
-    distinct([("the origin", origin), ("the point on x", on_x), ("the point in the xy plane", in_xy)])?;
-    let what = "the plane's three points";
-    off_line(on_x - origin, in_xy - origin, what)?;
-    Rotation::from_x_and_xy(on_x - origin, in_xy - origin).ok_or(TeachError::Collinear { what })
-}
-
-fn distinct<const N: usize>(points: [(&'static str, Vec3); N]) -> Result<(), TeachError> {
-    for (i, (b, p)) in points.iter().enumerate() {
-        if !p.is_finite() {
-            return Err(TeachError::NotFinite { what: b });
-        }
-        if let Some((a, _)) = points[..i].iter().find(|(_, o)| o.distance(*p) < SAME_POINT_M) {
-            return Err(TeachError::SamePoint { a, b });
-        }
-    }
-    Ok(())
-}
-
-fn off_line(u: Vec3, v: Vec3, what: &'static str) -> Result<(), TeachError> {
-    if u.cross(v).length() < PARALLEL * u.length() * v.length() { Err(TeachError::Collinear { what }) } else { Ok(()) }
-}
-
-fn positive(what: &'static str, value_m: f64) -> Result<(), TeachError> {
-    if value_m > SAME_POINT_M { Ok(()) } else { Err(TeachError::Size { what, value_m }) }
 }
 
 #[cfg(test)]
@@ -251,32 +190,32 @@ mod tests {
     }
 
     #[test]
-    fn the_order_of_corners_does_not_turn_a_box_over() {
+    fn the_order_of_corners_does_not_flip_a_box() {
         // Level, and leaning by up to 80 degrees in several directions.
         for k in 0..40 {
             let (lean, round) = (f64::from(k % 8) * 11.0_f64.to_radians(), f64::from(k) * 0.7);
             let turn = Rotation::from_axis_angle(Vec3::new(round.cos(), round.sin(), 0.0), lean);
             let corner = Vec3::new(0.6, -0.2, 0.3);
             let (x, y) = (turn.x_axis() * 0.4, turn.y_axis() * 0.3);
-            let middle = corner + (x + y) * 0.5;
+            let center = corner + (x + y) * 0.5;
             for (along, across) in [(x, y), (y, x)] {
                 for height in [0.25, -0.25] {
                     let region = cuboid_from_base("b", corner, corner + along, corner + across, height).unwrap();
                     let centre = (region.anchor * region.shape_in_anchor).translation;
                     // The normal that points up is that of the turned z axis: it leans by less than a right angle.
-                    let wanted = middle + turn.z_axis() * (height / 2.0);
-                    assert!(centre.distance(wanted) < 1e-12, "{lean} {height} {centre:?} {wanted:?}");
+                    let expected = center + turn.z_axis() * (height / 2.0);
+                    assert!(centre.distance(expected) < 1e-12, "{lean} {height} {centre:?} {expected:?}");
                     for p in [corner, corner + along, corner + across] {
                         assert!(on_surface(&region, p) < 1e-12);
                     }
-                    assert!(region.anchor.rotation.z_axis().z > 0.0, "it stands on its bottom");
+                    assert!(region.anchor.rotation.z_axis().z > 0.0, "its z axis points up");
                 }
             }
         }
     }
 
     #[test]
-    fn an_upright_base_has_two_sides_and_the_corners_choose() {
+    fn the_order_of_corners_decides_for_an_upright_base() {
         let side = |along, across, height| height_direction(Vec3::ZERO, along, across, height).unwrap();
         for lean in [-0.06, 0.0, 0.06] {
             let up = Vec3::new(0.0, lean, 1.0);

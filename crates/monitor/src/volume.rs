@@ -1,19 +1,18 @@
-//! The robot's own volume, as the monitor sees it.
+//! Guarded volumes of the robot.
 
 use elbowroom_kinematics::{JointKind, LinkId};
 use elbowroom_proximity::{ConvexHull, Cuboid, Shape, Sphere, fit};
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Obb, Pose, Vec3};
 
 use crate::Guards;
 
-/// What a volume belongs to.
+/// The part of the robot that a volume belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// The tool centre point, where a solid that moves with it encloses it.
+    /// The tool centre point, enclosed by a solid that moves with it.
     Tcp,
-    /// The tool centre point where no such solid encloses it: a region that guards the tool or the arm must not overlook
-    /// the point that works.
+    /// The tool centre point, not enclosed by any such solid: regions that guard against the tool or the arm include it.
     TcpOutside,
     /// Tool or load.
     Tool,
@@ -22,8 +21,8 @@ pub enum Part {
 }
 
 impl Part {
-    /// True where a region with these guards measures this part: `arm` is the links with tool and load; a tool centre
-    /// point outside of all solids counts for every guard.
+    /// True where a region with these guards includes this part: `arm` is the links with tool and load; a tool centre point
+    /// outside of all solids counts for every guard.
     pub fn counts_for(self, guards: Guards) -> bool {
         match self {
             Self::Tcp => guards.tcp,
@@ -34,18 +33,18 @@ impl Part {
     }
 }
 
-/// A solid that moves with a link and is kept out of regions.
+/// A solid that moves with a link and is kept out of regions: a guarded volume.
 #[derive(Debug, Clone)]
 pub struct Volume {
-    /// Said in reports; a link's or a tool's name.
+    /// Name for reports: that of the link or the tool.
     pub name: String,
-    /// What it belongs to.
+    /// The part of the robot.
     pub part: Part,
-    /// The link it moves with.
+    /// The link that it moves with.
     pub link: LinkId,
     /// The solid.
     pub shape: Shape,
-    /// Where the shape's frame stands in the link's.
+    /// Pose of the shape in the frame of the link.
     pub in_link: Pose,
 }
 
@@ -63,7 +62,7 @@ impl Volume {
     }
 }
 
-/// How the solids of links become volumes (S1.10).
+/// The volume that replaces the solid of a link (S1.10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VolumeModel {
     /// The smaller of the enclosing capsule and the enclosing box, per solid.
@@ -80,7 +79,7 @@ pub enum VolumeModel {
 }
 
 impl VolumeModel {
-    /// The volume of one solid; it encloses the solid in every model.
+    /// The volume of one solid; every model encloses the solid.
     pub fn of(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
         let points = match shape {
             Shape::Mesh(mesh) if self != Self::Exact => mesh.vertices(),
@@ -98,22 +97,21 @@ impl VolumeModel {
             }
             Self::Tightest | Self::Exact => fit::tightest(points),
         };
-        // A solid that cannot be fitted (all its points coincide, say) guards as it is.
+        // A solid that cannot be fitted, as all its points coincide, is used as it is.
         fitted.map_or_else(|| (shape.clone(), in_frame), |f| (f.shape, in_frame * f.in_frame))
     }
 }
 
-/// The volumes of all links that a joint moves. Solids fixed to the root stand where the integrator put them: they
-/// cannot approach anything, so they are no volumes.
+/// The volumes of all links that a joint moves. Solids fixed to the root link do not move and get no volume.
 pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
     let moves = |link: LinkId| chain.path(link).iter().any(|j| chain.joints()[j.0].kind != JointKind::Fixed);
-    let volume = |link: usize, body: &Body| {
+    let volume = |link: usize, body: &Collider| {
         let (shape, in_link) = model.of(&body.shape, body.in_link);
         Volume { name: chain.links()[link].clone(), part: Part::Arm, link: LinkId(link), shape, in_link }
     };
     robot
-        .bodies
+        .colliders
         .iter()
         .enumerate()
         .filter(|(link, _)| moves(LinkId(*link)))

@@ -1,62 +1,87 @@
-//! Does the input deserve trust? (P.6, W.9)
+//! Plausibility check of the input (P.6, W.9).
 
 use std::f64::consts::{PI, TAU};
 
-use elbowroom_kinematics::{Chain, JointKind};
+use elbowroom_kinematics::{Chain, JointId, JointKind};
 
-use crate::commands::Obeyed;
+use crate::override_history::OverrideRange;
 use crate::{Fault, Laws, Snapshot};
 
-/// A joint beyond its limits by more than this (rad or m) is an implausible reading: controllers overshoot by less.
-const LIMIT_TOLERANCE: f64 = 0.05;
-/// A joint is implausibly fast beyond this share of its rated speed.
-const SPEED_TOLERANCE: f64 = 1.5;
-/// Speed assumed possible where the model gives none, rad/s and m/s: faster than any industrial joint.
-const FASTEST: f64 = 20.0;
-/// Allowance (rad or m) for the quantization of readings when their difference is turned into a speed.
-const JITTER: f64 = 1e-3;
-/// A joint may move by this share more than its reported velocities say.
-const VELOCITY_TOLERANCE: f64 = 1.25;
-/// After a longer silence (s) velocities explain nothing.
-const SILENCE_S: f64 = 0.1;
-/// A reading that stays the same to the last bit for so much of the program's time (s) is frozen.
-const FROZEN_S: f64 = 0.1;
+/// Settings of the plausibility check.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WatchdogSettings {
+    /// Tolerance of the joint limits (rad or m): controllers overshoot by less.
+    pub(crate) limit_tolerance: f64,
+    /// Largest plausible speed of a joint as a multiple of its rated speed.
+    pub(crate) speed_factor: f64,
+    /// Largest plausible speed of a joint without a rated speed, rad/s or m/s: faster than any industrial joint.
+    pub(crate) default_speed: f64,
+    /// Quantization of the readings (rad or m) where their difference gives a speed.
+    pub(crate) jitter: f64,
+    /// Largest plausible travel of a joint as a multiple of its reported velocity.
+    pub(crate) velocity_factor: f64,
+    /// Time (s) between two readings beyond which velocities do not explain the travel.
+    pub(crate) silence_s: f64,
+    /// Program time (s) after which a bitwise constant reading is frozen.
+    pub(crate) frozen_s: f64,
+}
 
-/// Checks each snapshot against the one before and against what the robot can do.
+impl Default for WatchdogSettings {
+    fn default() -> Self {
+        Self {
+            limit_tolerance: 0.05,
+            speed_factor: 1.5,
+            default_speed: 20.0,
+            jitter: 1e-3,
+            velocity_factor: 1.25,
+            silence_s: 0.1,
+            frozen_s: 0.1,
+        }
+    }
+}
+
+/// Checks each snapshot against the previous one and against the limits of the robot.
 #[derive(Debug)]
 pub(crate) struct Watchdog {
+    settings: WatchdogSettings,
     joints: Vec<JointBound>,
     stale_s: f64,
-    /// The stopping-distance law needs velocities, and readings that are alive.
+    /// True with the stopping-distance law: it needs velocities, and readings that are not frozen.
     needs_motion: bool,
-    /// Times of the last trusted snapshot.
-    last: Option<(f64, f64)>,
+    last_valid: Option<SnapshotTimes>,
     last_q: Vec<f64>,
-    /// Stamp of the last snapshot that was heard, trusted or not, and its velocities.
-    heard_s: Option<f64>,
-    heard_qd: Vec<f64>,
-    /// How far each joint may be from its last trusted reading by the velocities heard since.
-    explained: Vec<f64>,
-    /// Derived from positions, where none are given.
+    /// Time stamp of the last snapshot, valid or not, and its velocities.
+    received_s: Option<f64>,
+    received_qd: Vec<f64>,
+    /// Largest travel of each joint since the last valid reading by the velocities received since.
+    explained_travel: Vec<f64>,
+    /// Velocities derived from positions, where none are given.
     velocity: Vec<f64>,
-    /// Time over which it was derived, s.
+    /// Time over which they were derived, s.
     derived_over_s: f64,
-    /// Program time that may have passed since the reading last changed, s.
-    unnoticed_s: f64,
-    /// Program time that must have passed since then, unless the reading is frozen, s.
-    frozen_s: f64,
+    /// Largest program time since the reading last changed, s.
+    max_unchanged_s: f64,
+    /// Smallest program time since then, s.
+    min_unchanged_s: f64,
+}
+
+/// Times of a snapshot, s.
+#[derive(Debug, Clone, Copy)]
+struct SnapshotTimes {
+    now_s: f64,
+    stamp_s: f64,
 }
 
 #[derive(Debug)]
 struct JointBound {
     lower: f64,
     upper: f64,
-    fastest: f64,
+    max_speed: f64,
     wraps: bool,
 }
 
 impl JointBound {
-    /// From one reading to another, the short way round where the joint turns without end.
+    /// Difference of two readings; the shorter one where the joint is continuous.
     fn step(&self, from: f64, to: f64) -> f64 {
         let step = to - from;
         if self.wraps { (step + PI).rem_euclid(TAU) - PI } else { step }
@@ -64,51 +89,51 @@ impl JointBound {
 }
 
 impl Watchdog {
-    pub(crate) fn new(chain: &Chain, laws: &Laws) -> Self {
-        let bound = |id: &elbowroom_kinematics::JointId| {
+    pub(crate) fn new(chain: &Chain, laws: &Laws, settings: WatchdogSettings) -> Self {
+        let bound = |id: &JointId| {
             let joint = &chain.joints()[id.0];
             let wraps = joint.kind == JointKind::Continuous;
             JointBound {
-                lower: if wraps { f64::NEG_INFINITY } else { joint.limits.lower - LIMIT_TOLERANCE },
-                upper: if wraps { f64::INFINITY } else { joint.limits.upper + LIMIT_TOLERANCE },
-                fastest: joint.limits.velocity.map_or(FASTEST, |v| v * SPEED_TOLERANCE),
+                lower: if wraps { f64::NEG_INFINITY } else { joint.limits.lower - settings.limit_tolerance },
+                upper: if wraps { f64::INFINITY } else { joint.limits.upper + settings.limit_tolerance },
+                max_speed: joint.limits.velocity.map_or(settings.default_speed, |v| v * settings.speed_factor),
                 wraps,
             }
         };
         let zeros = vec![0.0; chain.dof()];
         Self {
+            settings,
             joints: chain.active_joints().iter().map(bound).collect(),
             stale_s: laws.stale_s,
             needs_motion: laws.stopping_distance.is_some(),
-            last: None,
+            last_valid: None,
             last_q: zeros.clone(),
-            heard_s: None,
-            heard_qd: zeros.clone(),
-            explained: zeros.clone(),
+            received_s: None,
+            received_qd: zeros.clone(),
+            explained_travel: zeros.clone(),
             velocity: zeros,
             derived_over_s: 0.0,
-            unnoticed_s: 0.0,
-            frozen_s: 0.0,
+            max_unchanged_s: 0.0,
+            min_unchanged_s: 0.0,
         }
     }
 
-    /// Accepts the snapshot and remembers it, or says what is wrong with it; `obeyed` are the overrides that the robot may be
-    /// obeying.
-    pub(crate) fn check(&mut self, s: &Snapshot, sources: usize, obeyed: Obeyed) -> Result<(), Fault> {
+    /// Accepts and stores the snapshot, or returns its fault; `overrides` are those that the robot may be executing.
+    pub(crate) fn check(&mut self, s: &Snapshot, sources: usize, overrides: OverrideRange) -> Result<(), Fault> {
         self.check_form(s, sources)?;
         self.check_time(s)?;
-        self.hear(s);
+        self.receive(s);
         self.check_joints(s)?;
-        let motion = if self.needs_motion { self.check_motion(s, obeyed) } else { Ok(()) };
-        self.last = Some((s.now_s, s.stamp_s));
+        let motion = if self.needs_motion { self.check_motion(s, overrides) } else { Ok(()) };
+        self.last_valid = Some(SnapshotTimes { now_s: s.now_s, stamp_s: s.stamp_s });
         self.last_q.copy_from_slice(s.q);
-        self.explained.fill(0.0);
+        self.explained_travel.fill(0.0);
         motion
     }
 
-    /// Seconds between this snapshot and the one accepted before.
+    /// Seconds since the last valid snapshot.
     pub(crate) fn since_last(&self, s: &Snapshot) -> f64 {
-        self.last.map_or(0.0, |(now_s, _)| (s.now_s - now_s).max(0.0))
+        self.last_valid.map_or(0.0, |last| (s.now_s - last.now_s).max(0.0))
     }
 
     /// Joint velocities derived from successive positions; empty where none are needed.
@@ -116,15 +141,15 @@ impl Watchdog {
         if self.needs_motion { &self.velocity } else { &[] }
     }
 
-    /// The velocities of the last trusted snapshot are those of some instant within this time (s) before it; 0 where they
-    /// were given.
+    /// The velocities of the last valid snapshot are those of some instant within this time (s) before it; 0 where they were
+    /// given.
     pub(crate) fn velocity_uncertain_s(&self) -> f64 {
         self.derived_over_s
     }
 
-    /// Program time (s) that may have passed since the reading last changed.
-    pub(crate) fn unnoticed_s(&self) -> f64 {
-        self.unnoticed_s
+    /// Largest program time (s) since the reading last changed.
+    pub(crate) fn max_unchanged_s(&self) -> f64 {
+        self.max_unchanged_s
     }
 
     fn check_form(&self, s: &Snapshot, sources: usize) -> Result<(), Fault> {
@@ -147,25 +172,27 @@ impl Watchdog {
     }
 
     fn check_time(&self, s: &Snapshot) -> Result<(), Fault> {
-        let earlier = self.last.is_some_and(|(now_s, stamp_s)| s.now_s < now_s || s.stamp_s < stamp_s);
+        let earlier = self.last_valid.is_some_and(|last| s.now_s < last.now_s || s.stamp_s < last.stamp_s);
         if earlier || s.stamp_s > s.now_s {
             return Err(Fault::Backwards);
         }
         if s.now_s - s.stamp_s > self.stale_s { Err(Fault::Stale) } else { Ok(()) }
     }
 
-    /// Adds up how far the joints may have moved by what is said of their velocities.
-    fn hear(&mut self, s: &Snapshot) {
-        let silence_s = self.heard_s.map_or(f64::INFINITY, |heard_s| (s.stamp_s - heard_s).max(0.0));
+    /// Accumulates the travel that the reported velocities explain.
+    fn receive(&mut self, s: &Snapshot) {
+        let silence_s = self.received_s.map_or(f64::INFINITY, |received_s| (s.stamp_s - received_s).max(0.0));
         for (joint, bound) in self.joints.iter().enumerate() {
             let speed = match s.qd.get(joint) {
-                Some(qd) if silence_s <= SILENCE_S => VELOCITY_TOLERANCE * qd.abs().max(self.heard_qd[joint].abs()),
-                _ => bound.fastest,
+                Some(qd) if silence_s <= self.settings.silence_s => {
+                    self.settings.velocity_factor * qd.abs().max(self.received_qd[joint].abs())
+                }
+                _ => bound.max_speed,
             };
-            self.explained[joint] += speed.min(bound.fastest) * silence_s;
+            self.explained_travel[joint] += speed.min(bound.max_speed) * silence_s;
         }
-        self.heard_s = Some(s.stamp_s);
-        if s.qd.is_empty() { self.heard_qd.fill(0.0) } else { self.heard_qd.copy_from_slice(s.qd) }
+        self.received_s = Some(s.stamp_s);
+        if s.qd.is_empty() { self.received_qd.fill(0.0) } else { self.received_qd.copy_from_slice(s.qd) }
     }
 
     fn check_joints(&self, s: &Snapshot) -> Result<(), Fault> {
@@ -174,7 +201,7 @@ impl Watchdog {
             if !(bound.lower <= q && q <= bound.upper) {
                 return Err(Fault::BeyondLimits { joint });
             }
-            if s.qd.get(joint).is_some_and(|v| v.abs() > bound.fastest) || self.jumped(s, joint, bound) {
+            if s.qd.get(joint).is_some_and(|v| v.abs() > bound.max_speed) || self.jumped(s, joint, bound) {
                 return Err(Fault::TooFast { joint });
             }
         }
@@ -182,26 +209,27 @@ impl Watchdog {
     }
 
     fn jumped(&self, s: &Snapshot, joint: usize, bound: &JointBound) -> bool {
-        let Some((_, stamp_s)) = self.last else { return false };
-        let possible = bound.fastest * (s.stamp_s - stamp_s);
-        bound.step(self.last_q[joint], s.q[joint]).abs() > possible.min(self.explained[joint]) + JITTER
+        let Some(last) = self.last_valid else { return false };
+        let possible = bound.max_speed * (s.stamp_s - last.stamp_s);
+        let explained = possible.min(self.explained_travel[joint]);
+        bound.step(self.last_q[joint], s.q[joint]).abs() > explained + self.settings.jitter
     }
 
-    /// Velocities must be known, and a reading must change while the robot moves.
-    fn check_motion(&mut self, s: &Snapshot, obeyed: Obeyed) -> Result<(), Fault> {
-        let Some((_, stamp_s)) = self.last else {
+    /// Requires known velocities, and readings that change while the robot moves.
+    fn check_motion(&mut self, s: &Snapshot, overrides: OverrideRange) -> Result<(), Fault> {
+        let Some(last) = self.last_valid else {
             return if s.qd.is_empty() { Err(Fault::NoVelocity) } else { Ok(()) };
         };
-        let passed_s = s.stamp_s - stamp_s;
+        let passed_s = s.stamp_s - last.stamp_s;
         self.derive_velocity(s, passed_s);
-        let wanted = s.intent.unwrap_or(s.qd);
+        let intent = s.intent.unwrap_or(s.qd);
         if s.q.iter().zip(&self.last_q).any(|(a, b)| a.to_bits() != b.to_bits()) {
-            (self.unnoticed_s, self.frozen_s) = (0.0, 0.0);
-        } else if passed_s <= SILENCE_S && wanted.iter().any(|v| *v != 0.0) {
-            self.unnoticed_s += obeyed.largest * passed_s;
-            self.frozen_s += obeyed.least * passed_s;
+            (self.max_unchanged_s, self.min_unchanged_s) = (0.0, 0.0);
+        } else if passed_s <= self.settings.silence_s && intent.iter().any(|v| *v != 0.0) {
+            self.max_unchanged_s += overrides.max * passed_s;
+            self.min_unchanged_s += overrides.min * passed_s;
         }
-        if self.frozen_s > FROZEN_S { Err(Fault::Frozen) } else { Ok(()) }
+        if self.min_unchanged_s > self.settings.frozen_s { Err(Fault::Frozen) } else { Ok(()) }
     }
 
     fn derive_velocity(&mut self, s: &Snapshot, passed_s: f64) {

@@ -1,5 +1,4 @@
-//! The tick allocates nothing (P.6). Without the test harness: its threads take memory, too, and the counter counts the
-//! whole process.
+//! The tick does not allocate (P.6). Without the test harness, because the counter includes all threads of the process.
 
 mod common;
 
@@ -8,8 +7,8 @@ use std::sync::Arc;
 
 use common::{Random, arm, arm_volumes, parts};
 use elbowroom_monitor::{
-    AccessClass, Board, Configuration, ConfigurationParts, EventKind, Kind, Laws, Life, Monitor, Reason, Region,
-    RobotSlot, SlotId, Snapshot, Stopping,
+    AccessClass, Configuration, ConfigurationParts, EventKind, Laws, Life, Monitor, OverrideReason, Region, RegionKind,
+    RobotSlot, SlotId, Snapshot, Stopping, ZoneArbiter,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
@@ -28,7 +27,7 @@ fn main() {
             _ => Region::cuboid(format!("{i}"), at, Vec3::splat(0.1), turn),
         };
         let region = region.warning(0.1).life(if i % 2 == 0 { Life::Permanent } else { Life::Temporary });
-        if i % 5 == 0 { region.kind(Kind::Monitored { slow_to: Some(0.5) }) } else { region }
+        if i % 5 == 0 { region.kind(RegionKind::Monitored { slow_to: Some(0.5) }) } else { region }
     });
     let all =
         Laws { direction_aware: true, stopping_distance: Some(stopping()), override_rate: 5.0, ..Laws::default() };
@@ -38,19 +37,19 @@ fn main() {
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
-        let (mut pairs, mut obeyed, mut t) = (0, 0.0, 0.0_f64);
+        let (mut pairs, mut applied, mut t) = (0, 0.0, 0.0_f64);
         for i in 0..5000 {
             let now_s = 0.002 * f64::from(i);
             let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
             let speed = [t.cos(), 0.65 * (1.3 * t).cos(), -0.7 * (0.7 * t).sin(), 0.2 * t.cos(), -t.sin(), 0.0];
-            let qd = speed.map(|v| v * obeyed);
+            let qd = speed.map(|v| v * applied);
             m.switch(switchable, i % 7 < 3, AccessClass::Programmer).unwrap();
-            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::still(now_s, &q) });
-            assert!(!matches!(report.reason, Reason::Fault(_)), "{}", report.reason);
+            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::stationary(now_s, &q) });
+            assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
             pairs += report.measured_pairs;
-            // It obeys, but creeps unnoticed where it should stop.
-            obeyed = report.speed_override;
-            t += 0.002 * obeyed.max(0.1);
+            // It applies the override, but creeps where it should stop.
+            applied = report.speed_override;
+            t += 0.002 * applied.max(0.1);
             assert!(m.events().len() < 8000);
         }
         let change = counter.change();
@@ -64,12 +63,14 @@ fn stopping() -> Stopping {
     Stopping { reaction_s: 0.01, period_s: 0.002, joint_deceleration: vec![10.0; 6], joint_acceleration: vec![5.0; 6] }
 }
 
-/// Two arms that come and go through two regions that they exchange: granted, waiting, yielding, in a circle.
+/// Two arms that move through two exchange regions: granted, waiting, yielding, in a cycle.
 fn exchange() {
     let slots = [SlotId(0), SlotId(1)];
-    let board = Arc::new(Board::new(&["a", "b"], &["left", "right"]));
+    let arbiter = Arc::new(ZoneArbiter::new(&["a", "b"], &["left", "right"]));
     let region = |i: usize, y: f64| {
-        Region::sphere(format!("{i}"), Vec3::new(0.9, y, 0.9), 0.2).warning(0.3).kind(Kind::Exchange { slot: slots[i] })
+        Region::sphere(format!("{i}"), Vec3::new(0.9, y, 0.9), 0.2)
+            .warning(0.3)
+            .kind(RegionKind::Exchange { slot: slots[i] })
     };
     let stopping = stopping();
     let mut monitors: Vec<Monitor> = (0..2)
@@ -77,25 +78,25 @@ fn exchange() {
             let laws = Laws { stopping_distance: Some(stopping.clone()), ..Laws::default() };
             let regions = vec![region(0, 0.6), region(1, -0.6)];
             let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
-            Monitor::new(Configuration::new(parts).unwrap(), Some((board.clone(), RobotSlot(robot)))).unwrap()
+            Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(robot)))).unwrap()
         })
         .collect();
     let counter = Counter::new(ALLOCATOR);
     let (mut granted, mut waiting) = (0, 0);
-    // Each obeys, but creeps unnoticed where it should stop.
+    // Each applies its override, but creeps where it should stop.
     let mut robots = [(0.0_f64, 0.0), (2.0, 0.0)];
     for i in 0..20_000 {
         if i == 10_000 {
-            (0..2).for_each(|robot| board.declare(RobotSlot(robot), slots));
+            (0..2).for_each(|robot| arbiter.declare(RobotSlot(robot), slots));
         }
-        for (monitor, (t, obeyed)) in monitors.iter_mut().zip(&mut robots) {
+        for (monitor, (t, applied)) in monitors.iter_mut().zip(&mut robots) {
             let q = [t.sin(), 0.9, 0.4, 0.0, 0.2, 0.0];
             let intent = [t.cos(), 0.0, 0.0, 0.0, 0.0, 0.0];
-            let qd = intent.map(|v| v * *obeyed);
-            let still = Snapshot::still(0.002 * f64::from(i), &q);
+            let qd = intent.map(|v| v * *applied);
+            let still = Snapshot::stationary(0.002 * f64::from(i), &q);
             let report = monitor.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
-            *obeyed = report.speed_override;
-            *t += 0.002 * obeyed.max(0.1);
+            *applied = report.speed_override;
+            *t += 0.002 * applied.max(0.1);
             granted += monitor.events().iter().filter(|e| e.kind == EventKind::Granted).count();
             waiting += monitor.events().iter().filter(|e| e.kind == EventKind::Waiting).count();
         }

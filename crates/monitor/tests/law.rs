@@ -1,4 +1,4 @@
-//! The override law against an oracle that follows the paper's own case distinctions (S1, eqs. 1-4).
+//! The override law compared with an oracle with the case distinctions of S1 (eqs. 1-4).
 
 mod common;
 
@@ -80,7 +80,7 @@ fn worst_deviation(sample: Sample, turned: bool, seed: u64) -> (f64, usize) {
             let v0 = r.unit();
             let q = [p.x, p.y, p.z, 0.0, 0.0, 0.0];
             let now_s = 10.0 * i as f64;
-            let report = monitor.tick(&Snapshot { programmed_override: v0, ..Snapshot::still(now_s, &q) });
+            let report = monitor.tick(&Snapshot { programmed_override: v0, ..Snapshot::stationary(now_s, &q) });
             let expected = v0 * (oracle(p) / warning).clamp(0.0, 1.0);
             worst = worst.max((report.speed_override - expected).abs());
             warned += usize::from(expected > 0.0 && expected < v0);
@@ -90,7 +90,7 @@ fn worst_deviation(sample: Sample, turned: bool, seed: u64) -> (f64, usize) {
 }
 
 #[test]
-fn the_override_is_the_papers_law_for_every_shape_and_pose() {
+fn the_override_is_the_law_of_s1_for_every_shape_and_pose() {
     let shapes: [(&str, Sample); 4] =
         [("sphere", sphere), ("cylinder", cylinder), ("plane", plane), ("parallelepiped", cuboid)];
     for (seed, (name, sample)) in shapes.into_iter().enumerate() {
@@ -125,7 +125,7 @@ fn many_regions_combine_by_the_minimum() {
         let mut monitor = Monitor::new(configuration(gantry(), volumes, regions), None).unwrap();
         for i in 0..50 {
             let p = r.vec3(2.5);
-            let report = monitor.tick(&Snapshot::still(10.0 * f64::from(i), &[p.x, p.y, p.z, 0.0, 0.0, 0.0]));
+            let report = monitor.tick(&Snapshot::stationary(10.0 * f64::from(i), &[p.x, p.y, p.z, 0.0, 0.0, 0.0]));
             let factors: Vec<f64> = oracles.iter().map(|o| o(p)).collect();
             let expected = factors.iter().fold(1.0_f64, |a, b| a.min(*b));
             assert!((report.speed_override - expected).abs() < 1e-12);

@@ -1,12 +1,11 @@
-//! What the stopping-distance law does with input that says little, or lies: positions only, frozen readings, jumps, brakes
-//! that fail.
+//! The stopping-distance law with incomplete or wrong input: positions only, frozen readings, jumps, brakes that fail.
 
 mod common;
 
 use common::{gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, Reason, Region, Snapshot, Stopping, Volume,
+    Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, OverrideReason, Region, Snapshot, Stopping, Volume,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -14,10 +13,10 @@ const TICK_S: f64 = 0.002;
 const BRAKES: f64 = 4.0;
 
 fn monitor() -> Monitor {
-    obeying_after(TICK_S)
+    reacting_after(TICK_S)
 }
 
-fn obeying_after(reaction_s: f64) -> Monitor {
+fn reacting_after(reaction_s: f64) -> Monitor {
     let stopping = Stopping {
         reaction_s,
         period_s: TICK_S,
@@ -32,16 +31,16 @@ fn obeying_after(reaction_s: f64) -> Monitor {
     Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
 }
 
-/// A point on the x axis whose program goes at 2 m/s towards the wall at x = 2. It speeds up at 8 m/s² and brakes at 4.
-struct Robot {
+/// A point on the x axis whose program moves at 2 m/s towards the wall at x = 2. It accelerates at 8 m/s² and brakes at 4.
+struct PointRobot {
     x: f64,
     speed: f64,
 }
 
-impl Robot {
-    fn obey(&mut self, speed_override: f64, brakes: f64) {
-        let wanted = 2.0 * speed_override;
-        let next = wanted.clamp((self.speed - brakes * TICK_S).max(0.0), self.speed + 8.0 * TICK_S);
+impl PointRobot {
+    fn apply(&mut self, speed_override: f64, brakes: f64) {
+        let commanded = 2.0 * speed_override;
+        let next = commanded.clamp((self.speed - brakes * TICK_S).max(0.0), self.speed + 8.0 * TICK_S);
         self.x += 0.5 * (self.speed + next) * TICK_S;
         self.speed = next;
     }
@@ -50,19 +49,26 @@ impl Robot {
 #[test]
 fn with_positions_alone_the_robot_stops_outside() {
     for intent in [None, Some([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])] {
-        let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
-        let mut fastest = 0.0_f64;
+        let (mut m, mut robot) = (monitor(), PointRobot { x: 0.0, speed: 0.0 });
+        let mut max_speed = 0.0_f64;
         for tick in 0..6000 {
             let q = [robot.x, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let s =
-                Snapshot { intent: intent.as_ref().map(|i| &i[..]), ..Snapshot::still(TICK_S * f64::from(tick), &q) };
+            let s = Snapshot {
+                intent: intent.as_ref().map(|i| &i[..]),
+                ..Snapshot::stationary(TICK_S * f64::from(tick), &q)
+            };
             let report = m.tick(&s);
-            assert_eq!(matches!(report.reason, Reason::Fault(Fault::NoVelocity)), tick == 0, "{}", report.reason);
-            robot.obey(report.speed_override, BRAKES);
-            fastest = fastest.max(robot.speed);
+            assert_eq!(
+                matches!(report.reason, OverrideReason::Fault(Fault::NoVelocity)),
+                tick == 0,
+                "{}",
+                report.reason
+            );
+            robot.apply(report.speed_override, BRAKES);
+            max_speed = max_speed.max(robot.speed);
             assert!(robot.x < 2.0, "inside at tick {tick}");
         }
-        assert!(fastest > 1.0 && robot.x > 1.98, "{fastest} m/s, at {} m", robot.x);
+        assert!(max_speed > 1.0 && robot.x > 1.98, "{max_speed} m/s, at {} m", robot.x);
     }
 }
 
@@ -70,7 +76,7 @@ fn with_positions_alone_the_robot_stops_outside() {
 fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
     for frozen_at in [0.0, 0.3, 0.9, 1.5, 1.9, 1.97] {
         for all in [true, false] {
-            let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
+            let (mut m, mut robot) = (monitor(), PointRobot { x: 0.0, speed: 0.0 });
             let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
             let mut frozen = None;
             let mut found = false;
@@ -81,10 +87,10 @@ fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
                 let (x, then) = frozen.unwrap_or((robot.x, robot.speed));
                 let speed = if all { then } else { robot.speed };
                 let (q, qd) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
-                let still = Snapshot::still(TICK_S * f64::from(tick), &q);
+                let still = Snapshot::stationary(TICK_S * f64::from(tick), &q);
                 let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
-                found |= matches!(report.reason, Reason::Fault(Fault::Frozen | Fault::Braking));
-                robot.obey(report.speed_override, BRAKES);
+                found |= matches!(report.reason, OverrideReason::Fault(Fault::Frozen | Fault::Braking));
+                robot.apply(report.speed_override, BRAKES);
                 assert!(robot.x < 2.0, "inside, frozen at {frozen_at}");
             }
             assert!(robot.speed < 1e-3 && (found || frozen_at > 1.8), "frozen at {frozen_at}: {} m/s", robot.speed);
@@ -92,63 +98,62 @@ fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
     }
 }
 
-/// A robot that begins to move 0.3 s after it was told is alive; one that then does not is not.
+/// A robot that starts to move 0.3 s after the command is valid; one that does not start then is frozen.
 #[test]
-fn a_robot_that_obeys_late_is_not_frozen() {
-    let mut m = obeying_after(0.3);
+fn a_robot_that_reacts_late_is_not_frozen() {
+    let mut m = reacting_after(0.3);
     let intent = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
     let mut reason = |tick: u32| {
-        let still = Snapshot::still(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let still = Snapshot::stationary(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..still }).reason
     };
     let ticks = |time_s: f64| (time_s / TICK_S) as u32;
-    assert!((0..ticks(0.3)).all(|tick| !matches!(reason(tick), Reason::Fault(_))));
-    assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == Reason::Fault(Fault::Frozen)));
+    assert!((0..ticks(0.3)).all(|tick| !matches!(reason(tick), OverrideReason::Fault(_))));
+    assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == OverrideReason::Fault(Fault::Frozen)));
 }
 
 #[test]
-fn a_reading_that_has_jumped_stays_untrusted_until_it_is_back() {
+fn a_reading_that_has_jumped_is_a_fault_until_it_returns() {
     let mut m = monitor();
     let at = |m: &mut Monitor, tick: u32, x: f64| {
         let q = [x, 0.0, 0.0, 0.0, 0.0, 0.0];
-        m.tick(&Snapshot { qd: &[0.0; 6], ..Snapshot::still(TICK_S * f64::from(tick), &q) }).reason
+        m.tick(&Snapshot { qd: &[0.0; 6], ..Snapshot::stationary(TICK_S * f64::from(tick), &q) }).reason
     };
-    assert_eq!(at(&mut m, 0, 0.5), Reason::Free);
+    assert_eq!(at(&mut m, 0, 0.5), OverrideReason::Free);
     for tick in 1..5000 {
-        assert_eq!(at(&mut m, tick, 0.4), Reason::Fault(Fault::TooFast { joint: 0 }), "tick {tick}");
+        assert_eq!(at(&mut m, tick, 0.4), OverrideReason::Fault(Fault::TooFast { joint: 0 }), "tick {tick}");
     }
-    assert_eq!(at(&mut m, 5000, 0.5), Reason::Free);
+    assert_eq!(at(&mut m, 5000, 0.5), OverrideReason::Free);
 }
 
 #[test]
 fn a_robot_that_brakes_less_than_stated_is_a_fault() {
     for (brakes, fails) in [(BRAKES, false), (0.8 * BRAKES, true)] {
-        let (mut m, mut robot) = (monitor(), Robot { x: 0.0, speed: 0.0 });
+        let (mut m, mut robot) = (monitor(), PointRobot { x: 0.0, speed: 0.0 });
         let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let mut found = false;
         for tick in 0..6000 {
             let (q, qd) = ([robot.x, 0.0, 0.0, 0.0, 0.0, 0.0], [robot.speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
-            let still = Snapshot::still(TICK_S * f64::from(tick), &q);
-            // The operator stops it on its way.
+            let still = Snapshot::stationary(TICK_S * f64::from(tick), &q);
+            // The operator stops it.
             let programmed_override = if robot.x > 0.9 { 0.0 } else { 1.0 };
             let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), programmed_override, ..still });
-            found |= matches!(report.reason, Reason::Fault(Fault::Braking));
-            robot.obey(report.speed_override, brakes);
+            found |= matches!(report.reason, OverrideReason::Fault(Fault::Braking));
+            robot.apply(report.speed_override, brakes);
         }
         assert_eq!(found, fails, "{brakes} m/s²");
     }
 }
 
-/// A robot that stands because it was stopped is not taken for one whose reading is frozen, and times that make no sense do
-/// not stay in what is remembered of earlier answers.
+/// A robot at rest after a stop does not count as frozen, and invalid times are not stored in the override history.
 #[test]
 fn a_stop_by_a_fault_ends_with_the_fault() {
     let (q, intent) = ([0.0; 6], [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    // No time at all, from the future, out of order, stale.
+    // Not a time, from the future, out of order, stale.
     for stamp_s in [f64::NAN, f64::INFINITY, -1.0, 1.0] {
         let mut m = monitor();
-        let at = |now_s: f64| Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::still(now_s, &q) };
-        assert_eq!(m.tick(&at(1.0)).reason, Reason::Free);
+        let at = |now_s: f64| Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
+        assert_eq!(m.tick(&at(1.0)).reason, OverrideReason::Free);
         for tick in 1..1000 {
             let report = m.tick(&Snapshot { stamp_s, ..at(1.0 + TICK_S * f64::from(tick)) });
             assert!(report.speed_override == 0.0 || (stamp_s == 1.0 && tick <= 10), "{stamp_s}, tick {tick}");

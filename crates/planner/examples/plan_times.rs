@@ -1,4 +1,4 @@
-//! How long planning takes, and how good paths are: 1,000 random pairs of ends in each of three cells.
+//! Planning times and path lengths: 1,000 random pairs of ends in each of three workspaces.
 //!
 //! `cargo run --release -p elbowroom-planner --example plan_times`
 #![allow(clippy::print_stdout)]
@@ -8,23 +8,26 @@ mod common;
 
 use std::time::{Duration, Instant};
 
-use common::{Random, blocked_point, free_cell, grid_optimum, joined};
-use elbowroom_cspace::{Cell, Grid, JointMap, Obstacle};
-use elbowroom_planner::{How, MappedJoints, MotionLimits, Path, PlanOptions, Planner, Progress, example};
-use elbowroom_scene::{Checker, Options, SceneState, SweepOptions};
+use common::{Random, blocked_point, connected, free_cell, grid_optimum};
+use elbowroom_cspace::{CellIndex, ConvexObstacle, Grid, JointMap};
+use elbowroom_planner::{
+    GridPlanner, GridPlannerSettings, KinematicLimits, MappedJoints, Path, PathProgress, ReplanKind, example,
+};
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepOptions};
 
 type Error = Box<dyn std::error::Error>;
 
 const PAIRS: usize = 1000;
-/// Every so many pairs the exhaustive search for the shortest way is asked.
-const JUDGED: usize = 50;
+/// One of this many pairs is compared with exhaustive search.
+const COMPARED: usize = 50;
 
 fn main() -> Result<(), Error> {
     for (name, obstacles) in example::cells() {
         let grid = example::grid(2.0)?;
         let mut map = JointMap::new(example::ARM, &grid)?;
         map.set_fixed(&obstacles);
-        println!("{name}: {} cells, {} blocked", grid.cells(), map.table().blocked());
+        println!("{name}: {} cells, {} blocked", grid.cells(), map.occupancy().blocked());
         let paths = planning(&grid, &map)?;
         exact(&grid, &map, &obstacles, &paths)?;
         replanning(&grid, &mut map, &paths)?;
@@ -34,8 +37,8 @@ fn main() -> Result<(), Error> {
 
 fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
     let made = Instant::now();
-    let mut planner = Planner::new(grid, map.table())?;
-    println!("  planner made in {:.2?}", made.elapsed());
+    let mut planner = GridPlanner::new(grid, map.occupancy())?;
+    println!("  planner built in {:.2?}", made.elapsed());
     let mut random = Random(1);
     let (mut times, mut searched, mut ratios, mut paths) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut found, mut none, mut wrong, mut direct, mut corners, mut taken) = (0, 0, 0, 0, 0, 0);
@@ -43,29 +46,29 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
         let Some((from, to)) = ends(map, &mut random) else { continue };
         let (start, goal) = (grid.center(from), grid.center(to));
         let clock = Instant::now();
-        let path = planner.plan(start, goal, &PlanOptions::default());
+        let path = planner.plan(start, goal, &GridPlannerSettings::default());
         times.push(clock.elapsed());
         if path.as_ref().is_ok_and(|path| path.waypoints.len() > 2) {
             searched.extend(times.last().copied());
         }
-        taken = planner.taken().max(taken);
+        taken = planner.expanded_nodes().max(taken);
         let Ok(path) = path else {
             none += 1;
-            wrong += usize::from(joined(map.table(), from, to));
+            wrong += usize::from(connected(map.occupancy(), from, to));
             continue;
         };
         found += 1;
         direct += usize::from(path.waypoints.len() == 2);
         corners += path.waypoints.len() - 2;
-        wrong += usize::from(blocked_point(grid, map.table(), &path.waypoints, 10_000).is_some());
-        if n % JUDGED == 0 && path.waypoints.len() > 2 {
+        wrong += usize::from(blocked_point(grid, map.occupancy(), &path.waypoints, 10_000).is_some());
+        if n % COMPARED == 0 && path.waypoints.len() > 2 {
             let scale = [0, 1, 2].map(|i| grid.axes()[i].step());
-            ratios.extend(grid_optimum(map.table(), scale, from, to).map(|optimum| path.length_rad / optimum));
+            ratios.extend(grid_optimum(map.occupancy(), scale, from, to).map(|optimum| path.length_rad / optimum));
         }
         paths.push(path);
     }
     println!(
-        "  {found} found ({direct} straight), {none} not joined, {wrong} wrong; corners {corners}, most nodes {taken}"
+        "  {found} found ({direct} straight), {none} not connected, {wrong} wrong; corners {corners}, most nodes {taken}"
     );
     println!("  time: {}", spread(&mut times));
     println!("  time where it is not straight: {}", spread(&mut searched));
@@ -76,91 +79,91 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
     Ok(paths)
 }
 
-/// Every path in the exact scene, and every motion in time.
-fn exact(grid: &Grid, map: &JointMap, obstacles: &[Obstacle], paths: &[Path]) -> Result<(), Error> {
+/// Checks every path in the exact scene, and times its time parametrization.
+fn exact(grid: &Grid, map: &JointMap, obstacles: &[ConvexObstacle], paths: &[Path]) -> Result<(), Error> {
     let scene = example::scene(grid, obstacles)?;
-    let (mut checker, state) = (Checker::new(&scene, Options::default()), SceneState::new(&scene));
-    let planner = Planner::new(grid, map.table())?;
-    let joints = MappedJoints { robot: 0, joints: [0, 1, 2] };
+    let (mut checker, state) = (Checker::new(&scene, CheckerOptions::default()), SceneState::new(&scene));
+    let planner = GridPlanner::new(grid, map.occupancy())?;
+    let joints = MappedJoints { robot: RobotId(0), joints: [0, 1, 2] };
     let [velocity, acceleration, jerk] = [[1.5, 1.5, 2.0], [3.0, 3.0, 5.0], [30.0, 30.0, 50.0]].map(Vec::from);
-    let limits = MotionLimits { velocity, acceleration, jerk };
-    let (mut refused, mut stops, mut checks, mut timings) = (0, 0, Vec::new(), Vec::new());
+    let limits = KinematicLimits { velocity, acceleration, jerk };
+    let (mut rejected, mut stops, mut checks, mut timings) = (0, 0, Vec::new(), Vec::new());
     for path in paths {
         let clock = Instant::now();
-        refused += usize::from(path.check(&mut checker, &state, joints, &SweepOptions::default()).is_err());
+        rejected += usize::from(path.check(&mut checker, &state, joints, &SweepOptions::default()).is_err());
         checks.push(clock.elapsed());
         let clock = Instant::now();
-        stops += planner.time(path, &limits)?.stops();
+        stops += planner.time_parametrize(path, &limits)?.stops();
         timings.push(clock.elapsed());
     }
-    println!("  exact check, {refused} of {} refused: {}", paths.len(), spread(&mut checks));
-    println!("  timing, {stops} stops: {}", spread(&mut timings));
+    println!("  exact check, {rejected} of {} rejected: {}", paths.len(), spread(&mut checks));
+    println!("  time parametrization, {stops} stops: {}", spread(&mut timings));
     Ok(())
 }
 
-/// A ball enters where the wrist will be; the path is mended, and planned anew for comparison.
+/// A sphere is added at the wrist's position on the path; the path is replanned, and planned from the start for comparison.
 fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Error> {
-    let options = PlanOptions::default();
+    let settings = GridPlannerSettings::default();
     for radius in [0.05, 0.15] {
-        let mut planner = Planner::new(grid, map.table())?;
-        let (mut updates, mut mends, mut anews) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut shares, mut lengths, mut hows, mut lost, mut unequal) = (Vec::new(), Vec::new(), [0; 3], 0, 0);
+        let mut planner = GridPlanner::new(grid, map.occupancy())?;
+        let (mut updates, mut replan_times, mut plan_times) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut shares, mut lengths, mut kinds, mut lost, mut unequal) = (Vec::new(), Vec::new(), [0; 3], 0, 0);
         for path in paths.iter().filter(|path| path.length_rad > 1.0).take(300) {
             let middle = halfway(path);
             let wrist = example::ARM.joints_in_base(middle)[2];
-            map.set("intruder", &Obstacle::sphere(wrist, radius)?);
-            let here = Progress { leg: 0, q: path.waypoints[0] };
+            map.set("intruder", &ConvexObstacle::sphere(wrist, radius)?);
+            let here = PathProgress { segment: 0, q: path.waypoints[0] };
             let clock = Instant::now();
-            planner.update(map.table())?;
+            planner.update(map.occupancy())?;
             updates.push(clock.elapsed());
             let goal = path.waypoints[path.waypoints.len() - 1];
-            // Whoever comes first finds the caches cold: they take turns.
-            let (mended, mend, anew, fresh);
-            if hows.iter().sum::<usize>() % 2 == 0 {
-                (mended, mend) = timed(|| planner.replan(path, here, &options));
-                (anew, fresh) = timed(|| planner.plan(here.q, goal, &options));
+            // The first finds the caches cold: they alternate.
+            let (replanned, replan_time, planned, plan_time);
+            if kinds.iter().sum::<usize>() % 2 == 0 {
+                (replanned, replan_time) = timed(|| planner.replan(path, here, &settings));
+                (planned, plan_time) = timed(|| planner.plan(here.q, goal, &settings));
             } else {
-                (anew, fresh) = timed(|| planner.plan(here.q, goal, &options));
-                (mended, mend) = timed(|| planner.replan(path, here, &options));
+                (planned, plan_time) = timed(|| planner.plan(here.q, goal, &settings));
+                (replanned, replan_time) = timed(|| planner.replan(path, here, &settings));
             }
-            unequal += usize::from(mended.is_ok() != anew.is_ok());
-            if let (Ok((mended, how)), Ok(anew)) = (mended, anew) {
-                hows[how as usize] += 1;
-                if how != How::Kept {
-                    shares.push(mend.as_secs_f64() / fresh.as_secs_f64());
-                    lengths.push(mended.length_rad / anew.length_rad);
-                    mends.push(mend);
-                    anews.push(fresh);
+            unequal += usize::from(replanned.is_ok() != planned.is_ok());
+            if let (Ok((replanned, kind)), Ok(planned)) = (replanned, planned) {
+                kinds[kind as usize] += 1;
+                if kind != ReplanKind::Kept {
+                    shares.push(replan_time.as_secs_f64() / plan_time.as_secs_f64());
+                    lengths.push(replanned.length_rad / planned.length_rad);
+                    replan_times.push(replan_time);
+                    plan_times.push(plan_time);
                 }
             } else {
                 lost += 1;
             }
             map.remove("intruder");
-            planner.update(map.table())?;
+            planner.update(map.occupancy())?;
         }
         println!(
-            "  a ball of {radius} m enters: kept, mended, anew {hows:?}; {lost} without a path, {unequal} unequal"
+            "  a sphere of {radius} m: kept, repaired, replanned {kinds:?}; {lost} without a path, {unequal} unequal"
         );
         println!("    update {}", spread(&mut updates));
-        println!("    mend   {}", spread(&mut mends));
-        println!("    anew   {}", spread(&mut anews));
+        println!("    replan {}", spread(&mut replan_times));
+        println!("    plan   {}", spread(&mut plan_times));
         let sum = |times: &[Duration]| times.iter().sum::<Duration>().as_secs_f64();
         shares.sort_by(f64::total_cmp);
         let median = shares.get(shares.len() / 2).copied().unwrap_or_default();
         let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
         let worst = lengths.iter().copied().fold(0.0, f64::max);
         println!(
-            "    mend over anew: sum {:.3}, median {median:.3}; length over anew: mean {mean:.3}, worst {worst:.3}",
-            sum(&mends) / sum(&anews)
+            "    replan over plan: sum {:.3}, median {median:.3}; length over plan: mean {mean:.3}, worst {worst:.3}",
+            sum(&replan_times) / sum(&plan_times)
         );
     }
     Ok(())
 }
 
-fn timed<T>(ask: impl FnOnce() -> T) -> (T, Duration) {
+fn timed<T>(run: impl FnOnce() -> T) -> (T, Duration) {
     let clock = Instant::now();
-    let answer = ask();
-    (answer, clock.elapsed())
+    let result = run();
+    (result, clock.elapsed())
 }
 
 /// The configuration at half of the length.
@@ -176,8 +179,8 @@ fn halfway(path: &Path) -> [f64; 3] {
     path.waypoints[0]
 }
 
-fn ends(map: &JointMap, random: &mut Random) -> Option<(Cell, Cell)> {
-    free_cell(map.table(), random).zip(free_cell(map.table(), random))
+fn ends(map: &JointMap, random: &mut Random) -> Option<(CellIndex, CellIndex)> {
+    free_cell(map.occupancy(), random).zip(free_cell(map.occupancy(), random))
 }
 
 /// Median, 99th percentile, largest.

@@ -1,24 +1,25 @@
-//! An arm, cells around it: for documentation, tests and measurements.
+//! An example arm among obstacles: for documentation, tests and benchmarks.
 
-use elbowroom_cspace::{Axis, AxisError, Grid, Obstacle, PlanarArm, TooManyCells};
+use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, GridAxisError, PlanarArm, TooManyCells};
 use elbowroom_kinematics::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Capsule, Shape, Sphere};
-use elbowroom_scene::{Body, Object, Robot, Scene, SceneError};
+use elbowroom_robot::{Collider, Robot};
+use elbowroom_scene::{Object, Scene, SceneError};
 use elbowroom_spatial::{Pose, Vec3};
 
 /// An arm with the dimensions of a KUKA KR125.
 pub const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
-/// Its three joints within their limits, in steps of so many degrees.
+/// The grid of its three joints, with a step in degrees.
 ///
 /// # Errors
-/// A step that is none.
+/// An invalid step.
 pub fn grid(step_degrees: f64) -> Result<Grid, ExampleError> {
-    let axis = |name: &str, min, max| Axis::from_degrees(name, min, max, step_degrees);
+    let axis = |name: &str, min, max| GridAxis::from_degrees(name, min, max, step_degrees);
     Ok(Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?)
 }
 
-/// The same arm as a robot of a scene, with the limits of a grid.
+/// The same arm as a robot for a scene, with the limits of a grid.
 ///
 /// # Errors
 /// Two joints of the grid share a name.
@@ -37,18 +38,18 @@ pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
     };
     let links = ["foot", "column", "upper", "fore"].map(String::from).to_vec();
     let mut robot = Robot::new(Chain::new("arm", links, (0..3).map(joint).collect())?);
-    let body = |shape, in_link| Body { name: String::new(), shape, in_link };
+    let body = |shape, in_link| Collider { name: String::new(), shape, in_link };
     let capsule = |length: f64, radius| Shape::Capsule(Capsule { half_length: 0.5 * length, radius });
     let along_x = Pose::from_xyz_rpy([0.5 * ARM.fore_length_m, 0.0, 0.0], [0.0, std::f64::consts::FRAC_PI_2, 0.0]);
     let along_z = Pose::from_translation(Vec3::Z * 0.5 * ARM.upper_length_m);
     let wrist = Pose::from_translation(Vec3::X * ARM.fore_length_m);
-    robot.bodies[2].push(body(capsule(ARM.upper_length_m, ARM.upper_radius_m), along_z));
-    robot.bodies[3].push(body(capsule(ARM.fore_length_m, ARM.fore_radius_m), along_x));
-    robot.bodies[3].push(body(Shape::Sphere(Sphere { radius: ARM.wrist_radius_m }), wrist));
+    robot.colliders[2].push(body(capsule(ARM.upper_length_m, ARM.upper_radius_m), along_z));
+    robot.colliders[3].push(body(capsule(ARM.fore_length_m, ARM.fore_radius_m), along_x));
+    robot.colliders[3].push(body(Shape::Sphere(Sphere { radius: ARM.wrist_radius_m }), wrist));
     Ok(robot)
 }
 
-/// The arm among obstacles, exactly.
+/// The scene of the arm among obstacles.
 ///
 /// ```
 /// use elbowroom_planner::example;
@@ -60,7 +61,7 @@ pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
 ///
 /// # Errors
 /// Two joints of the grid share a name.
-pub fn scene(grid: &Grid, obstacles: &[Obstacle]) -> Result<Scene, ExampleError> {
+pub fn scene(grid: &Grid, obstacles: &[ConvexObstacle]) -> Result<Scene, ExampleError> {
     let mut builder = Scene::builder();
     builder.robot("arm", robot(grid)?, Pose::IDENTITY);
     for (n, obstacle) in obstacles.iter().enumerate() {
@@ -70,25 +71,25 @@ pub fn scene(grid: &Grid, obstacles: &[Obstacle]) -> Result<Scene, ExampleError>
     Ok(builder.build()?)
 }
 
-/// Why an example was not built.
+/// Why an example cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExampleError {
-    /// The step is none.
+    /// The step is invalid.
     #[error(transparent)]
-    Axis(#[from] AxisError),
+    GridAxis(#[from] GridAxisError),
     /// The step is too small.
     #[error(transparent)]
     Cells(#[from] TooManyCells),
-    /// The grid's joints make no chain.
+    /// The grid's joints form no chain.
     #[error(transparent)]
     Chain(#[from] ChainError),
-    /// The obstacles make no scene.
+    /// The obstacles form no scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
 }
 
-/// Three cells around the arm: nearly empty, usual, narrow.
-pub fn cells() -> Vec<(&'static str, Vec<Obstacle>)> {
+/// Three workspaces of the arm: nearly empty, usual, narrow.
+pub fn cells() -> Vec<(&'static str, Vec<ConvexObstacle>)> {
     let floor = || cuboid([0.0, 0.0, -0.6], 0.0, [3.0, 3.0, 0.1]);
     let usual = [
         floor(),
@@ -106,7 +107,7 @@ pub fn cells() -> Vec<(&'static str, Vec<Obstacle>)> {
         ball([-1.2, -1.0, 1.0], 0.4),
         ball([0.3, 1.7, 0.4], 0.2),
     ];
-    let of = |all: &[Option<Obstacle>]| all.iter().flatten().cloned().collect();
+    let of = |all: &[Option<ConvexObstacle>]| all.iter().flatten().cloned().collect();
     vec![
         ("one ball", of(&[ball([1.3, 0.4, 0.9], 0.3)])),
         ("floor, table, two posts", of(&usual)),
@@ -114,13 +115,13 @@ pub fn cells() -> Vec<(&'static str, Vec<Obstacle>)> {
     ]
 }
 
-// The numbers are constants that an obstacle can have; a test counts what came of them.
-fn ball(at: [f64; 3], radius: f64) -> Option<Obstacle> {
-    Obstacle::sphere(at.into(), radius).ok()
+// The constants are valid obstacles; a test counts them.
+fn ball(at: [f64; 3], radius: f64) -> Option<ConvexObstacle> {
+    ConvexObstacle::sphere(at.into(), radius).ok()
 }
 
-fn cuboid(at: [f64; 3], yaw: f64, half: [f64; 3]) -> Option<Obstacle> {
-    Obstacle::cuboid(Pose::from_xyz_rpy(at, [0.0, 0.0, yaw]), Vec3::from(half)).ok()
+fn cuboid(at: [f64; 3], yaw: f64, half: [f64; 3]) -> Option<ConvexObstacle> {
+    ConvexObstacle::cuboid(Pose::from_xyz_rpy(at, [0.0, 0.0, yaw]), Vec3::from(half)).ok()
 }
 
 #[cfg(test)]

@@ -1,35 +1,39 @@
-//! Ways around: paths through the free cells of a joint map, replanned when cells change.
+//! Path planning: paths through the free cells of a joint-space map, repaired when cells change, and RRT-Connect in the exact
+//! scene; time parametrization of both.
 //!
-//! Two cells are joined where they share a *face*; a straight stretch is allowed where every cell that it so much as
-//! touches is free. So a path exists exactly if start and goal are joined, and it never slips between blocked cells that
-//! meet at an edge.
+//! On the grid, two free cells are connected where they share a *face*; a straight segment is free where all cells that it
+//! touches are free. So a path exists if and only if start and goal are connected, and it never passes between blocked cells
+//! that meet at an edge.
 //!
-//! Where there is no map, or there are more joints than three, [`Connect`] finds its way by sampling in the exact scene and proves
-//! it there.
+//! Without a map, or for more than three joints, [`RrtConnect`] samples configurations in the exact scene and proves the path
+//! there.
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 
-mod blocks;
-mod check;
-mod connect;
+mod block_graph;
+mod cell_blocks;
+mod cell_path;
+mod components;
+mod exact_check;
 pub mod example;
-mod graph;
-mod labels;
-mod local;
-mod nearest;
+mod grid_planner;
+mod grid_shortcutting;
+mod grid_space;
+mod line_of_sight;
+mod local_detour;
+mod nearest_free_cell;
 mod path;
-mod planner;
-mod polish;
 mod replan;
-mod search;
-mod sidestep;
-mod sight;
-mod space;
-mod timing;
+mod rrt_connect;
+mod theta_star;
+mod time_parametrization;
 
-pub use check::{CheckError, MappedJoints};
-pub use connect::{Connect, Fence, Route, RouteError, RouteOptions};
-pub use path::{End, Path, PlanError};
-pub use planner::{PlanOptions, Planner};
-pub use replan::{How, Progress, Standing};
-pub use timing::{MotionError, MotionLimits, State, Trajectory};
+pub use exact_check::{CheckError, MappedJoints};
+pub use grid_planner::{GridPlanner, GridPlannerSettings};
+pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
+pub use replan::{PathProgress, PathStatus, ReplanKind};
+pub use rrt_connect::{
+    JointUnit, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting, RrtConnectSettings,
+    ShortcuttingSettings,
+};
+pub use time_parametrization::{KinematicLimits, LimitKind, TimeParametrizationError, Trajectory, TrajectoryPoint};

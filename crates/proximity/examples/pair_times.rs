@@ -1,7 +1,7 @@
 //! Time of a distance per pair of shapes: `cargo run --release -p elbowroom-proximity --example pair_times`.
 //!
 //! "hit" are pairs closer than 10 cm that do not touch, "overlap" pairs that do, "rejected" pairs proven farther than
-//! 10 cm. The least mean of ten rounds: what the machine does besides does not count.
+//! 10 cm. The least mean of ten rounds, to exclude the load of other processes.
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 #[path = "../tests/common/mod.rs"]
@@ -11,7 +11,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use elbowroom_proximity::{
-    Shape, Sphere, TriMesh, collides, escape, separation, separation_within, tessellate::tessellate,
+    Shape, Sphere, TriMesh, collides, penetration, separation, separation_within, tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -37,7 +37,7 @@ fn gather(first: &str, second: &str, wanted: impl Fn(Option<f64>) -> bool) -> Ve
 }
 
 /// Nanoseconds per case; a NaN where there is none.
-fn time<T>(cases: &[Case], question: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T) -> f64 {
+fn time<T>(cases: &[Case], query: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T) -> f64 {
     if cases.is_empty() {
         return f64::NAN;
     }
@@ -45,7 +45,7 @@ fn time<T>(cases: &[Case], question: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T)
         let start = Instant::now();
         for _ in 0..20 {
             for (a, pa, b, pb) in cases {
-                black_box(question(a, pa, b, pb));
+                black_box(query(a, pa, b, pb));
             }
         }
         start.elapsed().as_nanos() as f64 / (20 * cases.len()) as f64
@@ -54,8 +54,8 @@ fn time<T>(cases: &[Case], question: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T)
 }
 
 fn main() {
-    let head = ["hit ns", "overlap ns", "rejected ns", "escape ns"];
-    println!("| {:8} | {:8} | {:>11} | {:>11} | {:>11} | {:>11} |", "a", "b", head[0], head[1], head[2], head[3]);
+    let head = ["hit ns", "overlap ns", "rejected ns", "penetration ns"];
+    println!("| {:8} | {:8} | {:>11} | {:>11} | {:>11} | {:>14} |", "a", "b", head[0], head[1], head[2], head[3]);
     println!("| --- | --- | --: | --: | --: | --: |");
     let kinds = ["sphere", "capsule", "cylinder", "box", "hull", "plane"];
     for (i, first) in kinds.iter().enumerate() {
@@ -66,15 +66,15 @@ fn main() {
                 time(&gather(first, second, |d| d.is_some_and(|d| d > 0.0)), near),
                 time(&overlapping, near),
                 time(&gather(first, second, |d| d.is_none()), near),
-                // Escapes of hulls build hulls: no question for a control tick.
+                // The penetration of hulls builds hulls, and is not for a control tick.
                 if *first == "hull" || *second == "hull" {
                     f64::NAN
                 } else {
-                    time(&overlapping[..overlapping.len().min(10)], escape)
+                    time(&overlapping[..overlapping.len().min(10)], penetration)
                 },
             ];
-            let [hit, overlap, rejected, out] = columns.map(|ns| format!("{ns:.0}"));
-            println!("| {first:8} | {second:8} | {hit:>11} | {overlap:>11} | {rejected:>11} | {out:>11} |");
+            let [hit, overlap, rejected, penetration_ns] = columns.map(|ns| format!("{ns:.0}"));
+            println!("| {first:8} | {second:8} | {hit:>11} | {overlap:>11} | {rejected:>11} | {penetration_ns:>14} |");
         }
     }
     meshes();

@@ -1,4 +1,4 @@
-//! How the cost of a mesh grows with its triangles: time and memory to build, time to ask.
+//! Cost of a mesh as a function of its number of triangles: time and memory to build it, time per query.
 //!
 //! `cargo run --release -p elbowroom-proximity --example scaling [-- --json]` prints one row per size, from 1,000 to
 //! 2,000,000 triangles: two bumpy balls, 1 m across, apart by 1 % and overlapping by 1 %.
@@ -9,11 +9,11 @@ use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use std::time::Instant;
 
-use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Scratch, collide, distance, within};
+use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation, triangles_within};
+use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// A closed ball with waves on it: rings times sectors times 2 triangles, about.
+/// A closed wavy ball of about 2 · rings · sectors triangles.
 fn ball(triangles: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let rings = ((triangles as f64 / 4.0).sqrt().round() as usize).max(3);
     let sectors = 2 * rings;
@@ -41,8 +41,8 @@ fn ball(triangles: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, faces)
 }
 
-/// Median microseconds of `ask` over turned poses at this distance of the centres.
-fn time(apart: f64, mut ask: impl FnMut(&Pose)) -> f64 {
+/// Median microseconds of `query` over rotated poses at this distance of the centres.
+fn time(apart: f64, mut query: impl FnMut(&Pose)) -> f64 {
     let pose = |i: usize| {
         let turn = i as f64;
         let direction = Vec3::new(turn.sin(), (turn * 1.7).cos(), (turn * 0.6).sin() + 0.1);
@@ -52,12 +52,12 @@ fn time(apart: f64, mut ask: impl FnMut(&Pose)) -> f64 {
         }
     };
     let poses: Vec<Pose> = (0..200).map(pose).collect();
-    poses.iter().for_each(&mut ask);
+    poses.iter().for_each(&mut query);
     let mut each: Vec<f64> = poses
         .iter()
         .map(|p| {
             let start = Instant::now();
-            ask(p);
+            query(p);
             start.elapsed().as_secs_f64() * 1e6
         })
         .collect();
@@ -82,22 +82,22 @@ fn main() {
             .collect();
         let build = builds.iter().copied().fold(f64::INFINITY, f64::min);
         let mesh = TriMesh::new(vertices, faces).expect("a closed ball");
-        let mut s = Scratch::new();
+        let mut s = Workspace::new();
         let here = Pose::IDENTITY;
         let near = time(1.06, |p| {
-            black_box(collide(&mesh, &here, &mesh, p, &mut s));
+            black_box(colliding_triangles(&mesh, &here, &mesh, p, &mut s));
         });
         let touch = time(0.97, |p| {
-            black_box(collide(&mesh, &here, &mesh, p, &mut s));
+            black_box(colliding_triangles(&mesh, &here, &mesh, p, &mut s));
         });
         let tolerance = time(1.06, |p| {
-            black_box(within(&mesh, &here, &mesh, p, 0.05, &mut s));
+            black_box(triangles_within(&mesh, &here, &mesh, p, 0.05, &mut s));
         });
         let far = time(1.06, |p| {
-            black_box(distance(&mesh, &here, &mesh, p, &mut s));
+            black_box(mesh_separation(&mesh, &here, &mesh, p, &mut s));
         });
         let triangles = mesh.triangles().len();
-        let bytes = mesh.tree_bytes() as f64 / triangles as f64;
+        let bytes = mesh.bvh_bytes() as f64 / triangles as f64;
         if json {
             println!(
                 "{{\"triangles\":{triangles},\"build_ms\":{build:.3},\"tree_bytes_per_triangle\":{bytes:.1},\"collide_near_us\":{near:.3},\"collide_touch_us\":{touch:.3},\"within_us\":{tolerance:.3},\"distance_us\":{far:.3}}}"

@@ -1,21 +1,33 @@
-//! Shapes and the questions between two of them: do they collide, how far apart are they, which way out.
+//! Shapes, and the proximity queries between two of them: collision, distance, penetration, contact points, continuous
+//! collision detection.
 //!
-//! A [`Shape`] lies in its own frame and is placed by a [`Pose`](elbowroom_spatial::Pose). All lengths are metres.
+//! A [`Shape`] is given in its own frame and placed by a [`Pose`](elbowroom_spatial::Pose). All lengths are metres.
 //!
-//! | question | function |
+//! # How do I …
+//!
+//! | | |
 //! | --- | --- |
-//! | distance, with witness points and a proven lower bound | [`separation`], [`separation_within`] |
-//! | yes or no | [`collides`], [`within`] |
-//! | nearest surface point, signed distance | [`project_point`] |
-//! | how far and which way to separate | [`escape`] |
-//! | where two surfaces meet: point, triangle, normals | [`contact`] |
-//! | when two moving shapes first touch | [`impact`] |
-//! | which faces a motion can bring into contact | [`facing`] |
-//! | corners, sides and parts of a drawn mesh put right | [`repair`] |
-//! | a simple shape around points | [`fit`] |
-//! | triangles for a picture | [`tessellate`] |
+//! | get the separation distance, witness points and a proven lower bound | [`separation`] |
+//! | stop at a security margin or limit | [`separation_within`], [`DistanceSettings::limit`] |
+//! | test for collision, or for a tolerance | [`collides`], [`within`] |
+//! | warm-start the distance of two meshes | [`DistanceSettings::warm_start`] with [`Workspace::separation`] |
+//! | reuse memory between queries | [`Workspace`], one per thread |
+//! | count the work of a query | [`Workspace::stats`] |
+//! | get the penetration depth and direction | [`penetration`] |
+//! | get a contact point, its triangle and normals | [`contact::contact_point`] |
+//! | project a point onto a surface, get the signed distance | [`project_point`] |
+//! | detect collisions of moving shapes (continuous collision detection, time of impact) | [`ccd::time_of_impact`] |
+//! | bound the time to collision | [`ccd::time_to_collision`] |
+//! | cull faces by motion | [`motion_culling::FaceCulling`] |
+//! | use the BVH of a mesh: triangle pairs, upper and lower bounds, levels of detail | [`advanced`] |
+//! | find pairs of many shapes (broad phase) | not here: `elbowroom_scene`; bounding boxes: [`Shape::aabb`] |
+//! | weld, orient or split a mesh | [`repair`] |
+//! | fit a sphere, capsule or box around points | [`fit`] |
+//! | triangulate a shape | [`tessellate`] |
 //!
-//! How each pair is answered ("closed" means a formula or a finite exact method, error a few units in the last place):
+//! # Supported pairs
+//!
+//! The method of each pair ("closed" means a formula or a finite exact method, error a few units in the last place):
 //!
 //! | | sphere | capsule | cylinder | box | half-space | hull | mesh |
 //! | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -26,11 +38,11 @@
 //! | hull | | | | | closed | GJK | GJK per triangle |
 //! | mesh | | | | | closed | | closed per triangle pair |
 //!
-//! Error for sizes of about 1 m, as the tests check it: 1e-14 m for spheres and half-spaces, 2e-14 m for capsules against
-//! primitives, 1e-12 m for boxes and hulls, 1e-11 m for cylinders. It is also told per answer: `lower_bound <= exact <=
-//! distance`. Nothing allocates but [`escape`] of hulls and meshes, [`fit`],
-//! [`tessellate`] and the making of hulls and meshes. Nothing panics; a NaN, an infinity or a length of 1e150 m in a pose
-//! or a dimension answers as contact (distance 0), because what is unknown must not read as free.
+//! The error for sizes of about 1 m, as checked by the tests: 1e-14 m for spheres and half-spaces, 2e-14 m for capsules against
+//! primitives, 1e-12 m for boxes and hulls, 1e-11 m for cylinders. Every answer has its own bound: `lower_bound <= exact <=
+//! distance`. Nothing allocates but [`penetration`] of hulls and meshes, [`fit`], [`tessellate`] and the construction of hulls
+//! and meshes. Nothing panics. A NaN, an infinity or a length of 1e150 m in a pose or a dimension counts as contact (distance
+//! 0), because unknown must not count as free.
 //!
 //! ```
 //! use elbowroom_proximity::{Capsule, Cylinder, Shape, separation};
@@ -43,23 +55,27 @@
 //! assert!((gap.distance - (0.6 - 0.06 - 0.15)).abs() < 1e-15);
 //! ```
 
+pub mod advanced;
+mod bvh;
+pub mod ccd;
 pub mod contact;
-mod escape;
-pub mod facing;
 pub mod fit;
-pub mod impact;
-pub mod mesh;
-mod patch;
-mod project;
+mod lanes;
+mod mesh_mesh;
+pub mod motion_culling;
+mod penetration;
+mod point_projection;
 pub mod repair;
 mod separation;
 mod shape;
 pub mod tessellate;
 mod triangle;
+mod witness_patch;
 
-pub use escape::{Escape, escape};
-pub use project::{SurfacePoint, project_point};
-pub use separation::{Separation, collides, separation, separation_within, within};
+pub use mesh_mesh::{QueryStats, WarmStart, Workspace};
+pub use penetration::{Penetration, penetration};
+pub use point_projection::{PointProjection, project_point};
+pub use separation::{DistanceSettings, Separation, WitnessPoints, collides, separation, separation_within, within};
 pub use shape::{
     Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, HullError, MeshError, MeshReport, Shape, ShapeError, Sphere,
     TriMesh,

@@ -1,4 +1,4 @@
-//! Triangles for pictures and files.
+//! Triangulation of shapes, for pictures and files.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -9,7 +9,7 @@ use crate::Shape;
 /// Vertices and outward triangles of a shape's surface in its own frame.
 ///
 /// No point of a curved surface is farther than `chord_error_m` from the triangles (at most 256 segments around).
-/// Solids come out closed, with shared vertices; a half-space as a 4 m square patch; hulls and meshes as they are.
+/// Solids are closed, with shared vertices; a half-space is a square patch of 4 m; hulls and meshes are returned as they are.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere, TriMesh, tessellate::tessellate};
@@ -23,7 +23,7 @@ pub fn tessellate(shape: &Shape, chord_error_m: f64) -> (Vec<Vec3>, Vec<[u32; 3]
         Shape::Capsule(c) => rounded(c.half_length, c.radius, chord_error_m),
         Shape::Cylinder(c) => {
             let profile = [(-c.half_length, c.radius), (c.half_length, c.radius)];
-            lathe(&profile, [-c.half_length, c.half_length], segments(c.radius, chord_error_m))
+            revolve(&profile, [-c.half_length, c.half_length], segments(c.radius, chord_error_m))
         }
         Shape::Cuboid(c) => cuboid(c.half_extents),
         Shape::HalfSpace(_) => {
@@ -46,7 +46,7 @@ fn segments(radius: f64, chord_error: f64) -> usize {
 }
 
 fn rounded(half_length: f64, radius: f64, chord_error: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    // A patch is curved both ways: each way gets half the error.
+    // A sphere is curved in both directions: each gets half the error.
     let around = segments(radius, 0.5 * chord_error);
     let rings = around / 4;
     let mut profile = Vec::with_capacity(2 * rings);
@@ -59,11 +59,11 @@ fn rounded(half_length: f64, radius: f64, chord_error: f64) -> (Vec<Vec3>, Vec<[
         let angle = FRAC_PI_2 * i as f64 / rings as f64;
         profile.push((half_length + radius * angle.sin(), radius * angle.cos()));
     }
-    lathe(&profile, [-half_length - radius, half_length + radius], around)
+    revolve(&profile, [-half_length - radius, half_length + radius], around)
 }
 
-/// Turns a profile of `(z, radius)`, bottom to top, about z and closes it with a vertex at either end.
-fn lathe(profile: &[(f64, f64)], ends: [f64; 2], around: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+/// Surface of revolution of a profile of `(z, radius)`, bottom to top, about z, closed by a vertex at either end.
+fn revolve(profile: &[(f64, f64)], ends: [f64; 2], around: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices = vec![Vec3::Z * ends[0], Vec3::Z * ends[1]];
     for &(z, radius) in profile {
         vertices.extend((0..around).map(|k| {

@@ -1,21 +1,22 @@
-//! Triangles and segments in a common frame: the leaf tests of meshes.
+//! Closest points and intersection of triangles and segments in a common frame.
 //!
-//! Rounding leaves the normal of a slender triangle (height 1/100 of the longest edge, or less) with too few digits to tell
-//! on which side a point lies. There the signs come from exact arithmetic (Shewchuk, *Adaptive precision floating-point
-//! arithmetic and fast robust geometric predicates*, 1997); elsewhere f64 is right to far less than what meshes call contact.
+//! The normal of a slender triangle (height at most 1/100 of the longest edge) has too few digits after rounding to decide
+//! on which side of it a point is. There the signs are computed by exact predicates (Shewchuk, *Adaptive precision
+//! floating-point arithmetic and fast robust geometric predicates*, 1997); elsewhere the error of f64 is far below the distance
+//! that meshes count as contact.
 
 use elbowroom_spatial::Vec3;
 use robust::{Coord3D, orient3d};
 
-/// Two points and the square of their distance.
+/// The closest points of two shapes and the square of their distance.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near {
+pub(crate) struct ClosestPoints {
     pub squared: f64,
     pub on_a: Vec3,
     pub on_b: Vec3,
 }
 
-impl Near {
+impl ClosestPoints {
     pub const FAR: Self = Self { squared: f64::INFINITY, on_a: Vec3::ZERO, on_b: Vec3::ZERO };
 
     #[inline]
@@ -46,8 +47,8 @@ pub(crate) fn nearest_on_segment(p: Vec3, a: Vec3, b: Vec3) -> Vec3 {
     if along >= squared { b } else { a + ab * (along / squared) }
 }
 
-/// The point of the triangle nearest to `p`. Inside is decided by the signs of sub-areas about differences of nearby
-/// points, so slivers and far points do not lose their digits; outside, the nearest edge is exact.
+/// The point of the triangle nearest to `p`. The signs of sub-areas decide whether the projection is inside; they are computed
+/// from differences of nearby points, so that slivers and far points keep their digits. Outside, the nearest edge is exact.
 #[inline]
 pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let n = (b - a).cross(c - a);
@@ -56,13 +57,13 @@ pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let wc = n.dot((a - p).cross(b - a));
     if wa > 0.0 && wb > 0.0 && wc > 0.0 {
         let sum = wa + wb + wc;
-        let foot = a + (b - a) * (wb / sum) + (c - a) * (wc / sum);
+        let projected = a + (b - a) * (wb / sum) + (c - a) * (wc / sum);
         if !is_slender(&[a, b, c], n) {
-            return foot;
+            return projected;
         }
-        // The plane's normal may be off by so much that an edge is nearer.
+        // The normal may be so inaccurate that an edge is nearer.
         let edge = nearest_on_edges(p, [a, b, c]);
-        return if (edge - p).length_squared() < (foot - p).length_squared() { edge } else { foot };
+        return if (edge - p).length_squared() < (projected - p).length_squared() { edge } else { projected };
     }
     nearest_on_edges(p, [a, b, c])
 }
@@ -75,9 +76,9 @@ fn nearest_on_edges(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     candidates[if squared[2] < squared[first] { 2 } else { first }]
 }
 
-/// Nearest points of two segments. The derivative of the squared distance along the first is monotone and piecewise
-/// linear; its root is found in the piece that holds it, with a slope free of cancellation for parallel segments.
-pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
+/// Closest points of two segments. The derivative of the squared distance along the first is monotone and piecewise
+/// linear; its root is interpolated in the piece that contains it, which avoids cancellation for parallel segments.
+pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> ClosestPoints {
     let (u, v) = (a1 - a0, b1 - b0);
     let vv = v.length_squared();
     let slope_at = |s: f64| {
@@ -86,7 +87,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
     };
     let finish = |s: f64| {
         let p = a0 + u * s;
-        Near::new(p, nearest_on_segment(p, b0, b1))
+        ClosestPoints::new(p, nearest_on_segment(p, b0, b1))
     };
     let (mut lo, mut hi) = (0.0, 1.0);
     let (mut g_lo, mut g_hi) = (slope_at(0.0), slope_at(1.0));
@@ -115,7 +116,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Near {
 /// Squared ratio of height to longest edge up to which a triangle is slender.
 const SLENDER: f64 = 1e-4;
 
-/// True where f64 does not know the triangle's plane well enough; `normal` is the product of two edges.
+/// True where the plane of the triangle is too inaccurate in f64; `normal` is the cross product of two edges.
 #[inline]
 fn is_slender([a, b, c]: &[Vec3; 3], normal: Vec3) -> bool {
     let longest = (*b - *a).length_squared().max((*c - *b).length_squared()).max((*a - *c).length_squared());
@@ -126,7 +127,7 @@ fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
     (*b - *a).cross(*c - *a)
 }
 
-/// Where the segment passes through the triangle (its border included): up to rounding for most triangles, exactly for
+/// Where the segment intersects the triangle (its border included): up to rounding for most triangles, exactly for
 /// slender ones.
 pub(crate) fn segment_crosses(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Option<Vec3> {
     let n = normal(&t);
@@ -147,8 +148,8 @@ fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3], n: Vec3) -> Option<Vec3> {
     inside.then_some(x)
 }
 
-/// The ends lie on different sides of the plane, and the segment's line passes all edges on the same side. A segment in
-/// the triangle's plane, or a triangle that is exactly a line, does not count: edges and corners meet there.
+/// The ends are on different sides of the plane, and the segment's line passes all edges on the same side. A segment in
+/// the triangle's plane, or a triangle that is exactly a line, does not count: there edges and corners give the distance.
 #[cold]
 fn crosses_exactly(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
     let at = |v: Vec3| Coord3D { x: v.x, y: v.y, z: v.z };
@@ -160,31 +161,30 @@ fn crosses_exactly(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
     }
     let turns = [turn(p, q, a, b), turn(p, q, b, c), turn(p, q, c, a)];
     let passes = turns.iter().all(|x| *x >= 0.0) || turns.iter().all(|x| *x <= 0.0);
-    passes.then(|| passage(p, q, t))
+    passes.then(|| intersection_point(p, q, t))
 }
 
-/// The point of the segment nearest to a slender triangle that it passes through. The product that gives it loses its
-/// digits as the triangle gets thinner, and the nearest points of its edges get better: the best of them.
-fn passage(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
+/// The point of the segment nearest to a slender triangle that it intersects. The point by heights over the plane loses its
+/// digits as the triangle gets thinner, while the closest points of its edges become more accurate: the best of them.
+fn intersection_point(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
     let n = normal(t);
     let (hp, hq) = (n.dot(p - t[0]), n.dot(q - t[0]));
     let share = hp / (hp - hq);
-    let by_product = if (0.0..=1.0).contains(&share) { p + (q - p) * share } else { p };
-    let off = |x: &Vec3| (nearest_on_triangle(*x, *t) - *x).length_squared();
+    let by_heights = if (0.0..=1.0).contains(&share) { p + (q - p) * share } else { p };
+    let error = |x: &Vec3| (nearest_on_triangle(*x, *t) - *x).length_squared();
     let by_edge = |k: usize| segment_segment(p, q, t[k], t[(k + 1) % 3]).on_a;
-    let candidates = [by_product, by_edge(0), by_edge(1), by_edge(2)];
-    candidates.into_iter().min_by(|x, y| off(x).total_cmp(&off(y))).unwrap_or(p)
+    let candidates = [by_heights, by_edge(0), by_edge(1), by_edge(2)];
+    candidates.into_iter().min_by(|x, y| error(x).total_cmp(&error(y))).unwrap_or(p)
 }
 
-/// True where an edge of one passes through the other. Nearly touching ones may go either way by rounding, unless one is
-/// slender: then yes is exact, and no may be wrong.
+/// True where an edge of one intersects the other: up to rounding. Where one is slender, true is exact, and false may be wrong.
 pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
     // Each must have corners on both sides of the other's plane.
     let (Some(of_s), Some(of_t)) = (sides(&s, &t), sides(&t, &s)) else { return false };
     (edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)) && confirmed(&s, &t)
 }
 
-/// False where signs of no worth said that slender triangles cross.
+/// False where inaccurate signs made slender triangles cross that do not.
 fn confirmed(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
     let slender = is_slender(s, normal(s)) || is_slender(t, normal(t));
     let passes = |s: &[Vec3; 3], t: &[Vec3; 3]| (0..3).any(|k| crosses_exactly(s[k], s[(k + 1) % 3], t).is_some());
@@ -205,30 +205,31 @@ fn edges_cross(s: &[Vec3; 3], above: [bool; 3], t: &[Vec3; 3]) -> bool {
     (0..3).any(|k| above[k] != above[(k + 1) % 3] && crosses_by_signs(s[k], s[(k + 1) % 3], t, n).is_some())
 }
 
-/// Nearest points of a segment (first) and a triangle.
-pub(crate) fn segment_triangle(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Near {
+/// Closest points of a segment (first) and a triangle.
+pub(crate) fn segment_triangle(p: Vec3, q: Vec3, t: [Vec3; 3]) -> ClosestPoints {
     if let Some(x) = segment_crosses(p, q, t) {
-        return Near { squared: 0.0, on_a: x, on_b: x };
+        return ClosestPoints { squared: 0.0, on_a: x, on_b: x };
     }
-    let mut best = Near::new(p, nearest_on_triangle(p, t)).or_nearer(Near::new(q, nearest_on_triangle(q, t)));
+    let mut best =
+        ClosestPoints::new(p, nearest_on_triangle(p, t)).or_nearer(ClosestPoints::new(q, nearest_on_triangle(q, t)));
     for k in 0..3 {
         best = best.or_nearer(segment_segment(p, q, t[k], t[(k + 1) % 3]));
     }
     best
 }
 
-/// Nearest points of two triangles.
-pub(crate) fn triangle_triangle(s: [Vec3; 3], t: [Vec3; 3]) -> Near {
-    let mut best = Near::FAR;
+/// Closest points of two triangles.
+pub(crate) fn triangle_triangle(s: [Vec3; 3], t: [Vec3; 3]) -> ClosestPoints {
+    let mut best = ClosestPoints::FAR;
     for k in 0..3 {
         let crossing = segment_crosses(s[k], s[(k + 1) % 3], t).or_else(|| segment_crosses(t[k], t[(k + 1) % 3], s));
         if let Some(x) = crossing {
-            return Near { squared: 0.0, on_a: x, on_b: x };
+            return ClosestPoints { squared: 0.0, on_a: x, on_b: x };
         }
     }
     for k in 0..3 {
-        best = best.or_nearer(Near::new(s[k], nearest_on_triangle(s[k], t)));
-        best = best.or_nearer(Near::new(t[k], nearest_on_triangle(t[k], s)).swapped());
+        best = best.or_nearer(ClosestPoints::new(s[k], nearest_on_triangle(s[k], t)));
+        best = best.or_nearer(ClosestPoints::new(t[k], nearest_on_triangle(t[k], s)).swapped());
         for l in 0..3 {
             best = best.or_nearer(segment_segment(s[k], s[(k + 1) % 3], t[l], t[(l + 1) % 3]));
         }

@@ -1,18 +1,19 @@
-//! Where surfaces meet, against every triangle with every other and against the surfaces themselves.
+//! Contact points compared with all pairs of triangles and with the surfaces.
 
 mod common;
 
 use std::sync::Arc;
 
 use common::{CONVEX, Rng};
-use elbowroom_proximity::contact::{ContactPoint, Detail, contact_at, contact_point};
-use elbowroom_proximity::mesh::{Pair, Scratch, contacts};
+use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
+use elbowroom_proximity::contact::{ContactPoint, ContactSettings, Detail, contact_point};
 use elbowroom_proximity::{
-    Cuboid, HalfSpace, Shape, Sphere, TriMesh, collides, escape, project_point, tessellate::tessellate,
+    Cuboid, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides, penetration, project_point, separation,
+    tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// A ball with waves, of so many triangles as the tolerance asks for; closed, turned outward, not convex.
+/// A wavy ball, tessellated to a tolerance: closed, oriented outward, not convex.
 fn lump(r: &mut Rng, fine: f64) -> Shape {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
     let (stretch, wave) = (Vec3::new(r.range(0.5, 1.5), r.range(0.5, 1.5), r.range(0.5, 1.5)), r.range(0.0, 0.4));
@@ -28,7 +29,7 @@ fn placed(shape: &Shape, in_world: &Pose, triangle: u32) -> [Vec3; 3] {
     m.triangles()[triangle as usize].map(|i| in_world.transform_point(m.vertices()[i as usize]))
 }
 
-/// Where the line from `p` to `q` passes through the triangle (Möller and Trumbore), the plain way.
+/// Where the segment from `p` to `q` intersects the triangle (Möller and Trumbore).
 fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     let (d, e1, e2, from) = (q - p, b - a, c - a, p - a);
     let det = e1.dot(d.cross(e2));
@@ -53,12 +54,16 @@ fn on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     n.dot(p - a).abs() < 1e-10 && [above(a, b), above(b, c), above(c, a)].iter().all(|h| *h > -1e-10)
 }
 
-fn ask(a: &Shape, p: &Pose, b: &Shape, q: &Pose) -> Option<ContactPoint> {
-    contact_point(a, p, b, q, 0.0, &mut Scratch::new())
+fn contact(a: &Shape, p: &Pose, b: &Shape, q: &Pose) -> Option<ContactPoint> {
+    contact_point(a, p, b, q, ContactSettings::default(), &mut Workspace::new())
+}
+
+fn within(limit: f64) -> ContactSettings {
+    ContactSettings { limit, ..ContactSettings::default() }
 }
 
 #[test]
-fn two_meshes_meet_where_two_triangles_cross_longest() {
+fn two_meshes_touch_at_the_longest_crossing() {
     let mut r = Rng(1);
     let (mut met, mut apart, mut inside) = (0, 0, 0);
     for _ in 0..100 {
@@ -66,14 +71,14 @@ fn two_meshes_meet_where_two_triangles_cross_longest() {
         let (mut p, q) = (r.pose(0.2), r.pose(0.5));
         let Shape::Mesh(m) = &a else { unreachable!() };
         let a = if r.below(10) == 0 {
-            // Ten times as large, around the other.
+            // Ten times as large, and around the other.
             p = q;
             let large = m.vertices().iter().map(|v| *v * 10.0).collect();
             Shape::Mesh(Arc::new(TriMesh::new(large, m.triangles().to_vec()).unwrap()))
         } else {
             a
         };
-        let found = ask(&a, &p, &b, &q);
+        let found = contact(&a, &p, &b, &q);
         assert_eq!(found.is_some(), collides(&a, &p, &b, &q));
         let Some(c) = found else {
             apart += 1;
@@ -81,8 +86,8 @@ fn two_meshes_meet_where_two_triangles_cross_longest() {
         };
         let (Shape::Mesh(m), Shape::Mesh(n)) = (&a, &b) else { unreachable!() };
         let (mut longest, mut any) = (0.0_f64, false);
-        contacts(m, &p, n, &q, &mut Scratch::new(), |pair| {
-            if let Pair::Triangles(x, y) = pair {
+        for_each_contact(m, &p, n, &q, &mut Workspace::new(), |pair| {
+            if let MeshFeatures::Triangles(x, y) = pair {
                 any = true;
                 longest = longest.max(crossing(placed(&a, &p, x), placed(&b, &q, y)));
             }
@@ -107,7 +112,7 @@ fn two_meshes_meet_where_two_triangles_cross_longest() {
 }
 
 #[test]
-fn a_box_or_hull_is_met_as_its_triangles_are() {
+fn a_box_or_hull_touches_as_its_triangles_do() {
     let mut r = Rng(2);
     let mut met = 0;
     for k in 0..200 {
@@ -118,10 +123,10 @@ fn a_box_or_hull_is_met_as_its_triangles_are() {
         let (v, t) = tessellate(&b, 0.01);
         let same = Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()));
         let (p, q) = (r.pose(0.3), r.pose(0.7));
-        let (flat, mesh) = (ask(&a, &p, &b, &q), ask(&a, &p, &same, &q));
+        let (flat, mesh) = (contact(&a, &p, &b, &q), contact(&a, &p, &same, &q));
         assert_eq!(flat.is_some(), mesh.is_some(), "{kind}");
         let (Some(flat), Some(mesh)) = (flat, mesh) else { continue };
-        let swapped = ask(&b, &q, &a, &p).unwrap();
+        let swapped = contact(&b, &q, &a, &p).unwrap();
         assert!(
             swapped.on_b == flat.on_a && swapped.normal_a == flat.normal_b && swapped.triangle_b == flat.triangle_a
         );
@@ -142,7 +147,7 @@ fn a_box_or_hull_is_met_as_its_triangles_are() {
 }
 
 #[test]
-fn round_things_are_met_at_the_deepest_point_of_the_mesh() {
+fn smooth_shapes_touch_at_the_deepest_point_of_the_mesh() {
     let mut r = Rng(3);
     let mut met = [0; 4];
     for k in 0..400 {
@@ -150,7 +155,7 @@ fn round_things_are_met_at_the_deepest_point_of_the_mesh() {
         let kind = k % 4;
         let b = if kind == 3 { Shape::HalfSpace(HalfSpace) } else { r.shape(CONVEX[kind]) };
         let (p, q) = (r.pose(0.3), r.pose(0.6));
-        let found = ask(&a, &p, &b, &q);
+        let found = contact(&a, &p, &b, &q);
         assert_eq!(found.is_some(), collides(&a, &p, &b, &q));
         let Some(c) = found else { continue };
         let Shape::Mesh(m) = &a else { unreachable!() };
@@ -161,7 +166,7 @@ fn round_things_are_met_at_the_deepest_point_of_the_mesh() {
         met[kind] += 1;
         assert!(on_triangle(c.on_a, placed(&a, &p, c.triangle_a.unwrap())), "{c:?}");
         assert!(depth(c.on_b).abs() < 1e-9 && depth(c.on_a) < 1e-9, "{} {b:?} {c:?}", depth(c.on_a));
-        // Corners and middles of all triangles: none is deeper.
+        // No corner or centroid of a triangle is deeper.
         if kind != 2 {
             let deepest = (0..m.triangles().len() as u32)
                 .flat_map(|t| {
@@ -176,16 +181,16 @@ fn round_things_are_met_at_the_deepest_point_of_the_mesh() {
 }
 
 #[test]
-fn simple_shapes_are_met_as_far_apart_as_they_overlap() {
+fn contact_points_of_simple_shapes_are_as_far_apart_as_they_overlap() {
     let mut r = Rng(4);
     let mut met = 0;
-    // The way out of two cylinders once took six seconds for one of these.
+    // Includes pairs of cylinders for which the penetration once took seconds.
     for _ in 0..2000 {
         let (x, y) = (CONVEX[r.below(4)], if r.below(6) == 0 { "plane" } else { CONVEX[r.below(5)] });
         let (a, b, p, q) = (r.shape(x), r.shape(y), r.pose(0.6), r.pose(0.6));
-        let found = ask(&a, &p, &b, &q);
+        let found = contact(&a, &p, &b, &q);
         assert_eq!(found.is_some(), collides(&a, &p, &b, &q), "{x} {y}");
-        let (Some(c), Some(out)) = (found, escape(&a, &p, &b, &q)) else { continue };
+        let (Some(c), Some(out)) = (found, penetration(&a, &p, &b, &q)) else { continue };
         let thin = |s: &Shape| s.volume() < 1e-6;
         if thin(&a) || thin(&b) {
             continue;
@@ -204,44 +209,44 @@ fn simple_shapes_are_met_as_far_apart_as_they_overlap() {
 }
 
 #[test]
-fn within_a_limit_the_nearest_points_are_told() {
+fn within_a_limit_the_nearest_points_are_returned() {
     let mut r = Rng(5);
-    let (mut told, mut scratch) = (0, Scratch::new());
+    let (mut found_apart, mut workspace) = (0, Workspace::new());
     for k in 0..300 {
         let a = lump(&mut r, 0.02);
         let b = if k % 2 == 0 { lump(&mut r, 0.02) } else { r.shape(CONVEX[k % 5]) };
         let (p, q) = (r.pose(0.3), r.pose(1.2));
-        let exact = elbowroom_proximity::separation(&a, &p, &b, &q);
-        let found = contact_point(&a, &p, &b, &q, 0.3, &mut scratch);
+        let exact = separation(&a, &p, &b, &q);
+        let found = contact_point(&a, &p, &b, &q, within(0.3), &mut workspace);
         if (exact.distance - 0.3).abs() > 1e-9 {
             assert_eq!(found.is_some(), exact.distance < 0.3);
         }
         let Some(c) = found.filter(|c| !c.touching) else { continue };
-        told += 1;
+        found_apart += 1;
         assert!((c.on_a.distance(c.on_b) - exact.distance).abs() < 1e-9 && c.triangle_a.is_some());
         assert!(c.normal_a.dot(c.on_b - c.on_a) > -1e-9 && c.normal_b.dot(c.on_a - c.on_b) > -1e-9, "{c:?}");
-        let nan = contact_point(&a, &p, &b, &q, f64::NAN, &mut scratch).unwrap();
+        let nan = contact_point(&a, &p, &b, &q, within(f64::NAN), &mut workspace).unwrap();
         assert!(nan.on_a.distance(c.on_a) < 1e-9);
     }
-    assert!(told > 50, "{told}");
+    assert!(found_apart > 50, "{found_apart}");
 }
 
 #[test]
-fn the_same_from_elsewhere_and_the_other_way_round() {
+fn contacts_are_the_same_when_moved_or_swapped() {
     let mut r = Rng(6);
     let (mut met, mut moved, mut turned) = (0, 0, 0);
     for k in 0..200 {
         let a = lump(&mut r, 0.02);
         let b = if k % 2 == 0 { lump(&mut r, 0.02) } else { r.shape(CONVEX[k % 5]) };
         let (p, q, away) = (r.pose(0.3), r.pose(0.4), r.pose(3.0));
-        let Some(c) = ask(&a, &p, &b, &q) else { continue };
-        let swapped = ask(&b, &q, &a, &p).unwrap();
-        let there = ask(&a, &(away * p), &b, &(away * q)).unwrap();
+        let Some(c) = contact(&a, &p, &b, &q) else { continue };
+        let swapped = contact(&b, &q, &a, &p).unwrap();
+        let there = contact(&a, &(away * p), &b, &(away * q)).unwrap();
         met += 1;
         assert!(swapped.on_b.distance(c.on_a) < 1e-9, "{c:?} {swapped:?}");
         assert!(swapped.triangle_b == c.triangle_a && (swapped.normal_b - c.normal_a).length() < 1e-9);
         let same = there.on_a.distance(away.transform_point(c.on_a)) < 1e-9;
-        // Of a cylinder the deepest point is not exactly found; one point may be a corner of several triangles.
+        // The deepest point in a cylinder is approximate; one point may be a corner of several triangles.
         moved += usize::from(!same && b.kind() != "cylinder");
         if same && there.triangle_a == c.triangle_a {
             turned += 1;
@@ -252,7 +257,7 @@ fn the_same_from_elsewhere_and_the_other_way_round() {
 }
 
 #[test]
-fn degenerate_meshes_and_no_numbers_have_an_answer() {
+fn degenerate_meshes_and_nan_have_an_answer() {
     let mesh = |v: Vec<Vec3>, t: Vec<[u32; 3]>| Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()));
     let point = mesh(vec![Vec3::ZERO; 3], vec![[0, 1, 2]]);
     let line = mesh(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]);
@@ -267,7 +272,7 @@ fn degenerate_meshes_and_no_numbers_have_an_answer() {
                 if k == 0 {
                     q = p;
                 }
-                let found = ask(a, &p, b, &q);
+                let found = contact(a, &p, b, &q);
                 assert_eq!(found.is_some(), collides(a, &p, b, &q), "{a:?} {b:?}");
                 if let Some(c) = found {
                     assert!(c.on_a.is_finite() && c.on_b.is_finite() && c.touching);
@@ -275,7 +280,7 @@ fn degenerate_meshes_and_no_numbers_have_an_answer() {
                 }
                 for bad in [f64::NAN, f64::INFINITY, 1e200] {
                     let lost = Pose::new(Rotation::IDENTITY, Vec3::new(0.0, bad, 0.0));
-                    assert!(ask(a, &p, b, &lost).is_some_and(|c| c.touching), "unknown is not free");
+                    assert!(contact(a, &p, b, &lost).is_some_and(|c| c.touching), "unknown is not free");
                 }
             }
         }
@@ -283,33 +288,35 @@ fn degenerate_meshes_and_no_numbers_have_an_answer() {
 }
 
 #[test]
-fn at_every_level_what_is_told_free_is() {
+fn every_level_of_detail_is_conservative() {
     let mut r = Rng(8);
-    let mut scratch = Scratch::new();
+    let mut workspace = Workspace::new();
     let levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(2), Detail::Boxes(9), Detail::Exact];
-    let (mut told, kinds) = ([0; 5], ["sphere", "capsule", "cylinder", "box", "hull", "plane"]);
+    let (mut contacts, kinds) = ([0; 5], ["sphere", "capsule", "cylinder", "box", "hull", "plane"]);
     for k in 0..200 {
         let a = lump(&mut r, 0.003);
         let b = if k % 2 == 0 { lump(&mut r, 0.003) } else { r.shape(kinds[k / 2 % 6]) };
         let (p, q, limit) = (r.pose(0.3), r.pose(0.8), if k % 3 == 0 { 0.05 } else { 0.0 });
-        let exact = contact_point(&a, &p, &b, &q, limit, &mut scratch);
-        for (detail, told) in levels.iter().zip(&mut told) {
-            let found = contact_at(&a, &p, &b, &q, *detail, limit, &mut scratch);
-            let swapped = contact_at(&b, &q, &a, &p, *detail, limit, &mut scratch);
+        let exact = contact_point(&a, &p, &b, &q, within(limit), &mut workspace);
+        for (detail, contacts) in levels.iter().zip(&mut contacts) {
+            let settings = ContactSettings { limit, detail: *detail };
+            let found = contact_point(&a, &p, &b, &q, settings, &mut workspace);
+            let swapped = contact_point(&b, &q, &a, &p, settings, &mut workspace);
             assert!(found.is_some() || exact.is_none(), "{detail:?} {b:?}");
             assert!(swapped.is_some() || exact.is_none(), "{detail:?} {b:?}");
-            *told += usize::from(found.is_some());
+            *contacts += usize::from(found.is_some());
             if let Some(c) = found {
                 assert!((c.normal_a.length() - 1.0).abs() < 1e-6 && (c.normal_b.length() - 1.0).abs() < 1e-6);
                 assert!(*detail == Detail::Exact || project_point(&a, &p, c.on_a).signed_distance.abs() < 1e-6);
             }
         }
     }
-    assert!(told[0] > told[1] && told[1] > told[2] && told[2] >= told[3] && told[3] >= told[4], "{told:?}");
+    assert!(contacts.windows(2).all(|c| c[0] >= c[1]), "{contacts:?}");
+    assert!(contacts[0] > contacts[1] && contacts[1] > contacts[2], "{contacts:?}");
 }
 
 #[test]
-fn every_instruction_set_tells_the_same_point_of_two_meshes() {
+fn every_instruction_set_gives_the_same_point_of_two_meshes() {
     use fearless_simd::Level;
     let mut levels = vec![Level::new()];
     #[cfg(target_arch = "x86_64")]
@@ -324,8 +331,8 @@ fn every_instruction_set_tells_the_same_point_of_two_meshes() {
         let (a, b) = (lump(&mut r, 0.01), lump(&mut r, 0.01));
         let (p, q) = (r.pose(0.2), r.pose(0.4));
         let found = levels.iter().map(|level| {
-            let mut scratch = Scratch::with_level(*level);
-            contact_point(&a, &p, &b, &q, 0.1, &mut scratch)
+            let mut workspace = Workspace::with_level(*level);
+            contact_point(&a, &p, &b, &q, within(0.1), &mut workspace)
         });
         let found: Vec<_> = found.collect();
         met += usize::from(found[0].is_some_and(|c| c.touching));

@@ -1,11 +1,13 @@
-//! Two meshes against the plain way: every triangle with every other.
+//! Two meshes compared with a simple implementation: all pairs of triangles.
 
-use elbowroom_proximity::mesh::{Hint, Pair, Scratch, collide, contacts, distance, distance_at, within};
-use elbowroom_proximity::{TriMesh, collides, separation};
+use elbowroom_proximity::advanced::{
+    MeshFeatures, colliding_triangles, for_each_contact, mesh_separation, mesh_separation_with, triangles_within,
+};
+use elbowroom_proximity::{DistanceSettings, Separation, Shape, TriMesh, WarmStart, Workspace, collides, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use fearless_simd::Level;
 
-/// A generator of numbers in [0, 1) with nothing but integer arithmetic, the same on every machine.
+/// A generator of numbers in [0, 1) by integer arithmetic, the same on every machine.
 struct Numbers(u64);
 
 impl Numbers {
@@ -34,7 +36,7 @@ impl Numbers {
         }
     }
 
-    /// A closed lump: a cube's faces cut into squares and pushed out, without a library function.
+    /// A closed lump: the faces of a cube, subdivided and displaced, without library functions.
     fn lump(&mut self, cuts: usize) -> TriMesh {
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
@@ -85,7 +87,7 @@ impl Numbers {
                 1 => vertices.extend([p, p + u, p + u]),
                 2 => vertices.extend([p, p + u, p + u * 0.3]),
                 3 => vertices.extend([p, p + u, p + u * 0.5 + v * 1e-9]),
-                // Along the axes, as drawn parts are.
+                // Along the axes, as modelled parts are.
                 4 => vertices.extend([p, p + Vec3::X * size, p + Vec3::Y * size]),
                 _ => vertices.extend([p, p + u, p + v]),
             }
@@ -94,14 +96,14 @@ impl Numbers {
     }
 }
 
-/// Nearest points of two segments by trying the inner optimum and every end.
+/// Distance of two segments by the inner optimum and every end.
 fn segments(p: [Vec3; 2], q: [Vec3; 2]) -> f64 {
-    let foot = |x: Vec3, [a, b]: [Vec3; 2]| {
+    let to_segment = |x: Vec3, [a, b]: [Vec3; 2]| {
         let length = (b - a).length_squared();
         let s = if length > 0.0 { ((x - a).dot(b - a) / length).clamp(0.0, 1.0) } else { 0.0 };
         (x - (a + (b - a) * s)).length()
     };
-    let mut best = foot(p[0], q).min(foot(p[1], q)).min(foot(q[0], p)).min(foot(q[1], p));
+    let mut best = to_segment(p[0], q).min(to_segment(p[1], q)).min(to_segment(q[0], p)).min(to_segment(q[1], p));
     let (u, v, w) = (p[1] - p[0], q[1] - q[0], p[0] - q[0]);
     let (a, b, c, d, e) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
     let det = a * c - b * b;
@@ -114,7 +116,7 @@ fn segments(p: [Vec3; 2], q: [Vec3; 2]) -> f64 {
     best
 }
 
-/// Distance of a point from a triangle's plane where the foot is inside, else infinite.
+/// Distance of a point from a triangle's plane where its projection is inside, else infinite.
 fn over(x: Vec3, t: [Vec3; 3]) -> f64 {
     let n = (t[1] - t[0]).cross(t[2] - t[0]);
     if n.length() < 1e-12 * (t[1] - t[0]).length_squared().max((t[2] - t[0]).length_squared()) || n.length() == 0.0 {
@@ -155,7 +157,7 @@ fn corners(m: &TriMesh, in_world: &Pose) -> Vec<[Vec3; 3]> {
 }
 
 /// Smallest distance, and every pair that touches.
-fn plainly(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose) -> (f64, Vec<(u32, u32)>) {
+fn all_pairs(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose) -> (f64, Vec<(u32, u32)>) {
     let (of_a, of_b) = (corners(a, a_in_world), corners(b, b_in_world));
     let (mut least, mut touching) = (f64::INFINITY, Vec::new());
     for (i, s) in of_a.iter().enumerate() {
@@ -170,13 +172,28 @@ fn plainly(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose) -> (f
     (least, touching)
 }
 
-/// Asks everything there is to ask about a pair of surfaces and compares.
-fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Numbers, s: &mut Scratch) {
-    let (least, mut expected) = plainly(a, here, b, there);
+/// Settings with a limit and a warm start.
+fn with_settings(
+    a: &TriMesh,
+    here: &Pose,
+    b: &TriMesh,
+    there: &Pose,
+    limit: f64,
+    warm_start: &mut WarmStart,
+    s: &mut Workspace,
+) -> Option<Separation> {
+    let settings = DistanceSettings { limit, warm_start: Some(warm_start), ..DistanceSettings::default() };
+    mesh_separation_with(a, here, b, there, settings, s)
+}
+
+/// Compares every query on a pair of surfaces.
+fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Numbers, s: &mut Workspace) {
+    let (least, mut expected) = all_pairs(a, here, b, there);
     let far = here.translation.length() + there.translation.length() + 1.0;
     let close = 1e-10 * far;
-    let found = distance(a, here, b, there, s);
-    if found.pair == Pair::Inside {
+    let mut warm_start = WarmStart::default();
+    let found = with_settings(a, here, b, there, f64::INFINITY, &mut warm_start, s).unwrap();
+    if s.closest_features() == Some(MeshFeatures::Containment) {
         assert!(a.report().closed || b.report().closed, "inside of nothing");
         return;
     }
@@ -184,36 +201,38 @@ fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Numbers,
     assert!(found.lower_bound <= found.distance && found.lower_bound <= least + close);
     assert!(((found.on_a - found.on_b).length() - found.distance).abs() <= close);
     if least > close {
-        assert!(collide(a, here, b, there, s).is_none());
-        assert!(within(a, here, b, there, least * (1.0 - 1e-9) - close, s).is_none());
+        assert!(colliding_triangles(a, here, b, there, s).is_none());
+        assert!(triangles_within(a, here, b, there, least * (1.0 - 1e-9) - close, s).is_none());
     } else {
-        assert!(collide(a, here, b, there, s).is_some());
+        assert!(colliding_triangles(a, here, b, there, s).is_some());
     }
     let wide = least * (1.0 + 1e-9) + close;
-    assert!(within(a, here, b, there, wide, s).is_some(), "nothing within {wide}, though {least} apart");
-    assert!(distance_at(a, here, b, there, least * (1.0 + 1e-9) + close, None, s).is_some());
-    assert!(least < close || distance_at(a, here, b, there, least * (1.0 - 1e-9) - close, None, s).is_none());
-    let hinted = distance_at(a, here, b, there, f64::INFINITY, Some(found.hint), s).unwrap();
-    assert_eq!(hinted.distance.to_bits(), found.distance.to_bits(), "a hint changes the answer");
-    let astray: Hint = distance(b, there, a, here, s).hint;
-    let misled = distance_at(a, here, b, there, f64::INFINITY, Some(astray), s).unwrap();
-    assert_eq!(misled.distance.to_bits(), found.distance.to_bits(), "a wrong hint changes the answer");
-    let turned = distance(b, there, a, here, s).distance;
+    assert!(triangles_within(a, here, b, there, wide, s).is_some(), "nothing within {wide}, though {least} apart");
+    let cold = || WarmStart::default();
+    assert!(with_settings(a, here, b, there, least * (1.0 + 1e-9) + close, &mut cold(), s).is_some());
+    let limit = least * (1.0 - 1e-9) - close;
+    assert!(least < close || with_settings(a, here, b, there, limit, &mut cold(), s).is_none());
+    let warm = with_settings(a, here, b, there, f64::INFINITY, &mut warm_start, s).unwrap();
+    assert_eq!(warm.distance.to_bits(), found.distance.to_bits(), "a warm start changes the answer");
+    let mut wrong_start = cold();
+    let turned = with_settings(b, there, a, here, f64::INFINITY, &mut wrong_start, s).unwrap().distance;
+    let misled = with_settings(a, here, b, there, f64::INFINITY, &mut wrong_start, s).unwrap();
+    assert_eq!(misled.distance.to_bits(), found.distance.to_bits(), "a wrong warm start changes the answer");
     assert!((turned - found.distance).abs() <= close, "not symmetric");
-    // Any common motion leaves distances alone.
+    // A common motion does not change distances.
     let motion = Pose { rotation: n.rotation(), translation: n.vector() };
-    let moved = distance(a, &(motion * *here), b, &(motion * *there), s).distance;
+    let moved = mesh_separation(a, &(motion * *here), b, &(motion * *there), s).distance;
     assert!((moved - found.distance).abs() <= 2.0 * close, "a common motion changes {} to {moved}", found.distance);
     let mut all = Vec::new();
-    contacts(a, here, b, there, s, |pair| {
-        if let Pair::Triangles(i, j) = pair {
+    for_each_contact(a, here, b, there, s, |pair| {
+        if let MeshFeatures::Triangles(i, j) = pair {
             all.push((i, j));
         }
     });
     all.sort_unstable();
-    assert!(all.windows(2).all(|w| w[0] != w[1]), "a contact is told twice");
+    assert!(all.windows(2).all(|w| w[0] != w[1]), "a contact is reported twice");
     expected.sort_unstable();
-    // What is apart by less than the slack may be told as well.
+    // Pairs closer than the error of f64 may be reported as well.
     let (of_a, of_b) = (corners(a, here), corners(b, there));
     assert!(expected.iter().all(|p| all.binary_search(p).is_ok()), "a contact is missing");
     assert!(all.iter().all(|&(i, j)| triangles(of_a[i as usize], of_b[j as usize]) <= close), "no contact");
@@ -224,8 +243,8 @@ fn rounds(short: usize, long: usize) -> usize {
 }
 
 #[test]
-fn s3_2_lumps_against_the_plain_way() {
-    let (mut n, mut s) = (Numbers(1), Scratch::new());
+fn s3_2_lumps_against_all_pairs() {
+    let (mut n, mut s) = (Numbers(1), Workspace::new());
     for round in 0..rounds(60, 3_000) {
         let (a, b) = (n.lump(2 + round % 4), n.lump(1 + round % 5));
         let apart = 0.2 + n.next();
@@ -236,8 +255,8 @@ fn s3_2_lumps_against_the_plain_way() {
 }
 
 #[test]
-fn s3_2_soups_of_degenerate_triangles_against_the_plain_way() {
-    let (mut n, mut s) = (Numbers(2), Scratch::new());
+fn s3_2_soups_of_degenerate_triangles_against_all_pairs() {
+    let (mut n, mut s) = (Numbers(2), Workspace::new());
     for round in 0..rounds(150, 10_000) {
         let (a, b) = (n.soup(1 + round % 70), n.soup(1 + (round * 7) % 50));
         let spread = if round % 3 == 0 { 0.5 } else { 3.0 };
@@ -249,7 +268,7 @@ fn s3_2_soups_of_degenerate_triangles_against_the_plain_way() {
 
 #[test]
 fn meshes_of_very_different_size_and_far_away() {
-    let (mut n, mut s) = (Numbers(3), Scratch::new());
+    let (mut n, mut s) = (Numbers(3), Workspace::new());
     for round in 0..rounds(60, 2_000) {
         let scale = [1e-3, 1e3, 1e-6][round % 3];
         let big = n.lump(3);
@@ -274,7 +293,7 @@ fn plates_that_face_each_other_exactly() {
         });
         TriMesh::new((0..(cuts + 1) * (cuts + 1)).map(point).collect(), faces.collect()).unwrap()
     };
-    let (mut n, mut s) = (Numbers(4), Scratch::new());
+    let (mut n, mut s) = (Numbers(4), Workspace::new());
     let plate = grid(6);
     for height in [0.0, 1e-15, 1e-9, 1e-3, 0.25, 4.0] {
         for shift in [Vec3::ZERO, Vec3::X * 0.5, Vec3::new(1.0, 1.0, 0.0), Vec3::X * 3.0] {
@@ -286,33 +305,33 @@ fn plates_that_face_each_other_exactly() {
 
 #[test]
 fn one_inside_the_other_collides() {
-    let (mut n, mut s) = (Numbers(5), Scratch::new());
+    let (mut n, mut s) = (Numbers(5), Workspace::new());
     let outer = n.lump(4);
     let shrunk = outer.vertices().iter().map(|v| *v * 0.3).collect();
     let inner = TriMesh::new(shrunk, outer.triangles().to_vec()).unwrap();
     let here = Pose::IDENTITY;
-    assert_eq!(collide(&outer, &here, &inner, &here, &mut s), Some(Pair::Inside));
-    assert_eq!(collide(&inner, &here, &outer, &here, &mut s), Some(Pair::Inside));
-    assert_eq!(distance(&outer, &here, &inner, &here, &mut s).distance, 0.0);
-    assert_eq!(within(&outer, &here, &inner, &here, 1e-3, &mut s), Some(Pair::Inside));
+    assert_eq!(colliding_triangles(&outer, &here, &inner, &here, &mut s), Some(MeshFeatures::Containment));
+    assert_eq!(colliding_triangles(&inner, &here, &outer, &here, &mut s), Some(MeshFeatures::Containment));
+    assert_eq!(mesh_separation(&outer, &here, &inner, &here, &mut s).distance, 0.0);
+    assert_eq!(triangles_within(&outer, &here, &inner, &here, 1e-3, &mut s), Some(MeshFeatures::Containment));
 }
 
 #[test]
-fn what_is_not_a_number_is_contact() {
-    let (mut n, mut s) = (Numbers(6), Scratch::new());
+fn nan_is_contact() {
+    let (mut n, mut s) = (Numbers(6), Workspace::new());
     let m = n.lump(2);
     for bad in [f64::NAN, f64::INFINITY, 1e200, 1e155] {
         let there = Pose::from_translation(Vec3::new(bad, 0.0, 0.0));
         for (x, y) in [(&Pose::IDENTITY, &there), (&there, &Pose::IDENTITY)] {
-            assert_eq!(collide(&m, x, &m, y, &mut s), Some(Pair::Unknown), "{bad}");
-            assert_eq!(within(&m, x, &m, y, 0.1, &mut s), Some(Pair::Unknown));
-            assert_eq!(distance(&m, x, &m, y, &mut s).distance, 0.0);
+            assert_eq!(colliding_triangles(&m, x, &m, y, &mut s), Some(MeshFeatures::Unknown), "{bad}");
+            assert_eq!(triangles_within(&m, x, &m, y, 0.1, &mut s), Some(MeshFeatures::Unknown));
+            assert_eq!(mesh_separation(&m, x, &m, y, &mut s).distance, 0.0);
         }
     }
     // So far away that nothing can be near: certain in f64.
     let there = Pose::from_translation(Vec3::X * 1e17);
-    assert_eq!(collide(&m, &Pose::IDENTITY, &m, &there, &mut s), None);
-    let shape = elbowroom_proximity::Shape::Mesh(m.into());
+    assert_eq!(colliding_triangles(&m, &Pose::IDENTITY, &m, &there, &mut s), None);
+    let shape = Shape::Mesh(m.into());
     let there = Pose::from_translation(Vec3::X * f64::NAN);
     assert!(collides(&shape, &there, &shape, &Pose::IDENTITY));
     assert_eq!(separation(&shape, &there, &shape, &Pose::IDENTITY).distance, 0.0);
@@ -339,46 +358,47 @@ fn mix(hash: &mut u64, x: u64) {
     }
 }
 
-/// All answers of a fixed workload, last bits included; and the way to them: which pairs were found, what was visited.
+/// Hashes of a fixed workload: all answers, last bits included; and the course of the search, that is which pairs were found and
+/// how many nodes were visited.
 fn golden(level: Level) -> (u64, u64) {
-    let (mut n, mut s) = (Numbers(7), Scratch::with_level(level));
-    let (mut answers, mut way) = (0xcbf2_9ce4_8422_2325, 0xcbf2_9ce4_8422_2325);
+    let (mut n, mut s) = (Numbers(7), Workspace::with_level(level));
+    let (mut answers, mut course) = (0xcbf2_9ce4_8422_2325, 0xcbf2_9ce4_8422_2325);
     for round in 0..120 {
         let (a, b) = if round % 3 == 0 { (n.soup(60), n.soup(40)) } else { (n.lump(6), n.lump(5)) };
         let here = Pose { rotation: n.rotation(), translation: n.vector() };
         let there = Pose { rotation: n.rotation(), translation: here.translation + n.vector() * 0.8 };
-        let found = distance(&a, &here, &b, &there, &mut s);
+        let found = mesh_separation(&a, &here, &b, &there, &mut s);
         mix(&mut answers, found.distance.to_bits());
-        // On contact the first point found is as good as any other.
-        let points = if found.distance > 0.0 { &mut answers } else { &mut way };
+        // On contact, any common point is a valid answer.
+        let points = if found.distance > 0.0 { &mut answers } else { &mut course };
         for x in [found.lower_bound, found.on_a.x, found.on_b.y, found.on_b.z] {
             mix(points, x.to_bits());
         }
-        let pair = collide(&a, &here, &b, &there, &mut s);
-        let near = within(&a, &here, &b, &there, 0.1, &mut s);
+        let pair = colliding_triangles(&a, &here, &b, &there, &mut s);
+        let near = triangles_within(&a, &here, &b, &there, 0.1, &mut s);
         for pair in [pair, near] {
             mix(&mut answers, u64::from(pair.is_some()));
-            if let Some(Pair::Triangles(i, j)) = pair {
-                mix(&mut way, u64::from(i) << 32 | u64::from(j));
+            if let Some(MeshFeatures::Triangles(i, j)) = pair {
+                mix(&mut course, u64::from(i) << 32 | u64::from(j));
             }
         }
-        let v = s.visits();
+        let v = s.stats();
         for x in [v.nodes, v.boxes, v.leaves, v.triangles] {
-            mix(&mut way, u64::from(x));
+            mix(&mut course, u64::from(x));
         }
     }
-    (answers, way)
+    (answers, course)
 }
 
-/// The answers of the engine, wherever it runs. A change here is a change of answers: say why.
+/// The answers on any machine. A change here is a change of answers: state why.
 const GOLDEN: u64 = 0xd7f2_aa22_0e93_64ca;
 
 #[test]
 fn every_instruction_set_gives_the_same_answers() {
-    let (_, way) = golden(Level::new());
+    let (_, course) = golden(Level::new());
     for (name, level) in levels() {
-        let (answers, same_way) = golden(level);
+        let (answers, same_course) = golden(level);
         assert_eq!(answers, GOLDEN, "{name}: {answers:#018x}");
-        assert_eq!(same_way, way, "{name} goes another way");
+        assert_eq!(same_course, course, "{name}: the search takes another course");
     }
 }

@@ -1,5 +1,4 @@
-//! Shapes a hair's breadth apart: the boolean, the distance, its bound and the witness points may not contradict each
-//! other, whichever way round they are asked for.
+//! Shapes with tiny gaps: collision, distance, lower bound and witness points must be consistent, in either order of the shapes.
 
 mod common;
 
@@ -15,17 +14,17 @@ const GAPS: [f64; 20] = [
     -1e-11, -1e-9, -1e-6, -1e-3,
 ];
 
-/// By the number of cylinders, metres, of shapes of about 1 m.
-///
-/// A gap above this is never called contact:
-const TOLD_APART: [f64; 3] = [2e-13, 2e-13, 1e-8];
-/// Error of the distance, the bound's own side excepted:
+// By the number of cylinders, metres, for shapes of about 1 m.
+
+/// A larger gap is never contact.
+const SEPARATED: [f64; 3] = [2e-13, 2e-13, 1e-8];
+/// Error of the distance.
 const ACCURATE: [f64; 3] = [1e-11, 1e-8, 1e-8];
-/// How far outside a shape its witness may be, as a share of the coordinates, on contact and apart:
+/// Largest distance of a witness point outside its shape, as a share of the coordinates, on contact and apart.
 const ON_SHAPE: [f64; 3] = [1e-9, 1e-8, 1e-8];
 const ON_SHAPE_APART: f64 = 1e-15;
 
-/// What the witnesses of faces and edges may be farther apart than the distance, so that they are steady.
+/// Excess of the distance of continuous witness points over the distance, as a share of the coordinates.
 const PARALLEL: f64 = 2e-8;
 
 struct Placed {
@@ -49,7 +48,7 @@ impl Placed {
         3.0 + self.a_in_world.translation.abs().max_element() + self.b_in_world.translation.abs().max_element()
     }
 
-    /// Every two answers about the pair agree; the answer.
+    /// Checks that all answers about the pair agree, and returns the separation.
     fn consistent(&self) -> Separation {
         let Self { a, a_in_world: pa, b, b_in_world: pb } = self;
         let s = separation(a, pa, b, pb);
@@ -57,7 +56,7 @@ impl Placed {
         let hit = s.distance <= 0.0;
         assert_eq!(s.lower_bound <= 0.0, hit, "{}", what());
         assert_eq!(collides(a, pa, b, pb), hit, "{}", what());
-        assert_eq!(collides(b, pb, a, pa), hit, "the other way round: {}", what());
+        assert_eq!(collides(b, pb, a, pa), hit, "swapped: {}", what());
         assert_eq!(separation_within(a, pa, b, pb, 0.0).is_some(), hit, "{}", what());
         let swapped = separation(b, pb, a, pa);
         assert_eq!((s.distance, s.lower_bound), (swapped.distance, swapped.lower_bound), "{}", what());
@@ -74,8 +73,8 @@ impl Placed {
         s
     }
 
-    /// True where no step of a millimetre along the normal leads out of the other side, as past the edge of a thin disc
-    /// or a sharp corner of a hull.
+    /// True where a millimetre along the normal stays inside, other than beyond the edge of a thin disc or a sharp corner of a
+    /// hull.
     fn blunt(&self) -> bool {
         let least = |shape: &Shape| match shape {
             Shape::Sphere(s) => s.radius,
@@ -102,21 +101,18 @@ fn pair(first: &str, second: &str, rng: &mut Rng) {
         for gap in GAPS.into_iter().filter(|_| far.distance > 1e-3) {
             placed.a_in_world = Pose::new(start.rotation, start.translation + toward_b * (far.distance - gap));
             let near = placed.consistent();
-            let (told, accurate) = (TOLD_APART[placed.cylinders()], ACCURATE[placed.cylinders()]);
-            // The way between steady witnesses is as much longer than the distance.
-            let steady = if placed.is_flat() { PARALLEL * placed.scale() } else { 0.0 };
+            let (separated, accurate) = (SEPARATED[placed.cylinders()], ACCURATE[placed.cylinders()]);
+            // The excess of continuous witness points.
+            let excess = if placed.is_flat() { PARALLEL * placed.scale() } else { 0.0 };
             let what = || format!("{:?}\n{:?}\n{near:?}", placed.a, placed.b);
-            assert!(gap <= told || near.distance > 0.0, "{gap:e} m apart are called contact: {}", what());
-            assert!(gap < 0.0 || (near.distance - gap).abs() <= accurate + steady, "{gap:e} m: {}", what());
-            assert!(!blunt || gap >= -1e-13 - steady || near.distance == 0.0, "{gap:e} m: {}", what());
+            assert!(gap <= separated || near.distance > 0.0, "{gap:e} m apart count as contact: {}", what());
+            assert!(gap < 0.0 || (near.distance - gap).abs() <= accurate + excess, "{gap:e} m: {}", what());
+            assert!(!blunt || gap >= -1e-13 - excess || near.distance == 0.0, "{gap:e} m: {}", what());
             apart += usize::from(near.distance > 0.0);
             touching += usize::from(near.distance <= 0.0);
         }
     }
-    assert!(
-        !solid || apart.min(touching) > 100,
-        "{first} {second}: {apart} apart, {touching} touching show too little"
-    );
+    assert!(!solid || apart.min(touching) > 100, "{first} {second}: {apart} apart, {touching} touching are too few");
 }
 
 #[test]
@@ -124,7 +120,7 @@ fn near_contact_every_answer_agrees() {
     let mut rng = Rng(2026);
     for first in KINDS {
         for second in KINDS {
-            // Two half-spaces are apart in too few places; meshes have tests of their own.
+            // Two half-spaces are apart in too few poses; two meshes have their own tests.
             if first != second || !["plane", "mesh"].contains(&first) {
                 pair(first, second, &mut rng);
             }
@@ -148,7 +144,7 @@ fn overlapping_shapes_share_the_witness_point() {
     }
 }
 
-/// The parts of one link, all in the link's frame.
+/// Shapes with the same pose, as those of one link in the link's frame.
 #[test]
 fn shapes_at_the_same_place_have_one_answer() {
     let mut rng = Rng(5);

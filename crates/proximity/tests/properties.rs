@@ -1,6 +1,6 @@
 //! Numbers of any bit pattern and sizes of any magnitude.
 
-use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, escape, separation, separation_within};
+use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, penetration, separation, separation_within};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use proptest::prelude::*;
 
@@ -35,7 +35,7 @@ proptest! {
         let pb = Pose::from_translation(Vec3::new(v[12], v[13], v[14]));
         let s = separation(&a, &pa, &b, &pb);
         prop_assert!(s.lower_bound >= 0.0 && s.lower_bound <= s.distance && s.distance.is_finite());
-        prop_assert_eq!(escape(&a, &pa, &b, &pb).is_some(), s.lower_bound <= 0.0);
+        prop_assert_eq!(penetration(&a, &pa, &b, &pb).is_some(), s.lower_bound <= 0.0);
     }
 
     #[test]

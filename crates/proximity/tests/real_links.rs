@@ -1,4 +1,4 @@
-//! Fits around the collision meshes of real robots; skipped where their descriptions are not at hand.
+//! Fits around the collision meshes of real robots; skipped where their descriptions are not installed.
 #![allow(clippy::print_stdout, reason = "the test prints how tight the fits are")]
 
 use std::cmp::Ordering;
@@ -46,7 +46,7 @@ fn fits_around_real_links_hold_every_vertex() {
     // Collision meshes of up to 1,200 triangles: the test build is slow.
     let small = |p: &PathBuf| std::fs::metadata(p).is_ok_and(|m| m.len() < 60_000);
     files.retain(|p| p.components().any(|c| c.as_os_str() == "collision") && small(p));
-    // Every third: all makers are among them.
+    // Every third: all manufacturers are among them.
     files = files.into_iter().step_by(3).take(24).collect();
     if files.is_empty() {
         println!("skipped: no data at {}", root.display());

@@ -1,5 +1,5 @@
-//! Distances judged by certificates: witness points inside the solids prove the distance from above, a support plane
-//! between them proves it from below. Neither asks the code that found the answer.
+//! Distances checked by certificates: witness points inside the solids prove an upper bound, a support plane between them a lower
+//! bound. Neither uses the code under test.
 
 mod common;
 
@@ -16,8 +16,8 @@ fn plane_gap(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
     low - pb.transform_point(b.support(pb.inverse_transform_vector(d))).dot(d)
 }
 
-/// The best of the support planes near `d`: across the witness points, along faces' normals, across axes, and turned
-/// uphill until they prove what is wanted or prove no more. Every direction is a proof, however it was found.
+/// The best of the support planes near `d`: perpendicular to the witness points, along normals of faces, perpendicular to axes,
+/// and improved by hill climbing until they prove `wanted` or improve no more. Every direction gives a valid bound.
 fn best_plane_gap(d: Vec3, frames: [Rotation; 2], wanted: f64, gap: impl Fn(Vec3) -> f64) -> f64 {
     let axes = frames.map(|r| [r.x_axis(), r.y_axis(), r.z_axis()]);
     let across = axes.as_flattened().iter().map(|&e| d - e * d.dot(e));
@@ -30,20 +30,20 @@ fn best_plane_gap(d: Vec3, frames: [Rotation; 2], wanted: f64, gap: impl Fn(Vec3
         let value = gap(e);
         best = if value > best.0 { (value, e) } else { best };
     }
-    uphill(best.1, best.0, wanted, gap)
+    hill_climb(best.1, best.0, wanted, gap)
 }
 
-fn uphill(mut d: Vec3, mut best: f64, wanted: f64, gap: impl Fn(Vec3) -> f64) -> f64 {
+fn hill_climb(mut d: Vec3, mut best: f64, wanted: f64, gap: impl Fn(Vec3) -> f64) -> f64 {
     let (mut step, mut phase) = (1e-4, 0.0);
     while best < wanted && step > 1e-17 {
         let (x, y) = (d.any_perpendicular(), d.cross(d.any_perpendicular()));
         let mut improved = false;
         for k in 0..8 {
             let (sin, cos) = (phase + f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
-            let turned = (d + (x * cos + y * sin) * step).try_normalize().unwrap();
-            let value = gap(turned);
+            let tilted = (d + (x * cos + y * sin) * step).try_normalize().unwrap();
+            let value = gap(tilted);
             if value > best {
-                (best, d, improved) = (value, turned, true);
+                (best, d, improved) = (value, tilted, true);
             }
         }
         step *= if improved { 1.5 } else { 0.8 };
@@ -52,7 +52,7 @@ fn uphill(mut d: Vec3, mut best: f64, wanted: f64, gap: impl Fn(Vec3) -> f64) ->
     best
 }
 
-/// Radius about the frame's origin of what has corners, metres.
+/// Radius of the core about the frame's origin, metres.
 fn reach(shape: &Shape) -> f64 {
     match shape {
         Shape::Capsule(c) => c.half_length,
@@ -72,24 +72,24 @@ fn certify(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, tolerance: f64) -> bool {
     if s.distance < 1e-9 {
         return false;
     }
-    // Of faces and edges that are nearly parallel the witnesses may be a hair farther apart, so that they are steady.
+    // Continuous witness points of nearly parallel faces and edges may be slightly farther apart.
     let flat = [a, b].iter().all(|s| !matches!(s, Shape::Sphere(_) | Shape::HalfSpace(_)));
-    let steady = if flat { 2e-8 * (reach(a) + reach(b)) } else { 0.0 };
+    let excess = if flat { 2e-8 * (reach(a) + reach(b)) } else { 0.0 };
     let d = (s.on_a - s.on_b) / s.distance;
     assert!(
-        (d.length() - 1.0).abs() < 1e-6 + steady / s.distance,
-        "witnesses are not as far apart as said: {}",
+        (d.length() - 1.0).abs() < 1e-6 + excess / s.distance,
+        "the distance of the witness points is not the distance: {}",
         what()
     );
-    assert!((s.on_a.distance(s.on_b) - s.distance).abs() <= tolerance + steady, "{}", what());
+    assert!((s.on_a.distance(s.on_b) - s.distance).abs() <= tolerance + excess, "{}", what());
     assert!(project_point(a, pa, s.on_a).signed_distance <= tolerance, "on_a is not in a: {}", what());
     assert!(project_point(b, pb, s.on_b).signed_distance <= tolerance, "on_b is not in b: {}", what());
     let d = d.try_normalize().unwrap();
     let d = if matches!(b, Shape::HalfSpace(_)) { pb.rotation.z_axis() } else { d };
     let tolerance = tolerance + 4e-15 / s.distance;
     let proven = best_plane_gap(d, [pa.rotation, pb.rotation], s.distance - tolerance, |d| plane_gap(a, pa, b, pb, d));
-    // The uphill search sticks on the ridges of cylinders' support functions, by up to 5e-9 seen for thin discs. The kernel's own
-    // support planes (`lower_bound`) are held to the full tolerance below.
+    // Hill climbing gets stuck on the ridges of cylinders' support functions, by up to 5e-9 for thin discs. The `lower_bound` is
+    // checked with the full tolerance below.
     let curved = matches!(a, Shape::Cylinder(_)) || matches!(b, Shape::Cylinder(_));
     assert!(
         s.distance - proven <= if curved { tolerance.max(1e-8) } else { tolerance },
@@ -109,7 +109,7 @@ fn pair(first: &str, second: &str, tolerance: f64) {
         let (pa, pb) = (rng.pose(1.5), rng.pose(1.5));
         apart += usize::from(certify(&a, &pa, &b, &pb, tolerance));
     }
-    assert!(apart > n / 10, "only {apart} of {n} apart: the test shows too little");
+    assert!(apart > n / 10, "only {apart} of {n} apart: too few");
 }
 
 #[test]
@@ -148,8 +148,7 @@ fn cylinders_are_within_the_stated_bound() {
     pair("cylinder", "cylinder", 1e-11);
 }
 
-/// The four tests of the tool's OBB against the paper's elementary regions (S1.10), each against its own oracle of
-/// points sampled in the box.
+/// The four tests of the tool's OBB against the elementary regions of S1.10, each compared with points sampled in the box.
 #[test]
 fn s1_10_obb_against_plane_sphere_cylinder_and_obb() {
     let mut rng = Rng(110);
@@ -196,7 +195,7 @@ fn swapped_and_moved_pairs_answer_the_same() {
 }
 
 #[test]
-fn a_limit_changes_nothing_but_what_is_too_far() {
+fn a_limit_changes_only_answers_beyond_it() {
     let mut rng = Rng(9);
     for first in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
         for second in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
@@ -250,7 +249,7 @@ fn growing_a_shape_never_increases_the_distance() {
 }
 
 #[test]
-fn degenerate_sizes_and_places_answer() {
+fn degenerate_sizes_and_poses_have_an_answer() {
     let sizes = [0.0, 1e-9, 1.0, 1e6];
     let places = [0.0, 1e-9, 2.0, 3.0, 2e6];
     let turns = [Rotation::IDENTITY, Rotation::from_rpy(0.0, 1e-9, 0.0), Rotation::from_rpy(1.0, 2.0, 3.0)];
@@ -273,7 +272,7 @@ fn degenerate_sizes_and_places_answer() {
             let s = separation(&a, &pa, &b, &Pose::IDENTITY);
             let scale = 1.0 + ra + rb + at;
             certify(&a, &pa, &b, &Pose::IDENTITY, 1e-12 * scale);
-            // Each contains the ball of half its size about its middle, and is in the one of twice.
+            // Each contains the sphere of half its size about its centre, and is inside the one of twice its size.
             assert!(s.distance <= (at - 0.5 * (ra + rb)).max(0.0) + 1e-14 * scale, "{a:?} {b:?} {at}: {s:?}");
             assert!(s.distance >= (at - 2.0 * (ra + rb)).max(0.0) - 1e-14 * scale, "{a:?} {b:?} {at}: {s:?}");
         }
@@ -295,7 +294,7 @@ fn touching_counts_as_contact() {
 }
 
 #[test]
-fn what_is_not_a_number_is_never_free() {
+fn nan_is_never_free() {
     let mut rng = Rng(13);
     let kinds = ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"];
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

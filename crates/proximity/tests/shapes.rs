@@ -1,4 +1,4 @@
-//! Projection, escape, fits, hulls, meshes: judged by sampling, by parry and by what must hold.
+//! Point projection, penetration, fits, hulls, meshes: compared with sampling and with parry, and checked for invariants.
 
 mod common;
 
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::{CONVEX, Rng, cases};
 use elbowroom_proximity::{
-    ConvexHull, HullError, MeshError, Shape, TriMesh, collides, escape, fit, project_point, separation,
+    ConvexHull, HullError, MeshError, Shape, TriMesh, collides, fit, penetration, project_point, separation,
     tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -66,31 +66,34 @@ fn projected_points_lie_on_the_surface_along_the_normal() {
 }
 
 #[test]
-fn escaping_separates_and_half_the_way_does_not() {
+fn moving_by_the_penetration_depth_separates_and_by_less_does_not() {
     let mut rng = Rng(23);
     for first in CONVEX.into_iter().chain(["mesh"]) {
         for second in CONVEX.into_iter().chain(["mesh", "plane"]) {
             for _ in 0..12 {
                 let (a, b, pa, pb) = (rng.shape(first), rng.shape(second), rng.pose(0.5), rng.pose(0.5));
-                let Some(out) = escape(&a, &pa, &b, &pb) else {
+                let Some(overlap) = penetration(&a, &pa, &b, &pb) else {
                     assert!(!collides(&a, &pa, &b, &pb));
                     continue;
                 };
-                let moved = |k: f64| Pose::new(pa.rotation, pa.translation + out.direction * k);
-                assert!((out.direction.length() - 1.0).abs() < 1e-9, "{first} {second} {out:?}");
+                let moved = |k: f64| Pose::new(pa.rotation, pa.translation + overlap.direction * k);
+                assert!((overlap.direction.length() - 1.0).abs() < 1e-9, "{first} {second} {overlap:?}");
                 assert!(
-                    !collides(&a, &moved(out.depth + 1e-7), &b, &pb),
-                    "{first} {second} {out:?}\n{a:?}{pa:?}\n{b:?}{pb:?}"
+                    !collides(&a, &moved(overlap.depth + 1e-7), &b, &pb),
+                    "{first} {second} {overlap:?}\n{a:?}{pa:?}\n{b:?}{pb:?}"
                 );
-                if out.depth > 1e-6 && first != "mesh" && second != "mesh" {
-                    assert!(collides(&a, &moved(out.depth * 0.9), &b, &pb), "{first} {second}: too far, {out:?}");
+                if overlap.depth > 1e-6 && first != "mesh" && second != "mesh" {
+                    assert!(
+                        collides(&a, &moved(overlap.depth * 0.9), &b, &pb),
+                        "{first} {second}: too far, {overlap:?}"
+                    );
                 }
             }
         }
     }
 }
 
-/// Overlap along a direction of the world: no translation along it is shorter.
+/// Overlap along a direction of the world: no shorter translation along it separates.
 fn overlap_along(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
     let low = pa.transform_point(a.support(pa.inverse_transform_vector(-d)));
     let high = pb.transform_point(b.support(pb.inverse_transform_vector(d)));
@@ -98,31 +101,31 @@ fn overlap_along(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
 }
 
 #[test]
-fn primitives_escape_the_shortest_way() {
+fn penetration_of_primitives_is_the_least() {
     let mut rng = Rng(28);
     let kinds = ["sphere", "capsule", "cylinder", "box"];
     for (first, second) in kinds.iter().flat_map(|a| kinds.map(|b| (*a, b))) {
         let mut overlapping = 0;
         while overlapping < cases(300) {
             let (a, b, pa, pb) = (rng.shape(first), rng.shape(second), rng.pose(0.5), rng.pose(0.5));
-            let Some(out) = escape(&a, &pa, &b, &pb) else { continue };
+            let Some(overlap) = penetration(&a, &pa, &b, &pb) else { continue };
             overlapping += 1;
-            let said = || format!("{out:?}\n{a:?} {pa:?}\n{b:?} {pb:?}");
-            assert!(out.depth >= 0.0 && (out.direction.length() - 1.0).abs() < 1e-12, "{}", said());
-            let along = overlap_along(&a, &pa, &b, &pb, out.direction);
-            assert!(along <= out.depth + 1e-13, "{along} does not separate: {}", said());
-            // Brute force: anywhere on the sphere, and near the answer.
+            let what = || format!("{overlap:?}\n{a:?} {pa:?}\n{b:?} {pb:?}");
+            assert!(overlap.depth >= 0.0 && (overlap.direction.length() - 1.0).abs() < 1e-12, "{}", what());
+            let along = overlap_along(&a, &pa, &b, &pb, overlap.direction);
+            assert!(along <= overlap.depth + 1e-13, "{along} does not separate: {}", what());
+            // Brute force: random directions, and directions near the answer.
             for k in 0..300 {
                 let near = if k % 2 == 0 { 10_f64.powf(rng.range(-6.0, 0.0)) } else { 100.0 };
-                let Some(d) = (out.direction + rng.vec(near)).try_normalize() else { continue };
+                let Some(d) = (overlap.direction + rng.vec(near)).try_normalize() else { continue };
                 let other = overlap_along(&a, &pa, &b, &pb, d);
-                assert!(out.depth <= other + 1e-9, "{first} {second}: {other} along {d:?} is shorter: {}", said());
+                assert!(overlap.depth <= other + 1e-9, "{first} {second}: {other} along {d:?} is shorter: {}", what());
             }
         }
     }
 }
 
-fn holds(fit: &fit::Fit, points: &[Vec3]) {
+fn check_encloses(fit: &fit::Fit, points: &[Vec3]) {
     for &p in points {
         assert!(project_point(&fit.shape, &fit.in_frame, p).signed_distance <= 0.0, "{p:?} is outside {fit:?}");
     }
@@ -139,7 +142,7 @@ fn fits_enclose_every_point_and_are_tight() {
         let fits = [fit::capsule(&points), fit::cuboid(&points), fit::sphere(&points), fit::tightest(&points)];
         let fits = fits.map(Option::unwrap);
         for fit in &fits {
-            holds(fit, &points);
+            check_encloses(fit, &points);
         }
         let ratio = fits.each_ref().map(|f| f.volume / hull.volume());
         println!("cloud {case}: capsule {:.2}, box {:.2}, sphere {:.2} times the hull", ratio[0], ratio[1], ratio[2]);
@@ -150,14 +153,14 @@ fn fits_enclose_every_point_and_are_tight() {
         [fit::capsule(few), fit::cuboid(few), fit::sphere(few), fit::tightest(few)]
             .iter()
             .flatten()
-            .for_each(|f| holds(f, few));
+            .for_each(|f| check_encloses(f, few));
         assert!(fit::tightest(few).is_some());
     }
     assert!(fit::tightest(&[]).is_none() && fit::sphere(&[Vec3::splat(f64::NAN)]).is_none());
 }
 
 #[test]
-fn hulls_hold_their_points_and_refuse_what_has_no_inside() {
+fn hulls_contain_their_points_and_refuse_flat_input() {
     let mut rng = Rng(25);
     for _ in 0..200 {
         let n = 4 + rng.below(200);
@@ -201,7 +204,7 @@ fn meshes_report_and_refuse() {
     let twice = t.iter().chain(&t[..1]).copied().chain([[0, 0, 1]]).collect();
     let report = *TriMesh::new(v.clone(), twice).unwrap().report();
     assert_eq!((report.duplicate, report.degenerate), (1, 1));
-    // As an STL has it: every triangle with vertices of its own.
+    // As in an STL file: every triangle has its own vertices.
     let soup: Vec<Vec3> = t.iter().flatten().map(|&i| v[i as usize]).collect();
     let faces = (0..t.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(TriMesh::new(soup, faces).unwrap().report().closed);
@@ -210,7 +213,7 @@ fn meshes_report_and_refuse() {
 }
 
 #[test]
-fn meshes_of_hulls_answer_as_the_hulls_do() {
+fn meshes_of_hulls_have_the_distances_of_the_hulls() {
     let mut rng = Rng(26);
     for _ in 0..cases(600) / 2 {
         let solid = rng.shape("hull");
@@ -252,7 +255,7 @@ fn a_solid_inside_a_closed_mesh_collides_and_in_its_cavity_is_free() {
 }
 
 #[test]
-fn a_hulls_own_corners_are_on_it() {
+fn vertices_of_a_hull_are_on_its_surface() {
     let capsule = Shape::Capsule(elbowroom_proximity::Capsule { half_length: 0.2, radius: 0.1 });
     for chord in [0.02, 0.004, 0.001] {
         let (vertices, _) = elbowroom_proximity::tessellate::tessellate(&capsule, chord);

@@ -1,5 +1,5 @@
-//! Triangles that are almost lines, meshes far from their own origin, meshes that are almost points: every answer
-//! against distances without rounding, and against every other answer.
+//! Nearly degenerate triangles, meshes far from their own origin, tiny meshes: every answer compared with distances in exact
+//! arithmetic, and with every other answer.
 
 mod common;
 #[path = "common/exact.rs"]
@@ -8,8 +8,12 @@ mod exact;
 use std::sync::Arc;
 
 use common::Rng;
-use elbowroom_proximity::mesh::{Scratch, collide, contacts, distance, distance_at, farther, within};
-use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Shape, Sphere, TriMesh, collides, separation};
+use elbowroom_proximity::advanced::{
+    colliding_triangles, for_each_contact, is_farther_than, mesh_separation, mesh_separation_with, triangles_within,
+};
+use elbowroom_proximity::{
+    Capsule, ConvexHull, Cuboid, DistanceSettings, Shape, Sphere, TriMesh, Workspace, collides, separation,
+};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use exact::{Point, Square, Triangle, placed, placed_triangle, point_triangle, segment_triangle, triangles};
 
@@ -18,7 +22,7 @@ fn mesh(corners: &[[Vec3; 3]]) -> TriMesh {
     TriMesh::new(corners.as_flattened().to_vec(), faces).unwrap()
 }
 
-/// A triangle of such a height over an edge about 1 m long; its foot lies anywhere on that edge, or near an end.
+/// A triangle of this height over an edge about 1 m long; the corner projects anywhere onto that edge, or near an end.
 fn sliver(rng: &mut Rng, height: f64) -> [Vec3; 3] {
     let (from, along) = (rng.vec(0.5), rng.vec(1.0));
     let across = along.cross(rng.vec(1.0)).try_normalize().unwrap_or(Vec3::X);
@@ -43,8 +47,8 @@ fn across(rng: &mut Rng, sliver: &[Vec3; 3], height: f64, slender: bool) -> [Vec
 
 /// Every answer about two meshes in the world, against the exact square of their distance; the distance.
 fn agree(a: &TriMesh, pa: &Pose, b: &TriMesh, pb: &Pose, exact: &Square, error: f64) -> f64 {
-    let scratch = &mut Scratch::new();
-    let near = distance(a, pa, b, pb, scratch);
+    let workspace = &mut Workspace::new();
+    let near = mesh_separation(a, pa, b, pb, workspace);
     let what = || format!("{a:?}\nat {pa:?}\n{b:?}\nat {pb:?}\n{near:?}\n{exact:?}");
     assert!(exact.root_cmp(near.lower_bound).is_ge(), "the lower bound is above the distance: {}", what());
     assert!(exact.root_cmp(near.distance + error).is_le(), "the distance is too short: {}", what());
@@ -52,21 +56,28 @@ fn agree(a: &TriMesh, pa: &Pose, b: &TriMesh, pb: &Pose, exact: &Square, error: 
     let hit = near.distance == 0.0;
     assert!(hit || !exact.is_zero(), "contact is denied: {}", what());
     assert_eq!(near.lower_bound == 0.0, hit, "{}", what());
-    assert_eq!(collide(a, pa, b, pb, scratch).is_some(), hit, "collision: {}", what());
+    assert_eq!(colliding_triangles(a, pa, b, pb, workspace).is_some(), hit, "collision: {}", what());
     let mut count = 0;
-    contacts(a, pa, b, pb, scratch, |_| count += 1);
+    for_each_contact(a, pa, b, pb, workspace, |_| count += 1);
     assert_eq!(count > 0, hit, "contacts: {}", what());
     let lower = near.lower_bound;
     for tolerance in [0.0, 0.5 * lower, lower * (1.0 - 1e-9), lower * (1.0 + 1e-9), near.distance * 1.5 + 1e-9] {
         let close = near.lower_bound <= tolerance;
-        assert_eq!(within(a, pa, b, pb, tolerance, scratch).is_some(), close, "within {tolerance:e}: {}", what());
-        assert_eq!(farther(a, pa, b, pb, tolerance, scratch), !close, "farther than {tolerance:e}: {}", what());
         assert_eq!(
-            distance_at(a, pa, b, pb, tolerance, None, scratch).is_some(),
+            triangles_within(a, pa, b, pb, tolerance, workspace).is_some(),
             close,
-            "at {tolerance:e}: {}",
+            "within {tolerance:e}: {}",
             what()
         );
+        assert_eq!(
+            is_farther_than(a, pa, b, pb, tolerance, workspace),
+            !close,
+            "farther than {tolerance:e}: {}",
+            what()
+        );
+        let settings = DistanceSettings { limit: tolerance, ..DistanceSettings::default() };
+        let found = mesh_separation_with(a, pa, b, pb, settings, workspace);
+        assert_eq!(found.is_some(), close, "at {tolerance:e}: {}", what());
     }
     near.distance
 }
@@ -81,7 +92,7 @@ fn crossing_slivers_are_never_apart() {
             let t = across(&mut rng, &s, height, case % 2 == 0);
             let (pa, pb) =
                 if case % 3 == 0 { (rng.pose(1.0), rng.pose(1.0)) } else { (Pose::IDENTITY, Pose::IDENTITY) };
-            // So that the second pose leaves the crossing where it is, but for rounding.
+            // The second pose preserves the crossing, up to rounding.
             let t = t.map(|p| pb.inverse_transform_point(pa.transform_point(p)));
             let exact = triangles(&placed_triangle(s, &pa), &placed_triangle(t, &pb));
             let d = agree(&mesh(&[s]), &pa, &mesh(&[t]), &pb, &exact, 2e-11);
@@ -89,7 +100,7 @@ fn crossing_slivers_are_never_apart() {
             free += usize::from(d > 0.0);
         }
     }
-    assert!(hit > 400 && free > 300, "{hit} touch, {free} do not: that shows too little");
+    assert!(hit > 400 && free > 300, "{hit} touch, {free} do not: too few of one kind");
 }
 
 /// Spheres and capsules near slivers.
@@ -133,7 +144,7 @@ fn check(a: &Shape, pa: &Pose, b: &Shape, square: &Square) {
     assert_eq!(collides(a, pa, b, &Pose::IDENTITY), found.distance == 0.0, "{}", what());
 }
 
-/// Boxes and hulls near slivers: what is told of them lies on the right side of the exact distance.
+/// Boxes and hulls near slivers: the bounds are on the right side of the exact distance.
 #[test]
 fn flat_shapes_near_slivers_have_right_bounds() {
     let mut rng = Rng(19);
@@ -160,14 +171,14 @@ fn flat_shapes_near_slivers_have_right_bounds() {
     }
 }
 
-/// Points at a distance from slivers: the foot's place on the line must not be lost in a normal of noise.
+/// Points at a distance from slivers: the projection onto the line must not be lost in an inaccurate normal.
 #[test]
 fn points_far_from_slivers_have_right_distances() {
     let mut rng = Rng(16);
     for height in [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8] {
         for _ in 0..400 {
             let s = sliver(&mut rng, height);
-            // Over the middle of it, however noisy that direction is: nothing else is inside of something so thin.
+            // Over its middle, however inaccurate that direction is.
             let n = (s[1] - s[0]).cross(s[2] - s[0]).try_normalize().unwrap_or(Vec3::Z);
             let p = (s[0] + s[1] + s[2]) / 3.0 + n * rng.range(-1.0, 1.0) + rng.vec(1.0) * (3.0 * height);
             let t = placed_triangle(s, &Pose::IDENTITY);
@@ -213,7 +224,7 @@ fn meshes_far_from_their_origin_have_one_answer() {
         let far = [1e3, 1e5, 1e6, 1e7][case % 4];
         let (ca, cb) = (rng.vec(far), rng.vec(far));
         let (a, b) = (cube(ca, 1.0), cube(cb, 1.0));
-        // Corner towards corner, so that the balls around them are apart or not by the same hair as the corners.
+        // Corner towards corner, so that the bounding spheres have the same gap as the corners.
         let direction = Vec3::splat(1.0 / 3.0_f64.sqrt());
         let gap = [0.0, 1e-16, 1e-12, 1e-10, 1e-9, -1e-10][case % 6] * far;
         let pb = Pose::from_translation(ca - cb + direction * (2.0 * 3.0_f64.sqrt() + gap));

@@ -1,15 +1,15 @@
-//! Repairs of drawn meshes: what is merged, dropped, turned and told apart, beside plain ways of finding the same.
+//! Mesh repair: welding, orientation and components, compared with simple implementations.
 
 mod common;
 
 use common::Rng;
-use elbowroom_proximity::repair::{RepairError, orient, split, weld};
+use elbowroom_proximity::repair::{RepairError, orient, split_components, weld};
 use elbowroom_proximity::{ConvexHull, TriMesh};
 use elbowroom_spatial::Vec3;
 use proptest::prelude::*;
 
-/// What `weld` promises of vertices, tried on every pair.
-fn plain_targets(vertices: &[Vec3], tolerance: f64) -> Vec<usize> {
+/// The vertices that `weld` must merge, by comparing every pair.
+fn simple_targets(vertices: &[Vec3], tolerance: f64) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     let mut target = Vec::new();
     for (i, v) in vertices.iter().enumerate() {
@@ -28,7 +28,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn vertices_go_where_the_plain_way_sends_them(
+    fn vertices_are_merged_as_by_the_simple_implementation(
         cells in prop::collection::vec(prop::array::uniform3(-6_i32..6), 3..60),
         tolerance in prop::sample::select(vec![0.0, 1e-300, 0.05, 0.11, 0.25, 1.0]),
         far in prop::sample::select(vec![0.0, 1e6]),
@@ -38,7 +38,7 @@ proptest! {
         let n = vertices.len() as u32;
         let triangles: Vec<[u32; 3]> = (0..n).map(|i| [i, (i + 1) % n, (i * 7 + 2) % n]).collect();
         let welded = weld(&vertices, &triangles, tolerance).unwrap();
-        let target = plain_targets(&vertices, tolerance);
+        let target = simple_targets(&vertices, tolerance);
         let merged = target.iter().enumerate().filter(|(i, t)| i != *t).count();
         prop_assert_eq!(welded.report.merged, merged);
         // No vertex moved by more than the tolerance, and those left are farther apart.
@@ -49,14 +49,14 @@ proptest! {
         let dropped = welded.report.zero_area + welded.report.duplicate;
         prop_assert_eq!(welded.triangles.len() + dropped, triangles.len());
         prop_assert_eq!(welded.report.unused + merged + welded.vertices.len(), vertices.len());
-        // Doing it again changes nothing.
+        // Done it again changes nothing.
         let again = weld(&welded.vertices, &welded.triangles, tolerance).unwrap();
         prop_assert_eq!(&again.vertices, &welded.vertices);
         prop_assert!(again.report.merged == 0 && again.report.duplicate == 0);
     }
 
     #[test]
-    fn a_scrambled_solid_comes_back(seed in any::<u64>(), turned in prop::collection::vec(any::<bool>(), 80)) {
+    fn a_scrambled_solid_is_restored(seed in any::<u64>(), turned in prop::collection::vec(any::<bool>(), 80)) {
         let mut rng = Rng(seed);
         let hull = rng.hull();
         let (soup, faces) = scrambled(&hull, &mut rng, &turned);
@@ -71,7 +71,7 @@ proptest! {
     }
 }
 
-/// Every face with corners of its own a little off, some turned over.
+/// Every face with its own corners, slightly offset, some reversed.
 fn scrambled(hull: &ConvexHull, rng: &mut Rng, turned: &[bool]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut soup, mut faces) = (vec![], vec![]);
     for (k, t) in hull.triangles().iter().enumerate() {
@@ -111,7 +111,7 @@ fn a_long_chain_of_neighbours_does_not_collapse() {
 }
 
 #[test]
-fn copies_go_walls_between_solids_stay() {
+fn duplicates_are_removed_and_walls_between_solids_stay() {
     let (mut vertices, mut faces) = cube(1.0, Vec3::ZERO, false);
     let wall = faces[0];
     faces.push([wall[1], wall[2], wall[0]]);
@@ -129,7 +129,7 @@ fn copies_go_walls_between_solids_stay() {
 
 #[test]
 fn a_sliver_that_closes_a_surface_stays() {
-    // The edge from 0 to 1 of a tetrahedron is split on one side: a face without area fills the seam.
+    // The edge from 0 to 1 of a tetrahedron is split_components on one side: a face without area fills the seam.
     let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::X * 0.5];
     let faces = vec![[0, 2, 4], [4, 2, 1], [0, 4, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let closed = weld(&vertices, &faces, 1e-9).unwrap();
@@ -140,26 +140,28 @@ fn a_sliver_that_closes_a_surface_stays() {
 }
 
 #[test]
-fn hollows_stay_hollow_and_solids_face_outward() {
+fn cavities_stay_and_solids_face_outward() {
     let outer = |inward| cube(3.0, Vec3::ZERO, inward);
     let inner = |inward| cube(1.0, Vec3::splat(0.2), inward);
     let beside = |inward| cube(1.0, Vec3::X * 9.0, inward);
     let core = |inward| cube(0.5, Vec3::splat(0.2), inward);
-    // As drawn, and whether each bounds a hollow: outer, inner, core, beside.
+    // Orientation as given, and whether each bounds a cavity: outer, inner, core, beside.
     let cases = [
         ([false, true, false, false], [false, true, false, false]),
         ([true, false, true, true], [false, true, false, false]),
         ([false, false, false, true], [false, false, false, false]),
         ([false, true, true, true], [false, true, false, false]),
     ];
-    for (drawn, hollow) in cases {
-        let (v, f) = join(&[outer(drawn[0]), inner(drawn[1]), core(drawn[2]), beside(drawn[3])]);
+    for (given, cavity) in cases {
+        let (v, f) = join(&[outer(given[0]), inner(given[1]), core(given[2]), beside(given[3])]);
         let oriented = orient(&v, &f).unwrap();
-        let parts = split(&v, &oriented.triangles).unwrap();
-        let inside_out: Vec<bool> =
-            parts.into_iter().map(|p| TriMesh::new(p.vertices, p.triangles).unwrap().report().inside_out).collect();
-        assert_eq!(inside_out, hollow, "{drawn:?}");
-        assert_eq!(oriented.report.cavities, hollow.iter().filter(|h| **h).count());
+        let components = split_components(&v, &oriented.triangles).unwrap();
+        let inside_out: Vec<bool> = components
+            .into_iter()
+            .map(|p| TriMesh::new(p.vertices, p.triangles).unwrap().report().inside_out)
+            .collect();
+        assert_eq!(inside_out, cavity, "{given:?}");
+        assert_eq!(oriented.report.cavities, cavity.iter().filter(|c| **c).count());
     }
 }
 
@@ -184,21 +186,24 @@ fn a_strip_with_one_side_is_left_as_it_is() {
 }
 
 #[test]
-fn parts_are_told_apart_in_order() {
+fn components_are_in_the_order_of_their_triangles() {
     let (v, f) =
         join(&[cube(1.0, Vec3::ZERO, false), cube(1.0, Vec3::X * 5.0, false), cube(1.0, Vec3::X * 2.0, false)]);
-    let parts = split(&v, &f).unwrap();
+    let components = split_components(&v, &f).unwrap();
     // The first and the third share corners by their coordinates.
-    assert_eq!(parts.iter().map(|p| (p.vertices.len(), p.triangles.len())).collect::<Vec<_>>(), [(16, 24), (8, 12)]);
-    assert_eq!(parts[1].from, (12..24).collect::<Vec<u32>>());
-    for p in &parts {
+    assert_eq!(
+        components.iter().map(|p| (p.vertices.len(), p.triangles.len())).collect::<Vec<_>>(),
+        [(16, 24), (8, 12)]
+    );
+    assert_eq!(components[1].from, (12..24).collect::<Vec<u32>>());
+    for p in &components {
         let mesh = TriMesh::new(p.vertices.clone(), p.triangles.clone()).unwrap();
         assert!((mesh.report().volume - p.triangles.len() as f64 / 12.0 * 8.0).abs() < 1e-12);
     }
 }
 
 #[test]
-fn nonsense_is_refused_with_a_reason_and_nan_is_left_alone() {
+fn invalid_input_is_refused_with_a_reason_and_nan_is_left_alone() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
     for bad in [f64::NAN, -1e-9, f64::INFINITY] {
         assert!(matches!(weld(&corners, &[[0, 1, 2]], bad), Err(RepairError::Tolerance(_))));
@@ -206,11 +211,11 @@ fn nonsense_is_refused_with_a_reason_and_nan_is_left_alone() {
     let wrong = RepairError::IndexOutOfRange { triangle: 1, index: 3, vertices: 3 };
     assert_eq!(weld(&corners, &[[0, 1, 2], [0, 1, 3]], 0.1).unwrap_err(), wrong);
     assert_eq!(orient(&corners, &[[0, 1, 2], [0, 1, 3]]).unwrap_err(), wrong);
-    assert_eq!(split(&corners, &[[0, 1, 2], [0, 1, 3]]).unwrap_err(), wrong);
+    assert_eq!(split_components(&corners, &[[0, 1, 2], [0, 1, 3]]).unwrap_err(), wrong);
     let nan = [Vec3::ZERO, Vec3::X, Vec3::new(f64::NAN, 0.0, 0.0), Vec3::new(f64::INFINITY, 0.0, 0.0)];
     let welded = weld(&nan, &[[0, 1, 2], [0, 1, 3]], 10.0).unwrap();
     assert_eq!(welded.report.merged, 1);
     assert!(orient(&nan, &[[0, 1, 2], [0, 1, 3]]).is_ok());
     assert!(weld(&[], &[], 0.0).unwrap().triangles.is_empty());
-    assert!(orient(&[], &[]).unwrap().triangles.is_empty() && split(&[], &[]).unwrap().is_empty());
+    assert!(orient(&[], &[]).unwrap().triangles.is_empty() && split_components(&[], &[]).unwrap().is_empty());
 }

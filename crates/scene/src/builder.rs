@@ -3,24 +3,28 @@
 use std::collections::HashMap;
 
 use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
-use crate::model::{Model, Solid};
-use crate::{Edit, Member, Object, Robot, Scene, SceneError, SceneRobot, matrix, scale};
+use crate::allowed_collision_matrix::{by_rules, prove_out_of_reach};
+use crate::geometry_model::GeometryModel;
+use crate::local_shape::LocalShape;
+use crate::{Object, PairEdit, Scene, SceneError, SceneRobot, scale};
 
-/// Collects what a scene is made of. Mistakes are told by [`SceneBuilder::build`].
+/// Collects the robots, objects and settings of a scene. Errors are reported by [`SceneBuilder::build`].
 ///
 /// ```
 /// use elbowroom_kinematics::{Chain, LinkId};
 /// use elbowroom_proximity::{Shape, Sphere};
-/// use elbowroom_scene::{Body, Member, Robot, Scene};
+/// use elbowroom_robot::{Collider, GeometryId, Robot};
+/// use elbowroom_scene::Scene;
 /// use elbowroom_spatial::Pose;
 /// let mut post = Robot::new(Chain::new("post", vec!["top".into()], vec![])?);
 /// let shape = Shape::Sphere(Sphere { radius: 0.1 });
-/// post.bodies[0].push(Body { name: "knob".into(), shape, in_link: Pose::IDENTITY });
+/// post.colliders[0].push(Collider { name: "knob".into(), shape, in_link: Pose::IDENTITY });
 /// let mut builder = Scene::builder();
 /// let robot = builder.robot("left", post, Pose::IDENTITY);
-/// let top = Member::Link { robot, link: LinkId(0) };
+/// let top = GeometryId::Link { robot, link: LinkId(0) };
 /// builder.padding(top, 0.02);
 /// assert_eq!(builder.build()?.name(top), "left/top");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -29,10 +33,10 @@ use crate::{Edit, Member, Object, Robot, Scene, SceneError, SceneRobot, matrix, 
 pub struct SceneBuilder {
     robots: Vec<SceneRobot>,
     objects: Vec<Object>,
-    padding: HashMap<Member, f64>,
-    scale: HashMap<Member, f64>,
-    edits: Vec<(Member, Member, Edit)>,
-    reach: bool,
+    padding: HashMap<GeometryId, f64>,
+    scale: HashMap<GeometryId, f64>,
+    edits: Vec<(GeometryId, GeometryId, PairEdit)>,
+    prove_out_of_reach: bool,
 }
 
 impl Default for SceneBuilder {
@@ -43,50 +47,57 @@ impl Default for SceneBuilder {
             padding: HashMap::new(),
             scale: HashMap::new(),
             edits: Vec::new(),
-            reach: true,
+            prove_out_of_reach: true,
         }
     }
 }
 
+impl Scene {
+    /// An empty scene to fill.
+    pub fn builder() -> SceneBuilder {
+        SceneBuilder::default()
+    }
+}
+
 impl SceneBuilder {
-    /// Adds a robot; its index.
-    pub fn robot(&mut self, name: impl Into<String>, robot: Robot, base_in_world: Pose) -> usize {
+    /// Adds a robot; returns its id.
+    pub fn robot(&mut self, name: impl Into<String>, robot: Robot, base_in_world: Pose) -> RobotId {
         self.robots.push(SceneRobot { name: name.into(), robot, base_in_world });
-        self.robots.len() - 1
+        RobotId(self.robots.len() - 1)
     }
 
-    /// Adds an object; its index.
-    pub fn object(&mut self, object: Object) -> usize {
+    /// Adds an object; returns its id.
+    pub fn object(&mut self, object: Object) -> ObjectId {
         self.objects.push(object);
-        self.objects.len() - 1
+        ObjectId(self.objects.len() - 1)
     }
 
-    /// Metres that everything must stay away from a member, links of the same robot included. Two paddings add up.
-    pub fn padding(&mut self, member: Member, metres: f64) -> &mut Self {
-        self.padding.insert(member, metres);
+    /// Metres that everything must keep from a link or object, links of the same robot included. Two paddings add up.
+    pub fn padding(&mut self, id: GeometryId, metres: f64) -> &mut Self {
+        self.padding.insert(id, metres);
         self
     }
 
-    /// Makes the bodies of a member larger or smaller, each about the centre of its bounding box. Planes stay.
-    pub fn scale(&mut self, member: Member, factor: f64) -> &mut Self {
-        self.scale.insert(member, factor);
+    /// Scales the shapes of a link or object, each about the centre of its bounding box. Half-spaces are not scaled.
+    pub fn scale(&mut self, id: GeometryId, factor: f64) -> &mut Self {
+        self.scale.insert(id, factor);
         self
     }
 
-    /// Changes the pair matrix, after everything else, in the order of the calls.
-    pub fn edit(&mut self, a: Member, b: Member, edit: Edit) -> &mut Self {
+    /// Edits the allowed collision matrix, after everything else, in the order of the calls.
+    pub fn edit(&mut self, a: GeometryId, b: GeometryId, edit: PairEdit) -> &mut Self {
         self.edits.push((a, b, edit));
         self
     }
 
-    /// Whether pairs that no joint values bring together are looked for (default: yes). It takes some time, and saves
-    /// some in each question; the answers are the same.
-    pub fn reach(&mut self, prove: bool) -> &mut Self {
-        self.reach = prove;
+    /// Whether to look for pairs that no joint values within the limits bring together (default: yes). The proof takes time
+    /// once and makes each query faster; the answers are the same.
+    pub fn prove_out_of_reach(&mut self, prove: bool) -> &mut Self {
+        self.prove_out_of_reach = prove;
         self
     }
 
-    /// Makes all models and the pair matrix.
+    /// Makes all models and the allowed collision matrix.
     ///
     /// # Errors
     /// [`SceneError`], naming what is wrong.
@@ -97,66 +108,67 @@ impl SceneBuilder {
         let mut link_model = Vec::new();
         for (robot, r) in self.robots.iter().enumerate() {
             let mut of_link = Vec::new();
-            for (l, bodies) in r.robot.bodies.iter().enumerate() {
-                let solids: Vec<_> = bodies.iter().map(|b| Solid::new(b.shape.clone(), b.in_link)).collect();
-                of_link.push((!solids.is_empty()).then_some(models.len()));
-                if !solids.is_empty() {
-                    models.push(self.model(&names, Member::Link { robot, link: LinkId(l) }, solids)?);
+            for (l, colliders) in r.robot.colliders.iter().enumerate() {
+                let shapes: Vec<_> = colliders.iter().map(|c| LocalShape::new(c.shape.clone(), c.in_link)).collect();
+                of_link.push((!shapes.is_empty()).then_some(models.len()));
+                if !shapes.is_empty() {
+                    let id = GeometryId::Link { robot: RobotId(robot), link: LinkId(l) };
+                    models.push(self.model(&names, id, shapes)?);
                 }
             }
             link_model.push(of_link);
         }
         let first_object = models.len();
         for (i, o) in self.objects.iter().enumerate() {
-            let solid = Solid::new(o.shape.clone(), Pose::IDENTITY);
-            models.push(self.model(&names, Member::Object(i), vec![solid])?);
+            let shape = LocalShape::new(o.shape.clone(), Pose::IDENTITY);
+            models.push(self.model(&names, GeometryId::Object(ObjectId(i)), vec![shape])?);
         }
-        let members: Vec<Member> = models.iter().map(|m| m.member).collect();
-        let padding = |m| self.padding.get(&m).copied().unwrap_or(0.0);
-        let pairs = matrix::by_law(&self.robots, &self.objects, &members, &padding);
-        let Self { robots, objects, edits, reach, .. } = self;
-        let model_pairs = pairs.clone();
-        let mut scene = Scene { robots, objects, models, link_model, first_object, names, pairs, model_pairs };
-        if reach {
-            scene.model_pairs = matrix::prove(&scene, scene.pairs.clone());
+        let ids: Vec<GeometryId> = models.iter().map(|m| m.id).collect();
+        let padding = |id| self.padding.get(&id).copied().unwrap_or(0.0);
+        let matrix = by_rules(&self.robots, &self.objects, &ids, &padding);
+        let Self { robots, objects, edits, prove_out_of_reach: prove, .. } = self;
+        let model_matrix = matrix.clone();
+        let mut scene = Scene { robots, objects, models, link_model, first_object, names, matrix, model_matrix };
+        if prove {
+            scene.model_matrix = prove_out_of_reach(&scene, scene.matrix.clone());
         }
-        let mut pairs = scene.model_pairs.clone();
+        let mut matrix = scene.model_matrix.clone();
         for (a, b, edit) in edits {
-            pairs.edit(&scene, a, b, edit)?;
+            matrix.edit(&scene, a, b, edit)?;
         }
-        scene.pairs = pairs;
+        scene.matrix = matrix;
         Ok(scene)
     }
 
     fn model(
         &self,
-        names: &HashMap<String, Member>,
-        member: Member,
-        mut solids: Vec<Solid>,
-    ) -> Result<Model, SceneError> {
-        let name = || names.iter().find(|(_, m)| **m == member).map_or_else(String::new, |(n, _)| n.clone());
-        for s in &solids {
-            s.shape.validate().map_err(|source| SceneError::Shape { member: name(), source })?;
-            if !s.in_member.is_finite() {
+        names: &HashMap<String, GeometryId>,
+        id: GeometryId,
+        mut shapes: Vec<LocalShape>,
+    ) -> Result<GeometryModel, SceneError> {
+        let name = || names.iter().find(|(_, i)| **i == id).map_or_else(String::new, |(n, _)| n.clone());
+        for s in &shapes {
+            s.shape.validate().map_err(|source| SceneError::Shape { geometry: name(), source })?;
+            if !s.in_geometry.is_finite() {
                 return Err(SceneError::PoseNotFinite(name()));
             }
         }
-        if let Some(&value) = self.scale.get(&member) {
-            for s in &mut solids {
+        if let Some(&value) = self.scale.get(&id) {
+            for s in &mut shapes {
                 *s = scale::scaled(s, value)
-                    .map_err(|what| SceneError::ScaledShape { member: name(), what: what.to_string() })?;
+                    .map_err(|what| SceneError::ScaledShape { geometry: name(), what: what.to_string() })?;
             }
         }
-        let padding = self.padding.get(&member).copied().unwrap_or(0.0);
-        Ok(Model::new(member, solids, padding))
+        let padding = self.padding.get(&id).copied().unwrap_or(0.0);
+        Ok(GeometryModel::new(id, shapes, padding))
     }
 
-    /// Everything that can be seen without making anything.
+    /// All errors that show without making a model.
     fn check(&self) -> Result<(), SceneError> {
         for r in &self.robots {
-            let (bodies, links) = (r.robot.bodies.len(), r.robot.chain.links().len());
-            if bodies != links {
-                return Err(SceneError::BodiesPerLink { robot: r.name.clone(), bodies, links });
+            let (colliders, links) = (r.robot.colliders.len(), r.robot.chain.links().len());
+            if colliders != links {
+                return Err(SceneError::CollidersPerLink { robot: r.name.clone(), colliders, links });
             }
             if !r.base_in_world.is_finite() {
                 return Err(SceneError::PoseNotFinite(format!("the base of `{}`", r.name)));
@@ -165,28 +177,28 @@ impl SceneBuilder {
         if let Some(o) = self.objects.iter().find(|o| !o.in_world.is_finite()) {
             return Err(SceneError::PoseNotFinite(format!("`{}`", o.name)));
         }
-        for (&member, &value) in &self.padding {
-            let member = self.checked_name(member)?;
+        for (&id, &value) in &self.padding {
+            let geometry = self.checked_name(id)?;
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(SceneError::Padding { member, value });
+                return Err(SceneError::Padding { geometry, value });
             }
         }
-        for (&member, &value) in &self.scale {
-            let member = self.checked_name(member)?;
+        for (&id, &value) in &self.scale {
+            let geometry = self.checked_name(id)?;
             if !(value > 0.0 && value.is_finite()) {
-                return Err(SceneError::Scale { member, value });
+                return Err(SceneError::Scale { geometry, value });
             }
         }
         Ok(())
     }
 
-    fn checked_name(&self, member: Member) -> Result<String, SceneError> {
-        match member {
-            Member::Object(index) => {
+    fn checked_name(&self, id: GeometryId) -> Result<String, SceneError> {
+        match id {
+            GeometryId::Object(ObjectId(index)) => {
                 let object = self.objects.get(index);
                 object.map(|o| o.name.clone()).ok_or(SceneError::NoSuchObject { index, count: self.objects.len() })
             }
-            Member::Link { robot: index, link } => {
+            GeometryId::Link { robot: RobotId(index), link } => {
                 let r = self.robots.get(index).ok_or(SceneError::NoSuchRobot { index, count: self.robots.len() })?;
                 let links = r.robot.chain.links();
                 let link_name = links.get(link.0).ok_or_else(|| SceneError::NoSuchLink {
@@ -200,9 +212,10 @@ impl SceneBuilder {
     }
 }
 
-pub(crate) fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap<String, Member>, SceneError> {
+/// The geometry by name; an error where a name is used twice.
+pub(crate) fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap<String, GeometryId>, SceneError> {
     let mut names = HashMap::new();
-    let mut add = |name: String, member| match names.insert(name.clone(), member) {
+    let mut add = |name: String, id| match names.insert(name.clone(), id) {
         Some(_) => Err(SceneError::DuplicateName(name)),
         None => Ok(()),
     };
@@ -211,11 +224,11 @@ pub(crate) fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap
             return Err(SceneError::DuplicateName(r.name.clone()));
         }
         for (l, link) in r.robot.chain.links().iter().enumerate() {
-            add(format!("{}/{link}", r.name), Member::Link { robot: i, link: LinkId(l) })?;
+            add(format!("{}/{link}", r.name), GeometryId::Link { robot: RobotId(i), link: LinkId(l) })?;
         }
     }
     for (i, o) in objects.iter().enumerate() {
-        add(o.name.clone(), Member::Object(i))?;
+        add(o.name.clone(), GeometryId::Object(ObjectId(i)))?;
     }
     Ok(names)
 }

@@ -1,10 +1,12 @@
-//! What can be wrong with a scene, a state or a pair matrix.
+//! Errors of a scene, a state or an allowed collision matrix.
 
-/// Why a scene was not built or a state not changed. Nothing is changed then.
+use crate::{PairNumber, PairState};
+
+/// Why a scene was not built or a state was not changed. Nothing has changed then.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
-    /// Two members share a name.
-    #[error("two things are called `{0}`; robots, objects and links need names of their own, messages use them")]
+    /// Two robots, links or objects share a name.
+    #[error("the name `{0}` is used twice; give robots, objects and links names of their own, messages use them")]
     DuplicateName(String),
     /// A robot's index is out of range.
     #[error("there is no robot {index}; the scene has {count}, counted from 0")]
@@ -32,23 +34,23 @@ pub enum SceneError {
         /// Number of links.
         count: usize,
     },
-    /// The bodies of a robot are not listed per link.
+    /// The colliders of a robot are not listed per link.
     #[error(
-        "robot `{robot}` lists bodies for {bodies} links, but its chain has {links}; one list per link, empty where it has no solid"
+        "robot `{robot}` lists colliders for {colliders} links, but its chain has {links}; one list per link, empty where it has no collision shape"
     )]
-    BodiesPerLink {
+    CollidersPerLink {
         /// Name of the robot.
         robot: String,
         /// Length of the list.
-        bodies: usize,
+        colliders: usize,
         /// Number of links.
         links: usize,
     },
-    /// A shape has a dimension that cannot be.
-    #[error("{member}: {source}")]
+    /// A shape has an invalid dimension.
+    #[error("{geometry}: {source}")]
     Shape {
-        /// Whose shape.
-        member: String,
+        /// Name of the link or object.
+        geometry: String,
         /// What is wrong.
         source: elbowroom_proximity::ShapeError,
     },
@@ -77,31 +79,31 @@ pub enum SceneError {
         /// The value.
         value: f64,
     },
-    /// A padding cannot be.
-    #[error("padding of {member}: {value} m; write a finite number of metres, 0 or more")]
+    /// A padding is invalid.
+    #[error("padding of {geometry}: {value} m; write a finite number of metres, 0 or more")]
     Padding {
-        /// Whose.
-        member: String,
+        /// Name of the link or object.
+        geometry: String,
         /// The value.
         value: f64,
     },
-    /// A scale cannot be.
-    #[error("scale of {member}: {value}; write a finite factor above 0")]
+    /// A scale is invalid.
+    #[error("scale of {geometry}: {value}; write a finite factor above 0")]
     Scale {
-        /// Whose.
-        member: String,
+        /// Name of the link or object.
+        geometry: String,
         /// The value.
         value: f64,
     },
-    /// A scaled mesh is no mesh any more.
-    #[error("scale of {member}: {what}")]
+    /// A mesh or hull is invalid after scaling.
+    #[error("scale of {geometry}: {what}")]
     ScaledShape {
-        /// Whose.
-        member: String,
+        /// Name of the link or object.
+        geometry: String,
         /// What is wrong.
         what: String,
     },
-    /// The object is already part of a robot.
+    /// The object is already attached.
     #[error("`{object}` is attached to `{link}`; detach it first")]
     AlreadyAttached {
         /// Name of the object.
@@ -109,73 +111,77 @@ pub enum SceneError {
         /// `robot/link` that holds it.
         link: String,
     },
-    /// The object is not part of a robot.
+    /// The object is not attached.
     #[error("`{0}` is attached to nothing")]
     NotAttached(String),
-    /// The object goes where its link goes.
-    #[error("`{object}` is attached to `{link}` and goes where it goes; detach it before placing it")]
+    /// The object is attached, so that its link determines its pose.
+    #[error("`{object}` is attached to `{link}` and moves with it; detach it before placing it")]
     PlacedWhileAttached {
         /// Name of the object.
         object: String,
         /// `robot/link` that holds it.
         link: String,
     },
-    /// A motion names it more than once.
-    #[error("`{0}` moves twice in one motion; name it once, and sweep a path for one motion after another")]
+    /// A sweep names a robot or object more than once.
+    #[error("`{0}` moves twice in one sweep; name it once, and sweep a path for one motion after another")]
     MovesTwice(String),
-    /// Something about the pair matrix.
+    /// An error of the allowed collision matrix.
     #[error(transparent)]
     Matrix(#[from] MatrixError),
 }
 
-/// Why a pair matrix was refused.
+/// Why an allowed collision matrix was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MatrixError {
-    /// Not TOML of the shape that [`PairMatrix::to_text`](crate::PairMatrix::to_text) writes.
-    #[error("the pair matrix cannot be read: {0}")]
+    /// Not TOML of the shape that [`AllowedCollisionMatrix::to_text`](crate::AllowedCollisionMatrix::to_text) writes.
+    #[error("the allowed collision matrix cannot be read: {0}")]
     Syntax(String),
     /// The file is of another version.
-    #[error("version {0} of the pair matrix is unknown; this program reads version 1")]
+    #[error("version {0} of the allowed collision matrix is unknown; this program reads version 1")]
     Version(i64),
     /// A name that the scene does not have.
-    #[error("the pair matrix names `{name}`, which the scene does not have (or which has no solid); {hint}")]
+    #[error(
+        "the allowed collision matrix names `{name}`, which the scene does not have (or which has no collision shape); {hint}"
+    )]
     UnknownName {
         /// The name.
         name: String,
-        /// What it could be.
+        /// Names that may be meant.
         hint: String,
     },
-    /// No pair of the matrix.
-    #[error("{a} and {b} are no pair of the matrix: it holds links with solids, and links with objects")]
+    /// The matrix has no such pair.
+    #[error(
+        "{a} and {b} are no pair of the matrix: it has pairs of links with collision shapes, and of such links and objects"
+    )]
     NoSuchPair {
         /// One side.
         a: String,
         /// Other side.
         b: String,
     },
-    /// A pair is there twice.
-    #[error("the pair {a}, {b} is there twice; leave one")]
+    /// A pair is listed twice.
+    #[error("the pair {a}, {b} is listed twice; remove one")]
     Twice {
         /// One side.
         a: String,
         /// Other side.
         b: String,
     },
-    /// A margin or weight that cannot be.
+    /// A margin or weight is invalid.
     #[error("{a}, {b}: {what} is {value}; write a finite number, 0 or more")]
     Number {
         /// One side.
         a: String,
         /// Other side.
         b: String,
-        /// `margin_m` or `weight`.
-        what: &'static str,
+        /// The field.
+        what: PairNumber,
         /// The value.
         value: f64,
     },
     /// The file gives a reason that the model contradicts.
     #[error(
-        "{a}, {b}: the matrix says {state} because `{reason}`, the model says `{model}`; save the matrix anew, or write reason = {{ by_hand = \"why\" }}"
+        "{a}, {b}: the matrix has {state} because `{reason}`, the model has `{model}`; write the matrix again, or set reason = {{ by_hand = \"why\" }}"
     )]
     Contradiction {
         /// One side.
@@ -183,7 +189,7 @@ pub enum MatrixError {
         /// Other side.
         b: String,
         /// The state in the file.
-        state: &'static str,
+        state: PairState,
         /// The reason in the file.
         reason: String,
         /// The reason by the model.

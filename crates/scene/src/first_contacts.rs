@@ -1,123 +1,126 @@
-//! The moments at which solids begin to touch during a run.
+//! The times at which geometry begins to touch during a simulation.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::impact::Path;
-use elbowroom_proximity::{collides, separation_within};
+use elbowroom_kinematics::motion_bound::motion_bound;
+use elbowroom_proximity::ccd::RigidMotion;
+use elbowroom_proximity::{Shape, collides, separation_within};
+use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
 use elbowroom_spatial::{Aabb, Pose};
 
-use crate::pairs::{is_moved, joined_without_solids, joints_between, motion_bound, pairs, radius};
-use crate::{Body, Member, Object, Robot};
+use crate::Object;
 
-/// Looks for the first contact of each pair while robots and objects move in small steps.
+/// Finds the first contact of each pair while robots and objects move in small steps.
 ///
-/// From one look to the next every joint goes at a constant rate, and an object along its path. A pair that was found
-/// `d` apart is not looked at again before its members can have moved by `d`; where they have, the time between the
-/// looks is searched too, so that nothing thin or fast slips through: what goes deeper than 10 µm and lasts longer than a
-/// thousandth of that time, is found.
+/// Between two calls of [`FirstContacts::check`] every joint moves at a constant rate, and an object along its path. A pair
+/// found `d` apart is not tested again before its geometry can have moved by `d`. Where it can have, the time between the
+/// calls is searched too, so that no thin or fast geometry passes through: every contact deeper than 10 µm that lasts longer
+/// than a thousandth of that time is found.
 ///
-/// Links of one robot with no solid between them that touch at the first look do not begin to touch: such a contact counts
-/// once they have been apart. [`resting_contacts`](crate::pairs::resting_contacts) tells which they are.
+/// Links of one robot with no collider between them that touch at the first call do not begin to touch: such a contact
+/// counts once they have separated. [`rest_pose_contacts`](elbowroom_robot::rest_pose_contacts) lists these pairs.
 #[derive(Debug)]
 pub struct FirstContacts<'a> {
     robots: Vec<(&'a Robot, Pose)>,
     objects: &'a [Object],
-    /// Axis-aligned boxes of the bodies in their own frames, per robot, link and body.
+    /// Bounding boxes of the colliders in their own frames, per robot, link and collider.
     boxes: Vec<Vec<Vec<Aabb>>>,
     object_boxes: Vec<Aabb>,
-    /// Where objects are now, with their boxes.
+    /// Present poses of the objects, with their boxes.
     placed: Vec<(Pose, Aabb)>,
-    /// Joint values at the last look; empty before the first.
+    /// Joint values at the last call; empty before the first.
     last: Vec<Vec<f64>>,
-    pairs: Vec<Watched>,
+    pairs: Vec<TrackedPair>,
 }
 
 /// A pair that touches for the first time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstContact {
     /// The first of the pair.
-    pub a: Member,
+    pub a: GeometryId,
     /// The other.
-    pub b: Member,
-    /// When, as a fraction of the time since the last look: 1 is now.
+    pub b: GeometryId,
+    /// When, as a fraction of the time since the last call: 1 is now.
     pub fraction: f64,
 }
 
-/// How an object goes from the last look to this one.
+/// How an object moves from the last call to this one.
 #[derive(Clone, Copy)]
-pub struct ObjectStep<'m> {
-    /// Index of the object.
-    pub object: usize,
+pub struct ObjectPath<'m> {
+    /// The object.
+    pub object: ObjectId,
     /// Its path; `t = 1` is now.
-    pub path: &'m dyn Path,
-    /// True where it was elsewhere before, not on the way (a belt that begins again): it is looked at now only.
+    pub path: &'m dyn RigidMotion,
+    /// True where the object jumps to the path without motion in between (a conveyor that begins again): only its present pose
+    /// is tested.
     pub jumps: bool,
 }
 
 #[derive(Debug)]
-struct Watched {
-    a: Member,
-    b: Member,
-    /// What moves it.
-    levers: Vec<Lever>,
-    /// Distance (m) of the object's farthest point from its origin, where one of the pair is an object that moves.
-    free: Option<(usize, f64)>,
-    /// What that object went since the last measurement, m.
+struct TrackedPair {
+    a: GeometryId,
+    b: GeometryId,
+    /// The joints that move it.
+    joints: Vec<PairJoint>,
+    /// The object and its radius (m), where one of the pair is an object that moves.
+    moving_object: Option<(ObjectId, f64)>,
+    /// Distance travelled by that object since the last measurement, m.
     travel: f64,
-    /// Nothing can happen before the members have moved by this, m. Negative: never measured.
+    /// No contact before the geometry has moved by this, m. Negative: never measured.
     clear: f64,
     touched: bool,
-    /// No solid stands between the two: they may be built to overlap.
+    /// No collider lies between the two: they may be designed to overlap.
     joined: bool,
-    /// In contact since the first look.
+    /// In contact since the first call.
     resting: bool,
 }
 
 #[derive(Debug)]
-struct Lever {
-    robot: usize,
+struct PairJoint {
+    robot: RobotId,
     /// Index in q.
-    joint: usize,
-    /// m per unit.
-    reach: f64,
+    index: usize,
+    /// Largest displacement of any point, m per rad or m.
+    motion_bound: f64,
     /// Value at the last measurement.
-    then: f64,
+    measured_at: f64,
 }
 
-/// Beyond this (m) a lower bound is good enough.
+/// Above this (m) a lower bound on the distance is good enough.
 const NEAR: f64 = 0.05;
-/// The search between two looks leaves out contacts that go no deeper than this, m,
-const FINEST: f64 = 1e-5;
-/// and those that last no longer than this share of the time, so that it ends whatever the speeds.
-const SHORTEST: f64 = 1e-3;
+/// The search between two calls ignores contacts that are not deeper than this, m,
+const MIN_DEPTH: f64 = 1e-5;
+/// and those that do not last longer than this share of the time, so that it ends at any speed.
+const MIN_DURATION: f64 = 1e-3;
+/// Factor on measured distances, for the rounding of sums of motion bounds.
+const ROUNDING: f64 = 0.999;
 
 impl<'a> FirstContacts<'a> {
     /// For robots with their bases in the world, and objects.
     pub fn new(robots: Vec<(&'a Robot, Pose)>, objects: &'a [Object]) -> Self {
-        let local = |b: &Body| b.shape.aabb(&Pose::IDENTITY);
+        let local = |c: &Collider| c.shape.aabb(&Pose::IDENTITY);
         let boxes =
-            robots.iter().map(|(r, _)| r.bodies.iter().map(|l| l.iter().map(local).collect()).collect()).collect();
-        let list = pairs(&robots.iter().map(|r| r.0).collect::<Vec<_>>(), objects.len());
-        let pairs = list.into_iter().map(|(a, b)| watched(&robots, a, b)).collect();
+            robots.iter().map(|(r, _)| r.colliders.iter().map(|l| l.iter().map(local).collect()).collect()).collect();
+        let list = collision_pairs(&robots.iter().map(|r| r.0).collect::<Vec<_>>(), objects.len());
+        let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&Pose::IDENTITY)).collect();
         let placed = objects.iter().map(|o| (o.in_world, o.shape.aabb(&o.in_world))).collect();
         Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs }
     }
 
-    /// Tells which objects move by themselves: links that stand still can meet those too.
+    /// Declares which objects move by themselves: stationary links can meet those too.
     #[must_use]
-    pub fn moving(mut self, objects: &[usize]) -> Self {
+    pub fn moving(mut self, objects: &[ObjectId]) -> Self {
         for &o in objects {
             for (r, (robot, _)) in self.robots.iter().enumerate() {
-                let solid = |l: &usize| !robot.bodies[*l].is_empty();
-                for link in (0..robot.bodies.len()).filter(solid).map(elbowroom_kinematics::LinkId) {
-                    if !is_moved(&robot.chain, link) {
-                        self.pairs.push(watched(&self.robots, Member::Link { robot: r, link }, Member::Object(o)));
-                    }
+                for link in robot.links_with_colliders().filter(|l| !robot.chain.is_movable(*l)) {
+                    let link = GeometryId::Link { robot: RobotId(r), link };
+                    self.pairs.push(TrackedPair::new(&self.robots, link, GeometryId::Object(o)));
                 }
             }
-            let radius = self.object_boxes.get(o).map_or(0.0, |b| b.min.abs().max(b.max.abs()).length());
-            for pair in self.pairs.iter_mut().filter(|p| p.a == Member::Object(o) || p.b == Member::Object(o)) {
-                pair.free = Some((o, radius));
+            let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.min.abs().max(b.max.abs()).length());
+            let object = GeometryId::Object(o);
+            for pair in self.pairs.iter_mut().filter(|p| p.a == object || p.b == object) {
+                pair.moving_object = Some((o, radius));
             }
         }
         self
@@ -128,39 +131,42 @@ impl<'a> FirstContacts<'a> {
         self.pairs.len()
     }
 
-    /// True where nothing can meet.
+    /// True where there is no pair.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Calls `found` for each pair that touched since the last look (or, at the first, touches) and never did before.
-    /// `states` holds forward kinematics, one per robot; `steps` the objects that were named as [`Self::moving`].
-    pub fn check(&mut self, states: &[&ChainState], steps: &[ObjectStep<'_>], mut found: impl FnMut(FirstContact)) {
-        for step in steps {
-            let pose = step.path.pose(1.0);
-            self.placed[step.object] = (pose, self.object_boxes[step.object].transformed(&pose));
+    /// Calls `found` for each pair that touched since the last call (or, at the first call, touches) and never did before.
+    /// `states` holds forward kinematics, one per robot; `paths` the objects declared by [`Self::moving`].
+    pub fn check(&mut self, states: &[&ChainState], paths: &[ObjectPath<'_>], mut found: impl FnMut(FirstContact)) {
+        for path in paths {
+            let pose = path.path.pose(1.0);
+            self.placed[path.object.0] = (pose, self.object_boxes[path.object.0].transformed(&pose));
         }
         let Self { robots, objects, boxes, object_boxes, placed, last, pairs } = self;
-        let world = World { robots, objects, boxes, placed, states };
-        let between = Between { world: &world, object_boxes, last, steps };
+        let now = PlacedGeometry { robots, objects, boxes, placed, states };
+        let interval = Interval { now: &now, object_boxes, last, paths };
         for pair in pairs.iter_mut().filter(|p| !p.touched) {
-            let step = pair.free.and_then(|(o, radius)| Some((steps.iter().find(|s| s.object == o)?, radius)));
-            let travel = step.map_or(0.0, |(s, radius)| s.path.speed(radius, 0.0, 1.0));
-            let jumped = step.is_some_and(|(s, _)| s.jumps);
+            let path = pair.moving_object.and_then(|(o, radius)| Some((paths.iter().find(|s| s.object == o)?, radius)));
+            let travel = path.map_or(0.0, |(s, radius)| s.path.speed(radius, 0.0, 1.0));
+            let jumped = path.is_some_and(|(s, _)| s.jumps);
             pair.travel += travel;
-            let moved = pair.moved(|l| states[l.robot].q[l.joint]);
-            // NaN (an unlimited stroke that did not move) must look again.
+            let moved = pair.moved(|j| states[j.robot.0].q[j.index]);
+            // NaN (an unlimited slide that did not move) must be tested again.
             if !jumped && (moved + pair.travel < pair.clear || (pair.resting && moved == 0.0)) {
                 continue;
             }
-            let gap = world.gap(pair.a, pair.b);
+            let gap = now.gap(pair.a, pair.b);
             if pair.resting || (last.is_empty() && pair.joined) {
                 pair.resting = gap.is_none();
                 pair.measured(states, gap);
                 continue;
             }
-            let first =
-                if jumped || last.is_empty() { gap.is_none().then_some(1.0) } else { between.first(pair, travel, gap) };
+            let first = if jumped || last.is_empty() {
+                gap.is_none().then_some(1.0)
+            } else {
+                interval.first_contact(pair, travel, gap)
+            };
             pair.measured(states, gap);
             if let Some(fraction) = first {
                 pair.touched = true;
@@ -174,105 +180,108 @@ impl<'a> FirstContacts<'a> {
     }
 }
 
-impl Watched {
-    /// How far joints can have moved its members since the last measurement, m.
-    fn moved(&self, now: impl Fn(&Lever) -> f64) -> f64 {
-        self.levers.iter().map(|l| l.reach * (now(l) - l.then).abs()).sum()
+impl TrackedPair {
+    fn new(robots: &[(&Robot, Pose)], a: GeometryId, b: GeometryId) -> Self {
+        let side = |id: GeometryId, other: GeometryId| -> Vec<PairJoint> {
+            let GeometryId::Link { robot, link } = id else { return Vec::new() };
+            let model = robots[robot.0].0;
+            let joints = match other {
+                GeometryId::Link { robot: same, link: other } if same == robot => {
+                    model.chain.joints_between(link, other)
+                }
+                _ => model.chain.path(link),
+            };
+            let bounds = motion_bound(&model.chain, link, model.link_radius(link), &joints);
+            let joint = |(index, motion_bound)| PairJoint { robot, index, motion_bound, measured_at: 0.0 };
+            bounds.into_iter().map(joint).collect()
+        };
+        let mut joints = side(a, b);
+        joints.extend(side(b, a));
+        let joined = match (a, b) {
+            (GeometryId::Link { robot, link }, GeometryId::Link { robot: same, link: other }) if robot == same => {
+                robots[robot.0].0.joined_without_colliders(link, other)
+            }
+            _ => false,
+        };
+        let (travel, clear) = (0.0, -1.0);
+        Self { a, b, joints, moving_object: None, travel, clear, touched: false, joined, resting: false }
+    }
+
+    /// Upper bound (m) on the displacement by joints since the last measurement.
+    fn moved(&self, value: impl Fn(&PairJoint) -> f64) -> f64 {
+        self.joints.iter().map(|j| j.motion_bound * (value(j) - j.measured_at).abs()).sum()
     }
 
     fn measured(&mut self, states: &[&ChainState], gap: Option<f64>) {
-        self.levers.iter_mut().for_each(|l| l.then = states[l.robot].q[l.joint]);
+        self.joints.iter_mut().for_each(|j| j.measured_at = states[j.robot.0].q[j.index]);
         self.travel = 0.0;
-        // A hair less, for what rounding does to sums of levers.
-        self.clear = gap.unwrap_or(0.0) * 0.999;
+        self.clear = gap.unwrap_or(0.0) * ROUNDING;
     }
 }
 
-/// The time from the last look to this.
-struct Between<'w, 'a> {
-    world: &'w World<'w, 'a>,
+/// The time from the last call to this one.
+struct Interval<'w, 'a> {
+    now: &'w PlacedGeometry<'w, 'a>,
     object_boxes: &'w [Aabb],
     last: &'w [Vec<f64>],
-    steps: &'w [ObjectStep<'w>],
+    paths: &'w [ObjectPath<'w>],
 }
 
-impl Between<'_, '_> {
-    /// The first contact of a pair that is `gap` apart now, as a fraction. Its object went `travel` m.
-    fn first(&self, pair: &Watched, travel: f64, gap: Option<f64>) -> Option<f64> {
-        let now = |l: &Lever| self.world.states[l.robot].q[l.joint];
-        let before = |l: &Lever| self.last[l.robot][l.joint];
-        let way: f64 = travel + pair.levers.iter().map(|l| l.reach * (now(l) - before(l)).abs()).sum::<f64>();
-        // Without a bound only instants are looked at.
-        if !way.is_finite() {
+impl Interval<'_, '_> {
+    /// The first contact of a pair that is `gap` apart now, as a fraction of the time. Its object travelled `travel` m.
+    fn first_contact(&self, pair: &TrackedPair, travel: f64, gap: Option<f64>) -> Option<f64> {
+        let now = |j: &PairJoint| self.now.states[j.robot.0].q[j.index];
+        let before = |j: &PairJoint| self.last[j.robot.0][j.index];
+        let by_joints: f64 = pair.joints.iter().map(|j| j.motion_bound * (now(j) - before(j)).abs()).sum::<f64>();
+        let travel_bound = travel + by_joints;
+        // Without a bound only the present instant is tested.
+        if !travel_bound.is_finite() {
             return gap.is_none().then_some(1.0);
         }
-        let room = pair.clear - pair.moved(before) - (pair.travel - travel);
-        self.search(pair, way, (0.0, room), (1.0, gap))
+        let clear_before = pair.clear - pair.moved(before) - (pair.travel - travel);
+        self.bisect(pair, travel_bound, (0.0, clear_before), (1.0, gap))
     }
 
-    /// The first contact between two fractions of the time with the gaps there; in all of it the gap changes by `way` m
-    /// at most.
-    fn search(&self, pair: &Watched, way: f64, from: (f64, f64), to: (f64, Option<f64>)) -> Option<f64> {
-        // From either end the gap lasts for a while: contact can only be in between.
-        let first = from.0 + from.1.max(0.0) / way;
-        let last = to.0 - to.1.unwrap_or(0.0) * 0.999 / way;
+    /// The first contact between two fractions of the time with the gaps there. Over all of the time the gap changes by
+    /// `travel_bound` m at most.
+    fn bisect(&self, pair: &TrackedPair, travel_bound: f64, from: (f64, f64), to: (f64, Option<f64>)) -> Option<f64> {
+        // The gap at either end excludes contact for a while: contact is possible only in between.
+        let first = from.0 + from.1.max(0.0) / travel_bound;
+        let last = to.0 - to.1.unwrap_or(0.0) * ROUNDING / travel_bound;
         // True for NaN, too: where nothing moved.
-        if !(last - first > (2.0 * FINEST / way).max(SHORTEST)) {
+        if !(last - first > (2.0 * MIN_DEPTH / travel_bound).max(MIN_DURATION)) {
             return to.1.is_none().then_some(to.0);
         }
         let middle = 0.5 * (first + last);
         match self.gap(pair, middle) {
-            None => self.search(pair, way, from, (middle, None)),
+            None => self.bisect(pair, travel_bound, from, (middle, None)),
             Some(gap) => self
-                .search(pair, way, from, (middle, Some(gap)))
-                .or_else(|| self.search(pair, way, (middle, gap * 0.999), to)),
+                .bisect(pair, travel_bound, from, (middle, Some(gap)))
+                .or_else(|| self.bisect(pair, travel_bound, (middle, gap * ROUNDING), to)),
         }
     }
 
     /// The gap of a pair at a fraction of the time.
-    fn gap(&self, pair: &Watched, at: f64) -> Option<f64> {
-        let mut states: Vec<ChainState> = self.world.states.iter().map(|s| (*s).clone()).collect();
-        for (r, state) in states.iter_mut().enumerate().filter(|(r, _)| pair.levers.iter().any(|l| l.robot == *r)) {
+    fn gap(&self, pair: &TrackedPair, at: f64) -> Option<f64> {
+        let mut states: Vec<ChainState> = self.now.states.iter().map(|s| (*s).clone()).collect();
+        let moves = |r: usize| pair.joints.iter().any(|j| j.robot.0 == r);
+        for (r, state) in states.iter_mut().enumerate().filter(|(r, _)| moves(*r)) {
             state.q.iter_mut().zip(&self.last[r]).for_each(|(q, last)| *q = last + at * (*q - last));
-            self.world.robots[r].0.chain.forward(state);
+            self.now.robots[r].0.chain.forward(state);
         }
-        let mut placed = self.world.placed.to_vec();
-        for s in self.steps {
+        let mut placed = self.now.placed.to_vec();
+        for s in self.paths {
             let pose = s.path.pose(at);
-            placed[s.object] = (pose, self.object_boxes[s.object].transformed(&pose));
+            placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         let states: Vec<&ChainState> = states.iter().collect();
-        World { states: &states, placed: &placed, ..*self.world }.gap(pair.a, pair.b)
+        PlacedGeometry { states: &states, placed: &placed, ..*self.now }.gap(pair.a, pair.b)
     }
 }
 
-fn watched(robots: &[(&Robot, Pose)], a: Member, b: Member) -> Watched {
-    let mut levers = Vec::new();
-    let side = |m: Member, other: Member| -> Vec<Lever> {
-        let Member::Link { robot, link } = m else { return Vec::new() };
-        let chain = &robots[robot].0.chain;
-        let joints = match other {
-            Member::Link { robot: same, link: other } if same == robot => joints_between(chain, link, other),
-            _ => chain.path(link),
-        };
-        let radius = radius(&robots[robot].0.bodies[link.0]);
-        let bounds = motion_bound(chain, link, radius, &joints);
-        bounds.into_iter().map(|(joint, reach)| Lever { robot, joint, reach, then: 0.0 }).collect()
-    };
-    levers.extend(side(a, b));
-    levers.extend(side(b, a));
-    let joined = match (a, b) {
-        (Member::Link { robot, link }, Member::Link { robot: same, link: other }) if robot == same => {
-            joined_without_solids(robots[robot].0, link, other)
-        }
-        _ => false,
-    };
-    Watched { a, b, levers, free: None, travel: 0.0, clear: -1.0, touched: false, joined, resting: false }
-}
-
-/// Everything at one instant.
+/// All geometry at one instant.
 #[derive(Clone, Copy)]
-struct World<'w, 'a> {
+struct PlacedGeometry<'w, 'a> {
     robots: &'w [(&'a Robot, Pose)],
     objects: &'a [Object],
     boxes: &'w [Vec<Vec<Aabb>>],
@@ -280,33 +289,33 @@ struct World<'w, 'a> {
     states: &'w [&'w ChainState],
 }
 
-impl<'a> World<'_, 'a> {
-    fn count(&self, m: Member) -> usize {
-        match m {
-            Member::Link { robot, link } => self.robots[robot].0.bodies[link.0].len(),
-            Member::Object(_) => 1,
+impl<'a> PlacedGeometry<'_, 'a> {
+    fn shape_count(&self, id: GeometryId) -> usize {
+        match id {
+            GeometryId::Link { robot, link } => self.robots[robot.0].0.colliders[link.0].len(),
+            GeometryId::Object(_) => 1,
         }
     }
 
-    fn solid(&self, m: Member, i: usize) -> (&'a elbowroom_proximity::Shape, Pose, Aabb) {
-        match m {
-            Member::Object(o) => (&self.objects[o].shape, self.placed[o].0, self.placed[o].1),
-            Member::Link { robot, link } => {
-                let (model, base) = &self.robots[robot];
-                let body = &model.bodies[link.0][i];
-                let pose = *base * self.states[robot].link_in_root(link) * body.in_link;
-                (&body.shape, pose, self.boxes[robot][link.0][i].transformed(&pose))
+    fn shape(&self, id: GeometryId, i: usize) -> (&'a Shape, Pose, Aabb) {
+        match id {
+            GeometryId::Object(o) => (&self.objects[o.0].shape, self.placed[o.0].0, self.placed[o.0].1),
+            GeometryId::Link { robot, link } => {
+                let (model, base) = &self.robots[robot.0];
+                let collider = &model.colliders[link.0][i];
+                let pose = *base * self.states[robot.0].link_in_root(link) * collider.in_link;
+                (&collider.shape, pose, self.boxes[robot.0][link.0][i].transformed(&pose))
             }
         }
     }
 
-    /// A proven lower bound of the distance; `None` on contact.
-    fn gap(&self, a: Member, b: Member) -> Option<f64> {
+    /// A proven lower bound on the distance; `None` on contact.
+    fn gap(&self, a: GeometryId, b: GeometryId) -> Option<f64> {
         let mut least = f64::INFINITY;
-        for i in 0..self.count(a) {
-            let (shape_a, pose_a, box_a) = self.solid(a, i);
-            for k in 0..self.count(b) {
-                let (shape_b, pose_b, box_b) = self.solid(b, k);
+        for i in 0..self.shape_count(a) {
+            let (shape_a, pose_a, box_a) = self.shape(a, i);
+            for k in 0..self.shape_count(b) {
+                let (shape_b, pose_b, box_b) = self.shape(b, k);
                 let apart = box_a.distance(&box_b);
                 if apart > NEAR {
                     least = least.min(apart);

@@ -3,30 +3,30 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// How closely solids are looked at.
+/// The models that a query compares, from coarse to exact.
 ///
-/// All levels but [`Level::Auto`] and [`Level::L3`] answer with enclosing volumes: "free" is certain, "contact" and
-/// distances are on the safe side (a contact may be none, a distance is never too large).
+/// All levels but [`Level::Auto`] and [`Level::L3`] compare enclosing volumes. Their answers are conservative: "free" is
+/// certain, a contact may be none, and a distance is never too large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Level {
-    /// From coarse to exact, no further than the answer needs. The answer is that of [`Level::L3`].
+    /// From coarse to exact, no finer than each pair needs. The answer is that of [`Level::L3`].
     #[default]
     Auto,
-    /// The world's box around a whole robot with what it carries, and around each object. Links of one robot, which
-    /// this level cannot tell apart, are answered at [`Level::L2`].
+    /// One axis-aligned box in the world around each robot with the objects attached to it, and one around each other
+    /// object. Links of one robot, which this level cannot separate, are compared at [`Level::L2`].
     L1,
     /// One oriented box per link or object.
     L2,
     /// One capsule per link or object.
     Capsule,
-    /// The convex hull of each body.
+    /// The convex hull of each collider.
     Hull,
     /// The exact geometry.
     L3,
 }
 
 impl Level {
-    /// The levels that can answer, coarse first.
+    /// The levels with models of their own, coarse first.
     pub const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
 }
 
@@ -43,7 +43,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// A word that names no level.
+/// A string that names no level.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no resolution level; write auto, L1, L2, L3, capsule or hull")]
 pub struct UnknownLevel(pub String);
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_go_there_and_back() {
+    fn names_round_trip() {
         for level in Level::ANSWERING.into_iter().chain([Level::Auto]) {
             assert_eq!(level.to_string().parse(), Ok(level));
         }

@@ -1,15 +1,15 @@
-//! A solid thing of the cell.
+//! An object of the scene.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
-/// A named solid that no joint moves.
+/// A named shape that no joint moves.
 #[derive(Debug, Clone)]
 pub struct Object {
-    /// Unique in the cell.
+    /// Unique in the scene.
     pub name: String,
-    /// Its solid.
+    /// Its collision shape.
     pub shape: Shape,
-    /// Where the shape's frame stands.
+    /// Pose of the shape's frame in the world.
     pub in_world: Pose,
 }

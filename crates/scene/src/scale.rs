@@ -1,11 +1,11 @@
-//! Larger and smaller solids.
+//! Scaled shapes.
 
 use std::sync::Arc;
 
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HullError, MeshError, Shape, Sphere, TriMesh};
-use elbowroom_spatial::{Aabb, Pose, Vec3};
+use elbowroom_spatial::{Aabb, Vec3};
 
-use crate::model::Solid;
+use crate::local_shape::LocalShape;
 
 /// Why a shape cannot be scaled by this factor.
 #[derive(Debug, thiserror::Error)]
@@ -16,9 +16,9 @@ pub(crate) enum ScaleError {
     Hull(#[from] HullError),
 }
 
-/// The solid `factor` times as large, about the centre of its bounds in its own frame.
-pub(crate) fn scaled(solid: &Solid, factor: f64) -> Result<Solid, ScaleError> {
-    let shape = match &solid.shape {
+/// The shape scaled by `factor` about the centre of its bounding box, in its own frame. Half-spaces stay as they are.
+pub(crate) fn scaled(local: &LocalShape, factor: f64) -> Result<LocalShape, ScaleError> {
+    let shape = match &local.shape {
         Shape::Sphere(s) => Shape::Sphere(Sphere { radius: s.radius * factor }),
         Shape::Capsule(c) => Shape::Capsule(Capsule { half_length: c.half_length * factor, radius: c.radius * factor }),
         Shape::Cylinder(c) => {
@@ -26,16 +26,18 @@ pub(crate) fn scaled(solid: &Solid, factor: f64) -> Result<Solid, ScaleError> {
         }
         Shape::Cuboid(c) => Shape::Cuboid(Cuboid { half_extents: c.half_extents * factor }),
         Shape::HalfSpace(p) => Shape::HalfSpace(*p),
-        Shape::Hull(h) => Shape::Hull(Arc::new(ConvexHull::from_points(&about(h.vertices(), h.aabb(), factor))?)),
+        Shape::Hull(h) => {
+            Shape::Hull(Arc::new(ConvexHull::from_points(&scaled_about_center(h.vertices(), h.aabb(), factor))?))
+        }
         Shape::Mesh(m) => {
-            let vertices = about(m.vertices(), m.aabb(), factor);
+            let vertices = scaled_about_center(m.vertices(), m.aabb(), factor);
             Shape::Mesh(Arc::new(TriMesh::new(vertices, m.triangles().to_vec())?))
         }
     };
-    Ok(Solid::new(shape, Pose { ..solid.in_member }))
+    Ok(LocalShape::new(shape, local.in_geometry))
 }
 
-fn about(points: &[Vec3], bounds: &Aabb, factor: f64) -> Vec<Vec3> {
+fn scaled_about_center(points: &[Vec3], bounds: &Aabb, factor: f64) -> Vec<Vec3> {
     let center = bounds.center();
     points.iter().map(|&p| center + (p - center) * factor).collect()
 }

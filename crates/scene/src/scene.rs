@@ -1,27 +1,28 @@
-//! The constant part: robots, objects, their models and pairs.
+//! The constant part: robots, objects, their models and the allowed collision matrix.
 
 use std::collections::HashMap;
 
 use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
-use crate::model::Model;
-use crate::{Member, Object, PairMatrix, Robot, SceneBuilder};
+use crate::geometry_model::GeometryModel;
+use crate::{AllowedCollisionMatrix, MatrixError, Object};
 
-/// A robot with a name and a place.
+/// A robot with a name and a base pose.
 #[derive(Debug, Clone)]
 pub struct SceneRobot {
     /// Unique in the scene.
     pub name: String,
-    /// Links, joints, solids.
+    /// Chain, colliders and disabled pairs.
     pub robot: Robot,
-    /// Where its root link stands.
+    /// Pose of its root link.
     pub base_in_world: Pose,
 }
 
 /// Robots and objects in one world (the *Scenario* of S3), constant: any number of threads may share one.
 ///
-/// What moves is in a [`SceneState`](crate::SceneState), questions are asked of a [`Checker`](crate::Checker).
+/// What moves is in a [`SceneState`](crate::SceneState); a [`Checker`](crate::Checker) answers queries.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -36,113 +37,111 @@ pub struct SceneRobot {
 /// builder.object(ball(0.0));
 /// builder.object(ball(1.0));
 /// let scene = builder.build()?;
-/// assert!(scene.member("ball at 1").is_some() && scene.pairs().entries().is_empty());
+/// assert!(scene.geometry("ball at 1").is_some() && scene.allowed_collision_matrix().entries().is_empty());
 /// # Ok::<(), elbowroom_scene::SceneError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(crate) robots: Vec<SceneRobot>,
     pub(crate) objects: Vec<Object>,
-    /// Members with solids, in their order: links of the first robot, …, objects.
-    pub(crate) models: Vec<Model>,
-    /// Per robot and link, its model where it has one.
+    /// Links and objects with shapes, in this order: links of the first robot, …, objects.
+    pub(crate) models: Vec<GeometryModel>,
+    /// Per robot and link, the index of its model where it has one.
     pub(crate) link_model: Vec<Vec<Option<usize>>>,
-    /// Model of the first object; the others follow.
+    /// Index of the model of the first object; the others follow.
     pub(crate) first_object: usize,
-    pub(crate) names: HashMap<String, Member>,
-    /// What is in use.
-    pub(crate) pairs: PairMatrix,
-    /// What the models alone say, before edits.
-    pub(crate) model_pairs: PairMatrix,
+    pub(crate) names: HashMap<String, GeometryId>,
+    /// The matrix in use.
+    pub(crate) matrix: AllowedCollisionMatrix,
+    /// The matrix as derived from the models, before edits.
+    pub(crate) model_matrix: AllowedCollisionMatrix,
 }
 
 impl Scene {
-    /// An empty scene to fill.
-    pub fn builder() -> SceneBuilder {
-        SceneBuilder::default()
-    }
-
-    /// The robots, in the order in which they came.
+    /// The robots, in the order in which they were added.
     pub fn robots(&self) -> &[SceneRobot] {
         &self.robots
     }
 
-    /// The objects, in the order in which they came, where they stood then.
+    /// The objects, in the order in which they were added, with their initial poses.
     pub fn objects(&self) -> &[Object] {
         &self.objects
     }
 
-    /// The pair matrix in use.
-    pub fn pairs(&self) -> &PairMatrix {
-        &self.pairs
+    /// The allowed collision matrix in use.
+    pub fn allowed_collision_matrix(&self) -> &AllowedCollisionMatrix {
+        &self.matrix
     }
 
-    /// The same scene with another pair matrix, made from [`Scene::pairs`] or read by
-    /// [`PairMatrix::from_text`].
+    /// The same scene with another allowed collision matrix, made from [`Scene::allowed_collision_matrix`] or read by
+    /// [`AllowedCollisionMatrix::from_text`].
     ///
     /// # Errors
-    /// [`MatrixError::NoSuchPair`](crate::MatrixError::NoSuchPair) where the matrix is one of another scene.
-    pub fn with_pairs(mut self, pairs: PairMatrix) -> Result<Self, crate::MatrixError> {
-        let (ours, theirs) = (self.model_pairs.entries(), pairs.entries());
-        let stranger = |m: Member| match m {
-            Member::Link { robot, link } => format!("link {} of robot {robot}", link.0),
-            Member::Object(o) => format!("object {o}"),
+    /// [`MatrixError::NoSuchPair`] where the matrix is one of another scene.
+    pub fn with_allowed_collision_matrix(mut self, matrix: AllowedCollisionMatrix) -> Result<Self, MatrixError> {
+        let (ours, theirs) = (self.model_matrix.entries(), matrix.entries());
+        let unknown_name = |id: GeometryId| match id {
+            GeometryId::Link { robot, link } => format!("link {} of robot {}", link.0, robot.0),
+            GeometryId::Object(o) => format!("object {}", o.0),
         };
         let differs = ours.iter().zip(theirs).find(|(x, y)| (x.a, x.b) != (y.a, y.b)).map(|(_, y)| y);
         let extra = theirs.get(ours.len()).or(if ours.len() > theirs.len() { ours.get(theirs.len()) } else { None });
         if let Some(e) = differs.or(extra) {
-            return Err(crate::MatrixError::NoSuchPair { a: stranger(e.a), b: stranger(e.b) });
+            return Err(MatrixError::NoSuchPair { a: unknown_name(e.a), b: unknown_name(e.b) });
         }
-        self.pairs = pairs;
+        self.matrix = matrix;
         Ok(self)
     }
 
-    /// `robot/link`, or the object's name. Members that the scene does not have are described by their index.
-    pub fn name(&self, member: Member) -> String {
-        match member {
-            Member::Link { robot, link } => self
+    /// `robot/link`, or the object's name. An id that the scene does not have is described by its index.
+    pub fn name(&self, id: GeometryId) -> String {
+        match id {
+            GeometryId::Link { robot, link } => self
                 .robots
-                .get(robot)
+                .get(robot.0)
                 .and_then(|r| Some(format!("{}/{}", r.name, r.robot.chain.links().get(link.0)?)))
-                .unwrap_or_else(|| format!("robot {robot}, link {}", link.0)),
-            Member::Object(o) => self.objects.get(o).map_or_else(|| format!("object {o}"), |o| o.name.clone()),
+                .unwrap_or_else(|| format!("robot {}, link {}", robot.0, link.0)),
+            GeometryId::Object(o) => {
+                self.objects.get(o.0).map_or_else(|| format!("object {}", o.0), |o| o.name.clone())
+            }
         }
     }
 
-    /// The member of that name: `robot/link`, or an object's name.
-    pub fn member(&self, name: &str) -> Option<Member> {
+    /// The link or object of that name: `robot/link`, or an object's name.
+    pub fn geometry(&self, name: &str) -> Option<GeometryId> {
         self.names.get(name).copied()
     }
 
     /// The robot of that name.
-    pub fn robot(&self, name: &str) -> Option<usize> {
-        self.robots.iter().position(|r| r.name == name)
+    pub fn robot(&self, name: &str) -> Option<RobotId> {
+        self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
 
-    /// All members that have a solid, in the scene's order.
-    pub fn members(&self) -> impl Iterator<Item = Member> + '_ {
-        self.models.iter().map(|m| m.member)
+    /// All links and objects that have shapes, in the scene's order.
+    pub fn geometries(&self) -> impl Iterator<Item = GeometryId> + '_ {
+        self.models.iter().map(|m| m.id)
     }
 
-    /// True where the member has a solid.
-    pub fn solid(&self, member: Member) -> bool {
-        self.model_of(member).is_some()
+    /// True where the link or object has a shape.
+    pub fn has_shape(&self, id: GeometryId) -> bool {
+        self.model_of(id).is_some()
     }
 
-    pub(crate) fn model_pairs(&self) -> &PairMatrix {
-        &self.model_pairs
-    }
-
-    pub(crate) fn model_of(&self, member: Member) -> Option<usize> {
-        match member {
-            Member::Link { robot, link } => self.link_model.get(robot)?.get(link.0).copied().flatten(),
-            Member::Object(o) => (o < self.objects.len()).then_some(self.first_object + o),
+    pub(crate) fn model_of(&self, id: GeometryId) -> Option<usize> {
+        match id {
+            GeometryId::Link { robot, link } => self.link_model.get(robot.0)?.get(link.0).copied().flatten(),
+            GeometryId::Object(o) => (o.0 < self.objects.len()).then(|| self.object_model(o)),
         }
     }
 
-    /// True where all joint values are. Only what holds for sure may be taken for within the limits.
-    pub(crate) fn within_limits(&self, robot: usize, q: &[f64]) -> bool {
-        let chain = &self.robots[robot].robot.chain;
+    /// Index of an object's model.
+    pub(crate) fn object_model(&self, object: ObjectId) -> usize {
+        self.first_object + object.0
+    }
+
+    /// True where all joint values are certainly within the limits; NaN is not.
+    pub(crate) fn within_limits(&self, robot: RobotId, q: &[f64]) -> bool {
+        let chain = &self.robots[robot.0].robot.chain;
         let within = |(i, q): (usize, &f64)| {
             let l = chain.joints()[chain.active_joints()[i].0].limits;
             *q >= l.lower && *q <= l.upper
@@ -150,7 +149,7 @@ impl Scene {
         q.iter().enumerate().all(within)
     }
 
-    pub(crate) fn link_name(&self, robot: usize, link: LinkId) -> String {
-        self.name(Member::Link { robot, link })
+    pub(crate) fn link_name(&self, robot: RobotId, link: LinkId) -> String {
+        self.name(GeometryId::Link { robot, link })
     }
 }

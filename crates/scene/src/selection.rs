@@ -1,54 +1,53 @@
-//! Which members a question is about.
+//! Which geometry a query covers.
 
 use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 
-use crate::Member;
-
-/// One side of a question; see [`Checker::between`](crate::Checker::between).
+/// One side of a query; see [`Checker::between`](crate::Checker::between).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// Everything there is.
+    /// All robots and all objects.
     All,
-    /// The links of one robot and the objects that it carries.
-    Robot(usize),
-    /// All robots, with the objects that they carry.
+    /// The links of one robot and the objects attached to it.
+    Robot(RobotId),
+    /// All robots, with the objects attached to them.
     Robots,
-    /// One link, without what it carries.
+    /// One link, without the objects attached to it.
     Link {
-        /// Index of the robot.
-        robot: usize,
+        /// The robot.
+        robot: RobotId,
         /// The link.
         link: LinkId,
     },
-    /// One object, carried or not.
-    Object(usize),
-    /// All objects, carried or not.
+    /// One object, attached or not.
+    Object(ObjectId),
+    /// All objects, attached or not.
     Objects,
 }
 
-impl From<Member> for Selection {
-    fn from(member: Member) -> Self {
-        match member {
-            Member::Link { robot, link } => Self::Link { robot, link },
-            Member::Object(o) => Self::Object(o),
+impl From<GeometryId> for Selection {
+    fn from(id: GeometryId) -> Self {
+        match id {
+            GeometryId::Link { robot, link } => Self::Link { robot, link },
+            GeometryId::Object(o) => Self::Object(o),
         }
     }
 }
 
 impl Selection {
-    /// True where the member is selected; `carrier` is the robot that carries it, where it is an attached object.
-    pub(crate) fn holds(self, member: Member, carrier: Option<usize>) -> bool {
-        match (self, member) {
-            (Self::All, _) | (Self::Robots, Member::Link { .. }) | (Self::Objects, Member::Object(_)) => true,
-            (Self::Robots, Member::Object(_)) => carrier.is_some(),
-            (Self::Robot(r), Member::Link { robot, .. }) => r == robot,
-            (Self::Robot(r), Member::Object(_)) => carrier == Some(r),
-            (Self::Link { .. } | Self::Object(_), _) => self == member.into(),
-            (Self::Objects, Member::Link { .. }) => false,
+    /// True where the geometry is selected; `carrier` is the robot that it is attached to, if it is an attached object.
+    pub(crate) fn contains(self, id: GeometryId, carrier: Option<RobotId>) -> bool {
+        match (self, id) {
+            (Self::All, _) | (Self::Robots, GeometryId::Link { .. }) | (Self::Objects, GeometryId::Object(_)) => true,
+            (Self::Robots, GeometryId::Object(_)) => carrier.is_some(),
+            (Self::Robot(r), GeometryId::Link { robot, .. }) => r == robot,
+            (Self::Robot(r), GeometryId::Object(_)) => carrier == Some(r),
+            (Self::Link { .. } | Self::Object(_), _) => self == id.into(),
+            (Self::Objects, GeometryId::Link { .. }) => false,
         }
     }
 
-    /// True where it can hold objects alone.
+    /// True where it can contain objects only.
     pub(crate) fn is_objects(self) -> bool {
         matches!(self, Self::Object(_) | Self::Objects)
     }

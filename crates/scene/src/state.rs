@@ -1,46 +1,47 @@
-//! The mutable part: where everything is now.
+//! The mutable part: the present configuration.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_spatial::Pose;
 
-use crate::attach::Attachment;
+use crate::attachment::Attachment;
 use crate::world_box::WorldBox;
-use crate::{Member, Scene, SceneError};
+use crate::{Scene, SceneError};
 
-/// Where robots and objects of a [`Scene`] are now, and what is attached to what.
+/// The poses of the robots and objects of a [`Scene`], and what is attached to what.
 ///
-/// All memory is taken by [`SceneState::new`]. States are independent of each other and of the threads that look at them.
+/// [`SceneState::new`] allocates all memory. States are independent of each other and of the checkers that read them.
 #[derive(Debug, Clone)]
 pub struct SceneState {
     pub(crate) chains: Vec<ChainState>,
     /// Per model.
     pub(crate) in_world: Vec<Pose>,
-    /// Per model, then per robot with what it carries.
+    /// Per model, then per robot with the objects attached to it.
     pub(crate) boxes: Vec<WorldBox>,
     /// Per object.
     pub(crate) attached: Vec<Option<Attachment>>,
-    /// Per object: not where it was when the scene was built.
+    /// Per object: true where its pose is not that of the scene.
     pub(crate) displaced: Vec<bool>,
-    /// Per robot: some joint is beyond its limits.
+    /// Per robot: true where a joint is beyond its limits.
     pub(crate) beyond_limits: Vec<bool>,
-    /// What was proven when the scene was built holds for every pair.
+    /// True where the out-of-reach proofs of the scene hold for every pair.
     pub(crate) all_proofs_hold: bool,
-    /// Names what is attached to what: states of equal number have equal pairs. 0: nothing is attached.
+    /// Identifies the set of attachments: states of equal number have equal pairs. 0: nothing is attached.
     pub(crate) arrangement: u64,
 }
 
-/// Numbers of arrangements; only whether two are equal matters.
-static NEXT: AtomicU64 = AtomicU64::new(1);
+/// Numbers of arrangements; only their equality matters.
+static NEXT_ARRANGEMENT: AtomicU64 = AtomicU64::new(1);
 
 impl SceneState {
-    /// All joints at zero (which may lie beyond a limit), objects where the scene has them, nothing attached.
+    /// All joints at zero (which may lie beyond a limit), objects as in the scene, nothing attached.
     pub fn new(scene: &Scene) -> Self {
         let mut state = Self {
             chains: scene.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             in_world: vec![Pose::IDENTITY; scene.models.len()],
-            boxes: vec![WorldBox::NOTHING; scene.models.len() + scene.robots.len()],
+            boxes: vec![WorldBox::EMPTY; scene.models.len() + scene.robots.len()],
             attached: vec![None; scene.objects.len()],
             displaced: vec![false; scene.objects.len()],
             beyond_limits: vec![false; scene.robots.len()],
@@ -48,33 +49,33 @@ impl SceneState {
             arrangement: 0,
         };
         for (i, o) in scene.objects.iter().enumerate() {
-            state.put(scene, scene.first_object + i, o.in_world);
+            state.set_model_pose(scene, scene.object_model(ObjectId(i)), o.in_world);
         }
         for robot in 0..scene.robots.len() {
-            state.moved(scene, robot);
+            state.robot_moved(scene, RobotId(robot));
         }
         state
     }
 
     /// Moves a robot to joint values (rad or m, in the order of
-    /// [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints)), with all that it carries. Values beyond
-    /// the limits are taken as they are. Does not allocate.
+    /// [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints)), together with the objects attached to it. Values
+    /// beyond the limits are accepted. Does not allocate.
     ///
     /// # Errors
-    /// No such robot, a wrong number of values, or one that is NaN or infinite, by its joint's name. Nothing has moved then.
-    pub fn set_q(&mut self, scene: &Scene, robot: usize, q: &[f64]) -> Result<(), SceneError> {
+    /// No such robot, a wrong number of values, or a value that is NaN or infinite. Nothing has moved then.
+    pub fn set_q(&mut self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
         self.check_q(scene, robot, q)?;
-        self.chains[robot].q.copy_from_slice(q);
-        scene.robots[robot].robot.chain.forward(&mut self.chains[robot]);
-        self.moved(scene, robot);
+        self.chains[robot.0].q.copy_from_slice(q);
+        scene.robots[robot.0].robot.chain.forward(&mut self.chains[robot.0]);
+        self.robot_moved(scene, robot);
         Ok(())
     }
 
-    /// What [`SceneState::set_q`] refuses.
+    /// The errors of [`SceneState::set_q`].
     #[allow(clippy::unused_self)]
-    pub(crate) fn check_q(&self, scene: &Scene, robot: usize, q: &[f64]) -> Result<(), SceneError> {
+    pub(crate) fn check_q(&self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
         let count = scene.robots.len();
-        let r = scene.robots.get(robot).ok_or(SceneError::NoSuchRobot { index: robot, count })?;
+        let r = scene.robots.get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?;
         let chain = &r.robot.chain;
         let joint_name = |i: usize| chain.joints()[chain.active_joints()[i].0].name.clone();
         if q.len() != chain.dof() {
@@ -89,30 +90,30 @@ impl SceneState {
     }
 
     /// Joint values of a robot, rad or m; empty where there is no such robot.
-    pub fn q(&self, robot: usize) -> &[f64] {
-        self.chains.get(robot).map_or(&[], |c| &c.q)
+    pub fn q(&self, robot: RobotId) -> &[f64] {
+        self.chains.get(robot.0).map_or(&[], |c| &c.q)
     }
 
-    /// Puts an object somewhere else.
+    /// Sets the pose of an object.
     ///
     /// # Errors
     /// No such object, a pose that is not finite, or the object is attached.
-    pub fn place(&mut self, scene: &Scene, object: usize, in_world: Pose) -> Result<(), SceneError> {
+    pub fn place(&mut self, scene: &Scene, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
         let name = self.check_place(scene, object)?;
         if !in_world.is_finite() {
             return Err(SceneError::PoseNotFinite(format!("`{name}`")));
         }
-        self.displaced[object] = in_world != scene.objects[object].in_world;
-        self.count_proofs();
-        self.put(scene, scene.first_object + object, in_world);
+        self.displaced[object.0] = in_world != scene.objects[object.0].in_world;
+        self.update_proofs();
+        self.set_model_pose(scene, scene.object_model(object), in_world);
         Ok(())
     }
 
     /// The name of an object that can be placed.
-    pub(crate) fn check_place<'s>(&self, scene: &'s Scene, object: usize) -> Result<&'s str, SceneError> {
+    pub(crate) fn check_place<'s>(&self, scene: &'s Scene, object: ObjectId) -> Result<&'s str, SceneError> {
         let count = scene.objects.len();
-        let o = scene.objects.get(object).ok_or(SceneError::NoSuchObject { index: object, count })?;
-        match &self.attached[object] {
+        let o = scene.objects.get(object.0).ok_or(SceneError::NoSuchObject { index: object.0, count })?;
+        match &self.attached[object.0] {
             Some(a) => {
                 let link = scene.link_name(a.robot, a.link);
                 Err(SceneError::PlacedWhileAttached { object: o.name.clone(), link })
@@ -121,7 +122,7 @@ impl SceneState {
         }
     }
 
-    /// Becomes equal to a state of the same scene; allocates only where attachments differ.
+    /// Copies another state of the same scene; allocates only where the attachments differ.
     pub(crate) fn copy_from(&mut self, scene: &Scene, other: &Self) {
         for (robot, (own, chain)) in self.chains.iter_mut().zip(&other.chains).enumerate() {
             own.q.copy_from_slice(&chain.q);
@@ -138,22 +139,43 @@ impl SceneState {
         self.arrangement = other.arrangement;
     }
 
-    /// Where a member's frame is, in the world; `None` where the scene has no such member.
-    pub fn pose(&self, scene: &Scene, member: Member) -> Option<Pose> {
-        match member {
-            Member::Link { robot, link } => {
-                let r = scene.robots.get(robot)?;
+    /// Pose of a link or object in the world; `None` where the scene has no such link or object.
+    pub fn pose(&self, scene: &Scene, id: GeometryId) -> Option<Pose> {
+        match id {
+            GeometryId::Link { robot, link } => {
+                let r = scene.robots.get(robot.0)?;
                 (link.0 < r.robot.chain.links().len()).then(|| self.link_in_world(scene, robot, link))
             }
-            Member::Object(o) => self.in_world.get(scene.first_object + o).copied(),
+            GeometryId::Object(o) => self.in_world.get(scene.object_model(o)).copied(),
         }
     }
 
-    pub(crate) fn link_in_world(&self, scene: &Scene, robot: usize, link: LinkId) -> Pose {
-        scene.robots[robot].base_in_world * self.chains[robot].link_in_root(link)
+    pub(crate) fn link_in_world(&self, scene: &Scene, robot: RobotId, link: LinkId) -> Pose {
+        scene.robots[robot.0].base_in_world * self.chains[robot.0].link_in_root(link)
     }
 
-    pub(crate) fn put(&mut self, scene: &Scene, model: usize, in_world: Pose) {
+    /// How an object is attached; `None` where it is not.
+    pub fn attachment(&self, object: ObjectId) -> Option<&Attachment> {
+        self.attached.get(object.0)?.as_ref()
+    }
+
+    /// How the geometry is attached, if it is an attached object.
+    pub(crate) fn attachment_of(&self, id: GeometryId) -> Option<&Attachment> {
+        match id {
+            GeometryId::Object(o) => self.attachment(o),
+            GeometryId::Link { .. } => None,
+        }
+    }
+
+    /// Robot and link that the geometry moves with.
+    pub(crate) fn carrier(&self, id: GeometryId) -> Option<(RobotId, LinkId)> {
+        match id {
+            GeometryId::Link { robot, link } => Some((robot, link)),
+            GeometryId::Object(o) => self.attachment(o).map(|a| (a.robot, a.link)),
+        }
+    }
+
+    pub(crate) fn set_model_pose(&mut self, scene: &Scene, model: usize, in_world: Pose) {
         self.in_world[model] = in_world;
         let m = &scene.models[model];
         self.boxes[model] = match &m.obb {
@@ -161,61 +183,70 @@ impl SceneState {
             None => m
                 .exact
                 .iter()
-                .fold(WorldBox::NOTHING, |b, s| b.joined(&WorldBox::of_aabb(&s.shape.aabb(&(in_world * s.in_member))))),
+                .fold(WorldBox::EMPTY, |b, s| b.union(&WorldBox::of_aabb(&s.shape.aabb(&(in_world * s.in_geometry))))),
         };
     }
 
-    /// Everything that follows from a robot's joint values.
-    pub(crate) fn moved(&mut self, scene: &Scene, robot: usize) {
-        let r = &scene.robots[robot];
-        let chain = &r.robot.chain;
+    /// Updates all that follows from a robot's joint values.
+    pub(crate) fn robot_moved(&mut self, scene: &Scene, robot: RobotId) {
+        let chain = &scene.robots[robot.0].robot.chain;
         for link in 0..chain.links().len() {
-            if let Some(model) = scene.link_model[robot][link] {
+            if let Some(model) = scene.link_model[robot.0][link] {
                 let in_world = self.link_in_world(scene, robot, LinkId(link));
-                self.put(scene, model, in_world);
+                self.set_model_pose(scene, model, in_world);
             }
         }
-        let beyond = !scene.within_limits(robot, &self.chains[robot].q);
-        if std::mem::replace(&mut self.beyond_limits[robot], beyond) != beyond {
-            self.count_proofs();
+        let beyond = !scene.within_limits(robot, &self.chains[robot.0].q);
+        if std::mem::replace(&mut self.beyond_limits[robot.0], beyond) != beyond {
+            self.update_proofs();
         }
         if self.arrangement != 0 {
-            self.carry(scene, robot);
+            self.move_attached(scene, robot);
         }
-        self.enclose(scene, robot);
+        self.update_robot_box(scene, robot);
     }
 
-    /// The box around a robot and what it carries.
-    pub(crate) fn enclose(&mut self, scene: &Scene, robot: usize) {
-        let links = scene.link_model[robot].iter().flatten().copied();
-        let mut all = links.fold(WorldBox::NOTHING, |b, m| b.joined(&self.boxes[m]));
+    /// Moves the objects attached to a robot to where its links are.
+    pub(crate) fn move_attached(&mut self, scene: &Scene, robot: RobotId) {
+        for object in 0..self.attached.len() {
+            let Some(a) = self.attached[object].as_ref().filter(|a| a.robot == robot) else { continue };
+            let in_world = self.link_in_world(scene, robot, a.link) * a.in_link;
+            self.set_model_pose(scene, scene.object_model(ObjectId(object)), in_world);
+        }
+    }
+
+    /// Updates the box around a robot and the objects attached to it.
+    pub(crate) fn update_robot_box(&mut self, scene: &Scene, robot: RobotId) {
+        let links = scene.link_model[robot.0].iter().flatten().copied();
+        let mut all = links.fold(WorldBox::EMPTY, |b, m| b.union(&self.boxes[m]));
         if self.arrangement != 0 {
             for (o, a) in self.attached.iter().enumerate() {
                 if a.as_ref().is_some_and(|a| a.robot == robot) {
-                    all = all.joined(&self.boxes[scene.first_object + o]);
+                    all = all.union(&self.boxes[scene.object_model(ObjectId(o))]);
                 }
             }
         }
-        self.boxes[scene.models.len() + robot] = all;
+        self.boxes[scene.models.len() + robot.0] = all;
     }
 
-    /// True where what was proven when the scene was built holds for a pair: joints within limits, objects in place.
-    pub(crate) fn proofs_hold(&self, member: Member) -> bool {
-        match member {
-            Member::Link { robot, .. } => !self.beyond_limits[robot],
-            Member::Object(o) => !self.displaced[o] && self.attached[o].is_none(),
+    /// True where the out-of-reach proofs of the scene hold for the geometry: joints within limits, object in place.
+    pub(crate) fn proofs_hold(&self, id: GeometryId) -> bool {
+        match id {
+            GeometryId::Link { robot, .. } => !self.beyond_limits[robot.0],
+            GeometryId::Object(o) => !self.displaced[o.0] && self.attached[o.0].is_none(),
         }
     }
 
-    fn count_proofs(&mut self) {
-        let free = |o: (&bool, &Option<Attachment>)| !o.0 && o.1.is_none();
+    fn update_proofs(&mut self) {
+        let in_place = |o: (&bool, &Option<Attachment>)| !o.0 && o.1.is_none();
         self.all_proofs_hold =
-            !self.beyond_limits.contains(&true) && self.displaced.iter().zip(&self.attached).all(free);
+            !self.beyond_limits.contains(&true) && self.displaced.iter().zip(&self.attached).all(in_place);
     }
 
-    pub(crate) fn rearranged(&mut self) {
-        self.count_proofs();
-        self.arrangement =
-            if self.attached.iter().any(Option::is_some) { NEXT.fetch_add(1, Ordering::Relaxed) } else { 0 };
+    /// Updates all that follows from what is attached to what, except poses and boxes.
+    pub(crate) fn attachments_changed(&mut self) {
+        self.update_proofs();
+        let any = self.attached.iter().any(Option::is_some);
+        self.arrangement = if any { NEXT_ARRANGEMENT.fetch_add(1, Ordering::Relaxed) } else { 0 };
     }
 }

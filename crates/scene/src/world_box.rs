@@ -1,8 +1,8 @@
-//! Boxes along the world's axes in f32, rounded outward: two lanes of eight per test.
+//! Axis-aligned boxes in the world, in single precision, rounded outward: two SIMD registers of eight lanes per test.
 
 use elbowroom_spatial::{Aabb, Obb, Pose, Vec3};
 
-/// Upper and lower corner, each with the other negated behind it, so that both directions of each axis are lanes.
+/// Lower and upper corner, each followed by the negated other one, so that both directions of each axis are lanes.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(32))]
 pub(crate) struct WorldBox {
@@ -12,13 +12,13 @@ pub(crate) struct WorldBox {
     high: [f32; 8],
 }
 
-/// Coordinates (m) from here on could overflow in the squares.
+/// Coordinates (m) from which on squares could overflow.
 const FAR: f64 = 1e15;
-/// Room for the rounding of poses and products, as a fraction of the largest coordinate.
+/// Allowance for the rounding of poses and products, as a fraction of the largest coordinate.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl WorldBox {
-    /// All of space: what is not known, is everywhere.
+    /// All of space: the box of unknown or unbounded geometry.
     pub const EVERYTHING: Self = Self::from_corners([f32::NEG_INFINITY; 3], [f32::INFINITY; 3]);
 
     const fn from_corners(min: [f32; 3], max: [f32; 3]) -> Self {
@@ -28,16 +28,16 @@ impl WorldBox {
         }
     }
 
-    /// Around an oriented box of a member.
+    /// The box around an oriented box of a link or object.
     #[inline]
-    pub fn of_obb(obb: &Obb, member_in_world: &Pose) -> Self {
-        let center = member_in_world.transform_point(obb.pose.translation);
-        let half = (member_in_world.rotation * obb.pose.rotation).abs_mul(obb.half_extents);
-        let reach = member_in_world.translation.abs() + obb.pose.translation.abs() + obb.half_extents;
+    pub fn of_obb(obb: &Obb, geometry_in_world: &Pose) -> Self {
+        let center = geometry_in_world.transform_point(obb.pose.translation);
+        let half = (geometry_in_world.rotation * obb.pose.rotation).abs_mul(obb.half_extents);
+        let reach = geometry_in_world.translation.abs() + obb.pose.translation.abs() + obb.half_extents;
         Self::around(center, half, reach.x + reach.y + reach.z)
     }
 
-    /// Around a box of the world.
+    /// The box around a box in the world.
     pub fn of_aabb(b: &Aabb) -> Self {
         let corner = |v: Vec3, sign: f64, end: f32| {
             v.to_array().map(|x| {
@@ -64,29 +64,29 @@ impl WorldBox {
 
     /// The box around both.
     #[inline]
-    pub fn joined(&self, o: &Self) -> Self {
+    pub fn union(&self, o: &Self) -> Self {
         Self {
             low: std::array::from_fn(|i| self.low[i].min(o.low[i])),
             high: std::array::from_fn(|i| self.high[i].max(o.high[i])),
         }
     }
 
-    /// The box that holds nothing, for joining.
-    pub const NOTHING: Self = Self::from_corners([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    /// The empty box: the neutral element of [`WorldBox::union`].
+    pub const EMPTY: Self = Self::from_corners([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
 
     /// True where the boxes are certainly farther apart than `margin` (m) along some axis.
     #[inline]
-    pub fn clear(&self, o: &Self, margin: f32) -> bool {
+    pub fn separated(&self, o: &Self, margin: f32) -> bool {
         // Rounding is monotonic: a rounded difference above the margin is one above the margin.
-        let mut clear = false;
+        let mut separated = false;
         for i in 0..8 {
-            clear |= self.low[i] - o.high[i] > margin;
+            separated |= self.low[i] - o.high[i] > margin;
         }
-        clear
+        separated
     }
 
-    /// Nearest points of two boxes; somewhere in the common part where they overlap.
-    pub fn nearest(&self, o: &Self) -> (Vec3, Vec3) {
+    /// Nearest points of two boxes; a point of the intersection where they overlap.
+    pub fn nearest_points(&self, o: &Self) -> (Vec3, Vec3) {
         let (mut p, mut q) = ([0.0; 3], [0.0; 3]);
         for i in 0..3 {
             let (a, b) = ((self.low[i], self.high[i]), (o.low[i], o.high[i]));
@@ -104,7 +104,7 @@ impl WorldBox {
         (p.into(), q.into())
     }
 
-    /// Distance (m) that the boxes certainly have.
+    /// A lower bound (m) on the distance of the boxes.
     #[inline]
     pub fn gap(&self, o: &Self) -> f32 {
         let mut squared = 0.0;
@@ -117,7 +117,7 @@ impl WorldBox {
     }
 }
 
-/// The smallest f32 that is not below `x`; NaN stays.
+/// The smallest f32 that is not below `x`; NaN stays NaN.
 #[inline]
 pub(crate) fn round_up(x: f64) -> f32 {
     let near = x as f32;
@@ -139,29 +139,32 @@ mod tests {
 
     proptest! {
         #[test]
-        fn never_farther_than_the_boxes_in_f64(a in any_box(), b in any_box(), margin in 0.0..5.0_f64) {
+        fn the_gap_never_exceeds_the_distance_in_double_precision(a in any_box(), b in any_box(), margin in 0.0..5.0_f64) {
             let (x, y) = (WorldBox::of_aabb(&a), WorldBox::of_aabb(&b));
             prop_assert!(f64::from(x.gap(&y)) <= a.distance(&b));
             prop_assert!(x.gap(&y) == y.gap(&x));
-            if x.clear(&y, round_up(margin)) {
+            if x.separated(&y, round_up(margin)) {
                 prop_assert!(a.distance(&b) > margin);
             }
-            // And not much nearer.
+            // And is not much less.
             prop_assert!(f64::from(x.gap(&y)) >= a.distance(&b) - 1e-5 * (1.0 + a.max.length() + b.max.length()));
         }
     }
 
     #[test]
-    fn the_unknown_is_everywhere() {
+    fn unknown_geometry_is_everywhere() {
         let here = WorldBox::of_aabb(&Aabb::from_center(Vec3::ZERO, Vec3::splat(0.1)));
         let obb = Obb { pose: Pose::IDENTITY, half_extents: Vec3::splat(0.1) };
         for bad in [f64::NAN, f64::INFINITY, 1e200] {
             let lost = WorldBox::of_obb(&obb, &Pose::from_translation(Vec3::X * bad));
             assert!(
-                !lost.clear(&here, 0.0) && !here.clear(&lost, 0.0) && lost.gap(&here) == 0.0 && lost.gap(&lost) == 0.0
+                !lost.separated(&here, 0.0)
+                    && !here.separated(&lost, 0.0)
+                    && lost.gap(&here) == 0.0
+                    && lost.gap(&lost) == 0.0
             );
         }
-        assert!(!here.clear(&WorldBox::EVERYTHING.joined(&here), 0.0));
-        assert!(WorldBox::NOTHING.clear(&here, 1e9), "nothing is far from everything");
+        assert!(!here.separated(&WorldBox::EVERYTHING.union(&here), 0.0));
+        assert!(WorldBox::EMPTY.separated(&here, 1e9), "the empty box is far from everything");
     }
 }

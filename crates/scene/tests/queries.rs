@@ -1,81 +1,86 @@
-//! Every question against asking all pairs the plain way.
+//! Every query against a direct test of all pairs.
 
 mod common;
 
-use common::{Random, apart, link, plain, scene_of};
-use elbowroom_kinematics::LinkId;
-use elbowroom_scene::{Checker, Level, Member, Options, Scene, SceneState, Selection};
+use common::{Random, all_distances, apart, link, scene_of};
 
-fn options() -> Vec<Options> {
+use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+
+use elbowroom_scene::{Checker, CheckerOptions, Level, Scene, SceneState, Selection};
+
+fn options() -> Vec<CheckerOptions> {
     let mut all = Vec::new();
     for start in [Level::L1, Level::L2, Level::L3] {
         for (weights, matrix) in [(true, true), (false, false), (true, false), (false, true)] {
-            all.push(Options { level: Level::Auto, start, weights, matrix });
+            all.push(CheckerOptions { level: Level::Auto, start, weights, matrix });
         }
     }
-    all.push(Options { level: Level::L3, ..Options::default() });
+    all.push(CheckerOptions { level: Level::L3, ..CheckerOptions::default() });
     all
 }
 
 fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
     let mut state = SceneState::new(scene);
     for robot in 0..scene.robots().len() {
-        state.set_q(scene, robot, &r.q()).unwrap();
+        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
     }
     state
 }
 
 const SELECTIONS: [(Selection, Selection); 9] = [
     (Selection::All, Selection::All),
-    (Selection::Robot(0), Selection::Robot(1)),
-    (Selection::Robot(1), Selection::Robot(1)),
+    (Selection::Robot(RobotId(0)), Selection::Robot(RobotId(1))),
+    (Selection::Robot(RobotId(1)), Selection::Robot(RobotId(1))),
     (Selection::Robots, Selection::Robots),
-    (Selection::Robot(0), Selection::Objects),
-    (Selection::Robot(1), Selection::Object(6)),
-    (Selection::Link { robot: 0, link: LinkId(3) }, Selection::Link { robot: 1, link: LinkId(2) }),
-    (Selection::Object(5), Selection::Link { robot: 1, link: LinkId(3) }),
-    (Selection::Link { robot: 1, link: LinkId(3) }, Selection::All),
+    (Selection::Robot(RobotId(0)), Selection::Objects),
+    (Selection::Robot(RobotId(1)), Selection::Object(ObjectId(6))),
+    (Selection::Link { robot: RobotId(0), link: LinkId(3) }, Selection::Link { robot: RobotId(1), link: LinkId(2) }),
+    (Selection::Object(ObjectId(5)), Selection::Link { robot: RobotId(1), link: LinkId(3) }),
+    (Selection::Link { robot: RobotId(1), link: LinkId(3) }, Selection::All),
 ];
 
-fn holds(s: Selection, m: Member) -> bool {
+fn contains(s: Selection, m: GeometryId) -> bool {
     match (s, m) {
-        (Selection::All, _) | (Selection::Robots, Member::Link { .. }) | (Selection::Objects, Member::Object(_)) => {
-            true
-        }
-        (Selection::Robot(r), Member::Link { robot, .. }) => r == robot,
+        (Selection::All, _)
+        | (Selection::Robots, GeometryId::Link { .. })
+        | (Selection::Objects, GeometryId::Object(_)) => true,
+        (Selection::Robot(r), GeometryId::Link { robot, .. }) => r == robot,
         (Selection::Link { .. } | Selection::Object(_), _) => s == m.into(),
         _ => false,
     }
 }
 
-/// Below this (m) two methods may differ about yes and no.
+/// Tolerance (m) within which two methods may differ about yes and no.
 const DOUBT: f64 = 1e-9;
 
 #[test]
-fn all_questions_levels_and_options_agree_with_all_pairs_asked_plainly() {
-    let padded = |m: Member| {
+fn all_queries_levels_and_options_agree_with_all_pairs_tested_directly() {
+    let padded = |m: GeometryId| {
         if m == link(0, 3) {
             0.02
-        } else if m == Member::Object(2) {
+        } else if m == GeometryId::Object(ObjectId(2)) {
             0.05
         } else {
             0.0
         }
     };
     let scene = scene_of(5, |b| {
-        b.padding(link(0, 3), 0.02).padding(Member::Object(2), 0.05);
+        b.padding(link(0, 3), 0.02).padding(GeometryId::Object(ObjectId(2)), 0.05);
     });
     let mut checkers: Vec<_> = options().into_iter().map(|o| Checker::new(&scene, o)).collect();
     let mut r = Random(11);
     let (mut free, mut touching) = (0, 0);
     for _ in 0..120 {
         let state = random_state(&scene, &mut r);
-        let truth = plain(&scene, &state, padded);
+        let truth = all_distances(&scene, &state, padded);
         let tolerance = r.between(0.0, 0.2);
         for (one, other) in SELECTIONS {
             let picked: Vec<_> = truth
                 .iter()
-                .filter(|(a, b, _)| (holds(one, *a) && holds(other, *b)) || (holds(one, *b) && holds(other, *a)))
+                .filter(|(a, b, _)| {
+                    (contains(one, *a) && contains(other, *b)) || (contains(one, *b) && contains(other, *a))
+                })
                 .collect();
             let nearest = picked.iter().map(|p| p.2).fold(f64::INFINITY, f64::min);
             let of = |a, b| picked.iter().find(|p| (p.0, p.1) == (a, b)).map(|p| p.2);
@@ -116,7 +121,7 @@ fn all_questions_levels_and_options_agree_with_all_pairs_asked_plainly() {
 #[test]
 fn selections_are_symmetric() {
     let scene = scene_of(6, |_| {});
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut r = Random(3);
     for _ in 0..100 {
         let state = random_state(&scene, &mut r);
@@ -131,13 +136,13 @@ fn selections_are_symmetric() {
 }
 
 #[test]
-fn coarse_levels_are_on_the_safe_side() {
+fn coarse_levels_are_conservative() {
     let scene = scene_of(7, |_| {});
-    let mut exact = Checker::new(&scene, Options::default());
+    let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut r = Random(5);
     let mut looser = [0; 4];
     let levels = [Level::L1, Level::L2, Level::Capsule, Level::Hull];
-    let mut coarse = levels.map(|level| Checker::new(&scene, Options { level, ..Options::default() }));
+    let mut coarse = levels.map(|level| Checker::new(&scene, CheckerOptions { level, ..CheckerOptions::default() }));
     for _ in 0..300 {
         let state = random_state(&scene, &mut r);
         let tolerance = r.between(0.0, 0.1);
@@ -165,15 +170,15 @@ fn coarse_levels_are_on_the_safe_side() {
 }
 
 #[test]
-fn a_larger_padding_never_clears_and_a_larger_scale_of_convex_solids_never_widens() {
+fn a_larger_padding_never_clears_and_a_larger_scale_of_convex_shapes_never_widens() {
     let base = scene_of(8, |_| {});
-    let everyone: Vec<Member> = base.members().collect();
+    let everyone: Vec<GeometryId> = base.geometries().collect();
     let mut r = Random(8);
     let states: Vec<_> = (0..80).map(|_| random_state(&base, &mut r)).collect();
     let mut last: Option<Vec<(bool, f64)>> = None;
     for padding in [0.0, 0.005, 0.02, 0.08] {
         let scene = scene_of(8, |b| everyone.iter().for_each(|m| _ = b.padding(*m, padding)));
-        let mut checker = Checker::new(&scene, Options::default());
+        let mut checker = Checker::new(&scene, CheckerOptions::default());
         let answers: Vec<_> =
             states.iter().map(|s| (checker.collides(s).is_some(), checker.distance(s).unwrap().metres)).collect();
         if let Some(before) = &last {
@@ -183,16 +188,17 @@ fn a_larger_padding_never_clears_and_a_larger_scale_of_convex_solids_never_widen
         last = Some(answers);
     }
     let grown = scene_of(8, |b| {
-        b.scale(link(0, 3), 1.3).scale(Member::Object(3), 1.2);
+        b.scale(link(0, 3), 1.3).scale(GeometryId::Object(ObjectId(3)), 1.2);
     });
-    let (mut small, mut large) = (Checker::new(&base, Options::default()), Checker::new(&grown, Options::default()));
+    let (mut small, mut large) =
+        (Checker::new(&base, CheckerOptions::default()), Checker::new(&grown, CheckerOptions::default()));
     let mut nearer = 0;
     for s in &states {
         let (before, after) = (small.distance(s).unwrap().metres, large.distance(s).unwrap().metres);
         // The state's boxes are those of the scene that it was made for.
         let mut t = SceneState::new(&grown);
-        t.set_q(&grown, 0, s.q(0)).unwrap();
-        t.set_q(&grown, 1, s.q(1)).unwrap();
+        t.set_q(&grown, RobotId(0), s.q(RobotId(0))).unwrap();
+        t.set_q(&grown, RobotId(1), s.q(RobotId(1))).unwrap();
         let after = after.min(large.distance(&t).unwrap().metres);
         assert!(after <= before + 1e-12);
         nearer += u32::from(after < before);
@@ -201,38 +207,38 @@ fn a_larger_padding_never_clears_and_a_larger_scale_of_convex_solids_never_widen
 }
 
 #[test]
-fn states_that_are_no_states_are_refused_by_the_name_of_the_joint() {
+fn invalid_joint_values_are_refused_with_the_name_of_the_joint() {
     let scene = scene_of(9, |_| {});
     let mut state = SceneState::new(&scene);
-    let before = state.q(1).to_vec();
+    let before = state.q(RobotId(1)).to_vec();
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let message = state.set_q(&scene, 1, &[0.1, bad, 0.2]).unwrap_err().to_string();
+        let message = state.set_q(&scene, RobotId(1), &[0.1, bad, 0.2]).unwrap_err().to_string();
         assert!(message.contains("`mixed`") && message.contains("`shoulder`"), "{message}");
     }
-    let message = state.set_q(&scene, 0, &[0.1]).unwrap_err().to_string();
+    let message = state.set_q(&scene, RobotId(0), &[0.1]).unwrap_err().to_string();
     assert!(message.contains("3 joint values (waist, shoulder, elbow), not 1"), "{message}");
-    assert!(state.set_q(&scene, 2, &[]).is_err());
-    assert_eq!(state.q(1), before);
+    assert!(state.set_q(&scene, RobotId(2), &[]).is_err());
+    assert_eq!(state.q(RobotId(1)), before);
     let nowhere = elbowroom_spatial::Pose::from_translation(elbowroom_spatial::Vec3::X * f64::NAN);
-    assert!(state.place(&scene, 0, nowhere).unwrap_err().to_string().contains("`thing 0`"));
-    // An angle so large that it is no angle any more is still an answer, not a panic.
-    state.set_q(&scene, 1, &[1e300, -1e300, 1e18]).unwrap();
-    assert!(Checker::new(&scene, Options::default()).distance(&state).is_some());
+    assert!(state.place(&scene, ObjectId(0), nowhere).unwrap_err().to_string().contains("`thing 0`"));
+    // An angle beyond all precision gives an answer, not a panic.
+    state.set_q(&scene, RobotId(1), &[1e300, -1e300, 1e18]).unwrap();
+    assert!(Checker::new(&scene, CheckerOptions::default()).distance(&state).is_some());
 }
 
 #[test]
-fn what_is_not_a_tolerance_is_answered_on_the_safe_side() {
+fn invalid_tolerances_are_answered_conservatively() {
     let scene = scene_of(10, |_| {});
     let state = SceneState::new(&scene);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     assert!(checker.within(&state, f64::NAN).is_some() && checker.within(&state, f64::INFINITY).is_some());
     assert_eq!(checker.within(&state, -1.0).is_some(), checker.collides(&state).is_some());
 }
 
 #[test]
-fn of_several_contacts_the_one_nearest_to_a_base_is_told_without_weights() {
+fn of_several_contacts_the_one_nearest_to_a_base_is_reported_without_weights() {
     let scene = scene_of(12, |_| {});
-    let mut checker = Checker::new(&scene, Options { weights: false, ..Options::default() });
+    let mut checker = Checker::new(&scene, CheckerOptions { weights: false, ..CheckerOptions::default() });
     let mut r = Random(12);
     let mut several = 0;
     for _ in 0..600 {
@@ -240,8 +246,8 @@ fn of_several_contacts_the_one_nearest_to_a_base_is_told_without_weights() {
         let mut all = Vec::new();
         checker.contacts(&state, |c| all.push(c));
         assert_eq!(checker.collides(&state), all.first().copied());
-        let depth = |m: Member| if let Member::Link { link, .. } = m { link.0 } else { usize::MAX };
-        let root_most = |c: &elbowroom_scene::Contact| depth(c.a).min(depth(c.b));
+        let depth = |m: GeometryId| if let GeometryId::Link { link, .. } = m { link.0 } else { usize::MAX };
+        let root_most = |c: &elbowroom_scene::PairContact| depth(c.a).min(depth(c.b));
         assert!(all.windows(2).all(|w| root_most(&w[0]) <= root_most(&w[1])));
         several += u32::from(all.len() > 1);
     }
@@ -249,10 +255,10 @@ fn of_several_contacts_the_one_nearest_to_a_base_is_told_without_weights() {
 }
 
 #[test]
-fn what_was_learned_comes_first_and_counts_tell_what_was_done() {
+fn learned_pairs_come_first_and_statistics_count_the_work() {
     let scene = scene_of(13, |_| {});
     let mut r = Random(4);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let touching = loop {
         let state = random_state(&scene, &mut r);
         if checker.collides(&state).is_some() {
@@ -265,14 +271,14 @@ fn what_was_learned_comes_first_and_counts_tell_what_was_done() {
     let contact = checker.collides(&touching).unwrap();
     let of = |c: &Checker| c.weights().find(|w| (w.0, w.1) == (contact.a, contact.b)).unwrap().2;
     assert!(checker.weights().all(|w| w.2 <= of(&checker)));
-    checker.reset_counts();
+    checker.reset_stats();
     assert!(checker.collides(&touching).is_some());
-    let counts = checker.counts();
-    assert_eq!((counts.answered.l3, counts.answered.total(), counts.pairs_tested.l3), (1, 1, 1), "{counts:?}");
+    let stats = checker.stats();
+    assert_eq!((stats.answered.l3, stats.answered.total(), stats.pairs_tested.l3), (1, 1, 1), "{stats:?}");
     assert_eq!(checker.last_level(), Level::L3);
-    // Equal questions in equal order are answered equally, whatever thread asks.
+    // Equal queries in equal order are answered equally on every thread.
     let run = || {
-        let mut checker = Checker::new(&scene, Options::default());
+        let mut checker = Checker::new(&scene, CheckerOptions::default());
         let mut r = Random(77);
         let ask = |_| {
             let s = random_state(&scene, &mut r);
@@ -289,7 +295,7 @@ fn what_was_learned_comes_first_and_counts_tell_what_was_done() {
 #[test]
 fn nearest_pairs_followed_along_a_path_stay_the_nearest() {
     let scene = scene_of(14, |_| {});
-    let mut warm = Checker::new(&scene, Options::default());
+    let mut warm = Checker::new(&scene, CheckerOptions::default());
     let mut r = Random(14);
     for _ in 0..10 {
         let (from, to) = (r.q(), r.q());
@@ -297,10 +303,10 @@ fn nearest_pairs_followed_along_a_path_stay_the_nearest() {
             let t = f64::from(step) / 60.0;
             let q: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + (b - a) * t).collect();
             let mut state = SceneState::new(&scene);
-            state.set_q(&scene, 0, &q).unwrap();
-            state.set_q(&scene, 1, &[q[1], q[2] * 0.5, q[0]]).unwrap();
+            state.set_q(&scene, RobotId(0), &q).unwrap();
+            state.set_q(&scene, RobotId(1), &[q[1], q[2] * 0.5, q[0]]).unwrap();
             let d = warm.distance(&state).unwrap();
-            let cold = Checker::new(&scene, Options::default()).distance(&state).unwrap();
+            let cold = Checker::new(&scene, CheckerOptions::default()).distance(&state).unwrap();
             assert!((d.metres - cold.metres).abs() < 1e-12, "{d:?} {cold:?}");
             assert!((apart(&scene, &state, d.a, d.b) - d.metres).abs() < DOUBT);
         }

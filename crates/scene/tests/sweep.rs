@@ -1,4 +1,4 @@
-//! Motions between two configurations: against dense samples, and where samples would miss.
+//! Sweeps between two configurations: against dense samples, and where samples would miss a contact.
 
 mod common;
 #[path = "common/rx60b.rs"]
@@ -8,47 +8,51 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use common::{Random, apart, link, scene_of};
+
 use elbowroom_kinematics::LinkId;
-use elbowroom_proximity::impact::Steady;
+use elbowroom_proximity::ccd::ConstantTwist;
 use elbowroom_proximity::{Capsule, Cuboid, HalfSpace, Shape, TriMesh, tessellate};
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+
 use elbowroom_scene::{
-    Checker, Edit, Impact, Level, Member, Move, Object, Options, Scene, SceneState, Selection, SweepOptions, example,
+    Attachment, Checker, CheckerOptions, Level, Object, PairEdit, Scene, SceneState, Selection, SweepHit, SweepMove,
+    SweepOptions, example,
 };
 use elbowroom_spatial::{Pose, Vec3};
 
 /// More than the rounding of poses and distances at 1 m.
 const DOUBT: f64 = 1e-9;
 
-fn at(scene: &Scene, start: &SceneState, moves: &[Move], t: f64) -> SceneState {
+fn at(scene: &Scene, start: &SceneState, moves: &[SweepMove], t: f64) -> SceneState {
     let mut state = start.clone();
     for m in moves {
         match m {
-            Move::Robot { robot, to } => {
+            SweepMove::Robot { robot, to } => {
                 let q: Vec<f64> = start.q(*robot).iter().zip(*to).map(|(a, b)| a + (b - a) * t).collect();
                 state.set_q(scene, *robot, &q).unwrap();
             }
-            Move::Object { object, path } => state.place(scene, *object, path.pose(t)).unwrap(),
+            SweepMove::Object { object, path } => state.place(scene, *object, path.pose(t)).unwrap(),
         }
     }
     state
 }
 
 /// Checks an answer against `samples` instants. Returns the first sampled contact.
-fn judge(
+fn check(
     checker: &mut Checker,
     (one, other): (Selection, Selection),
     start: &SceneState,
-    moves: &[Move],
+    moves: &[SweepMove],
     options: &SweepOptions,
-    hit: Option<&Impact>,
+    hit: Option<&SweepHit>,
     samples: u32,
 ) -> Option<f64> {
     let scene = checker.scene();
     if let Some(h) = hit {
         assert!(h.certain, "{h:?}");
         let state = at(scene, start, moves, h.time);
-        // The pair itself, the plain way; others may be nearer at the start only.
-        let padding = scene.pairs().get(h.a, h.b).map_or(0.0, |e| e.margin_m);
+        // The pair itself, tested directly; others may be nearer at the start only.
+        let padding = scene.allowed_collision_matrix().get(h.a, h.b).map_or(0.0, |e| e.margin_m);
         let metres = (apart(scene, &state, h.a, h.b) - padding).max(0.0);
         assert!((metres - h.metres).abs() < DOUBT, "{h:?} {metres}");
         assert!(metres <= options.clearance_m + options.tolerance_m + DOUBT, "{h:?}");
@@ -72,7 +76,7 @@ fn judge(
 fn start(scene: &Scene, r: &mut Random) -> SceneState {
     let mut state = SceneState::new(scene);
     for robot in 0..scene.robots().len() {
-        state.set_q(scene, robot, &r.q()).unwrap();
+        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
     }
     state
 }
@@ -85,28 +89,32 @@ fn two_robots_among_objects_of_all_kinds_agree_with_dense_samples() {
         b.padding(link(0, 3), 0.01);
     });
     let mut r = Random(61);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let (mut free, mut hits, mut later) = (0, 0, 0);
     for round in 0..400 {
         let mut start = start(&scene, &mut r);
         let mut to = [r.q(), r.q()];
-        // Every other motion is a short one from a free start.
+        // Every other motion is short and starts free.
         if round % 2 == 0 {
             while checker.collides(&start).is_some() {
-                start.set_q(&scene, 0, &r.q()).unwrap();
-                start.set_q(&scene, 1, &r.q()).unwrap();
+                start.set_q(&scene, RobotId(0), &r.q()).unwrap();
+                start.set_q(&scene, RobotId(1), &r.q()).unwrap();
             }
             for (robot, to) in to.iter_mut().enumerate() {
-                *to = std::array::from_fn(|i| start.q(robot)[i] + r.between(-0.3, 0.3));
+                *to = std::array::from_fn(|i| start.q(RobotId(robot))[i] + r.between(-0.3, 0.3));
             }
         }
-        let both = [Move::Robot { robot: 0, to: &to[0] }, Move::Robot { robot: 1, to: &to[1] }];
+        let both =
+            [SweepMove::Robot { robot: RobotId(0), to: &to[0] }, SweepMove::Robot { robot: RobotId(1), to: &to[1] }];
         let moves = &both[..=(round % 2)];
         let options = SweepOptions { clearance_m: if round % 3 == 0 { 0.02 } else { 0.0 }, ..SweepOptions::default() };
-        let selection =
-            [ALL, (Selection::Robot(0), Selection::Robot(1)), (Selection::Robot(0), Selection::Objects)][round % 5 % 3];
+        let selection = [
+            ALL,
+            (Selection::Robot(RobotId(0)), Selection::Robot(RobotId(1))),
+            (Selection::Robot(RobotId(0)), Selection::Objects),
+        ][round % 5 % 3];
         let hit = checker.between(selection.0, selection.1).sweep(&start, moves, &options).unwrap();
-        judge(&mut checker, selection, &start, moves, &options, hit.as_ref(), 60);
+        check(&mut checker, selection, &start, moves, &options, hit.as_ref(), 60);
         match hit {
             None => free += 1,
             Some(h) if h.at_start() => hits += 1,
@@ -117,25 +125,26 @@ fn two_robots_among_objects_of_all_kinds_agree_with_dense_samples() {
 }
 
 #[test]
-fn the_first_of_all_contacts_is_told() {
+fn the_first_of_all_contacts_is_reported() {
     let scene = scene_of(62, |_| {});
     let mut r = Random(62);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let options = SweepOptions { tolerance_m: 1e-6, ..SweepOptions::default() };
     let mut seen = 0;
     for _ in 0..40 {
         let start = start(&scene, &mut r);
         let to = r.q();
-        let moves = [Move::Robot { robot: 0, to: &to }];
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let Some(hit) = checker.sweep(&start, &moves, &options).unwrap().filter(|h| !h.at_start()) else { continue };
         seen += 1;
         // Every pair by itself: none earlier than the answer by more than the tolerance allows.
-        for o in 0..scene.objects().len() {
-            let alone = checker.between(Selection::Robot(0), Selection::Object(o)).sweep(&start, &moves, &options);
+        for o in (0..scene.objects().len()).map(ObjectId) {
+            let alone =
+                checker.between(Selection::Robot(RobotId(0)), Selection::Object(o)).sweep(&start, &moves, &options);
             assert!(alone.unwrap().is_none_or(|h| h.time >= hit.time - 1e-4), "{hit:?}");
         }
-        let again = Checker::new(&scene, Options::default()).sweep(&start, &moves, &options).unwrap().unwrap();
-        assert_eq!((again.time, again.a, again.b), (hit.time, hit.a, hit.b), "what was asked before changes nothing");
+        let again = Checker::new(&scene, CheckerOptions::default()).sweep(&start, &moves, &options).unwrap().unwrap();
+        assert_eq!((again.time, again.a, again.b), (hit.time, hit.a, hit.b), "earlier queries change nothing");
     }
     assert!(seen > 10, "{seen}");
 }
@@ -143,13 +152,13 @@ fn the_first_of_all_contacts_is_told() {
 /// The example arm swings about its waist past one object.
 fn past(shape: Shape, in_world: Pose) -> Scene {
     let mut builder = Scene::builder();
-    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    builder.robot("arm", elbowroom_robot::example::arm().unwrap(), Pose::IDENTITY);
     builder.object(Object { name: "thing".into(), shape, in_world });
     builder.build().unwrap()
 }
 
 #[test]
-fn a_plate_of_a_tenth_of_a_millimetre_and_a_wire_are_not_jumped_over() {
+fn a_plate_of_a_tenth_of_a_millimetre_and_a_wire_are_not_missed() {
     let plate = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.2, 5e-5, 0.2) });
     let wire = Shape::Capsule(Capsule { half_length: 0.4, radius: 1e-4 });
     let meshed = |s: &Shape| {
@@ -159,82 +168,84 @@ fn a_plate_of_a_tenth_of_a_millimetre_and_a_wire_are_not_jumped_over() {
     let there = Pose::from_translation(Vec3::new(0.5, 0.0, 0.4));
     for shape in [meshed(&plate), plate, meshed(&wire), wire] {
         let scene = past(shape, there);
-        let mut checker = Checker::new(&scene, Options::default());
+        let mut checker = Checker::new(&scene, CheckerOptions::default());
         let mut start = SceneState::new(&scene);
         let mut r = Random(7);
         for _ in 0..50 {
             // Ends on both sides, wherever the samples would fall.
             let (from, to) = (r.between(-2.5, -0.3), r.between(0.3, 2.5));
-            start.set_q(&scene, 0, &[from, 1.4, 0.2]).unwrap();
-            let moves = [Move::Robot { robot: 0, to: &[to, 1.4, 0.2] }];
+            start.set_q(&scene, RobotId(0), &[from, 1.4, 0.2]).unwrap();
+            let moves = [SweepMove::Robot { robot: RobotId(0), to: &[to, 1.4, 0.2] }];
             let options = SweepOptions { tolerance_m: 1e-5, ..SweepOptions::default() };
             let hit = checker.sweep(&start, &moves, &options).unwrap().expect("in the way");
-            assert!(hit.certain && hit.metres <= 1e-5 && hit.b == Member::Object(0), "{hit:?}");
-            // Where the arm is on this side of it, at about its own half width.
+            assert!(hit.certain && hit.metres <= 1e-5 && hit.b == GeometryId::Object(ObjectId(0)), "{hit:?}");
+            // The arm is on this side of it, by about its own half width.
             let waist = from + (to - from) * hit.time;
             assert!(waist < -0.05 && waist > -0.3, "{waist}");
-            let back = [Move::Robot { robot: 0, to: &[from, 0.1, 0.2] }];
+            let back = [SweepMove::Robot { robot: RobotId(0), to: &[from, 0.1, 0.2] }];
             assert_eq!(checker.sweep(&start, &back, &options).unwrap(), None);
         }
     }
 }
 
 #[test]
-fn neighbours_never_hit_and_distant_links_do() {
+fn adjacent_links_never_hit_and_distant_links_do() {
     let robot = rx60b::robot();
     let mut builder = Scene::builder();
     builder.robot("rx60b", robot, Pose::IDENTITY);
     let scene = builder.build().unwrap();
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut start = SceneState::new(&scene);
     let mut r = Random(9);
     let mut found = 0;
     for _ in 0..60 {
         let mut q = || rx60b::limits().map(|(l, u)| r.between(l, u)).collect::<Vec<_>>();
         let to = q();
-        start.set_q(&scene, 0, &q()).unwrap();
-        let moves = [Move::Robot { robot: 0, to: &to }];
+        start.set_q(&scene, RobotId(0), &q()).unwrap();
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let options = SweepOptions::default();
         let hit = checker.sweep(&start, &moves, &options).unwrap();
-        judge(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), 60);
+        check(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), 60);
         let Some(h) = hit else { continue };
-        let (Member::Link { link: a, .. }, Member::Link { link: b, .. }) = (h.a, h.b) else { panic!() };
+        let (GeometryId::Link { link: a, .. }, GeometryId::Link { link: b, .. }) = (h.a, h.b) else { panic!() };
         assert!(a.0.abs_diff(b.0) > 1, "{h:?}");
         found += 1;
     }
     assert!((5..55).contains(&found), "{found}");
     // Folded onto its own base: only the ends of the chain meet.
-    start.set_q(&scene, 0, &[0.0; 6]).unwrap();
-    let fold = [Move::Robot { robot: 0, to: &[0.0, 2.2, 2.3, 0.0, 0.0, 0.0] }];
+    start.set_q(&scene, RobotId(0), &[0.0; 6]).unwrap();
+    let fold = [SweepMove::Robot { robot: RobotId(0), to: &[0.0, 2.2, 2.3, 0.0, 0.0, 0.0] }];
     let hit = checker.sweep(&start, &fold, &SweepOptions::default()).unwrap().expect("into its base");
     assert!(!hit.at_start() && hit.certain);
 }
 
 #[test]
-fn what_is_grasped_comes_along() {
+fn an_attached_object_moves_along() {
     let mut builder = Scene::builder();
-    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    builder.robot("arm", elbowroom_robot::example::arm().unwrap(), Pose::IDENTITY);
     let rod = Shape::Capsule(Capsule { half_length: 0.2, radius: 0.01 });
     builder.object(Object { name: "rod".into(), shape: rod, in_world: Pose::IDENTITY });
     let wall = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.3, 0.01, 0.3) });
     let wall_at = Pose::from_translation(Vec3::new(1.3, 0.0, 0.4));
     builder.object(Object { name: "wall".into(), shape: wall, in_world: wall_at });
     let scene = builder.build().unwrap();
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut start = SceneState::new(&scene);
     let (from, to) = ([-1.0, 1.5, 0.0], [1.0, 1.5, 0.0]);
-    start.set_q(&scene, 0, &from).unwrap();
-    start.place(&scene, 0, Pose::from_translation(Vec3::Z * 3.0)).unwrap();
-    let swing = [Move::Robot { robot: 0, to: &to }];
+    start.set_q(&scene, RobotId(0), &from).unwrap();
+    start.place(&scene, ObjectId(0), Pose::from_translation(Vec3::Z * 3.0)).unwrap();
+    let swing = [SweepMove::Robot { robot: RobotId(0), to: &to }];
     let options = SweepOptions::default();
     assert_eq!(checker.sweep(&start, &swing, &options).unwrap(), None, "the arm alone passes");
-    start.attach_at(&scene, 0, 0, LinkId(3), Pose::from_translation(Vec3::Z * 0.56), &[]).unwrap();
+    let in_link = Pose::from_translation(Vec3::Z * 0.56);
+    let attachment = Attachment { robot: RobotId(0), link: LinkId(3), in_link, touch_links: vec![] };
+    start.attach_at(&scene, ObjectId(0), attachment).unwrap();
     let hit = checker.sweep(&start, &swing, &options).unwrap().expect("the rod does not");
-    assert_eq!((hit.a, hit.b), (Member::Object(0), Member::Object(1)));
-    judge(&mut checker, ALL, &start, &swing, &options, Some(&hit), 500);
-    // It cannot move by itself meanwhile.
+    assert_eq!((hit.a, hit.b), (GeometryId::Object(ObjectId(0)), GeometryId::Object(ObjectId(1))));
+    check(&mut checker, ALL, &start, &swing, &options, Some(&hit), 500);
+    // It cannot have a path of its own then.
     let path = Pose::IDENTITY;
-    let error = checker.sweep(&start, &[Move::Object { object: 0, path: &path }], &options).unwrap_err();
+    let error = checker.sweep(&start, &[SweepMove::Object { object: ObjectId(0), path: &path }], &options).unwrap_err();
     assert!(error.to_string().contains("attached to `arm/forearm`"), "{error}");
 }
 
@@ -242,42 +253,44 @@ fn what_is_grasped_comes_along() {
 fn objects_on_paths_meet_arms_that_move_and_links_that_do_not() {
     let scene = scene_of(64, |_| {});
     let mut r = Random(64);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let options = SweepOptions::default();
     let mut hits = 0;
     for _ in 0..120 {
         let start = start(&scene, &mut r);
         let to = r.q();
-        let path = Steady { start: r.pose(1.0), pivot: r.vec3(0.5), velocity: r.vec3(1.0), rotation: r.vec3(2.0) };
-        let moves = [Move::Object { object: 5, path: &path }, Move::Robot { robot: 1, to: &to }];
-        let selection = (Selection::Object(5), Selection::Robots);
+        let path =
+            ConstantTwist { start: r.pose(1.0), pivot: r.vec3(0.5), velocity: r.vec3(1.0), rotation: r.vec3(2.0) };
+        let moves =
+            [SweepMove::Object { object: ObjectId(5), path: &path }, SweepMove::Robot { robot: RobotId(1), to: &to }];
+        let selection = (Selection::Object(ObjectId(5)), Selection::Robots);
         let hit = checker.between(selection.0, selection.1).sweep(&start, &moves, &options).unwrap();
-        judge(&mut checker, selection, &start, &moves, &options, hit.as_ref(), 60);
+        check(&mut checker, selection, &start, &moves, &options, hit.as_ref(), 60);
         hits += usize::from(hit.is_some_and(|h| !h.at_start()));
     }
     assert!((8..100).contains(&hits), "{hits}");
-    // The base stands still and is no pair with anything that does.
+    // The base is stationary and is no pair with other stationary geometry.
     let scene = past(Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.02) }), Pose::from_translation(Vec3::Y));
-    let mut checker = Checker::new(&scene, Options::default());
-    let path = Steady::linear(Pose::from_translation(Vec3::new(0.0, 1.0, 0.1)), Vec3::Y * -2.0);
-    let moves = [Move::Object { object: 0, path: &path }];
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    let path = ConstantTwist::linear(Pose::from_translation(Vec3::new(0.0, 1.0, 0.1)), Vec3::Y * -2.0);
+    let moves = [SweepMove::Object { object: ObjectId(0), path: &path }];
     let hit = checker.sweep(&SceneState::new(&scene), &moves, &options).unwrap().expect("runs into the base");
-    assert_eq!((hit.a, hit.b), (link(0, 0), Member::Object(0)));
+    assert_eq!((hit.a, hit.b), (link(0, 0), GeometryId::Object(ObjectId(0))));
     assert!((hit.time - (1.0 - 0.14) / 2.0).abs() <= 1e-4, "{hit:?}");
 }
 
 #[test]
-fn a_start_in_contact_is_time_0_and_nothing_moving_is_the_question_of_the_start() {
+fn a_start_in_contact_is_time_0_and_a_sweep_without_motion_is_the_query_of_the_start() {
     let scene = scene_of(65, |_| {});
     let mut r = Random(65);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut seen = [0; 2];
     for _ in 0..100 {
         let start = start(&scene, &mut r);
         let to = r.q();
         let options = SweepOptions::default();
         let touching = checker.collides(&start).is_some();
-        let hit = checker.sweep(&start, &[Move::Robot { robot: 0, to: &to }], &options).unwrap();
+        let hit = checker.sweep(&start, &[SweepMove::Robot { robot: RobotId(0), to: &to }], &options).unwrap();
         if touching {
             assert!(hit.is_some_and(|h| h.at_start() && h.certain && h.metres <= options.tolerance_m), "{hit:?}");
         }
@@ -293,11 +306,11 @@ fn a_start_in_contact_is_time_0_and_nothing_moving_is_the_question_of_the_start(
 fn a_larger_clearance_or_tolerance_is_never_later() {
     let scene = scene_of(66, |_| {});
     let mut r = Random(66);
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     for _ in 0..60 {
         let start = start(&scene, &mut r);
         let to = r.q();
-        let moves = [Move::Robot { robot: 0, to: &to }];
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let mut time = |clearance_m, tolerance_m| {
             let options = SweepOptions { clearance_m, tolerance_m, ..SweepOptions::default() };
             checker.sweep(&start, &moves, &options).unwrap().map_or(f64::INFINITY, |h| h.time)
@@ -312,24 +325,24 @@ fn a_larger_clearance_or_tolerance_is_never_later() {
 }
 
 #[test]
-fn all_levels_and_options_are_free_of_misses() {
+fn no_level_or_option_misses_a_contact() {
     let scene = scene_of(67, |b| {
-        b.padding(Member::Object(3), 0.02);
+        b.padding(GeometryId::Object(ObjectId(3)), 0.02);
     });
     let mut r = Random(67);
-    let mut exact = Checker::new(&scene, Options::default());
+    let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut others = Vec::new();
     for start in [Level::L2, Level::L3] {
-        others.push(Options { start, matrix: false, ..Options::default() });
+        others.push(CheckerOptions { start, matrix: false, ..CheckerOptions::default() });
     }
     for level in [Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::L3] {
-        others.push(Options { level, ..Options::default() });
+        others.push(CheckerOptions { level, ..CheckerOptions::default() });
     }
     let mut others: Vec<_> = others.into_iter().map(|o| Checker::new(&scene, o)).collect();
     for _ in 0..40 {
         let start = start(&scene, &mut r);
-        let to: Vec<f64> = start.q(0).iter().map(|q| q + r.between(-0.4, 0.4)).collect();
-        let moves = [Move::Robot { robot: 0, to: &to }];
+        let to: Vec<f64> = start.q(RobotId(0)).iter().map(|q| q + r.between(-0.4, 0.4)).collect();
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let options = SweepOptions { tolerance_m: 1e-6, ..SweepOptions::default() };
         let truth = exact.sweep(&start, &moves, &options).unwrap();
         for other in &mut others {
@@ -344,56 +357,63 @@ fn all_levels_and_options_are_free_of_misses() {
 }
 
 #[test]
-fn waypoints_are_segments_and_the_segment_of_the_impact_is_told() {
+fn waypoints_are_segments_and_the_segment_of_the_hit_is_reported() {
     let scene = example::two_arms();
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut start = SceneState::new(&scene);
-    start.set_q(&scene, 0, &[-0.9, 1.3, 0.6]).unwrap();
+    start.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6]).unwrap();
     let options = SweepOptions::default();
     let over = [[-0.9, 0.2, 0.6], [0.9, 0.2, 0.6], [0.9, 1.3, 0.6], [-0.9, 1.3, 0.6]];
-    let (segment, hit) = checker.sweep_path(&start, 0, &over, &options).unwrap().unwrap();
+    let (segment, hit) = checker.sweep_path(&start, RobotId(0), &over, &options).unwrap().unwrap();
     assert_eq!(segment, 3);
-    start.set_q(&scene, 0, &over[2]).unwrap();
-    let alone = checker.sweep(&start, &[Move::Robot { robot: 0, to: &over[3] }], &options).unwrap().unwrap();
+    start.set_q(&scene, RobotId(0), &over[2]).unwrap();
+    let alone =
+        checker.sweep(&start, &[SweepMove::Robot { robot: RobotId(0), to: &over[3] }], &options).unwrap().unwrap();
     assert!((alone.time - hit.time).abs() < 1e-9 && (alone.a, alone.b) == (hit.a, hit.b));
     let none: [[f64; 3]; 0] = [];
-    assert_eq!(checker.sweep_path(&start, 0, &none, &options).unwrap(), None);
+    assert_eq!(checker.sweep_path(&start, RobotId(0), &none, &options).unwrap(), None);
 }
 
 #[test]
-fn what_is_unknown_is_refused_or_a_hit() {
+fn unknown_motions_are_refused_or_a_hit() {
     let scene = scene_of(68, |b| {
-        b.edit(link(0, 2), Member::Object(1), Edit::Skip("behind glass".into()));
+        b.edit(link(0, 2), GeometryId::Object(ObjectId(1)), PairEdit::Skip("behind glass".into()));
     });
-    let mut checker = Checker::new(&scene, Options::default());
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
     let start = SceneState::new(&scene);
     let options = SweepOptions::default();
-    let mut refused = |moves: &[Move], word: &str| {
+    let mut refused = |moves: &[SweepMove], word: &str| {
         let error = checker.sweep(&start, moves, &options).unwrap_err().to_string();
         assert!(error.contains(word), "{error}");
     };
-    refused(&[Move::Robot { robot: 0, to: &[0.0, f64::NAN, 0.0] }], "shoulder");
-    refused(&[Move::Robot { robot: 0, to: &[0.0; 2] }], "waist, shoulder, elbow");
-    refused(&[Move::Robot { robot: 7, to: &[0.0; 3] }], "no robot 7");
-    refused(&[Move::Robot { robot: 0, to: &[0.0; 3] }, Move::Robot { robot: 0, to: &[0.1; 3] }], "twice");
-    let lost = Steady::linear(Pose::IDENTITY, Vec3::X * f64::NAN);
-    refused(&[Move::Object { object: 1, path: &lost }], "`thing 1`");
-    refused(&[Move::Object { object: 99, path: &Pose::IDENTITY }], "no object 99");
-    assert!(checker.sweep_path(&start, 0, &[[0.1; 3], [f64::INFINITY; 3]], &options).is_err());
-    // A half-space that turns has points of any speed: nothing is proven, and said so.
-    let turning = Steady::screw(Pose::from_translation(Vec3::Z * -3.0), Vec3::ZERO, Vec3::Z * 0.1, 0.0);
+    refused(&[SweepMove::Robot { robot: RobotId(0), to: &[0.0, f64::NAN, 0.0] }], "shoulder");
+    refused(&[SweepMove::Robot { robot: RobotId(0), to: &[0.0; 2] }], "waist, shoulder, elbow");
+    refused(&[SweepMove::Robot { robot: RobotId(7), to: &[0.0; 3] }], "no robot 7");
+    refused(
+        &[SweepMove::Robot { robot: RobotId(0), to: &[0.0; 3] }, SweepMove::Robot { robot: RobotId(0), to: &[0.1; 3] }],
+        "twice",
+    );
+    let lost = ConstantTwist::linear(Pose::IDENTITY, Vec3::X * f64::NAN);
+    refused(&[SweepMove::Object { object: ObjectId(1), path: &lost }], "`thing 1`");
+    refused(&[SweepMove::Object { object: ObjectId(99), path: &Pose::IDENTITY }], "no object 99");
+    assert!(checker.sweep_path(&start, RobotId(0), &[[0.1; 3], [f64::INFINITY; 3]], &options).is_err());
+    // A rotating half-space has points of any speed: nothing is proven, and the hit is not certain.
+    let turning = ConstantTwist::screw(Pose::from_translation(Vec3::Z * -3.0), Vec3::ZERO, Vec3::Z * 0.1, 0.0);
     let floor = scene.objects().iter().position(|o| matches!(o.shape, Shape::HalfSpace(HalfSpace))).unwrap();
-    let hit = checker.sweep(&start, &[Move::Object { object: floor, path: &turning }], &options).unwrap().unwrap();
+    let hit = checker
+        .sweep(&start, &[SweepMove::Object { object: ObjectId(floor), path: &turning }], &options)
+        .unwrap()
+        .unwrap();
     assert!(hit.time <= 1.0 && (!hit.certain || hit.metres <= options.tolerance_m), "{hit:?}");
     // Angles beyond all precision, and steps used up.
-    let far = [Move::Robot { robot: 0, to: &[1e300, -1e300, 0.0] }];
+    let far = [SweepMove::Robot { robot: RobotId(0), to: &[1e300, -1e300, 0.0] }];
     assert!(checker.sweep(&start, &far, &options).unwrap().is_some());
     let mut r = Random(68);
     let mut cut = 0;
     for _ in 0..60 {
         let start = self::start(&scene, &mut r);
         let to = r.q();
-        let moves = [Move::Robot { robot: 0, to: &to }];
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let whole = checker.sweep(&start, &moves, &options).unwrap();
         for max_steps in [0, 1, 3, 10] {
             let few = SweepOptions { max_steps, ..options };
@@ -407,7 +427,7 @@ fn what_is_unknown_is_refused_or_a_hit() {
     assert!(cut > 20, "{cut}");
 }
 
-/// Our RX60B among thin plates and wires.
+/// The example RX60B among thin plates and wires.
 fn cage(r: &mut Random) -> Scene {
     let mut builder = Scene::builder();
     builder.robot("rx60b", rx60b::robot(), Pose::IDENTITY);
@@ -445,23 +465,23 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
     let mut done = 0;
     while done < motions {
         let scene = cage(&mut r);
-        let mut checker = Checker::new(&scene, Options::default());
+        let mut checker = Checker::new(&scene, CheckerOptions::default());
         let mut start = SceneState::new(&scene);
         let count = (motions - done).min(1000);
         for i in 0..count {
             let mut q = || rx60b::limits().map(|(l, u)| r.between(l, u)).collect::<Vec<_>>();
             let mut to = q();
-            start.set_q(&scene, 0, &q()).unwrap();
+            start.set_q(&scene, RobotId(0), &q()).unwrap();
             // From anywhere, and from a free start, far and near.
             if i % 4 > 0 {
                 while checker.collides(&start).is_some() {
-                    start.set_q(&scene, 0, &q()).unwrap();
+                    start.set_q(&scene, RobotId(0), &q()).unwrap();
                 }
             }
             if i % 4 > 1 {
-                to = start.q(0).iter().map(|q| q + r.between(-0.6, 0.6)).collect();
+                to = start.q(RobotId(0)).iter().map(|q| q + r.between(-0.6, 0.6)).collect();
             }
-            let moves = [Move::Robot { robot: 0, to: &to }];
+            let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
             let options = SweepOptions::default();
             let begin = Instant::now();
             let hit = checker.sweep(&start, &moves, &options).unwrap();
@@ -469,13 +489,13 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
             let begin = Instant::now();
             if let Some(h) = hit {
                 steps += u64::from(h.steps);
-                if let (Member::Link { link: a, .. }, Member::Link { link: b, .. }) = (h.a, h.b) {
+                if let (GeometryId::Link { link: a, .. }, GeometryId::Link { link: b, .. }) = (h.a, h.b) {
                     assert!(a.0.abs_diff(b.0) > 1, "neighbours: {h:?}");
                 }
             }
-            // Now and then against very many.
+            // Occasionally against very many samples.
             let samples = if i % 100 == 0 { 50 * samples } else { samples };
-            let sampled = judge(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), samples);
+            let sampled = check(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), samples);
             asking += begin.elapsed();
             missed_by_samples += usize::from(hit.is_some() && sampled.is_none());
             match hit {
@@ -488,7 +508,7 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
     }
     println!(
         "{motions} motions: {free} free, {at_start} in contact at the start, {later} hits later, of which {missed_by_samples} \
-         that {samples} samples miss; {:.1} µs per motion, {:.1} distances per hit; judged in {:.1} s",
+         that {samples} samples miss; {:.1} µs per motion, {:.1} distances per hit; checked in {:.1} s",
         time.as_secs_f64() * 1e6 / f64::from(motions),
         steps as f64 / f64::from(at_start + later),
         asking.as_secs_f64()

@@ -20,10 +20,10 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing; joining it to another gives the other.
+    /// The empty box: the neutral element of [`Aabb::union`].
     pub const EMPTY: Self = Self { min: Vec3::splat(f64::INFINITY), max: Vec3::splat(f64::NEG_INFINITY) };
 
-    /// The box that holds all of space.
+    /// All of space.
     pub const EVERYTHING: Self = Self { min: Vec3::splat(f64::NEG_INFINITY), max: Vec3::splat(f64::INFINITY) };
 
     /// The smallest box around the points; [`Aabb::EMPTY`] where there are none.
@@ -44,14 +44,14 @@ impl Aabb {
         Self { min: self.min.min(o.min), max: self.max.max(o.max) }
     }
 
-    /// Grown by `margin` metres on every side.
+    /// Enlarged by `margin` metres on every side.
     #[inline]
     #[must_use]
     pub fn inflated(&self, margin: f64) -> Self {
         Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
     }
 
-    /// The smallest box of the outer frame around this box placed by `pose`.
+    /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         if self.is_empty() || !self.extent().is_finite() {
@@ -99,7 +99,7 @@ impl Aabb {
         (o.min - self.max).max(self.min - o.max).max(Vec3::ZERO)
     }
 
-    /// Middle of the box.
+    /// Centre of the box.
     #[inline]
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
@@ -111,7 +111,7 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// True where the box holds no point.
+    /// True where the box contains no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)

@@ -1,7 +1,7 @@
-//! Poses, frames, motions and boxes: the words every other room speaks.
+//! Poses, rotations, velocities of frames, bounding boxes, units and small linear algebra: the types that all other crates share.
 //!
-//! Units are metres, radians and seconds; files convert at the door with [`units`].
-//! A [`Pose`] named `tool_in_world` takes points from the tool's frame to the world's.
+//! Units are metres, radians and seconds; readers of files convert with [`units`]. A [`Pose`] named `tool_in_world` maps points
+//! from the tool's frame to the world's.
 //!
 //! ```
 //! use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -12,7 +12,8 @@
 //! ```
 
 mod aabb;
-mod motion;
+mod frame_motion;
+pub mod linalg;
 mod obb;
 mod pose;
 mod rotation;
@@ -20,7 +21,7 @@ pub mod units;
 mod vec3;
 
 pub use aabb::Aabb;
-pub use motion::Motion;
+pub use frame_motion::FrameMotion;
 pub use obb::Obb;
 pub use pose::Pose;
 pub use rotation::Rotation;

@@ -4,7 +4,7 @@ use std::ops::Mul;
 
 use crate::{Rotation, Vec3};
 
-/// A rigid transform: takes coordinates in the inner frame to coordinates in the outer one.
+/// A rigid transform: maps coordinates in the inner frame to coordinates in the outer one.
 ///
 /// ```
 /// use elbowroom_spatial::{Pose, Vec3};
@@ -66,7 +66,7 @@ impl Pose {
         self.rotation.inverse_rotate(v)
     }
 
-    /// The outer frame seen from the inner one.
+    /// The pose of the outer frame in the inner one.
     #[inline]
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -74,14 +74,14 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
-    /// `self.inverse() * other`: the other frame seen from this one.
+    /// `self.inverse() * other`: the pose of the other frame in this one.
     #[inline]
     #[must_use]
     pub fn inverse_mul(&self, other: &Self) -> Self {
         self.inverse() * *other
     }
 
-    /// A fraction `t` of the way to `other`: straight line, shortest turn.
+    /// The pose at the fraction `t` of the interpolation to `other`: straight line, shortest rotation.
     #[must_use]
     pub fn interpolate(&self, other: &Self, t: f64) -> Self {
         Self {
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inverse_undoes_and_interpolation_meets_both_ends() {
+    fn the_inverse_inverts_and_interpolation_meets_both_ends() {
         let a = Pose::from_xyz_rpy([0.1, -0.2, 0.3], [0.4, -0.5, 2.6]);
         let b = Pose::from_xyz_rpy([1.1, 0.2, -0.3], [-0.4, 0.5, 0.6]);
         let p = Vec3::new(0.7, 0.8, -0.9);

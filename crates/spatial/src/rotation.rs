@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::Vec3;
 
-/// A proper rotation, kept as a matrix because points are turned far more often than rotations are composed.
+/// A proper rotation, stored as a matrix because points are rotated far more often than rotations are composed.
 ///
 /// ```
 /// use elbowroom_spatial::{Rotation, Vec3};
@@ -26,7 +26,7 @@ impl Rotation {
     /// No rotation.
     pub const IDENTITY: Self = Self(DMat3::IDENTITY);
 
-    /// Turns by `angle` radians about the unit vector `axis`, right-handed.
+    /// Rotates by `angle` radians about the unit vector `axis`, right-handed.
     #[inline]
     pub fn from_axis_angle(axis: Vec3, angle: f64) -> Self {
         Self(DMat3::from_axis_angle(axis.into(), angle))
@@ -65,7 +65,7 @@ impl Rotation {
         Some(Self(DMat3::from_cols(ex.into(), ez.cross(ex).into(), ez.into())))
     }
 
-    /// A frame whose z axis is the unit vector `z`; its turn about z is unspecified but reproducible.
+    /// A frame whose z axis is the unit vector `z`; its rotation about z is unspecified but reproducible.
     pub fn from_z(z: Vec3) -> Self {
         let x = z.any_perpendicular();
         Self(DMat3::from_cols(x.into(), z.cross(x).into(), z.into()))
@@ -94,7 +94,7 @@ impl Rotation {
         [m[2][1].atan2(m[2][2]), pitch, m[1][0].atan2(m[0][0])]
     }
 
-    /// Rotation vector of the shortest turn: axis times angle in `[0, π]`.
+    /// Rotation vector of the smallest angle: axis times angle in `[0, π]`.
     pub fn to_rotation_vector(self) -> Vec3 {
         let q = DQuat::from_mat3(&self.0);
         let q = if q.w < 0.0 { -q } else { q };
@@ -105,13 +105,13 @@ impl Rotation {
         }
     }
 
-    /// Angle of the turn in `[0, π]` radians.
+    /// Angle of the rotation in `[0, π]` radians.
     pub fn angle(self) -> f64 {
         self.to_rotation_vector().length()
     }
 
-    /// `self` followed inside by a turn about one of its own axes, `self·R(axis, angle)`: axis 0 is x, 1 y, 2 z.
-    /// Same as a product with [`Rotation::from_axis_angle`] for a third of the work.
+    /// The product with a rotation about a coordinate axis, `self·R(axis, angle)`: axis 0 is x, 1 y, 2 z. Same as the product with
+    /// [`Rotation::from_axis_angle`] for a third of the work.
     ///
     /// # Panics
     /// Where `axis` is not 0, 1 or 2.
@@ -120,11 +120,11 @@ impl Rotation {
     /// use elbowroom_spatial::{Rotation, Vec3};
     /// let r = Rotation::from_rpy(0.1, 0.2, 0.3);
     /// let product = r * Rotation::from_axis_angle(Vec3::Y, 0.7);
-    /// assert!((r.turned_about(1, 0.7).inverse() * product).angle() < 1e-15);
+    /// assert!((r.rotated_about(1, 0.7).inverse() * product).angle() < 1e-15);
     /// ```
     #[inline]
     #[must_use]
-    pub fn turned_about(self, axis: usize, angle: f64) -> Self {
+    pub fn rotated_about(self, axis: usize, angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.0;
         Self(match axis {
@@ -135,7 +135,7 @@ impl Rotation {
         })
     }
 
-    /// The opposite turn.
+    /// The inverse rotation.
     #[inline]
     #[must_use]
     pub fn inverse(self) -> Self {
@@ -148,14 +148,14 @@ impl Rotation {
         Vec3::new(self.x_axis().dot(v), self.y_axis().dot(v), self.z_axis().dot(v))
     }
 
-    /// A fraction `t` of the shortest turn from here to `other` (slerp).
+    /// The rotation at the fraction `t` of the shortest rotation to `other` (slerp).
     #[must_use]
     pub fn interpolate(self, other: Self, t: f64) -> Self {
         let turn = (self.inverse() * other).to_rotation_vector();
         self * Self::from_rotation_vector(turn * t)
     }
 
-    /// The same rotation with rounding errors of a long product removed.
+    /// The same rotation without the rounding errors of a long product.
     #[must_use]
     pub fn renormalized(self) -> Self {
         let x = self.0.x_axis.normalize();
@@ -193,7 +193,7 @@ impl Rotation {
         self.0.transpose().to_cols_array_2d()
     }
 
-    /// Component-wise absolute matrix applied to a non-negative vector: half extents of a turned box.
+    /// Component-wise absolute matrix applied to a non-negative vector: half extents of a rotated box.
     #[inline]
     pub fn abs_mul(self, v: Vec3) -> Vec3 {
         self.x_axis().abs() * v.x + self.y_axis().abs() * v.y + self.z_axis().abs() * v.z

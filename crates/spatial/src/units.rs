@@ -1,4 +1,4 @@
-//! Units of files, converted once at the door.
+//! Units of files, converted once when a file is read.
 //!
 //! ```
 //! use elbowroom_spatial::units::{deg, mm, AngleUnit, LengthUnit};

@@ -87,7 +87,7 @@ impl Vec3 {
         self.rescaled().map(|v| v / v.length())
     }
 
-    /// Components brought near 1, for vectors so small or large that their square is not a number of use.
+    /// Scaled to a largest component of 1, for vectors so small or large that their square under- or overflows.
     fn rescaled(self) -> Option<Self> {
         let largest = self.abs().max_element();
         (largest > 0.0 && self.is_finite()).then(|| Self::new(self.x / largest, self.y / largest, self.z / largest))
@@ -146,7 +146,7 @@ impl Vec3 {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
 
-    /// The point a fraction `t` of the way to `o`.
+    /// The point at the fraction `t` of the segment to `o`.
     #[must_use]
     #[inline]
     pub fn lerp(self, o: Self, t: f64) -> Self {
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn normalizing_survives_tiny_and_huge_and_refuses_zero_and_nan() {
+    fn normalizing_handles_tiny_and_huge_and_refuses_zero_and_nan() {
         let n = Vec3::new(3e-200, 4e-200, 0.0).try_normalize().unwrap();
         assert!((n - Vec3::new(0.6, 0.8, 0.0)).length() < 1e-15);
         let n = Vec3::new(3e200, 4e200, 0.0).try_normalize().unwrap();

@@ -1,4 +1,4 @@
-//! Median and 99th percentile of each stage of [`Vision`] on rendered frames of 640 × 480 pixels: four things crossing,
+//! Median and 99th percentile of each stage of [`CameraTracker`] on rendered frames of 640 × 480 pixels: four objects crossing,
 //! two of them touching, an arm over them, noise and changing light.
 //!
 //! `cargo run --release -p elbowroom-vision --example frame_times [FRAMES [rgb]]`
@@ -9,24 +9,25 @@ use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use elbowroom_spatial::Vec3;
-use elbowroom_vision::render::{Conditions, Renderer, Solid};
+use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom_vision::{
-    ArmPart, Camera, Channels, Frame, Intrinsics, PixelMask, Point2, Settings, Shadows, Template, Vision, VisionError,
+    ArmPart, Camera, CameraTracker, CameraTrackerSettings, Channels, Frame, Intrinsics, PixelMask, Point2,
+    ShadowSettings, Template, VisionError,
 };
 
 fn main() -> Result<(), VisionError> {
     let mut arguments = std::env::args().skip(1);
     let frames = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(600);
     let channels = if arguments.next().as_deref() == Some("rgb") { Channels::Rgb } else { Channels::Grey };
-    let lens = Intrinsics { radial: [-0.12, 0.02, 0.0], ..Intrinsics::ideal(640, 480, 1.1) };
-    let camera = Camera::looking_at(lens, Vec3::new(0.3, -0.6, 4.0), Vec3::ZERO, Vec3::Y)?;
-    let settings = Settings {
-        shadows: Some(Shadows::default()),
-        templates: vec![Template::new("crate", 0.6, 0.4, 0.3), Template::round("drum", 0.5, 0.5)],
-        ..Settings::default()
+    let lens = Intrinsics { radial: [-0.12, 0.02, 0.0], ..Intrinsics::pinhole(640, 480, 1.1) };
+    let camera = Camera::look_at(lens, Vec3::new(0.3, -0.6, 4.0), Vec3::ZERO, Vec3::Y)?;
+    let settings = CameraTrackerSettings {
+        shadows: Some(ShadowSettings::default()),
+        templates: vec![Template::new("crate", 0.6, 0.4, 0.3), Template::cylinder("drum", 0.5, 0.5)],
+        ..CameraTrackerSettings::default()
     };
     let learning = settings.learning_frames;
-    let mut vision = Vision::new(camera.clone().into(), settings)?;
+    let mut tracker = CameraTracker::new(camera.clone().into(), settings)?;
     let mut renderer = Renderer::new(camera, channels, 1);
     let mut arm_mask = PixelMask::new(640, 480);
     let mut frame = Frame::default();
@@ -34,25 +35,25 @@ fn main() -> Result<(), VisionError> {
     let mut most = 0;
     for i in 0..learning + frames {
         let t = f64::from(i) * 0.033;
-        let solids = if i < learning { Vec::new() } else { things(t) };
+        let solids = if i < learning { Vec::new() } else { objects(t) };
         let arm = ArmPart::Capsule {
             from: Vec3::new(0.0, 1.6, 1.2),
             to: Vec3::new(1.5 * (t / 3.0).sin(), 0.3, 1.0),
             radius_m: 0.12,
         };
-        let conditions = Conditions {
+        let conditions = RenderConditions {
             gain: 1.0 + 0.1 * (t / 5.0).sin(),
             light: Some(Vec3::new(0.3, 0.2, -1.0)),
             seed: u64::from(i) + 1,
-            ..Conditions::default()
+            ..RenderConditions::default()
         };
         frame.stamp_s = t;
         renderer.render(&solids, &[(arm.clone(), 220)], &conditions, &mut frame)?;
         let began = Instant::now();
         arm_mask.clear();
-        arm_mask.hide_arm(vision.calibration(), &[arm], 0.03)?;
+        arm_mask.mask_arm(tracker.calibration(), &[arm], 0.03)?;
         let masked = began.elapsed();
-        let report = vision.process(&frame, Some(&arm_mask))?;
+        let report = tracker.process(&frame, Some(&arm_mask))?;
         if i >= learning {
             let mut row = vec![masked];
             row.extend(report.timings.stages().map(|(_, time)| time));
@@ -61,9 +62,9 @@ fn main() -> Result<(), VisionError> {
             most = most.max(report.obstacles.len());
         }
     }
-    let stages = vision.report().timings.stages();
+    let stages = tracker.report().timings.stages();
     let names = std::iter::once("arm mask").chain(stages.iter().map(|(name, _)| *name)).chain(["total"]);
-    println!("{frames} frames of 640 x 480, {}; up to {most} obstacles; milliseconds", channels.name());
+    println!("{frames} frames of 640 x 480, {channels}; up to {most} obstacles; milliseconds");
     println!("{:10} {:>8} {:>8}", "stage", "median", "p99");
     for (stage, name) in names.enumerate() {
         let mut times: Vec<Duration> = rows.iter().map(|row| row[stage]).collect();
@@ -74,14 +75,14 @@ fn main() -> Result<(), VisionError> {
     Ok(())
 }
 
-/// Two crates that meet and part, a drum on a circle, and something unknown.
-fn things(t: f64) -> Vec<Solid> {
+/// Two crates that touch and separate, a drum on a circle, and an object without a template.
+fn objects(t: f64) -> Vec<RenderedSolid> {
     let crate_size = Vec3::new(0.6, 0.4, 0.3);
     let gap = 0.75 + 0.5 * (t * TAU / 6.0).cos();
     vec![
-        Solid::cuboid(Point2::new(-gap / 2.0, -0.6), crate_size, 0.0, 200),
-        Solid::cuboid(Point2::new(gap / 2.0, -0.6), crate_size, 0.0, 25),
-        Solid::cylinder(Point2::new(0.9 * (t / 2.0).cos(), 0.4 + 0.4 * (t / 2.0).sin()), 0.25, 0.5, 230),
-        Solid::cuboid(Point2::new(-1.2, 0.6), Vec3::new(0.3, 0.7, 1.2), t / 4.0, 12),
+        RenderedSolid::cuboid(Point2::new(-gap / 2.0, -0.6), crate_size, 0.0, 200),
+        RenderedSolid::cuboid(Point2::new(gap / 2.0, -0.6), crate_size, 0.0, 25),
+        RenderedSolid::cylinder(Point2::new(0.9 * (t / 2.0).cos(), 0.4 + 0.4 * (t / 2.0).sin()), 0.25, 0.5, 230),
+        RenderedSolid::cuboid(Point2::new(-1.2, 0.6), Vec3::new(0.3, 0.7, 1.2), t / 4.0, 12),
     ]
 }

@@ -1,48 +1,48 @@
-//! A pinhole camera with radial distortion and a place in the world.
+//! A pinhole camera with radial distortion and a pose.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::{Point2, VisionError};
 
-/// What a lens and its sensor do (Brown, 1966, radial terms): a point (x, y, z) of the camera's frame with
+/// Intrinsics of a camera (Brown, 1966, radial terms): a point (x, y, z) of the camera's frame with
 /// `r² = (x² + y²) / z²` appears at `(fx·d·x/z + cx, fy·d·y/z + cy)`, `d = 1 + k1·r² + k2·r⁴ + k3·r⁶`.
 ///
-/// The camera's frame: z looks out of the lens, x to the right of the picture, y down.
+/// The camera's frame: z along the optical axis, x to the right of the image, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intrinsics {
-    /// Columns of the picture.
+    /// Columns of the image.
     pub width: usize,
-    /// Rows of the picture.
+    /// Rows of the image.
     pub height: usize,
     /// Focal length along a row, pixels.
     pub fx: f64,
     /// Focal length along a column, pixels.
     pub fy: f64,
-    /// Where the optical axis meets the picture, pixels from its left edge.
+    /// Principal point, pixels from the left edge.
     pub cx: f64,
-    /// The same, pixels from its upper edge.
+    /// Principal point, pixels from the upper edge.
     pub cy: f64,
     /// k1, k2, k3; zeros for a lens without distortion.
     pub radial: [f64; 3],
 }
 
 impl Intrinsics {
-    /// A lens without distortion whose picture is `field_of_view` radians wide.
-    pub fn ideal(width: usize, height: usize, field_of_view: f64) -> Self {
+    /// A lens without distortion with a horizontal field of view of `field_of_view` radians.
+    pub fn pinhole(width: usize, height: usize, field_of_view: f64) -> Self {
         let (w, h) = (width as f64, height as f64);
         let focal = w / (2.0 * (field_of_view / 2.0).tan());
         Self { width, height, fx: focal, fy: focal, cx: w / 2.0, cy: h / 2.0, radial: [0.0; 3] }
     }
 
-    /// Distorted radius of a straight ray with slope `r`.
-    fn bent(&self, r: f64) -> f64 {
+    /// Distorted radius of a ray with slope `r`.
+    fn distort(&self, r: f64) -> f64 {
         let [k1, k2, k3] = self.radial;
         let s = r * r;
         r * (1.0 + s * (k1 + s * (k2 + s * k3)))
     }
 
-    /// Derivative of [`Self::bent`].
-    fn bent_slope(&self, r: f64) -> f64 {
+    /// Derivative of [`Self::distort`].
+    fn distortion_derivative(&self, r: f64) -> f64 {
         let [k1, k2, k3] = self.radial;
         let s = r * r;
         1.0 + s * (3.0 * k1 + s * (5.0 * k2 + s * 7.0 * k3))
@@ -54,8 +54,8 @@ impl Intrinsics {
 /// ```
 /// use elbowroom_spatial::Vec3;
 /// use elbowroom_vision::{Camera, Intrinsics, Point2};
-/// let lens = Intrinsics::ideal(640, 480, 1.2);
-/// let camera = Camera::looking_at(lens, Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y)?;
+/// let lens = Intrinsics::pinhole(640, 480, 1.2);
+/// let camera = Camera::look_at(lens, Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y)?;
 /// assert_eq!(camera.world_to_pixel(Vec3::ZERO), Some(Point2::new(320.0, 240.0)));
 /// let right_of_middle = camera.pixel_to_plane(Point2::new(420.0, 240.0), 0.0).unwrap();
 /// assert!(right_of_middle.x > 0.5 && right_of_middle.y.abs() < 1e-12);
@@ -64,18 +64,17 @@ impl Intrinsics {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     intrinsics: Intrinsics,
-    /// Its pose.
     in_world: Pose,
-    /// Largest slope of a ray up to which distortion is one to one; beyond it goes on straight.
-    straight_from: f64,
+    /// Largest slope of a ray up to which distortion is monotonic; beyond, it is extended linearly.
+    max_slope: f64,
 }
 
 impl Camera {
-    /// A camera at `camera_in_world` (its z axis looks, its x axis is the picture's right).
+    /// A camera at `camera_in_world` (z along the optical axis, x to the right of the image).
     ///
     /// # Errors
-    /// Numbers that are not finite, focal lengths that are not positive, an empty picture, or distortion that folds the
-    /// picture over before its corners.
+    /// Numbers that are not finite, focal lengths that are not positive, an empty image, or distortion that folds the image
+    /// over before its corners.
     pub fn new(intrinsics: Intrinsics, camera_in_world: Pose) -> Result<Self, VisionError> {
         let refuse = |why: &str| Err(VisionError::Calibration(why.into()));
         let i = &intrinsics;
@@ -89,12 +88,13 @@ impl Camera {
         if i.fx <= 0.0 || i.fy <= 0.0 {
             return refuse("its focal lengths must be positive; they are in pixels, some hundreds for most lenses");
         }
-        let mut camera = Self { intrinsics, in_world: camera_in_world, straight_from: f64::INFINITY };
-        camera.straight_from = camera.limit_of_distortion();
+        let mut camera = Self { intrinsics, in_world: camera_in_world, max_slope: f64::INFINITY };
+        camera.max_slope = camera.monotonic_limit();
         let [width, height] = [i.width as f64, i.height as f64];
         let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
-        let seen = |&(x, y): &(f64, f64)| camera.bent_radius(Point2::new(x, y)) < i.bent(camera.straight_from);
-        if camera.straight_from.is_finite() && !corners.iter().all(seen) {
+        let is_monotonic =
+            |&(x, y): &(f64, f64)| camera.distorted_radius(Point2::new(x, y)) < i.distort(camera.max_slope);
+        if camera.max_slope.is_finite() && !corners.iter().all(is_monotonic) {
             return refuse(
                 "the radial distortion folds the picture over before its corners; check the signs of k1, k2, k3 and \
                  that they belong to this picture size",
@@ -103,11 +103,11 @@ impl Camera {
         Ok(camera)
     }
 
-    /// A camera at `eye` that looks at `target`; `up` is upward in the picture.
+    /// A camera at `eye` whose optical axis points to `target`; `up` points upward in the image.
     ///
     /// # Errors
-    /// As [`Camera::new`]; and where eye and target coincide, or `up` is along the view.
-    pub fn looking_at(intrinsics: Intrinsics, eye: Vec3, target: Vec3, up: Vec3) -> Result<Self, VisionError> {
+    /// As [`Camera::new`]; and where eye and target coincide, or `up` is parallel to the optical axis.
+    pub fn look_at(intrinsics: Intrinsics, eye: Vec3, target: Vec3, up: Vec3) -> Result<Self, VisionError> {
         let no_view = || VisionError::Calibration("eye, target and up do not make a view; choose another up".into());
         let z = (target - eye).try_normalize().ok_or_else(no_view)?;
         let x = z.cross(up).try_normalize().ok_or_else(no_view)?;
@@ -115,12 +115,12 @@ impl Camera {
         Self::new(intrinsics, Pose::new(rotation, eye))
     }
 
-    /// The lens and the sensor.
+    /// The intrinsics.
     pub fn intrinsics(&self) -> &Intrinsics {
         &self.intrinsics
     }
 
-    /// Where the camera is and looks.
+    /// The pose.
     pub fn camera_in_world(&self) -> &Pose {
         &self.in_world
     }
@@ -130,7 +130,8 @@ impl Camera {
         self.in_world.translation
     }
 
-    /// Where a point of the world appears, also beside the picture; `None` behind the camera or for a point that is none.
+    /// The pixel that shows a point of the world, also outside the image; `None` behind the camera or for a point that is
+    /// not finite.
     pub fn world_to_pixel(&self, p_in_world: Vec3) -> Option<Point2> {
         self.camera_to_pixel(self.in_world.inverse_transform_point(p_in_world))
     }
@@ -142,64 +143,67 @@ impl Camera {
         }
         let (x, y) = (p_in_camera.x / p_in_camera.z, p_in_camera.y / p_in_camera.z);
         let r = x.hypot(y);
-        let factor = if r > 1e-12 { self.distorted(r) / r } else { 1.0 };
+        let factor = if r > 1e-12 { self.distort_extended(r) / r } else { 1.0 };
         let i = &self.intrinsics;
         Some(Point2::new(i.fx * factor * x + i.cx, i.fy * factor * y + i.cy))
     }
 
     /// The ray through a pixel in the camera's frame, with z = 1.
-    pub fn pixel_to_ray(&self, seen_px: Point2) -> Vec3 {
+    pub fn pixel_to_ray(&self, point_px: Point2) -> Vec3 {
         let i = &self.intrinsics;
-        let (x, y) = ((seen_px.x - i.cx) / i.fx, (seen_px.y - i.cy) / i.fy);
-        let bent = x.hypot(y);
-        let factor = if i.radial == [0.0; 3] || bent < 1e-12 { 1.0 } else { self.straightened(bent) / bent };
+        let (x, y) = ((point_px.x - i.cx) / i.fx, (point_px.y - i.cy) / i.fy);
+        let radius = x.hypot(y);
+        let factor = if i.radial == [0.0; 3] || radius < 1e-12 { 1.0 } else { self.undistort(radius) / radius };
         Vec3::new(x * factor, y * factor, 1.0)
     }
 
-    /// Where the ray through a pixel meets the horizontal plane at height `z_m`; `None` where it does not.
-    pub fn pixel_to_plane(&self, seen_px: Point2, z_m: f64) -> Option<Point2> {
+    /// The intersection of the ray through a pixel with the horizontal plane at height `z_m`.
+    pub fn pixel_to_plane(&self, point_px: Point2, z_m: f64) -> Option<Point2> {
         let eye = self.eye_in_world();
-        let along = self.in_world.transform_vector(self.pixel_to_ray(seen_px));
+        let along = self.in_world.transform_vector(self.pixel_to_ray(point_px));
         let t = (z_m - eye.z) / along.z;
         let p = eye + along * t;
         (t > 0.0 && p.is_finite()).then_some(Point2::new(p.x, p.y))
     }
 
-    fn bent_radius(&self, seen_px: Point2) -> f64 {
+    fn distorted_radius(&self, point_px: Point2) -> f64 {
         let i = &self.intrinsics;
-        ((seen_px.x - i.cx) / i.fx).hypot((seen_px.y - i.cy) / i.fy)
+        ((point_px.x - i.cx) / i.fx).hypot((point_px.y - i.cy) / i.fy)
     }
 
-    /// Where distortion stops growing with the ray's slope; infinite where it never does (up to a slope of 8, 83°).
-    fn limit_of_distortion(&self) -> f64 {
+    /// The largest slope up to which distortion grows with the slope; infinite without distortion, at most 8 (83°) with it.
+    fn monotonic_limit(&self) -> f64 {
         if self.intrinsics.radial == [0.0; 3] {
             return f64::INFINITY;
         }
         let slopes = (0..=800).map(|step| f64::from(step) * 0.01);
-        slopes.into_iter().find(|&r| self.intrinsics.bent_slope(r) < 0.05).map_or(8.0, |r| (r - 0.01).max(0.0))
+        slopes
+            .into_iter()
+            .find(|&r| self.intrinsics.distortion_derivative(r) < 0.05)
+            .map_or(8.0, |r| (r - 0.01).max(0.0))
     }
 
-    /// Distorted radius, going on straight where the formula would fold back.
-    fn distorted(&self, r: f64) -> f64 {
-        let last = self.straight_from;
+    /// Distorted radius, extended linearly where the polynomial would fold back.
+    fn distort_extended(&self, r: f64) -> f64 {
+        let last = self.max_slope;
         if r <= last {
-            return self.intrinsics.bent(r);
+            return self.intrinsics.distort(r);
         }
-        self.intrinsics.bent(last) + (r - last) * self.intrinsics.bent_slope(last).max(0.05)
+        self.intrinsics.distort(last) + (r - last) * self.intrinsics.distortion_derivative(last).max(0.05)
     }
 
-    /// The slope whose distorted radius is `bent`: Newton, kept in bounds by bisection.
-    fn straightened(&self, bent: f64) -> f64 {
-        let last = self.straight_from.min(8.0);
-        let end = self.intrinsics.bent(last);
-        if bent >= end {
-            return last + (bent - end) / self.intrinsics.bent_slope(last).max(0.05);
+    /// The slope whose distorted radius is `radius`: Newton iteration, safeguarded by bisection.
+    fn undistort(&self, radius: f64) -> f64 {
+        let last = self.max_slope.min(8.0);
+        let end = self.intrinsics.distort(last);
+        if radius >= end {
+            return last + (radius - end) / self.intrinsics.distortion_derivative(last).max(0.05);
         }
         let (mut low, mut high) = (0.0, last);
-        let mut r = bent.min(last);
+        let mut r = radius.min(last);
         for _ in 0..60 {
-            let error = self.intrinsics.bent(r) - bent;
-            if error.abs() <= 1e-15 * bent {
+            let error = self.intrinsics.distort(r) - radius;
+            if error.abs() <= 1e-15 * radius {
                 break;
             }
             if error > 0.0 {
@@ -207,7 +211,7 @@ impl Camera {
             } else {
                 low = r;
             }
-            let newton = r - error / self.intrinsics.bent_slope(r);
+            let newton = r - error / self.intrinsics.distortion_derivative(r);
             r = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
         }
         r

@@ -1,11 +1,13 @@
-//! What is wrong with a picture, a calibration or a setting, and what to do about it.
+//! Errors of images, calibrations and settings.
 
 use elbowroom_formats::FormatError;
 
-/// Why a frame, a calibration or a setting was refused. Nothing that was known about obstacles is lost by it.
+use crate::Channels;
+
+/// Why a frame, a calibration or a setting was refused. Tracked obstacles are not affected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VisionError {
-    /// A file that is missing, truncated or not what its name says. The message names the file and what to write.
+    /// A file that is missing, truncated or of another format. The message names the file and what to write instead.
     #[error(transparent)]
     File(#[from] FormatError),
     /// A frame without pixels.
@@ -18,7 +20,7 @@ pub enum VisionError {
         /// Its rows.
         height: usize,
     },
-    /// The bytes do not make up the picture that was announced.
+    /// The number of bytes does not match the size of the image.
     #[error(
         "{frame}: {width} x {height} pixels of {bytes_per_pixel} byte(s) need {expected} bytes, but there are {found}"
     )]
@@ -33,13 +35,13 @@ pub enum VisionError {
         bytes_per_pixel: usize,
         /// `width * height * bytes_per_pixel`.
         expected: usize,
-        /// Bytes that are there.
+        /// Number of bytes present.
         found: usize,
     },
     /// A frame of another size than the camera was calibrated for.
     #[error(
         "{frame}: the frame has {found_width} x {found_height} pixels, but the camera was calibrated for {width} x \
-         {height}; set the camera back to that size, or calibrate it anew"
+         {height}; set the camera back to that size, or calibrate it again"
     )]
     WrongSize {
         /// The frame's name.
@@ -58,10 +60,10 @@ pub enum VisionError {
     WrongChannels {
         /// The frame's name.
         frame: String,
-        /// What the first frame was.
-        expected: &'static str,
-        /// What this one is.
-        found: &'static str,
+        /// Channels of the first frame.
+        expected: Channels,
+        /// Channels of this one.
+        found: Channels,
     },
     /// A frame that is not later than the one before it.
     #[error(
@@ -77,18 +79,18 @@ pub enum VisionError {
     },
     /// No calibration was given.
     #[error(
-        "the camera was never calibrated, so pixels are no places; give four or more points of the floor with their \
+        "the camera is not calibrated, so pixels have no positions; give four or more points of the floor with their \
          pixels (FloorHomography::from_points), or intrinsics and a pose (Camera::new)"
     )]
     NotCalibrated,
-    /// The question needs heights, and a floor homography knows only the floor.
+    /// Heights are needed, which a floor homography does not determine.
     #[error(
-        "a floor homography cannot say where a point above the floor appears; calibrate with intrinsics and a pose \
-         (Camera::new), or draw the silhouette in pixels (PixelMask::hide_polygon)"
+        "a floor homography does not determine where a point above the floor appears; calibrate with intrinsics and a \
+         pose (Camera::new), or draw the silhouette in pixels (PixelMask::mask_polygon)"
     )]
     NeedsCamera,
-    /// A calibration from which no place follows.
-    #[error("the camera's calibration is no use: {0}")]
+    /// A calibration that does not determine positions.
+    #[error("the camera's calibration is not usable: {0}")]
     Calibration(String),
     /// A setting out of its range.
     #[error("the setting `{name}` is {value}; {expected}")]

@@ -1,36 +1,8 @@
-//! One picture of the camera.
+//! One image of the camera.
 
-use crate::VisionError;
+use crate::{Channels, VisionError};
 
-/// Grey or colour, one byte per value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Channels {
-    /// One byte per pixel.
-    #[default]
-    Grey,
-    /// Three bytes per pixel: red, green, blue.
-    Rgb,
-}
-
-impl Channels {
-    /// Bytes per pixel.
-    pub fn count(self) -> usize {
-        match self {
-            Self::Grey => 1,
-            Self::Rgb => 3,
-        }
-    }
-
-    /// For messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Grey => "grey",
-            Self::Rgb => "RGB",
-        }
-    }
-}
-
-/// A picture: rows from the top, pixels from the left, one byte per value, no padding.
+/// An image: rows from the top, pixels from the left, one byte per sample, no padding.
 ///
 /// ```
 /// use elbowroom_vision::{Channels, Frame};
@@ -42,9 +14,9 @@ impl Channels {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Frame {
-    /// What messages call it: a file, or a number.
+    /// Its name in messages: a file, or a number.
     pub name: String,
-    /// When it was taken, seconds; each frame later than the one before.
+    /// When it was taken, seconds; rises from frame to frame.
     pub stamp_s: f64,
     width: usize,
     height: usize,
@@ -69,14 +41,14 @@ impl Frame {
         Ok(frame)
     }
 
-    /// The same frame with the time it was taken, seconds.
+    /// The same frame with the time at which it was taken, seconds.
     #[must_use]
-    pub fn at(mut self, stamp_s: f64) -> Self {
+    pub fn with_stamp(mut self, stamp_s: f64) -> Self {
         self.stamp_s = stamp_s;
         self
     }
 
-    /// Replaces the picture, keeping the memory: `write` receives the old bytes and leaves the new ones.
+    /// Replaces the image and reuses its memory: `write` receives the old bytes and leaves the new ones.
     ///
     /// # Errors
     /// As [`Frame::new`]; the frame is then empty.
@@ -108,9 +80,15 @@ impl Frame {
         Ok(())
     }
 
-    /// No picture any more; the memory stays.
-    pub(crate) fn empty(&mut self) {
+    /// Removes the image; the memory stays.
+    pub(crate) fn clear(&mut self) {
         (self.width, self.height) = (0, 0);
+    }
+
+    /// Takes the memory of the pixels out; the frame is then empty.
+    pub(crate) fn take_pixels(&mut self) -> Vec<u8> {
+        self.clear();
+        std::mem::take(&mut self.pixels)
     }
 
     /// Columns.
@@ -133,7 +111,7 @@ impl Frame {
         &self.pixels
     }
 
-    /// All bytes, to be drawn on.
+    /// All bytes, mutable.
     pub fn pixels_mut(&mut self) -> &mut [u8] {
         &mut self.pixels
     }
@@ -141,7 +119,7 @@ impl Frame {
     /// The bytes of one row, from the top.
     ///
     /// # Panics
-    /// On a row that is not there.
+    /// On a row that does not exist.
     pub fn row(&self, y: usize) -> &[u8] {
         let length = self.width * self.channels.count();
         &self.pixels[y * length..(y + 1) * length]

@@ -1,4 +1,4 @@
-//! Pixels to places on the floor from pairs of both: the normalized direct linear transform.
+//! The homography between image and floor from point pairs: the normalized direct linear transform.
 //!
 //! Hartley and Zisserman, Multiple View Geometry, 2nd edition, algorithm 4.2.
 
@@ -8,16 +8,16 @@ use crate::{Point2, VisionError};
 
 type Matrix = [[f64; 3]; 3];
 
-/// A map from the picture to the floor, straight lines to straight lines (no lens distortion).
+/// A homography from the image to the floor (no lens distortion).
 ///
 /// ```
 /// use elbowroom_vision::{FloorHomography, Point2};
 /// let p = Point2::new;
-/// let seen_px = [p(0.0, 0.0), p(640.0, 0.0), p(640.0, 480.0), p(0.0, 480.0)];
-/// let at_m = [p(-2.0, 1.5), p(2.0, 1.5), p(2.0, -1.5), p(-2.0, -1.5)];
-/// let floor = FloorHomography::from_points(640, 480, &seen_px, &at_m)?;
+/// let points_px = [p(0.0, 0.0), p(640.0, 0.0), p(640.0, 480.0), p(0.0, 480.0)];
+/// let points_m = [p(-2.0, 1.5), p(2.0, 1.5), p(2.0, -1.5), p(-2.0, -1.5)];
+/// let floor = FloorHomography::from_points(640, 480, &points_px, &points_m)?;
 /// assert!((floor.pixel_to_floor(p(320.0, 240.0)).unwrap() - p(0.0, 0.0)).length() < 1e-12);
-/// assert!(FloorHomography::from_points(640, 480, &seen_px[..3], &at_m[..3]).is_err());
+/// assert!(FloorHomography::from_points(640, 480, &points_px[..3], &points_m[..3]).is_err());
 /// # Ok::<(), elbowroom_vision::VisionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -26,114 +26,120 @@ pub struct FloorHomography {
     height: usize,
     to_floor: Matrix,
     to_pixel: Matrix,
-    /// Sign of the denominator on the near side of the horizon.
-    near: f64,
-    worst_m: f64,
+    /// Sign of the denominator in front of the camera, below the horizon.
+    front_sign: f64,
+    max_residual_m: f64,
     eye_in_world: Option<Vec3>,
 }
 
 impl FloorHomography {
-    /// The map for a picture of `width` × `height` pixels from points of the floor: where they are seen (pixels) and
-    /// where they lie (metres, world x and y). Four pairs decide it; more are averaged.
+    /// The homography of an image of `width` × `height` pixels from points of the floor: their pixels and their positions
+    /// (metres, world x and y). Four pairs determine it; with more, the algebraic error is minimized.
     ///
     /// # Errors
     /// Fewer than four pairs, lists of different length, numbers that are not finite, three of four points on one line
-    /// (the pairs then leave the map open), or points on both sides of the horizon.
-    pub fn from_points(width: usize, height: usize, seen_px: &[Point2], at_m: &[Point2]) -> Result<Self, VisionError> {
-        check_pairs(width, height, seen_px, at_m)?;
-        let (seen, undo_seen) = normalized(seen_px).ok_or_else(coincide)?;
-        let (at, undo_at) = normalized(at_m).ok_or_else(coincide)?;
-        let unit = direct_linear_transform(&seen, &at)?;
-        let back = inverse(&undo_at).ok_or_else(coincide)?;
-        let to_floor = scaled(product(&back, &product(&unit, &undo_seen)));
-        let to_pixel = inverse(&to_floor).map(scaled).ok_or_else(on_a_line)?;
-        let denominators = || seen_px.iter().map(|&p| denominator(&to_floor, p));
-        let near = denominators().next().unwrap_or(1.0).signum();
-        if denominators().any(|w| w * near <= 0.0) {
+    /// (the homography is then not determined), or points on both sides of the horizon.
+    pub fn from_points(
+        width: usize,
+        height: usize,
+        points_px: &[Point2],
+        points_m: &[Point2],
+    ) -> Result<Self, VisionError> {
+        check_pairs(width, height, points_px, points_m)?;
+        let (from, normalize_px) = normalized(points_px).ok_or_else(coinciding_points)?;
+        let (to, normalize_m) = normalized(points_m).ok_or_else(coinciding_points)?;
+        let between = direct_linear_transform(&from, &to)?;
+        let denormalize_m = inverse(&normalize_m).ok_or_else(coinciding_points)?;
+        let to_floor = scaled(product(&denormalize_m, &product(&between, &normalize_px)));
+        let to_pixel = inverse(&to_floor).map(scaled).ok_or_else(collinear_points)?;
+        let denominators = || points_px.iter().map(|&p| denominator(&to_floor, p));
+        let front_sign = denominators().next().unwrap_or(1.0).signum();
+        if denominators().any(|w| w * front_sign <= 0.0) {
             return Err(VisionError::Calibration(
                 "its points lie on both sides of the horizon, which no picture shows; a pair is mixed up".into(),
             ));
         }
-        let mut map = Self { width, height, to_floor, to_pixel, near, worst_m: 0.0, eye_in_world: None };
-        let miss = |(&p, &q)| map.pixel_to_floor(p).map_or(f64::INFINITY, |found| (found - q).length());
-        map.worst_m = seen_px.iter().zip(at_m).map(miss).fold(0.0, f64::max);
-        Ok(map)
+        let mut floor = Self { width, height, to_floor, to_pixel, front_sign, max_residual_m: 0.0, eye_in_world: None };
+        let residual = |(&p, &q)| floor.pixel_to_floor(p).map_or(f64::INFINITY, |found| (found - q).length());
+        floor.max_residual_m = points_px.iter().zip(points_m).map(residual).fold(0.0, f64::max);
+        Ok(floor)
     }
 
-    /// The same map with the camera's place, metres, world frame: heights of templates can then be taken into account.
+    /// The same homography with the camera's position, metres, world frame: heights of templates can then be taken into
+    /// account.
     #[must_use]
-    pub fn seen_from(mut self, eye_in_world: Vec3) -> Self {
+    pub fn with_eye(mut self, eye_in_world: Vec3) -> Self {
         self.eye_in_world = Some(eye_in_world);
         self
     }
 
-    /// The camera's place, where it was told.
+    /// The camera's position, where it was given.
     pub fn eye_in_world(&self) -> Option<Vec3> {
         self.eye_in_world
     }
 
-    /// Columns and rows of the picture it belongs to.
+    /// Columns and rows of the image.
     pub fn size(&self) -> (usize, usize) {
         (self.width, self.height)
     }
 
-    /// How far the worst pair lies from where the map takes it, metres. With four pairs always about 0; with more it
-    /// tells a slip of the pen, or a lens that bends lines (then use [`crate::Camera`]).
-    pub fn worst_m(&self) -> f64 {
-        self.worst_m
+    /// The largest distance of a given position from the image of its pixel, metres. About 0 with four pairs; with more, a
+    /// large value shows a wrong pair or lens distortion (then use [`crate::Camera`]).
+    pub fn max_residual_m(&self) -> f64 {
+        self.max_residual_m
     }
 
-    /// The place of the floor seen at a pixel; `None` on or above the horizon.
-    pub fn pixel_to_floor(&self, seen_px: Point2) -> Option<Point2> {
-        (denominator(&self.to_floor, seen_px) * self.near > 0.0).then(|| apply(&self.to_floor, seen_px))
+    /// The point of the floor that a pixel shows; `None` on or above the horizon.
+    pub fn pixel_to_floor(&self, point_px: Point2) -> Option<Point2> {
+        (denominator(&self.to_floor, point_px) * self.front_sign > 0.0).then(|| apply(&self.to_floor, point_px))
     }
 
-    /// Where a place of the floor is seen; `None` behind the camera.
-    pub fn floor_to_pixel(&self, at_m: Point2) -> Option<Point2> {
-        let seen_px = apply(&self.to_pixel, at_m);
-        self.pixel_to_floor(seen_px).is_some().then_some(seen_px).filter(|p| p.is_finite())
+    /// The pixel that shows a point of the floor; `None` behind the camera.
+    pub fn floor_to_pixel(&self, point_m: Point2) -> Option<Point2> {
+        let point_px = apply(&self.to_pixel, point_m);
+        self.pixel_to_floor(point_px).is_some().then_some(point_px).filter(|p| p.is_finite())
     }
 }
 
-fn coincide() -> VisionError {
+fn coinciding_points() -> VisionError {
     VisionError::Calibration("its points coincide; spread four or more over the floor".into())
 }
 
-fn on_a_line() -> VisionError {
+fn collinear_points() -> VisionError {
     VisionError::Calibration(
-        "its points leave the map open: three or more of them lie on one line; spread them over the floor".into(),
+        "its points do not determine the map: three or more of them lie on one line; spread them over the floor".into(),
     )
 }
 
-fn check_pairs(width: usize, height: usize, seen_px: &[Point2], at_m: &[Point2]) -> Result<(), VisionError> {
+fn check_pairs(width: usize, height: usize, points_px: &[Point2], points_m: &[Point2]) -> Result<(), VisionError> {
     let refuse = |why: String| Err(VisionError::Calibration(why));
     if width == 0 || height == 0 {
         return refuse("its picture is empty; write the columns and rows that the camera sends".into());
     }
-    if seen_px.len() != at_m.len() {
-        let (a, b) = (seen_px.len(), at_m.len());
+    if points_px.len() != points_m.len() {
+        let (a, b) = (points_px.len(), points_m.len());
         return refuse(format!("{a} pixels but {b} places; write one place for each pixel"));
     }
-    if seen_px.len() < 4 {
-        return refuse(format!("a floor needs at least 4 points with their pixels, not {}", seen_px.len()));
+    if points_px.len() < 4 {
+        return refuse(format!("a floor needs at least 4 points with their pixels, not {}", points_px.len()));
     }
-    match seen_px.iter().zip(at_m).position(|(p, q)| !p.is_finite() || !q.is_finite()) {
+    match points_px.iter().zip(points_m).position(|(p, q)| !p.is_finite() || !q.is_finite()) {
         Some(i) => refuse(format!("pair {i} (from 0) has a number that is not finite; write it again")),
         None => Ok(()),
     }
 }
 
-/// Points moved to the origin and scaled to a mean distance of √2, and the matrix that does it.
+/// Points translated to their mean and scaled to a mean distance of √2, and the matrix that does it.
 fn normalized(points: &[Point2]) -> Option<(Vec<Point2>, Matrix)> {
     let n = points.len() as f64;
-    let middle = points.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / n);
-    let mean = points.iter().map(|&p| (p - middle).length()).sum::<f64>() / n;
-    let k = std::f64::consts::SQRT_2 / mean;
+    let mean = points.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / n);
+    let distance = points.iter().map(|&p| (p - mean).length()).sum::<f64>() / n;
+    let k = std::f64::consts::SQRT_2 / distance;
     if !k.is_finite() {
         return None;
     }
-    let moved = points.iter().map(|&p| (p - middle) * k).collect();
-    Some((moved, [[k, 0.0, -k * middle.x], [0.0, k, -k * middle.y], [0.0, 0.0, 1.0]]))
+    let points = points.iter().map(|&p| (p - mean) * k).collect();
+    Some((points, [[k, 0.0, -k * mean.x], [0.0, k, -k * mean.y], [0.0, 0.0, 1.0]]))
 }
 
 fn direct_linear_transform(from: &[Point2], to: &[Point2]) -> Result<Matrix, VisionError> {
@@ -151,24 +157,24 @@ fn direct_linear_transform(from: &[Point2], to: &[Point2]) -> Result<Matrix, Vis
             }
         }
     }
-    let (values, vectors) = eigen(normal);
+    let (values, vectors) = symmetric_eigen(normal);
     let mut order: Vec<usize> = (0..9).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    // A second direction that costs (almost) nothing: more than one map fits the pairs.
+    // A second eigenvalue of (almost) zero: more than one homography fits the pairs.
     if values[order[1]] < 1e-9 * values[order[8]] {
-        return Err(on_a_line());
+        return Err(collinear_points());
     }
     let h: [f64; 9] = std::array::from_fn(|i| vectors[i][order[0]]);
     let matrix = [[h[0], h[1], h[2]], [h[3], h[4], h[5]], [h[6], h[7], h[8]]];
-    // The pairs are of size 1 here, so a map that squeezes the floor into a line shows in its determinant.
+    // The points are normalized, so a degenerate homography has a small determinant.
     if determinant(&matrix).abs() < 1e-7 {
-        return Err(on_a_line());
+        return Err(collinear_points());
     }
     Ok(matrix)
 }
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix: cyclic Jacobi rotations (Golub and Van Loan, 8.5).
-fn eigen(mut a: [[f64; 9]; 9]) -> ([f64; 9], [[f64; 9]; 9]) {
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix by cyclic Jacobi rotations (Golub and Van Loan, 8.5).
+fn symmetric_eigen(mut a: [[f64; 9]; 9]) -> ([f64; 9], [[f64; 9]; 9]) {
     let mut v = [[0.0; 9]; 9];
     for i in 0..9 {
         v[i][i] = 1.0;
@@ -216,7 +222,7 @@ fn inverse(m: &Matrix) -> Option<Matrix> {
     transposed.iter().flatten().all(|x| x.is_finite()).then_some(transposed)
 }
 
-/// The same map with its largest entry 1.
+/// The same homography with a largest entry of 1.
 fn scaled(m: Matrix) -> Matrix {
     let largest = m.iter().flatten().fold(0.0_f64, |s, x| s.max(x.abs()));
     m.map(|row| row.map(|x| x / largest))

@@ -1,15 +1,15 @@
-//! Opening and closing with a 3 × 3 square on planes of zeros and ones; what lies outside the picture counts as nothing
-//! for closing and as anything for opening.
+//! Morphological opening and closing with a 3 × 3 square on planes of zeros and ones; pixels outside the image have no
+//! influence.
 
-/// Scratch of the size of the picture.
+/// Workspace of the size of the image.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Morphology {
-    along: Vec<u8>,
-    raw: Vec<u8>,
+    horizontal: Vec<u8>,
+    original: Vec<u8>,
 }
 
 impl Morphology {
-    /// Takes away what is narrower than `2 · radius + 1` pixels: noise.
+    /// Removes what is narrower than `2 · radius + 1` pixels: noise.
     pub(crate) fn open(&mut self, plane: &mut [u8], width: usize, radius: usize) {
         for _ in 0..radius {
             self.pass(plane, width, |a, b| a & b);
@@ -19,16 +19,16 @@ impl Morphology {
         }
     }
 
-    /// As [`Self::open`], but what remains gets back what it lost at its corners, up to `radius` pixels away.
+    /// As [`Self::open`], but what remains regains what it lost at its corners, up to `radius` pixels away.
     pub(crate) fn open_and_restore(&mut self, plane: &mut [u8], width: usize, radius: usize) {
-        self.raw.clear();
-        self.raw.extend_from_slice(plane);
+        self.original.clear();
+        self.original.extend_from_slice(plane);
         self.open(plane, width, radius);
         for _ in 0..radius {
             self.pass(plane, width, |a, b| a | b);
         }
-        for (pixel, raw) in plane.iter_mut().zip(&self.raw) {
-            *pixel &= raw;
+        for (pixel, original) in plane.iter_mut().zip(&self.original) {
+            *pixel &= original;
         }
     }
 
@@ -42,19 +42,19 @@ impl Morphology {
         }
     }
 
-    /// Each pixel becomes the combination of its 3 × 3 neighbourhood within the picture.
+    /// Combines the 3 × 3 neighbourhood of each pixel within the image.
     #[inline]
     fn pass(&mut self, plane: &mut [u8], width: usize, join: impl Fn(u8, u8) -> u8 + Copy) {
-        self.along.resize(plane.len(), 0);
-        for (row, out) in plane.chunks_exact(width).zip(self.along.chunks_exact_mut(width)) {
-            along_row(row, out, join);
+        self.horizontal.resize(plane.len(), 0);
+        for (row, out) in plane.chunks_exact(width).zip(self.horizontal.chunks_exact_mut(width)) {
+            pass_along_row(row, out, join);
         }
-        let along = &self.along;
+        let horizontal = &self.horizontal;
         let height = plane.len() / width;
         for (y, out) in plane.chunks_exact_mut(width).enumerate() {
-            let above = &along[y.saturating_sub(1) * width..][..width];
-            let here = &along[y * width..][..width];
-            let below = &along[(y + 1).min(height - 1) * width..][..width];
+            let above = &horizontal[y.saturating_sub(1) * width..][..width];
+            let here = &horizontal[y * width..][..width];
+            let below = &horizontal[(y + 1).min(height - 1) * width..][..width];
             for i in 0..width {
                 out[i] = join(join(above[i], here[i]), below[i]);
             }
@@ -63,7 +63,7 @@ impl Morphology {
 }
 
 #[inline]
-fn along_row(row: &[u8], out: &mut [u8], join: impl Fn(u8, u8) -> u8) {
+fn pass_along_row(row: &[u8], out: &mut [u8], join: impl Fn(u8, u8) -> u8) {
     let n = row.len();
     if n < 2 {
         out.copy_from_slice(row);
@@ -101,9 +101,9 @@ mod tests {
             let mut bit = || { state ^= state << 13; state ^= state >> 7; state ^= state << 17; u8::from(state % 3 > 0) };
             let plane: Vec<u8> = (0..width * height).map(|_| bit()).collect();
             let (mut opened, mut closed) = (plane.clone(), plane.clone());
-            let mut scratch = Morphology::default();
-            scratch.open(&mut opened, width, 1);
-            scratch.close(&mut closed, width, 1);
+            let mut morphology = Morphology::default();
+            morphology.open(&mut opened, width, 1);
+            morphology.close(&mut closed, width, 1);
             prop_assert_eq!(opened, naive(&naive(&plane, width, true), width, false));
             prop_assert_eq!(closed, naive(&naive(&plane, width, false), width, true));
         }

@@ -1,9 +1,9 @@
-//! Places in a plane: pixels of a picture, or metres on the floor.
+//! Points in a plane: pixels of an image, or metres on the floor.
 
 use std::ops::{Add, Mul, Sub};
 
-/// A place in a plane. In a picture: pixels, x to the right, y down, the middle of the first pixel at (0.5, 0.5). On the
-/// floor: metres along the world's x and y axes. Names say which (`seen_px`, `at_m`).
+/// A point in a plane. In an image: pixels, x to the right, y down, the centre of the first pixel at (0.5, 0.5). On the
+/// floor: metres along the world's x and y axes. The unit is in the name of a variable (`corner_px`, `centre_m`).
 ///
 /// ```
 /// use elbowroom_vision::Point2;
@@ -28,7 +28,7 @@ impl Point2 {
         self.x.hypot(self.y)
     }
 
-    /// Twice the area of the triangle from the origin over `self` to `o`; positive where `o` lies to the left.
+    /// Two-dimensional cross product; positive where `o` lies to the left of `self`.
     pub fn cross(self, o: Self) -> f64 {
         self.x * o.y - self.y * o.x
     }

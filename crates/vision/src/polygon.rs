@@ -1,12 +1,12 @@
-//! Convex polygons in a plane: counter-clockwise lists of corners (seen with y to the left of x).
+//! Convex polygons in a plane: lists of corners, counter-clockwise where y is to the left of x.
 //!
-//! The functions write into a list of the caller's, so that nothing is allocated once lists have grown.
+//! The functions write to lists of the caller, so that nothing is allocated once lists have grown.
 
 use crate::Point2;
 
-/// Corners of a regular octagon about the unit circle: what `grown` adds around each corner.
+/// Corners of the regular octagon around the unit circle, which [`inflate`] adds to each corner.
 const OCTAGON: [Point2; 8] = {
-    // 1 / cos(π/8) times cos and sin of multiples of 45°, turned so that edges touch the circle on the axes.
+    // 1 / cos(π/8) times cosine and sine of odd multiples of 22.5°: edges touch the circle on the axes.
     const T: f64 = 0.414_213_562_373_095_1; // tan(π/8)
     const O: f64 = 1.0;
     [
@@ -67,7 +67,7 @@ pub fn area(polygon: &[Point2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum::<f64>() / 2.0
 }
 
-/// The middle of a polygon's area; the mean of the corners where it has none.
+/// The centroid of a polygon's area; the mean of the corners where it has no area.
 pub fn centroid(polygon: &[Point2]) -> Point2 {
     let Some(&o) = polygon.first() else { return Point2::default() };
     let (mut sum, mut weight) = (Point2::default(), 0.0);
@@ -88,7 +88,7 @@ pub fn convex_contains(polygon: &[Point2], p: Point2) -> bool {
     polygon.len() > 2 && edges(polygon).all(|(a, b)| (b - a).cross(p - a) >= 0.0)
 }
 
-/// Whether `p` lies in a simple polygon, convex or not, of either sense (crossing number).
+/// Whether `p` lies in a simple polygon, convex or not, of either orientation (crossing number).
 pub fn contains(polygon: &[Point2], p: Point2) -> bool {
     let crosses =
         |(a, b): &(Point2, Point2)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
@@ -99,10 +99,10 @@ pub fn contains(polygon: &[Point2], p: Point2) -> bool {
 pub fn touches(convex: &[Point2], simple: &[Point2]) -> bool {
     convex.iter().any(|&p| contains(simple, p))
         || simple.iter().any(|&p| convex_contains(convex, p))
-        || edges(convex).any(|e| edges(simple).any(|f| cross_each_other(e, f)))
+        || edges(convex).any(|e| edges(simple).any(|f| edges_intersect(e, f)))
 }
 
-fn cross_each_other((a, b): (Point2, Point2), (c, d): (Point2, Point2)) -> bool {
+fn edges_intersect((a, b): (Point2, Point2), (c, d): (Point2, Point2)) -> bool {
     let side = |p: Point2, q: Point2, r: Point2| (q - p).cross(r - p);
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
@@ -112,7 +112,7 @@ pub fn edges(polygon: &[Point2]) -> impl Iterator<Item = (Point2, Point2)> + '_ 
     polygon.iter().copied().zip(polygon.iter().copied().cycle().skip(1))
 }
 
-/// Keeps of a convex polygon what satisfies `normal · p <= offset` (Sutherland and Hodgman).
+/// Clips a convex polygon to the half-plane `normal · p <= offset` (Sutherland and Hodgman).
 pub fn clip(polygon: &[Point2], normal: Point2, offset: f64, out: &mut Vec<Point2>) {
     out.clear();
     for (a, b) in edges(polygon) {
@@ -126,8 +126,8 @@ pub fn clip(polygon: &[Point2], normal: Point2, offset: f64, out: &mut Vec<Point
     }
 }
 
-/// The common part of two convex polygons; `spare` is scratch.
-pub fn intersection(a: &[Point2], b: &[Point2], out: &mut Vec<Point2>, spare: &mut Vec<Point2>) {
+/// The intersection of two convex polygons; `workspace` is scratch memory.
+pub fn intersection(a: &[Point2], b: &[Point2], out: &mut Vec<Point2>, workspace: &mut Vec<Point2>) {
     out.clear();
     if a.len() < 3 || b.len() < 3 {
         return;
@@ -136,50 +136,50 @@ pub fn intersection(a: &[Point2], b: &[Point2], out: &mut Vec<Point2>, spare: &m
     for (from, to) in edges(b) {
         let along = to - from;
         let outward = Point2::new(along.y, -along.x);
-        std::mem::swap(out, spare);
-        clip(spare, outward, outward.dot(from), out);
+        std::mem::swap(out, workspace);
+        clip(workspace, outward, outward.dot(from), out);
         if out.is_empty() {
             return;
         }
     }
 }
 
-/// A convex polygon that contains every point within `margin` of the given one, and little more (8 % of the margin at
-/// the corners); `spare` is scratch.
+/// Inflates a convex polygon: the result contains every point within `margin` of it, and little more (8 % of the margin at
+/// the corners). `workspace` is scratch memory.
 ///
 /// ```
 /// use elbowroom_vision::{Point2, polygon};
-/// let (mut grown, mut spare) = (Vec::new(), Vec::new());
-/// polygon::grown(&[Point2::new(1.0, 1.0)], 0.5, &mut grown, &mut spare);
-/// assert_eq!(grown.len(), 8);
-/// assert!(polygon::convex_contains(&grown, Point2::new(1.35, 1.35)));
+/// let (mut inflated, mut workspace) = (Vec::new(), Vec::new());
+/// polygon::inflate(&[Point2::new(1.0, 1.0)], 0.5, &mut inflated, &mut workspace);
+/// assert_eq!(inflated.len(), 8);
+/// assert!(polygon::convex_contains(&inflated, Point2::new(1.35, 1.35)));
 /// ```
-pub fn grown(polygon: &[Point2], margin: f64, out: &mut Vec<Point2>, spare: &mut Vec<Point2>) {
-    spare.clear();
-    spare.extend(polygon.iter().flat_map(|&p| OCTAGON.iter().map(move |&o| p + o * margin)));
-    convex_hull(spare, out);
+pub fn inflate(polygon: &[Point2], margin: f64, out: &mut Vec<Point2>, workspace: &mut Vec<Point2>) {
+    workspace.clear();
+    workspace.extend(polygon.iter().flat_map(|&p| OCTAGON.iter().map(move |&o| p + o * margin)));
+    convex_hull(workspace, out);
 }
 
-/// Replaces edges by their neighbours' prolongations until at most `most` corners are left, each time where that adds
-/// least. The result contains the polygon that was given. Never fewer than four corners.
-pub fn simplify_outward(polygon: &mut Vec<Point2>, most: usize) {
-    while polygon.len() > most.max(4) {
-        let Some((edge, corner)) = cheapest_edge(polygon) else { return };
+/// Replaces edges by the extensions of their neighbours until at most `max_corners` corners are left, each time the edge
+/// that adds the smallest area. The result contains the original polygon and has at least four corners.
+pub fn simplify_outward(polygon: &mut Vec<Point2>, max_corners: usize) {
+    while polygon.len() > max_corners.max(4) {
+        let Some((edge, corner)) = edge_to_remove(polygon) else { return };
         let next = (edge + 1) % polygon.len();
         polygon[edge] = corner;
         polygon.remove(next);
     }
 }
 
-/// The edge without which the polygon grows least, and the corner that takes its place.
-fn cheapest_edge(polygon: &[Point2]) -> Option<(usize, Point2)> {
+/// The edge whose removal adds the smallest area, and the corner that replaces it.
+fn edge_to_remove(polygon: &[Point2]) -> Option<(usize, Point2)> {
     let n = polygon.len();
     let mut best: Option<(f64, usize, Point2)> = None;
     for i in 0..n {
         let [p, a, b, q] = [polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]];
         let (before, after) = (a - p, q - b);
         let turn = before.cross(after);
-        // Prolongations that meet behind, or so far away that rounding would decide where, replace nothing.
+        // Extensions that meet behind the edge, or too far away for a defined intersection, do not replace it.
         if turn <= 1e-9 * before.length() * after.length() {
             continue;
         }
@@ -192,10 +192,10 @@ fn cheapest_edge(polygon: &[Point2]) -> Option<(usize, Point2)> {
     best.map(|(_, i, corner)| (i, corner))
 }
 
-/// Lengths of the sides of the smallest rectangle around a convex polygon, the longer one first.
+/// Lengths of the sides of the rectangle of smallest area around a convex polygon, the longer one first.
 ///
-/// Of the smallest rectangles one has a side along an edge of the polygon (Freeman and Shapira, 1975).
-pub fn rectangle(polygon: &[Point2]) -> (f64, f64) {
+/// One such rectangle has a side along an edge of the polygon (Freeman and Shapira, 1975).
+pub fn min_area_rectangle(polygon: &[Point2]) -> (f64, f64) {
     let mut best = (f64::INFINITY, (0.0, 0.0));
     for (a, b) in edges(polygon) {
         let length = (b - a).length();

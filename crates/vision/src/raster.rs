@@ -1,4 +1,4 @@
-//! Convex polygons to pixels.
+//! Rasterization of convex polygons.
 
 use crate::Point2;
 
@@ -14,8 +14,8 @@ pub(crate) fn any_in_convex(plane: &[u8], width: usize, polygon_px: &[Point2]) -
     any
 }
 
-/// Calls with the pixels of each row that the polygon touches, as places in a plane of `pixels` pixels.
-fn for_each_row(pixels: usize, width: usize, polygon_px: &[Point2], mut found: impl FnMut(std::ops::Range<usize>)) {
+/// Calls with the pixels of each row that the polygon touches, as indices in a plane of `pixels` pixels.
+fn for_each_row(pixels: usize, width: usize, polygon_px: &[Point2], mut visit: impl FnMut(std::ops::Range<usize>)) {
     if width == 0 || polygon_px.iter().any(|p| !p.is_finite()) {
         return;
     }
@@ -28,12 +28,12 @@ fn for_each_row(pixels: usize, width: usize, polygon_px: &[Point2], mut found: i
         let begin = left.floor().max(0.0) as usize;
         let stop = (right.ceil().max(0.0) as usize).min(width);
         if begin < stop {
-            found(y * width + begin..y * width + stop);
+            visit(y * width + begin..y * width + stop);
         }
     }
 }
 
-/// Least and greatest x of a convex polygon between two heights.
+/// Smallest and largest x of a convex polygon between two values of y.
 fn extent(polygon_px: &[Point2], from: f64, to: f64) -> (f64, f64) {
     let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut take = |x: f64| (left, right) = (left.min(x), right.max(x));

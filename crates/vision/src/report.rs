@@ -1,103 +1,105 @@
-//! What one frame told.
+//! The result of one frame.
 
 use std::time::Duration;
 
-use crate::{Light, Obstacle};
+use crate::{Illumination, Obstacle};
 
-/// Why a frame is not believed.
+/// Why a frame is rejected.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Blindness {
-    /// Much lighter or darker than it was learnt, black or white: 0.4 to 2.5 times, 60 grey levels up or down.
-    Light(Light),
-    /// Less than half of the floor that is in sight looks like itself: a lamp went on, the camera was pushed, something
-    /// is before the lens.
+pub enum RejectReason {
+    /// Much lighter or darker than while the background was learnt, black or white: a gain outside 0.4 to 2.5, or an
+    /// offset of more than 60 grey levels.
+    Illumination(Illumination),
+    /// Less than half of the visible floor agrees with the background model: a lamp was switched on, the camera was
+    /// moved, something covers the lens.
     Unrecognized {
-        /// Share of samples that agree with the background, 0 to 1.
-        agreeing: f64,
+        /// Fraction of the samples that agree with the background model, 0 to 1.
+        inlier_ratio: f64,
     },
-    /// More of the picture than [`Settings::most_foreground`](crate::Settings::most_foreground) is covered by things.
-    Covered {
-        /// Share of the picture, 0 to 1.
-        share: f64,
+    /// The foreground covers more of the image than
+    /// [`CameraTrackerSettings::max_foreground`](crate::CameraTrackerSettings::max_foreground).
+    TooMuchForeground {
+        /// Fraction of the image, 0 to 1.
+        foreground_ratio: f64,
     },
 }
 
-/// Whether a frame can be believed.
+/// Whether the obstacles of a frame can be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sight {
+pub enum FrameStatus {
     /// The background is being learnt; nothing is known yet.
     Learning {
         /// Frames of the empty cell still to come.
         frames_left: u32,
     },
-    /// All is well: where no obstacle is told, none is seen.
-    Clear,
-    /// Nothing is known of this frame: the obstacles are those of the last one that was clear. Not free: the caller
+    /// The frame was evaluated: where no obstacle is reported, none was detected.
+    Valid,
+    /// The frame was not evaluated: the obstacles are those of the last valid frame. Unknown is not free: the caller
     /// should stop what relies on it.
-    Blind(Blindness),
+    Rejected(RejectReason),
 }
 
 /// Time per stage of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Timings {
+pub struct StageTimings {
     /// Colours to planes.
     pub convert: Duration,
-    /// Gain and offset of the light.
-    pub light: Duration,
-    /// Each pixel against the background.
+    /// Gain and offset of the illumination.
+    pub illumination: Duration,
+    /// Each pixel against the background model.
     pub classify: Duration,
-    /// Shadow or thing.
+    /// Shadow detection.
     pub shadows: Duration,
-    /// Opening, closing.
-    pub clean: Duration,
-    /// Blobs.
+    /// Opening and closing.
+    pub morphology: Duration,
+    /// Connected components.
     pub label: Duration,
-    /// Outlines to the floor.
-    pub place: Duration,
-    /// Identities.
+    /// Projection of outlines to the floor.
+    pub project: Duration,
+    /// Association and update of tracks.
     pub track: Duration,
     /// Templates and prisms.
-    pub tell: Duration,
-    /// The background's adaptation (and learning).
+    pub prisms: Duration,
+    /// Adaptation (and learning) of the background model.
     pub adapt: Duration,
 }
 
-impl Timings {
+impl StageTimings {
     /// Names and times of the stages, in their order.
     pub fn stages(&self) -> [(&'static str, Duration); 10] {
         [
             ("convert", self.convert),
-            ("light", self.light),
+            ("illumination", self.illumination),
             ("classify", self.classify),
             ("shadows", self.shadows),
-            ("clean", self.clean),
+            ("morphology", self.morphology),
             ("label", self.label),
-            ("place", self.place),
+            ("project", self.project),
             ("track", self.track),
-            ("tell", self.tell),
+            ("prisms", self.prisms),
             ("adapt", self.adapt),
         ]
     }
 
-    /// Frame to obstacles.
+    /// Total time from frame to obstacles.
     pub fn total(&self) -> Duration {
         self.stages().iter().map(|(_, time)| *time).sum()
     }
 }
 
-/// What one frame told. Borrowed from the [`Vision`](crate::Vision), which reuses it.
+/// The result of one frame. Borrowed from the [`CameraTracker`](crate::CameraTracker), which reuses it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Report {
+pub struct FrameReport {
     /// When the frame was taken, seconds.
     pub stamp_s: f64,
-    /// Whether it can be believed.
-    pub sight: Sight,
-    /// All obstacles, in the order of their identities; those that left are told once.
+    /// Whether the obstacles can be used.
+    pub status: FrameStatus,
+    /// All obstacles in the order of their identities; those that left are reported once.
     pub obstacles: Vec<Obstacle>,
-    /// Share of the picture that is foreground, 0 to 1.
-    pub foreground: f64,
-    /// The light of each plane (grey; or red, green, blue).
-    pub lights: Vec<Light>,
+    /// Fraction of the image that is foreground, 0 to 1.
+    pub foreground_ratio: f64,
+    /// The illumination of each plane (grey; or red, green, blue).
+    pub illumination: Vec<Illumination>,
     /// Time per stage.
-    pub timings: Timings,
+    pub timings: StageTimings,
 }

@@ -1,40 +1,40 @@
-//! Shadow or thing? A shadow dims the floor evenly: the floor's own pattern stays, dimmed by one ratio.
+//! Shadow detection: a shadow dims the floor by one ratio and keeps its texture and its colour.
 //!
-//! The ratio alone would take every grey thing for a shadow. Around each pixel in question nine samples are compared
-//! with the background times their common ratio, in each plane: where they do not follow the pattern, or where the
-//! planes' ratios differ (a shadow has no colour), it is a thing.
+//! The ratio alone would accept every grey object. Around each candidate pixel nine samples are compared with the
+//! background times their common ratio, in each plane: where they do not follow the texture, or where the planes' ratios
+//! differ, the pixel is foreground.
 
-use crate::Shadows;
-use crate::background::{OBJECT, Plane, SHADOW};
-use crate::light::Light;
+use crate::ShadowSettings;
+use crate::background::{BackgroundPlane, FOREGROUND, SHADOW};
+use crate::illumination::Illumination;
 
 /// Samples around a pixel: a cross.
 const CROSS: [(isize, isize); 9] = [(0, 0), (-2, 0), (2, 0), (-4, 0), (4, 0), (0, -2), (0, 2), (0, -4), (0, 4)];
 
-/// What a picture, its background and its light are, plane by plane.
-pub(crate) struct Scene<'a> {
+/// An image, its background model and its illumination, plane by plane.
+pub(crate) struct ShadowInput<'a> {
     pub(crate) pixels: &'a [u8],
-    pub(crate) planes: &'a [Plane],
-    pub(crate) lights: &'a [Light],
+    pub(crate) planes: &'a [BackgroundPlane],
+    pub(crate) illumination: &'a [Illumination],
     pub(crate) width: usize,
     pub(crate) height: usize,
 }
 
-/// Turns classes into 1 (thing) and 0 (floor, dimmed or not). `foreground` has as many pixels as `class`.
-pub(crate) fn resolve(scene: &Scene<'_>, class: &[u8], shadows: Option<&Shadows>, foreground: &mut [u8]) {
+/// Converts classes to 1 (foreground) and 0 (floor, in shadow or not). `foreground` has as many pixels as `class`.
+pub(crate) fn resolve(input: &ShadowInput<'_>, class: &[u8], settings: Option<&ShadowSettings>, foreground: &mut [u8]) {
     for (out, &class) in foreground.iter_mut().zip(class) {
         *out = class >> 1;
     }
-    let Some(shadows) = shadows else { return };
-    for (y, row) in class.chunks_exact(scene.width).enumerate() {
+    let Some(settings) = settings else { return };
+    for (y, row) in class.chunks_exact(input.width).enumerate() {
         for_each_candidate(row, |x| {
-            let i = y * scene.width + x;
-            foreground[i] = u8::from(!is_shadow(scene, class, shadows, x, y));
+            let i = y * input.width + x;
+            foreground[i] = u8::from(!is_shadow(input, class, settings, x, y));
         });
     }
 }
 
-/// Calls with the place of each [`SHADOW`]; eight empty pixels cost one comparison.
+/// Calls with the column of each [`SHADOW`]; eight background pixels cost one comparison.
 fn for_each_candidate(row: &[u8], mut found: impl FnMut(usize)) {
     let (chunks, rest) = row.as_chunks::<8>();
     for (c, chunk) in chunks.iter().enumerate() {
@@ -46,38 +46,39 @@ fn for_each_candidate(row: &[u8], mut found: impl FnMut(usize)) {
     rest.iter().enumerate().filter(|(_, class)| **class == SHADOW).for_each(|(i, _)| found(from + i));
 }
 
-fn is_shadow(scene: &Scene<'_>, class: &[u8], shadows: &Shadows, x: usize, y: usize) -> bool {
-    debug_assert_ne!(class[y * scene.width + x], OBJECT);
-    let mut places = [0; CROSS.len()];
+fn is_shadow(input: &ShadowInput<'_>, class: &[u8], settings: &ShadowSettings, x: usize, y: usize) -> bool {
+    debug_assert_ne!(class[y * input.width + x], FOREGROUND);
+    let mut samples = [0; CROSS.len()];
     let mut n = 0;
     for (dx, dy) in CROSS {
         let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
-        if x < scene.width && y < scene.height && class[y * scene.width + x] == SHADOW {
-            places[n] = y * scene.width + x;
+        if x < input.width && y < input.height && class[y * input.width + x] == SHADOW {
+            samples[n] = y * input.width + x;
             n += 1;
         }
     }
     let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
-    for p in 0..scene.planes.len() {
-        let Some(ratio) = even_ratio(scene, p, &places[..n], shadows.texture as f32) else { return false };
+    for p in 0..input.planes.len() {
+        let max_error = settings.max_texture_error as f32;
+        let Some(ratio) = common_ratio(input, p, &samples[..n], max_error) else { return false };
         (least, most) = (least.min(ratio), most.max(ratio));
     }
-    most - least <= shadows.tint as f32
+    most - least <= settings.max_tint as f32
 }
 
-/// The ratio of what is seen at the places to the background; `None` where the background's pattern is not followed.
-fn even_ratio(scene: &Scene<'_>, plane: usize, places: &[usize], texture: f32) -> Option<f32> {
-    let pixels = &scene.pixels[plane * scene.width * scene.height..];
-    let (gain, offset) = (scene.lights[plane].gain as f32, scene.lights[plane].offset as f32);
+/// The ratio of the image to the background at the samples; `None` where the texture differs.
+fn common_ratio(input: &ShadowInput<'_>, plane: usize, samples: &[usize], max_error: f32) -> Option<f32> {
+    let pixels = &input.pixels[plane * input.width * input.height..];
+    let (gain, offset) = (input.illumination[plane].gain as f32, input.illumination[plane].offset as f32);
     let mut pairs = [(0.0_f32, 0.0_f32); CROSS.len()];
-    let (mut seen, mut expected) = (0.0, 0.0);
-    for (pair, &i) in pairs.iter_mut().zip(places) {
-        *pair = (f32::from(pixels[i]), gain * scene.planes[plane].mean(i) + offset);
-        seen += pair.0;
+    let (mut observed, mut expected) = (0.0, 0.0);
+    for (pair, &i) in pairs.iter_mut().zip(samples) {
+        *pair = (f32::from(pixels[i]), gain * input.planes[plane].mean(i) + offset);
+        observed += pair.0;
         expected += pair.1;
     }
-    let ratio = seen / expected.max(1.0);
-    let pairs = &pairs[..places.len()];
-    let misses: f32 = pairs.iter().map(|(f, e)| (f - ratio * e).abs()).sum();
-    (misses <= texture * places.len() as f32).then_some(ratio)
+    let ratio = observed / expected.max(1.0);
+    let pairs = &pairs[..samples.len()];
+    let error: f32 = pairs.iter().map(|(f, e)| (f - ratio * e).abs()).sum();
+    (error <= max_error * samples.len() as f32).then_some(ratio)
 }

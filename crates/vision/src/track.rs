@@ -1,122 +1,129 @@
-//! One thing with an identity: what is known of it.
+//! The state of one tracked obstacle.
 
-use crate::associate::Detection;
-use crate::{Change, Obstacle, ObstacleId, Point2, Settings, polygon};
+use crate::detection::Detection;
+use crate::{CameraTrackerSettings, Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
 
-/// One thing.
+/// One tracked obstacle.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
-    /// What it covers on the floor as seen, convex, metres.
+    /// Its convex outline on the floor as observed, metres.
     pub(crate) outline_m: Vec<Point2>,
-    /// What it covered when it was last seen whole, carried on with its velocity while the arm hides a part of it.
-    pub(crate) whole_m: Vec<Point2>,
-    /// Some of that is behind the arm in this frame: set by the caller before [`Tracker::update`].
-    pub(crate) is_hidden: bool,
+    /// Its outline when it was last observed in full, moved on with its velocity while the arm occludes a part of it.
+    pub(crate) full_outline_m: Vec<Point2>,
+    /// The arm occludes a part of the outline in this frame: set by the caller before
+    /// [`ObjectTracker::update`](crate::object_tracker::ObjectTracker::update).
+    pub(crate) is_occluded: bool,
     pub(crate) obstacle: Obstacle,
     pub(crate) centre_m: Point2,
     pub(crate) velocity_mps: Point2,
-    /// Of the time when it was last seen alone and whole.
+    /// Of the last frame in which it was observed in full and apart from others.
     pub(crate) area: f64,
     pub(crate) brightness: f64,
-    pub(crate) is_cut: bool,
-    /// The template that it has been fitting, and for how many frames in a row.
-    pub(crate) fits: Option<usize>,
-    pub(crate) frames_fit: u32,
-    pub(crate) frames_whole: u32,
-    pub(crate) frames_misfit: u32,
+    /// Its outline is incomplete, or a share of a merged one.
+    pub(crate) is_truncated: bool,
+    /// The template that it has been matching, and for how many frames in a row.
+    pub(crate) template_candidate: Option<usize>,
+    pub(crate) candidate_frames: u32,
+    pub(crate) frames_fully_visible: u32,
+    pub(crate) frames_unmatched: u32,
     pub(crate) template: Option<usize>,
     pub(crate) frames_seen: u32,
     pub(crate) frames_missed: u32,
-    pub(crate) is_told: bool,
-    /// Area of the footprint when the obstacle was last told.
-    pub(crate) told_area: f64,
+    pub(crate) is_reported: bool,
+    /// Area of the footprint when its prism last changed.
+    pub(crate) reported_area: f64,
     pub(crate) z_from_m: f64,
     pub(crate) z_to_m: f64,
-    /// While several are seen as one, the highest of them: the line between them is a guess.
-    pub(crate) together_to_m: Option<f64>,
+    /// While several are observed as one, the top of the highest: the line between them is uncertain.
+    pub(crate) merged_z_to_m: Option<f64>,
 }
 
-/// One frame in so many may fit no template.
-const MOST_MISFITS: u32 = 10;
+/// At most one fully visible frame in so many may match no template.
+const FRAMES_PER_MISMATCH: u32 = 10;
 
 impl Track {
     pub(crate) fn restart(&mut self, id: ObstacleId, detection: &Detection) {
         self.outline_m.clone_from(&detection.outline_m);
-        self.whole_m.clear();
-        self.is_hidden = false;
+        self.full_outline_m.clear();
+        self.is_occluded = false;
         self.obstacle.id = id;
         self.centre_m = detection.centre_m;
         self.velocity_mps = Point2::default();
         self.area = detection.area;
         self.brightness = detection.brightness;
-        self.is_cut = detection.is_cut_by_arm || detection.is_cut_by_border;
-        self.together_to_m = None;
-        (self.template, self.fits, self.frames_fit) = (None, None, 0);
-        (self.frames_whole, self.frames_misfit) = (0, 0);
-        (self.frames_seen, self.frames_missed, self.is_told) = (1, 0, false);
+        self.is_truncated = detection.touches_arm || detection.touches_border;
+        self.merged_z_to_m = None;
+        (self.template, self.template_candidate, self.candidate_frames) = (None, None, 0);
+        (self.frames_fully_visible, self.frames_unmatched) = (0, 0);
+        (self.frames_seen, self.frames_missed, self.is_reported) = (1, 0, false);
         (self.z_from_m, self.z_to_m) = (detection.z_from_m, detection.z_to_m);
     }
 
+    /// Alpha-beta filter: corrects the predicted centre by the first gain and the velocity by the second.
     pub(crate) fn correct(
         &mut self,
-        expected_m: Point2,
-        seen_m: Point2,
+        predicted_m: Point2,
+        measured_m: Point2,
         dt_s: f64,
-        (place, speed): (f64, f64),
-        most: f64,
+        (alpha, beta): (f64, f64),
+        max_speed_mps: f64,
     ) {
-        let surprise = seen_m - expected_m;
-        self.centre_m = expected_m + surprise * place;
+        let residual = measured_m - predicted_m;
+        self.centre_m = predicted_m + residual * alpha;
         if dt_s > 0.0 {
-            let velocity = self.velocity_mps + surprise * (speed / dt_s);
-            self.velocity_mps = velocity * (most / velocity.length().max(1e-12)).min(1.0);
+            let velocity = self.velocity_mps + residual * (beta / dt_s);
+            self.velocity_mps = velocity * (max_speed_mps / velocity.length().max(1e-12)).min(1.0);
         }
         self.frames_seen = self.frames_seen.saturating_add(1);
         self.frames_missed = 0;
     }
 
+    /// Records a frame without a detection.
     pub(crate) fn miss(&mut self) {
         self.velocity_mps = Point2::default();
-        if !self.is_hidden {
+        if !self.is_occluded {
             self.frames_missed = self.frames_missed.saturating_add(1);
-            self.frames_seen = if self.is_told { self.frames_seen } else { 0 };
+            self.frames_seen = if self.is_reported { self.frames_seen } else { 0 };
         }
     }
 
-    /// The prism told last is told again.
-    pub(crate) fn stay(&mut self) {
-        self.obstacle.change = Change::Still;
+    /// Keeps the reported prism.
+    pub(crate) fn keep_prism(&mut self) {
+        self.obstacle.change = ObstacleChange::Unchanged;
         self.obstacle.velocity_mps = self.velocity_mps;
-        self.obstacle.is_remembered = true;
+        self.obstacle.is_unobserved = true;
     }
 
-    /// A template must fit for some frames in a row, and must have been fitting nearly whenever the thing was in full
-    /// sight: on its way a high, slim thing covers for a while what a lower, longer one would.
-    pub(crate) fn decide_on(&mut self, fits: Option<usize>, frames_to_fit: u32) {
-        self.frames_fit = if fits == self.fits { self.frames_fit.saturating_add(1) } else { 1 };
-        self.fits = fits;
-        self.frames_whole = self.frames_whole.saturating_add(1);
-        self.frames_misfit += u32::from(fits.is_none());
-        let is_believed = self.frames_fit >= frames_to_fit && self.frames_misfit <= self.frames_whole / MOST_MISFITS;
-        self.template = fits.filter(|_| is_believed);
+    /// Accepts a template that matches in some frames in a row, if nearly all fully visible frames have matched one: a
+    /// moving high, narrow object covers for a while the same floor as a lower, longer one.
+    pub(crate) fn update_template(&mut self, matched: Option<usize>, template_frames: u32) {
+        let is_same = matched == self.template_candidate;
+        self.candidate_frames = if is_same { self.candidate_frames.saturating_add(1) } else { 1 };
+        self.template_candidate = matched;
+        self.frames_fully_visible = self.frames_fully_visible.saturating_add(1);
+        self.frames_unmatched += u32::from(matched.is_none());
+        let is_accepted = self.candidate_frames >= template_frames
+            && self.frames_unmatched <= self.frames_fully_visible / FRAMES_PER_MISMATCH;
+        self.template = matched.filter(|_| is_accepted);
     }
 
-    pub(crate) fn heights(&self, settings: &Settings) -> (f64, f64) {
-        let (from, to) = self.own_heights(settings);
-        (from, to.max(self.together_to_m.unwrap_or(to)))
+    /// Lower and upper end, those of objects merged with it included.
+    pub(crate) fn z_range_m(&self, settings: &CameraTrackerSettings) -> (f64, f64) {
+        let (from, to) = self.own_z_range_m(settings);
+        (from, to.max(self.merged_z_to_m.unwrap_or(to)))
     }
 
-    pub(crate) fn own_heights(&self, settings: &Settings) -> (f64, f64) {
+    pub(crate) fn own_z_range_m(&self, settings: &CameraTrackerSettings) -> (f64, f64) {
         match self.template {
-            Some(kind) => (self.z_from_m, settings.floor_z_m + settings.templates[kind].top_m()),
+            Some(template) => (self.z_from_m, settings.floor_z_m + settings.templates[template].max_height_m()),
             None => (self.z_from_m, self.z_to_m),
         }
     }
 
-    /// Whether the prism told last contains what is wanted now, and is not needlessly large.
-    pub(crate) fn still_covers(&self, wanted: &[Point2]) -> bool {
-        let has_shrunk = polygon::area(wanted) < 0.8 * self.told_area;
-        let covers = || wanted.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
-        !has_shrunk && covers()
+    /// Whether the reported footprint still contains the present one and is not much too large.
+    pub(crate) fn still_contains(&self, footprint_m: &[Point2]) -> bool {
+        let has_shrunk = polygon::area(footprint_m) < 0.8 * self.reported_area;
+        let contains = || footprint_m.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
+        !has_shrunk && contains()
     }
 }

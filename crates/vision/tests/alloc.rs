@@ -1,12 +1,13 @@
-//! Frames take no memory once lists have grown. Without the test harness: its threads
-//! take memory, too, and the counter counts the whole process.
+//! Frames allocate nothing once lists have grown. Without the test harness, whose threads allocate too: the counter
+//! counts the whole process.
 
 use std::alloc::System;
 
 use elbowroom_spatial::Vec3;
-use elbowroom_vision::render::{Conditions, Renderer, Solid};
+use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom_vision::{
-    ArmPart, Camera, Channels, Frame, Intrinsics, PixelMask, Point2, Settings, Shadows, Template, Vision,
+    ArmPart, Camera, CameraTracker, CameraTrackerSettings, Channels, Frame, Intrinsics, PixelMask, Point2,
+    ShadowSettings, Template,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -14,35 +15,41 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 fn main() {
-    let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::ideal(160, 120, 1.1) };
-    let camera = Camera::looking_at(lens, Vec3::new(0.0, -0.2, 4.0), Vec3::ZERO, Vec3::Y).unwrap();
+    let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::pinhole(160, 120, 1.1) };
+    let camera = Camera::look_at(lens, Vec3::new(0.0, -0.2, 4.0), Vec3::ZERO, Vec3::Y).unwrap();
     let templates = vec![Template::new("crate", 0.6, 0.4, 0.3)];
-    let settings = Settings { templates, shadows: Some(Shadows::default()), learning_frames: 5, ..Settings::default() };
-    let mut vision = Vision::new(camera.clone().into(), settings).unwrap();
+    let settings = CameraTrackerSettings {
+        templates,
+        shadows: Some(ShadowSettings::default()),
+        learning_frames: 5,
+        ..CameraTrackerSettings::default()
+    };
+    let mut tracker = CameraTracker::new(camera.clone().into(), settings).unwrap();
     let mut renderer = Renderer::new(camera, Channels::Rgb, 1);
     let (mut frame, mut mask) = (Frame::default(), PixelMask::new(160, 120));
-    let (mut measured, mut told) = (0, 0);
-    // Rounds of the same: the first ones let the lists, which change places, grow.
+    let (mut measured, mut reported) = (0, 0);
+    // The same frames are repeated: in the first rounds the lists grow.
     for i in 0..325_u32 {
         let t = f64::from(i.saturating_sub(5) % 80) / 80.0;
         let solids = [
-            Solid::cuboid(Point2::new(-1.0 + 2.0 * t, 0.1), Vec3::new(0.6, 0.4, 0.3), t, 220),
-            Solid::cuboid(Point2::new(1.0 - 2.0 * t, -0.3), Vec3::new(0.4, 0.4, 0.3), t, 20),
+            RenderedSolid::cuboid(Point2::new(-1.0 + 2.0 * t, 0.1), Vec3::new(0.6, 0.4, 0.3), t, 220),
+            RenderedSolid::cuboid(Point2::new(1.0 - 2.0 * t, -0.3), Vec3::new(0.4, 0.4, 0.3), t, 20),
         ];
         let arm = [ArmPart::Capsule { from: Vec3::new(0.0, 1.5, 1.0), to: Vec3::new(t, 0.0, 1.0), radius_m: 0.1 }];
-        let conditions = Conditions { seed: 9 + u64::from(i.saturating_sub(5) % 80), ..Conditions::default() };
+        let conditions =
+            RenderConditions { seed: 9 + u64::from(i.saturating_sub(5) % 80), ..RenderConditions::default() };
         let painted = [(arm[0].clone(), 230)];
         renderer.render(if i < 5 { &[] } else { &solids }, &painted, &conditions, &mut frame).unwrap();
         frame.stamp_s = f64::from(i) * 0.04;
         let region = Region::new(ALLOCATOR);
         mask.clear();
-        mask.hide_arm(vision.calibration(), &arm, 0.02).unwrap();
-        told += vision.process(&frame, Some(&mask)).unwrap().obstacles.len();
+        mask.mask_arm(tracker.calibration(), &arm, 0.02).unwrap();
+        reported += tracker.process(&frame, Some(&mask)).unwrap().obstacles.len();
         let change = region.change();
         if i >= 245 {
             measured += change.allocations + change.reallocations;
         }
     }
-    assert!(told > 200, "{told}");
+    assert!(reported > 200, "{reported}");
     assert_eq!(measured, 0);
 }

@@ -1,48 +1,46 @@
-//! What goes wrong: files, sizes, order, light; and what the messages say.
+//! Invalid input: files, sizes, order, illumination; and its messages.
 
-mod stage;
+mod synthetic;
 
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
-use elbowroom_vision::render::Solid;
+use elbowroom_vision::render::RenderedSolid;
 use elbowroom_vision::{
-    Blindness, Calibration, Camera, Change, Channels, Files, FloorHomography, Frame, Intrinsics, PixelMask, Point2,
-    RawLayout, Settings, Sight, Source, Vision, VisionError, decode,
+    Calibration, Camera, CameraTracker, CameraTrackerSettings, Channels, FloorHomography, Frame, FrameSource,
+    FrameStatus, ImageFiles, Intrinsics, ObstacleChange, PixelMask, Point2, RawLayout, RejectReason, VisionError,
+    decode, encode_png,
 };
 use proptest::prelude::*;
-use stage::Stage;
+use synthetic::SyntheticScene;
 
 fn message(result: Result<(), VisionError>) -> String {
     result.expect_err("must be refused").to_string()
 }
 
 fn png(width: u32, height: u32) -> Vec<u8> {
-    use image::ImageEncoder;
     let pixels: Vec<u8> = (0..width * height).map(|i| (i * 7 % 251) as u8).collect();
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    encoder.write_image(&pixels, width, height, image::ExtendedColorType::L8).unwrap();
-    bytes
+    let frame = Frame::new("", width as usize, height as usize, Channels::Grey, pixels).unwrap();
+    encode_png(&frame).unwrap()
 }
 
 #[test]
-fn a_camera_that_was_never_calibrated_says_what_to_do() {
-    let error = Vision::new(Calibration::Missing, Settings::default()).unwrap_err();
+fn a_missing_calibration_is_refused_with_a_hint() {
+    let error = CameraTracker::new(Calibration::Missing, CameraTrackerSettings::default()).unwrap_err();
     assert_eq!(error, VisionError::NotCalibrated);
     assert!(error.to_string().contains("FloorHomography::from_points"));
 }
 
 #[test]
-fn a_camera_that_sees_the_horizon_is_refused() {
-    let lens = Intrinsics::ideal(64, 48, 1.2);
-    let camera = Camera::looking_at(lens, Vec3::new(0.0, 0.0, 2.0), Vec3::new(5.0, 0.0, 1.9), Vec3::Z).unwrap();
-    let error = Vision::new(camera.into(), Settings::default()).unwrap_err();
+fn a_camera_with_a_visible_horizon_is_refused() {
+    let lens = Intrinsics::pinhole(64, 48, 1.2);
+    let camera = Camera::look_at(lens, Vec3::new(0.0, 0.0, 2.0), Vec3::new(5.0, 0.0, 1.9), Vec3::Z).unwrap();
+    let error = CameraTracker::new(camera.into(), CameraTrackerSettings::default()).unwrap_err();
     assert!(error.to_string().contains("tilt the camera down"), "{error}");
 }
 
 #[test]
-fn every_kind_of_picture_is_read_and_every_cut_one_is_refused() {
+fn every_image_format_is_read_and_truncated_files_are_refused() {
     let mut frame = Frame::default();
     let whole = png(20, 10);
     decode(&whole, Path::new("a.png"), None, &mut frame).unwrap();
@@ -83,47 +81,49 @@ fn raw_bytes_need_a_layout_that_fits() {
 }
 
 #[test]
-fn a_folder_is_read_in_the_order_of_names_and_goes_on_after_a_bad_file() {
+fn a_folder_is_read_in_the_order_of_names_and_continues_after_a_bad_file() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
     write("frame_010.png", &png(4, 4));
     write("frame_002.pgm", b"P5\n2 1\n255\n\x01\x02");
     write("frame_005.png", &png(4, 4)[..30]);
     write("notes.txt", b"nothing");
-    let mut files = Files::folder(folder.path(), 0.1).unwrap();
+    let mut files = ImageFiles::folder(folder.path(), 0.1).unwrap();
     let mut frame = Frame::default();
     assert!(files.next_frame(&mut frame).unwrap() && frame.width() == 2);
     assert!(files.next_frame(&mut frame).unwrap_err().to_string().contains("frame_005.png"));
     assert!(files.next_frame(&mut frame).unwrap() && frame.width() == 4 && (frame.stamp_s - 0.2).abs() < 1e-12);
     assert!(!files.next_frame(&mut frame).unwrap());
     let empty = tempfile::tempdir().unwrap();
-    assert!(Files::folder(empty.path(), 0.1).unwrap_err().to_string().contains("holds no picture"));
-    assert!(Files::folder(Path::new("no/such/folder"), 0.1).is_err());
+    assert!(ImageFiles::folder(empty.path(), 0.1).unwrap_err().to_string().contains("holds no picture"));
+    assert!(ImageFiles::folder(Path::new("no/such/folder"), 0.1).is_err());
 }
 
 #[test]
-fn frames_of_the_wrong_size_kind_or_time_are_refused_and_nothing_is_lost() {
-    let mut stage = Stage::new(64, 48, Settings { learning_frames: 4, ..Settings::default() });
-    let thing = Solid::cuboid(Point2::new(0.0, 0.0), Vec3::new(1.0, 1.0, 0.3), 0.0, 230);
-    assert_eq!(stage.step(std::slice::from_ref(&thing)).obstacles.len(), 1);
-    let refuse = |vision: &mut Vision, frame: Frame| vision.process(&frame, None).unwrap_err().to_string();
-    let grey = |w: usize, h: usize, t: f64| Frame::new("f.png", w, h, Channels::Grey, vec![9; w * h]).unwrap().at(t);
-    let vision = &mut stage.vision;
-    assert!(refuse(vision, grey(64, 47, 9.0)).contains("f.png: the frame has 64 x 47 pixels"));
-    assert!(refuse(vision, Frame::default()).contains("empty"));
-    assert!(refuse(vision, grey(64, 48, 0.0)).contains("send frames in order"));
-    assert!(refuse(vision, grey(64, 48, f64::NAN)).contains("in order"));
-    let rgb = Frame::new("f.png", 64, 48, Channels::Rgb, vec![9; 3 * 64 * 48]).unwrap().at(9.0);
-    assert!(refuse(vision, rgb).contains("the frame is RGB, but those before it were grey"));
+fn frames_of_the_wrong_size_channels_or_time_are_refused_and_obstacles_stay() {
+    let mut scene =
+        SyntheticScene::new(64, 48, CameraTrackerSettings { learning_frames: 4, ..CameraTrackerSettings::default() });
+    let object = RenderedSolid::cuboid(Point2::new(0.0, 0.0), Vec3::new(1.0, 1.0, 0.3), 0.0, 230);
+    assert_eq!(scene.step(std::slice::from_ref(&object)).obstacles.len(), 1);
+    let refuse = |tracker: &mut CameraTracker, frame: Frame| tracker.process(&frame, None).unwrap_err().to_string();
+    let grey =
+        |w: usize, h: usize, t: f64| Frame::new("f.png", w, h, Channels::Grey, vec![9; w * h]).unwrap().with_stamp(t);
+    let tracker = &mut scene.tracker;
+    assert!(refuse(tracker, grey(64, 47, 9.0)).contains("f.png: the frame has 64 x 47 pixels"));
+    assert!(refuse(tracker, Frame::default()).contains("empty"));
+    assert!(refuse(tracker, grey(64, 48, 0.0)).contains("send frames in order"));
+    assert!(refuse(tracker, grey(64, 48, f64::NAN)).contains("in order"));
+    let rgb = Frame::new("f.png", 64, 48, Channels::Rgb, vec![9; 3 * 64 * 48]).unwrap().with_stamp(9.0);
+    assert!(refuse(tracker, rgb).contains("the frame is RGB, but those before it were grey"));
     let mask = PixelMask::new(64, 40);
-    assert!(vision.process(&grey(64, 48, 9.0), Some(&mask)).unwrap_err().to_string().contains("mask of the arm"));
-    assert_eq!(vision.report().obstacles.len(), 1);
-    assert_eq!(stage.step(&[thing]).obstacles[0].change, Change::Still);
+    assert!(tracker.process(&grey(64, 48, 9.0), Some(&mask)).unwrap_err().to_string().contains("mask of the arm"));
+    assert_eq!(tracker.report().obstacles.len(), 1);
+    assert_eq!(scene.step(&[object]).obstacles[0].change, ObstacleChange::Unchanged);
 }
 
 #[test]
-fn a_picture_that_cannot_be_believed_frees_nothing() {
-    let thing = Solid::cuboid(Point2::new(0.2, -0.3), Vec3::new(0.6, 0.4, 0.3), 0.0, 230);
+fn a_rejected_frame_changes_no_obstacle() {
+    let object = RenderedSolid::cuboid(Point2::new(0.2, -0.3), Vec3::new(0.6, 0.4, 0.3), 0.0, 230);
     let spoil: [fn(&mut Frame); 4] = [
         |frame| frame.pixels_mut().fill(0),
         |frame| frame.pixels_mut().fill(255),
@@ -131,72 +131,76 @@ fn a_picture_that_cannot_be_believed_frees_nothing() {
         |frame| frame.pixels_mut().reverse(),
     ];
     for (i, spoil) in spoil.into_iter().enumerate() {
-        let mut stage = Stage::new(320, 240, Settings::default());
-        let before = stage.step(std::slice::from_ref(&thing)).obstacles.clone();
-        let mut frame = stage.frame.clone();
+        let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings::default());
+        let before = scene.step(std::slice::from_ref(&object)).obstacles.clone();
+        let mut frame = scene.frame.clone();
         spoil(&mut frame);
         frame.stamp_s += 0.01;
-        let report = stage.vision.process(&frame, None).unwrap();
-        let is_blind = matches!(report.sight, Sight::Blind(_));
-        assert!(is_blind || !report.obstacles.is_empty(), "{i}: {:?}", report.sight);
-        if is_blind {
+        let report = scene.tracker.process(&frame, None).unwrap();
+        let is_rejected = matches!(report.status, FrameStatus::Rejected(_));
+        assert!(is_rejected || !report.obstacles.is_empty(), "{i}: {:?}", report.status);
+        if is_rejected {
             assert_eq!(report.obstacles[0].footprint_m, before[0].footprint_m, "{i}");
-            assert!(report.obstacles[0].is_remembered && report.obstacles[0].change == Change::Still);
+            assert!(report.obstacles[0].is_unobserved && report.obstacles[0].change == ObstacleChange::Unchanged);
         }
-        assert_eq!(i < 2, is_blind && i < 2, "{i}: {:?}", report.sight);
+        assert_eq!(i < 2, is_rejected && i < 2, "{i}: {:?}", report.status);
     }
 }
 
 #[test]
-fn much_darker_is_blind_and_a_little_darker_is_not() {
-    for (gain, blind) in [(0.3, true), (0.5, false), (1.9, false)] {
-        let mut stage = Stage::new(320, 240, Settings::default());
-        stage.conditions.gain = gain;
-        let sight = stage.step(&[]).sight;
-        assert_eq!(matches!(sight, Sight::Blind(Blindness::Light(_))), blind, "{gain}: {sight:?}");
-        assert!(blind || sight == Sight::Clear, "{gain}: {sight:?}");
+fn a_much_darker_frame_is_rejected_and_a_little_darker_one_is_not() {
+    for (gain, is_rejected) in [(0.3, true), (0.5, false), (1.9, false)] {
+        let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings::default());
+        scene.conditions.gain = gain;
+        let status = scene.step(&[]).status;
+        assert_eq!(
+            matches!(status, FrameStatus::Rejected(RejectReason::Illumination(_))),
+            is_rejected,
+            "{gain}: {status:?}"
+        );
+        assert!(is_rejected || status == FrameStatus::Valid, "{gain}: {status:?}");
     }
 }
 
 #[test]
-fn something_before_the_lens_is_blindness() {
-    let mut stage = Stage::new(320, 240, Settings::default());
-    let sheet = Solid::cuboid(Point2::new(0.6, -0.3), Vec3::new(3.6, 6.0, 0.2), 0.0, 250);
-    let sight = stage.step(&[sheet]).sight;
-    assert!(matches!(sight, Sight::Blind(_)), "{sight:?}");
+fn an_object_that_covers_the_lens_rejects_the_frame() {
+    let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings::default());
+    let sheet = RenderedSolid::cuboid(Point2::new(0.6, -0.3), Vec3::new(3.6, 6.0, 0.2), 0.0, 250);
+    let status = scene.step(&[sheet]).status;
+    assert!(matches!(status, FrameStatus::Rejected(_)), "{status:?}");
 }
 
 #[test]
 fn settings_out_of_range_are_named() {
-    let camera: Calibration = stage::camera(64, 48).into();
-    let refuse = |settings| Vision::new(camera.clone(), settings).unwrap_err().to_string();
-    let base = Settings::default;
-    assert!(refuse(Settings { uncertainty_m: f64::NAN, ..base() }).contains("`uncertainty_m` is NaN"));
-    assert!(refuse(Settings { learning_frames: 0, ..base() }).contains("learning_frames"));
-    assert!(refuse(Settings { cell: vec![Point2::default(); 2], ..base() }).contains("three or more"));
-    assert!(refuse(Settings { floor_z_m: f64::INFINITY, ..base() }).contains("floor_z_m"));
+    let camera: Calibration = synthetic::camera(64, 48).into();
+    let refuse = |settings| CameraTracker::new(camera.clone(), settings).unwrap_err().to_string();
+    let base = CameraTrackerSettings::default;
+    assert!(refuse(CameraTrackerSettings { uncertainty_m: f64::NAN, ..base() }).contains("`uncertainty_m` is NaN"));
+    assert!(refuse(CameraTrackerSettings { learning_frames: 0, ..base() }).contains("learning_frames"));
+    assert!(refuse(CameraTrackerSettings { area_m: vec![Point2::default(); 2], ..base() }).contains("three or more"));
+    assert!(refuse(CameraTrackerSettings { floor_z_m: f64::INFINITY, ..base() }).contains("floor_z_m"));
     let flat = elbowroom_vision::Template::new("sheet", 1.0, 1.0, 0.0);
-    assert!(refuse(Settings { templates: vec![flat], ..base() }).contains("templates"));
+    assert!(refuse(CameraTrackerSettings { templates: vec![flat], ..base() }).contains("templates"));
 }
 
 #[test]
-fn lenses_that_fold_over_and_poses_that_are_none_are_refused() {
-    let lens = Intrinsics::ideal(640, 480, 1.2);
+fn folding_distortion_and_invalid_poses_are_refused() {
+    let lens = Intrinsics::pinhole(640, 480, 1.2);
     let eye = Vec3::new(0.0, 0.0, 3.0);
-    let refuse = |lens| Camera::looking_at(lens, eye, Vec3::ZERO, Vec3::Y).unwrap_err().to_string();
+    let refuse = |lens| Camera::look_at(lens, eye, Vec3::ZERO, Vec3::Y).unwrap_err().to_string();
     assert!(refuse(Intrinsics { radial: [-0.9, 0.0, 0.0], ..lens }).contains("folds"));
     assert!(refuse(Intrinsics { fx: 0.0, ..lens }).contains("positive"));
     assert!(refuse(Intrinsics { cx: f64::NAN, ..lens }).contains("finite"));
     assert!(refuse(Intrinsics { width: 0, ..lens }).contains("empty"));
-    assert!(Camera::looking_at(lens, eye, eye, Vec3::Y).is_err());
-    assert!(Camera::looking_at(lens, eye, Vec3::ZERO, Vec3::Z).is_err());
+    assert!(Camera::look_at(lens, eye, eye, Vec3::Y).is_err());
+    assert!(Camera::look_at(lens, eye, Vec3::ZERO, Vec3::Z).is_err());
 }
 
 #[test]
-fn a_homography_alone_cannot_place_the_arm() {
+fn a_homography_does_not_determine_the_silhouette_of_the_arm() {
     let corners = [(0.0, 0.0), (64.0, 0.0), (64.0, 48.0), (0.0, 48.0)].map(|(x, y)| Point2::new(x, y));
     let floor = FloorHomography::from_points(64, 48, &corners, &corners).unwrap();
-    let error = PixelMask::new(64, 48).hide_arm(&floor.into(), &[], 0.0).unwrap_err();
+    let error = PixelMask::new(64, 48).mask_arm(&floor.into(), &[], 0.0).unwrap_err();
     assert_eq!(error, VisionError::NeedsCamera);
 }
 
@@ -205,7 +209,7 @@ proptest! {
 
     /// Damaged files are refused or read; they never panic.
     #[test]
-    fn damaged_pictures_never_panic(at in 0_usize..200, to in any::<u8>(), is_png in any::<bool>()) {
+    fn damaged_images_never_panic(at in 0_usize..200, to in any::<u8>(), is_png in any::<bool>()) {
         let mut bytes = if is_png { png(12, 9) } else { b"P2\n3 2\n255\n1 2 3 4 5 6\n".to_vec() };
         let n = bytes.len();
         bytes[at % n] = to;

@@ -1,13 +1,15 @@
-//! Point clouds: files, noise, the arm, what was not measured.
+//! Point clouds: files, noise, the arm, invalid points.
 
 use std::path::{Path, PathBuf};
 
+use elbowroom_formats::image::{ImageHeader, PixelFormat};
+use elbowroom_formats::png;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_vision::cloud::{Cloud, CloudSettings, CloudSight, CloudVision};
-use elbowroom_vision::{ArmPart, Camera, Change, Intrinsics, Obstacle, Point2, polygon, read_grey16};
+use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, PointCloud};
+use elbowroom_vision::{ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, polygon, read_grey16};
 use proptest::prelude::*;
 
-/// The same numbers everywhere.
+/// Xorshift: the same numbers on every machine.
 struct Random(u64);
 
 impl Random {
@@ -26,7 +28,7 @@ impl Random {
 /// A box by two corners.
 type Cuboid = (Vec3, Vec3);
 
-/// What a sensor at `eye` sees of floor, boxes and a capsule: rays over the floor, with noise and gaps; world frame.
+/// The points that a sensor at `eye` measures on floor, boxes and a capsule, with noise and invalid points; world frame.
 fn scan(eye: Vec3, boxes: &[Cuboid], arm: Option<(Vec3, Vec3, f64)>, rays: usize, seed: u64) -> Vec<Vec3> {
     let mut random = Random(seed | 1);
     (0..rays)
@@ -79,17 +81,17 @@ fn march(eye: Vec3, toward: Vec3, a: Vec3, b: Vec3, radius: f64) -> Option<f64> 
 const EYE: Vec3 = Vec3::new(0.1, -0.2, 3.0);
 const ARM: (Vec3, Vec3, f64) = (Vec3::new(0.3, 1.5, 1.2), Vec3::new(0.3, 0.0, 1.0), 0.1);
 
-/// The sensor hangs from the ceiling and looks down: its frame is not the world's.
+/// A sensor at the ceiling that points down.
 fn sensor_in_world() -> Pose {
     Pose::new(Rotation::from_rpy(std::f64::consts::PI, 0.0, 0.4), EYE)
 }
 
-fn settings() -> CloudSettings {
-    CloudSettings { sensor_in_world: sensor_in_world(), voxel_m: 0.06, ..CloudSettings::default() }
+fn settings() -> CloudTrackerSettings {
+    CloudTrackerSettings { sensor_in_world: sensor_in_world(), voxel_m: 0.06, ..CloudTrackerSettings::default() }
 }
 
-fn cloud(points_in_world: &[Vec3], stamp_s: f64) -> Cloud {
-    let mut cloud = Cloud { stamp_s, ..Cloud::default() };
+fn cloud(points_in_world: &[Vec3], stamp_s: f64) -> PointCloud {
+    let mut cloud = PointCloud { stamp_s, ..PointCloud::default() };
     let to_sensor = sensor_in_world().inverse();
     cloud.fill(points_in_world.iter().map(|&p| to_sensor.transform_point(p)));
     cloud
@@ -109,16 +111,16 @@ fn box_at(x: f64, y: f64) -> Cuboid {
 }
 
 #[test]
-fn boxes_are_found_and_the_arm_is_not_one() {
-    let mut vision = CloudVision::new(settings()).unwrap();
+fn boxes_are_detected_and_the_arm_is_filtered() {
+    let mut tracker = CloudTracker::new(settings()).unwrap();
     let truth = [box_at(-0.7, 0.2), box_at(0.8, -0.5)];
     let arm = ArmPart::Capsule { from: ARM.0, to: ARM.1, radius_m: ARM.2 };
     let mut times = Vec::new();
     for i in 0..20 {
         let points = scan(EYE, &truth, Some(ARM), 60_000, 5 + i);
-        let report = vision.process(&cloud(&points, 0.1 * i as f64), std::slice::from_ref(&arm)).unwrap();
-        assert_eq!((report.sight, report.obstacles.len()), (CloudSight::Clear, 2), "{:#?}", report.obstacles);
-        assert!(report.of_arm > 500);
+        let report = tracker.process(&cloud(&points, 0.1 * i as f64), std::slice::from_ref(&arm)).unwrap();
+        assert_eq!((report.status, report.obstacles.len()), (CloudStatus::Valid, 2), "{:#?}", report.obstacles);
+        assert!(report.arm_points > 500);
         for solid in truth {
             assert!(covers(&report.obstacles, solid), "cloud {i}: {solid:?} {:#?}", report.obstacles);
         }
@@ -128,26 +130,26 @@ fn boxes_are_found_and_the_arm_is_not_one() {
     }
     times.sort();
     println!("60,000 points: {:.2} ms", times[10].as_secs_f64() * 1e3);
-    let still = vision.report().obstacles.iter().all(|o| o.change == Change::Still);
-    assert!(still, "noise must not make things move for ever: {:#?}", vision.report().obstacles);
-    // Without being told of the arm, it is an obstacle, down to the floor.
+    let unchanged = tracker.report().obstacles.iter().all(|o| o.change == ObstacleChange::Unchanged);
+    assert!(unchanged, "noise must not move objects: {:#?}", tracker.report().obstacles);
+    // Without its parts the arm is an obstacle, down to the floor.
     let points = scan(EYE, &truth, Some(ARM), 60_000, 99);
-    assert!(vision.process(&cloud(&points, 10.0), &[]).unwrap().obstacles.len() > 2);
+    assert!(tracker.process(&cloud(&points, 10.0), &[]).unwrap().obstacles.len() > 2);
 }
 
 #[test]
 fn a_moving_box_keeps_its_identity_and_leaves_once() {
-    let mut vision = CloudVision::new(settings()).unwrap();
+    let mut tracker = CloudTracker::new(settings()).unwrap();
     let (mut ids, mut left, mut worst) = (vec![], 0, 0.0_f64);
     for i in 0..60 {
         let x = -0.9 + 0.05 * f64::from(i);
         let truth = [box_at(x, 0.3)];
         let points = scan(EYE, if x < 1.1 { &truth } else { &[] }, None, 30_000, 7 + i as u64);
-        let report = vision.process(&cloud(&points, 0.1 * f64::from(i)), &[]).unwrap();
+        let report = tracker.process(&cloud(&points, 0.1 * f64::from(i)), &[]).unwrap();
         assert!(report.obstacles.len() <= 1);
         for o in &report.obstacles {
             ids.push(o.id);
-            left += u32::from(o.change == Change::Left);
+            left += u32::from(o.change == ObstacleChange::Left);
             if x < 1.1 {
                 assert!(covers(&report.obstacles, truth[0]), "{i}");
                 worst = worst.max((o.centre_m - Point2::new(x, 0.3)).length());
@@ -155,60 +157,61 @@ fn a_moving_box_keeps_its_identity_and_leaves_once() {
         }
     }
     ids.dedup();
-    println!("worst error of place {:.1} mm", worst * 1e3);
+    println!("largest position error {:.1} mm", worst * 1e3);
     assert_eq!((ids.len(), left), (1, 1));
     assert!(worst < 0.03);
 }
 
 #[test]
-fn points_too_sparse_for_their_cubes_are_counted_as_noise() {
-    let mut vision = CloudVision::new(CloudSettings { voxel_m: 0.01, ..CloudSettings::default() }).unwrap();
-    let mut cloud = Cloud { stamp_s: 1.0, ..Cloud::default() };
+fn points_too_sparse_for_their_voxels_are_counted_as_noise() {
+    let mut tracker =
+        CloudTracker::new(CloudTrackerSettings { voxel_m: 0.01, ..CloudTrackerSettings::default() }).unwrap();
+    let mut cloud = PointCloud { stamp_s: 1.0, ..PointCloud::default() };
     cloud.fill((0..100).map(|i| Vec3::new(f64::from(i) * 0.1, 0.0, 0.5)));
-    let report = vision.process(&cloud, &[]).unwrap();
-    assert_eq!((report.obstacles.len(), report.noise), (0, 100));
+    let report = tracker.process(&cloud, &[]).unwrap();
+    assert_eq!((report.obstacles.len(), report.noise_points), (0, 100));
 }
 
 #[test]
-fn what_the_arm_hides_is_kept() {
-    let mut vision = CloudVision::new(settings()).unwrap();
+fn an_occluded_object_is_kept() {
+    let mut tracker = CloudTracker::new(settings()).unwrap();
     let small = (Vec3::new(0.4, 0.5, 0.0), Vec3::new(0.5, 0.6, 0.3));
     let free = scan(EYE, &[small], None, 60_000, 3);
-    assert_eq!(vision.process(&cloud(&free, 0.0), &[]).unwrap().obstacles.len(), 1);
+    assert_eq!(tracker.process(&cloud(&free, 0.0), &[]).unwrap().obstacles.len(), 1);
     let arm = (Vec3::new(0.42, 1.5, 1.0), Vec3::new(0.3, -0.4, 1.0), 0.3);
     let part = ArmPart::Capsule { from: arm.0, to: arm.1, radius_m: arm.2 };
     for i in 1..20 {
         let points = scan(EYE, &[small], Some(arm), 60_000, 3 + i);
-        let report = vision.process(&cloud(&points, i as f64), std::slice::from_ref(&part)).unwrap();
+        let report = tracker.process(&cloud(&points, i as f64), std::slice::from_ref(&part)).unwrap();
         assert_eq!(report.obstacles.len(), 1, "{i}");
-        assert!(report.obstacles[0].is_remembered && covers(&report.obstacles, small), "{i}");
+        assert!(report.obstacles[0].is_unobserved && covers(&report.obstacles, small), "{i}");
     }
     for i in 20..24 {
-        vision.process(&cloud(&scan(EYE, &[], None, 60_000, i), i as f64), &[]).unwrap();
+        tracker.process(&cloud(&scan(EYE, &[], None, 60_000, i), i as f64), &[]).unwrap();
     }
-    assert!(vision.report().obstacles.is_empty());
+    assert!(tracker.report().obstacles.is_empty());
 }
 
 #[test]
-fn nothing_measured_is_not_free() {
-    let mut vision = CloudVision::new(settings()).unwrap();
-    assert_eq!(vision.process(&cloud(&[], 0.0), &[]).unwrap().age_s, f64::INFINITY);
+fn a_cloud_without_valid_points_changes_no_obstacle() {
+    let mut tracker = CloudTracker::new(settings()).unwrap();
+    assert_eq!(tracker.process(&cloud(&[], 0.0), &[]).unwrap().age_s, f64::INFINITY);
     let truth = [box_at(0.0, 0.0)];
-    vision.process(&cloud(&scan(EYE, &truth, None, 30_000, 1), 1.0), &[]).unwrap();
+    tracker.process(&cloud(&scan(EYE, &truth, None, 30_000, 1), 1.0), &[]).unwrap();
     for (i, nothing) in [vec![], vec![Vec3::splat(f64::NAN); 1000]].into_iter().enumerate() {
         let stamp_s = 2.0 + i as f64;
-        let report = vision.process(&cloud(&nothing, stamp_s), &[]).unwrap();
-        assert_eq!(report.sight, CloudSight::Empty { points: 0, dropped: nothing.len() });
+        let report = tracker.process(&cloud(&nothing, stamp_s), &[]).unwrap();
+        assert_eq!(report.status, CloudStatus::Empty { points: 0, dropped: nothing.len() });
         assert!((report.age_s - (stamp_s - 1.0)).abs() < 1e-12);
-        assert!(covers(&report.obstacles, truth[0]) && report.obstacles[0].is_remembered);
+        assert!(covers(&report.obstacles, truth[0]) && report.obstacles[0].is_unobserved);
     }
-    assert!(vision.process(&cloud(&[], 2.0), &[]).unwrap_err().to_string().contains("in order"));
-    assert!(vision.process(&cloud(&[], f64::NAN), &[]).is_err());
+    assert!(tracker.process(&cloud(&[], 2.0), &[]).unwrap_err().to_string().contains("in order"));
+    assert!(tracker.process(&cloud(&[], f64::NAN), &[]).is_err());
 }
 
 #[test]
-fn clusters_are_those_of_a_naive_search() {
-    // Points in a sparse block of cubes; clusters by comparing all cubes with all.
+fn clusters_agree_with_a_naive_search() {
+    // Points in a sparse block of voxels; clusters by comparing all voxels with all.
     let mut random = Random(77);
     for round in 0..30 {
         let n = 20 + round * 4;
@@ -226,21 +229,21 @@ fn clusters_are_those_of_a_naive_search() {
         }
         group.sort_unstable();
         group.dedup();
-        let settings = CloudSettings {
+        let settings = CloudTrackerSettings {
             floor_z_m: -10.0,
             ceiling_m: 20.0,
             voxel_m: 0.1,
-            least_points: 1,
-            least_voxels: 1,
-            ..CloudSettings::default()
+            min_points: 1,
+            min_voxels: 1,
+            ..CloudTrackerSettings::default()
         };
-        let mut vision = CloudVision::new(settings).unwrap();
-        let mut cloud = Cloud { stamp_s: 1.0, ..Cloud::default() };
-        // Two points per cube: a single one has no outline, which is another test's business.
+        let mut tracker = CloudTracker::new(settings).unwrap();
+        let mut cloud = PointCloud { stamp_s: 1.0, ..PointCloud::default() };
+        // Two points per voxel: a single one has no outline.
         let at =
             |c: &[i32; 3], d: f64| Vec3::new(f64::from(c[0]) + d, f64::from(c[1]) + d, f64::from(c[2]) + 0.5) * 0.1;
         cloud.fill(cubes.iter().flat_map(|c| [at(c, 0.3), at(c, 0.6)]));
-        assert_eq!(vision.process(&cloud, &[]).unwrap().obstacles.len(), group.len());
+        assert_eq!(tracker.process(&cloud, &[]).unwrap().obstacles.len(), group.len());
     }
 }
 
@@ -261,19 +264,19 @@ fn binary() -> Vec<u8> {
 }
 
 #[test]
-fn pcd_in_words_and_bytes_of_any_type() {
+fn ascii_and_binary_pcd_of_any_type_is_read() {
     let mut text = pcd("ascii");
     text.extend(b"1.5 -2 3 0 0\n\nnan 0 0 0 0\n");
     for bytes in [text, binary()] {
-        let mut cloud = Cloud::default();
+        let mut cloud = PointCloud::default();
         cloud.decode(&bytes, Path::new("a.pcd")).unwrap();
         assert_eq!((&cloud.points[..], cloud.dropped), (&[Vec3::new(1.5, -2.0, 3.0)][..], 1));
     }
 }
 
 #[test]
-fn files_cut_off_or_lying_are_refused_with_a_reason() {
-    let mut cloud = Cloud::default();
+fn truncated_or_inconsistent_files_are_refused_with_a_reason() {
+    let mut cloud = PointCloud::default();
     let mut refuse = |bytes: &[u8], name: &str| cloud.decode(bytes, Path::new(name)).unwrap_err().to_string();
     let whole = binary();
     for length in 0..whole.len() {
@@ -294,18 +297,17 @@ fn files_cut_off_or_lying_are_refused_with_a_reason() {
 }
 
 #[test]
-fn ply_points_come_through_with_what_was_not_measured() {
+fn invalid_points_of_ply_files_are_counted() {
     let text = b"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\nnan nan nan\n";
-    let mut cloud = Cloud::default();
+    let mut cloud = PointCloud::default();
     cloud.decode(text, Path::new("a.ply")).unwrap();
     assert_eq!((&cloud.points[..], cloud.dropped), (&[Vec3::new(1.0, 2.0, 3.0)][..], 1));
 }
 
 #[test]
-fn a_depth_picture_gives_the_points_of_the_floor() {
-    use image::ImageEncoder;
-    let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::ideal(32, 24, 1.0) };
-    let camera = Camera::looking_at(lens, Vec3::new(0.0, 0.5, 2.0), Vec3::ZERO, Vec3::X).unwrap();
+fn a_depth_image_gives_the_points_of_the_floor() {
+    let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::pinhole(32, 24, 1.0) };
+    let camera = Camera::look_at(lens, Vec3::new(0.0, 0.5, 2.0), Vec3::ZERO, Vec3::X).unwrap();
     let mut depths = Vec::new();
     for i in 0..32 * 24 {
         let seen = Point2::new(f64::from(i % 32) + 0.5, f64::from(i / 32) + 0.5);
@@ -315,12 +317,12 @@ fn a_depth_picture_gives_the_points_of_the_floor() {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("depth.png");
-    let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_ne_bytes()).collect();
-    let encoder = image::codecs::png::PngEncoder::new(std::fs::File::create(&path).unwrap());
-    encoder.write_image(&bytes, 32, 24, image::ExtendedColorType::L16).unwrap();
+    let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_be_bytes()).collect();
+    let header = ImageHeader { width: 32, height: 24, format: PixelFormat::Grey16 };
+    png::write(std::fs::File::create(&path).unwrap(), &header, &bytes).unwrap();
     let (width, height, read) = read_grey16(&path).unwrap();
     assert_eq!((width, height, &read), (32, 24, &depths));
-    let mut cloud = Cloud::default();
+    let mut cloud = PointCloud::default();
     cloud.fill_from_grey16(&camera, &read, 0.001).unwrap();
     assert_eq!((cloud.points.len(), cloud.dropped), (32 * 24 - 1, 1));
     for &p in &cloud.points {
@@ -342,14 +344,14 @@ proptest! {
         };
         let i = at.index(bytes.len());
         bytes[i] = to;
-        let mut cloud = Cloud::default();
+        let mut cloud = PointCloud::default();
         if cloud.decode(&bytes, Path::new("a.pcd")).is_err() {
             prop_assert!(cloud.points.is_empty());
         }
     }
 }
 
-/// Real clouds of real sensors, where they are.
+/// Recorded clouds, where the data set is present.
 #[test]
 fn real_clouds_are_read_and_clustered() {
     let root = std::env::var_os("ELBOWROOM_DATA")
@@ -367,22 +369,26 @@ fn real_clouds_are_read_and_clustered() {
         ("tesseract_octomap_pcd/box_pcd.pcd", 8000),
     ];
     for (name, count) in known {
-        let mut cloud = Cloud::default();
+        let mut cloud = PointCloud::default();
         cloud.read(&clouds.join(name)).unwrap();
         assert_eq!(cloud.points.len() + cloud.dropped, count, "{name}");
         let (low, high) =
             cloud.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |s, p| (s.0.min(p.z), s.1.max(p.z)));
         // Two of them are sparse: a point every 10 cm or so.
         let voxel_m = if [9311, 8000].contains(&count) { 0.3 } else { 0.03 };
-        let settings =
-            CloudSettings { floor_z_m: low - 1.0, ceiling_m: high - low + 2.0, voxel_m, ..CloudSettings::default() };
-        let mut vision = CloudVision::new(settings).unwrap();
+        let settings = CloudTrackerSettings {
+            floor_z_m: low - 1.0,
+            ceiling_m: high - low + 2.0,
+            voxel_m,
+            ..CloudTrackerSettings::default()
+        };
+        let mut tracker = CloudTracker::new(settings).unwrap();
         let mut times = Vec::new();
         for i in 0..5 {
             cloud.stamp_s = f64::from(i) * 0.1;
-            times.push(vision.process(&cloud, &[]).unwrap().timings.total());
+            times.push(tracker.process(&cloud, &[]).unwrap().timings.total());
         }
-        let report = vision.report();
+        let report = tracker.report();
         times.sort();
         let (found, ms) = (report.obstacles.len(), times[2].as_secs_f64() * 1e3);
         println!("{name}: {} points, {} dropped, {found} obstacles, {ms:.2} ms", cloud.points.len(), cloud.dropped);

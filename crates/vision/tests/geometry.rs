@@ -1,8 +1,8 @@
-//! Calibration, polygons, blobs, masks and rendering against naive answers.
+//! Calibration, polygons, blobs and masks against naive implementations.
 
 use elbowroom_spatial::Vec3;
 use elbowroom_vision::{
-    ArmPart, Calibration, Camera, FloorHomography, Intrinsics, Labeller, PixelMask, Point2, polygon,
+    ArmPart, Calibration, Camera, ConnectedComponents, FloorHomography, Intrinsics, PixelMask, Point2, polygon,
 };
 use proptest::prelude::*;
 
@@ -14,13 +14,13 @@ fn point(range: std::ops::Range<f64>) -> impl Strategy<Value = Point2> {
     (range.clone(), range).prop_map(|(x, y)| p(x, y))
 }
 
-/// A camera above the floor that sees no horizon.
+/// A camera above the floor without a visible horizon.
 fn camera() -> impl Strategy<Value = Camera> {
     let eye = (-2.0..2.0, -2.0..2.0, 2.0..6.0).prop_map(|(x, y, z)| Vec3::new(x, y, z));
     (eye, point(-0.7..0.7), 0.6..1.2, -0.15..0.1).prop_map(|(eye, to, view, k1)| {
-        let lens = Intrinsics { radial: [k1, 0.02, 0.0], ..Intrinsics::ideal(640, 480, view) };
+        let lens = Intrinsics { radial: [k1, 0.02, 0.0], ..Intrinsics::pinhole(640, 480, view) };
         let target = Vec3::new(eye.x + to.x, eye.y + to.y, 0.0);
-        Camera::looking_at(lens, eye, target, Vec3::new(0.3, 1.0, 0.0)).unwrap()
+        Camera::look_at(lens, eye, target, Vec3::new(0.3, 1.0, 0.0)).unwrap()
     })
 }
 
@@ -43,9 +43,9 @@ proptest! {
             Intrinsics { radial: [0.0; 3], ..*camera.intrinsics() }, *camera.camera_in_world()).unwrap();
         let seen: Vec<Point2> = seen.into_iter().map(|(x, y)| p(x, y)).collect();
         let at: Vec<Point2> = seen.iter().map(|&s| straight.pixel_to_plane(s, 0.0).unwrap()).collect();
-        // Points that nearly lie on a line are refused or, where they are accepted, exact where they are.
+        // Nearly collinear points are refused or, where they are accepted, mapped exactly.
         if let Ok(floor) = FloorHomography::from_points(640, 480, &seen, &at) {
-            prop_assert!(floor.worst_m() < 1e-6, "{}", floor.worst_m());
+            prop_assert!(floor.max_residual_m() < 1e-6, "{}", floor.max_residual_m());
             for &s in &seen {
                 let back = floor.floor_to_pixel(floor.pixel_to_floor(s).unwrap()).unwrap();
                 prop_assert!((back - s).length() < 1e-6);
@@ -70,7 +70,7 @@ proptest! {
         let seen: Vec<Point2> = steps.iter().map(|&s| a + along * s).collect();
         let at: Vec<Point2> = seen.iter().map(|&s| s * 0.01).collect();
         prop_assert!(FloorHomography::from_points(640, 480, &seen, &at).is_err());
-        // Three of four on a line, too.
+        // Three of four collinear points too.
         let mut seen = seen[..3].to_vec();
         seen.push(a + p(-along.y, along.x) * 200.0 + p(3.0, 1.0));
         let at: Vec<Point2> = seen.iter().map(|&s| s * 0.01).collect();
@@ -78,12 +78,12 @@ proptest! {
     }
 
     #[test]
-    fn hulls_contain_their_points_and_growing_contains_the_disc(
+    fn hulls_contain_their_points_and_inflated_polygons_the_disc(
         points in prop::collection::vec(point(-5.0..5.0), 3..40), margin in 0.01..2.0, angle in 0.0..6.3,
     ) {
         let (mut hull, mut grown, mut spare) = (Vec::new(), Vec::new(), Vec::new());
         polygon::convex_hull(&mut points.clone(), &mut hull);
-        polygon::grown(&hull, margin, &mut grown, &mut spare);
+        polygon::inflate(&hull, margin, &mut grown, &mut spare);
         let mut simple = grown.clone();
         polygon::simplify_outward(&mut simple, 6);
         prop_assert!(simple.len() <= 6 && polygon::area(&simple) >= polygon::area(&grown) - 1e-9);
@@ -115,13 +115,13 @@ proptest! {
     }
 
     #[test]
-    fn blobs_are_those_of_a_flood_fill(width in 1_usize..40, height in 1_usize..25, share in 1_u64..5, seed in any::<u64>()) {
+    fn components_agree_with_a_flood_fill(width in 1_usize..40, height in 1_usize..25, share in 1_u64..5, seed in any::<u64>()) {
         let mut state = seed | 1;
         let mut random = || { state ^= state << 13; state ^= state >> 7; state ^= state << 17; state };
         let plane: Vec<u8> = (0..width * height).map(|_| u8::from(random() % 5 < share)).collect();
-        let mut labeller = Labeller::default();
-        labeller.blobs(&[1; 50], 10, 1); // memory of another picture must not matter
-        let found: Vec<_> = labeller.blobs(&plane, width, 1)
+        let mut components = ConnectedComponents::default();
+        components.label(&[1; 50], 10, 1); // memory of another image must not matter
+        let found: Vec<_> = components.label(&plane, width, 1)
             .iter().map(|b| (b.area_px, b.columns.clone(), b.rows.clone(), b.centre_px, b.outline_px.clone())).collect();
         let truth = flood_fill(&plane, width);
         prop_assert_eq!(found.len(), truth.len());
@@ -142,19 +142,19 @@ proptest! {
         }
     }
 
-    /// Every point of a capsule appears in a hidden pixel.
+    /// Every point of a capsule appears in a masked pixel.
     #[test]
-    fn the_silhouette_of_a_capsule_hides_all_of_it(camera in camera(), a in point(-1.0..1.0), b in point(-1.0..1.0),
+    fn the_silhouette_of_a_capsule_masks_all_of_it(camera in camera(), a in point(-1.0..1.0), b in point(-1.0..1.0),
         height in 0.2..1.2, radius in 0.02..0.2, along in 0.0..1.0, way in (-1.0..1.0, -1.0..1.0, -1.0..1.0)) {
         let (from, to) = (Vec3::new(a.x, a.y, height), Vec3::new(b.x, b.y, height * 0.7));
         let mut mask = PixelMask::new(640, 480);
         let part = ArmPart::Capsule { from, to, radius_m: radius };
-        mask.hide_arm(&Calibration::Camera(camera.clone()), &[part], 0.0).unwrap();
+        mask.mask_arm(&Calibration::Camera(camera.clone()), &[part], 0.0).unwrap();
         let direction = Vec3::new(way.0, way.1, way.2).try_normalize().unwrap_or(Vec3::Z);
-        // What lies behind the camera is in no pixel.
+        // Points behind the camera have no pixel.
         if let Some(seen) = camera.world_to_pixel(from.lerp(to, along) + direction * radius)
             && (0.0..640.0).contains(&seen.x) && (0.0..480.0).contains(&seen.y) {
-            prop_assert!(mask.is_hidden(seen.x as usize, seen.y as usize), "{seen:?}");
+            prop_assert!(mask.is_masked(seen.x as usize, seen.y as usize), "{seen:?}");
         }
     }
 }
@@ -189,7 +189,7 @@ fn flood_fill(plane: &[u8], width: usize) -> Vec<Vec<usize>> {
 }
 
 #[test]
-fn calibrations_that_make_no_sense_say_why() {
+fn inconsistent_calibrations_are_refused_with_a_reason() {
     let square = [p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)];
     let refuse = |seen: &[Point2], at: &[Point2]| FloorHomography::from_points(9, 9, seen, at).unwrap_err().to_string();
     assert!(refuse(&square[..3], &square[..3]).contains("at least 4"));
@@ -201,13 +201,13 @@ fn calibrations_that_make_no_sense_say_why() {
 }
 
 #[test]
-fn a_part_that_reaches_behind_the_lens_hides_all() {
-    let lens = Intrinsics::ideal(64, 48, 1.2);
-    let camera = Camera::looking_at(lens, Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, Vec3::Y).unwrap();
+fn a_part_that_is_partly_behind_the_camera_masks_the_whole_image() {
+    let lens = Intrinsics::pinhole(64, 48, 1.2);
+    let camera = Camera::look_at(lens, Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, Vec3::Y).unwrap();
     let mut mask = PixelMask::new(64, 48);
     let part = |z: f64| ArmPart::Hull(vec![Vec3::new(0.5, 0.0, z), Vec3::new(0.6, 0.0, z), Vec3::new(0.5, 0.1, 3.0)]);
-    mask.hide_arm(&camera.clone().into(), &[part(2.5)], 0.01).unwrap();
-    assert_eq!(mask.share(), 0.0);
-    mask.hide_arm(&camera.into(), &[part(1.0)], 0.01).unwrap();
-    assert_eq!(mask.share(), 1.0);
+    mask.mask_arm(&camera.clone().into(), &[part(2.5)], 0.01).unwrap();
+    assert_eq!(mask.coverage(), 0.0);
+    mask.mask_arm(&camera.into(), &[part(1.0)], 0.01).unwrap();
+    assert_eq!(mask.coverage(), 1.0);
 }

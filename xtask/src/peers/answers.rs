@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
+use super::agreement::same_distance;
 use super::groups::{Entry, Group};
 use super::measure::{Time, budget_ns};
 use super::report::Line;
 use super::runner::Runner;
-use super::witness::{Verdict, Witnesses};
+use super::witness::{Classification, Witnesses};
 
-/// Distances agree to this share of themselves, and to a thousandth of it of the size.
-const RELATIVE: f64 = 1e-9;
 /// More differences than these in one line are counted without looking for an explanation.
 const EXAMINED: usize = 50;
 
@@ -44,7 +43,8 @@ pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut
             let differing = differing(group, &given[k], truth);
             disagreements = differing.len();
             if !entry.cell.lib.starts_with("elbowroom") {
-                let border = |i: &&usize| witnesses.as_mut().is_some_and(|w| w.judge(**i).0 == Verdict::Either);
+                let border =
+                    |i: &&usize| witnesses.as_mut().is_some_and(|w| w.classify(**i).0 == Classification::Either);
                 disagreements -= differing.iter().take(EXAMINED).filter(border).count();
             }
         }
@@ -74,24 +74,24 @@ fn settle(
     let mut truth: Vec<Option<f64>> = given[reference].iter().copied().map(Some).collect();
     let Some(ours) = group.ours() else { return truth };
     for (n, i) in differing(group, &given[ours], &truth).into_iter().enumerate() {
-        let (mut verdict, mut told) = (Verdict::Open, String::new());
+        let (mut classification, mut explanation) = (Classification::Open, String::new());
         if let Some(witnesses) = witnesses.as_mut().filter(|_| n < EXAMINED) {
-            (verdict, told) = witnesses.judge(i);
+            (classification, explanation) = witnesses.classify(i);
         }
-        let conclusion = match verdict {
-            Verdict::Either => "at the border, both are right".to_owned(),
-            Verdict::Is(answer) if answer == given[ours][i] => {
+        let conclusion = match classification {
+            Classification::Either => "at the border, both are right".to_owned(),
+            Classification::Is(answer) if answer == given[ours][i] => {
                 format!("{} contradicts its own distance", group.entries[reference].cell.lib)
             }
-            Verdict::Is(_) => "elbowroom contradicts its own distance".to_owned(),
-            Verdict::Open => "unexplained".to_owned(),
+            Classification::Is(_) => "elbowroom contradicts its own distance".to_owned(),
+            Classification::Open => "unexplained".to_owned(),
         };
         let [mine, its] = [ours, reference].map(|k| format!("{} {:?}", group.entries[k].cell.lib, given[k][i]));
-        notes.push(format!("{} {} record {i}: {mine}, {its};\n  {told}{conclusion}.", group.set, group.query));
-        match verdict {
-            Verdict::Either => truth[i] = None,
-            Verdict::Is(answer) => truth[i] = Some(answer),
-            Verdict::Open => {}
+        notes.push(format!("{} {} record {i}: {mine}, {its};\n  {explanation}{conclusion}.", group.set, group.query));
+        match classification {
+            Classification::Either => truth[i] = None,
+            Classification::Is(answer) => truth[i] = Some(answer),
+            Classification::Open => {}
         }
     }
     truth
@@ -119,21 +119,9 @@ fn differing(group: &Group, given: &[f64], truth: &[Option<f64>]) -> Vec<usize> 
     pairs.filter(|(_, (x, y))| y.is_some_and(|y| !right(**x, y))).map(|(i, _)| i).collect()
 }
 
-/// Some libraries tell a penetration as a negative distance; here it is 0.
-pub fn same_distance(x: f64, y: f64, size: f64) -> bool {
-    !x.is_nan() && !y.is_nan() && (x.max(0.0) - y.max(0.0)).abs() <= RELATIVE * (y.max(0.0) + 1e-3 * size)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances_are_the_same_within_what_was_agreed() {
-        assert!(same_distance(0.1, 0.1 + 1e-11, 1.0) && same_distance(-0.2, 0.0, 1.0));
-        assert!(!same_distance(0.1, 0.1 + 1e-9, 1.0) && !same_distance(0.0, 1e-9, 1.0));
-        assert!(!same_distance(f64::NAN, f64::NAN, 1.0) && !same_distance(f64::NAN, 0.0, 1.0));
-    }
 
     #[test]
     fn wrong_answers_are_found_and_open_ones_let_pass() {

@@ -13,7 +13,7 @@ pub struct Entry {
     /// Its number there.
     pub number: usize,
     pub cell: Cell,
-    /// Whether its time is wanted; its answers may still be needed to judge others.
+    /// Whether its time is wanted; its answers may still be needed to check others.
     pub timed: bool,
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{machine, make, native};
+use super::{machine, native};
 
 const COAL: &str = "3.0.3";
 const PARRY: &str = "0.31.1";
@@ -99,20 +99,20 @@ fn fcl(root: &Path, folder: &Path) -> Result<PathBuf, String> {
 /// FCL's headers without `extern template`: what is used gets compiled here, for this processor, and not taken from
 /// the library that Debian built for any.
 fn copy_headers(from: &Path, to: &Path) -> Result<(), String> {
-    let told = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
-    make(to)?;
+    let failed = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
+    xtask::shell::make_folder(to)?;
     // The file that tells that all are there comes last.
     let mut entries: Vec<PathBuf> =
-        fs::read_dir(from).map_err(|e| told(from, e))?.flatten().map(|entry| entry.path()).collect();
+        fs::read_dir(from).map_err(|e| failed(from, e))?.flatten().map(|entry| entry.path()).collect();
     entries.sort_by_key(|path| path.ends_with("config.h"));
     for path in entries {
         let target = to.join(path.file_name().unwrap_or_default());
         if path.is_dir() {
             copy_headers(&path, &target)?;
         } else {
-            let text = fs::read(&path).map_err(|e| told(&path, e))?;
+            let text = fs::read(&path).map_err(|e| failed(&path, e))?;
             let text = without_extern_templates(&String::from_utf8_lossy(&text));
-            fs::write(&target, text).map_err(|e| told(&target, e))?;
+            fs::write(&target, text).map_err(|e| failed(&target, e))?;
         }
     }
     Ok(())
@@ -147,7 +147,7 @@ fn compile(root: &Path, folder: &Path, name: &str, flags: &[String], links: &[St
     if program.is_file() && fs::read_to_string(&stamp_file).is_ok_and(|old| old == stamp) {
         return Ok(program);
     }
-    make(&folder.join("bin"))?;
+    xtask::shell::make_folder(&folder.join("bin"))?;
     native::run(root, &words, &[])?;
     fs::write(&stamp_file, stamp).map_err(|e| format!("{}: {e}", stamp_file.display()))?;
     Ok(program)

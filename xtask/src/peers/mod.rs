@@ -2,6 +2,7 @@
 //!
 //! `xtask/peers/README.md` has the workload's format and the conversation with the runners.
 
+mod agreement;
 mod answers;
 mod groups;
 mod install;
@@ -15,6 +16,8 @@ mod witness;
 mod workload;
 
 use std::path::{Path, PathBuf};
+
+use xtask::shell;
 
 use install::Ready;
 use report::Line;
@@ -49,7 +52,7 @@ impl Options {
 /// Installs, measures, compares and prints; an answer of elbowroom's that nothing explains is an error.
 pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let folder = root.join("target/peers");
-    make(&folder)?;
+    shell::make_folder(&folder)?;
     let workload = workload::prepare(root, &folder, options.data.as_deref())?;
     let peers = install::all(root, &folder);
     let (mut runners, mut missing) = start(&peers, &workload, root)?;
@@ -74,7 +77,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     } else {
         print!("{table}");
     }
-    judge(&lines)
+    verify(&lines)
 }
 
 /// elbowroom must run; any other that does not is named and left out.
@@ -101,7 +104,7 @@ fn start(peers: &[Ready], workload: &workload::Workload, root: &Path) -> Result<
     Ok((runners, missing))
 }
 
-fn judge(lines: &[Line]) -> Result<(), String> {
+fn verify(lines: &[Line]) -> Result<(), String> {
     let wrong: usize = lines.iter().filter(|line| line.is_ours()).map(|line| line.disagreements).sum();
     if wrong == 0 { Ok(()) } else { Err(format!("{wrong} answers of elbowroom differ and nothing explains them")) }
 }
@@ -109,10 +112,6 @@ fn judge(lines: &[Line]) -> Result<(), String> {
 /// Part of `lib|set|query`; lines without it are left out.
 fn only() -> String {
     std::env::var("ONLY").unwrap_or_default()
-}
-
-fn make(folder: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f6
     let query = format!("{}{}", line.query, if line.is_warm() { " warm" } else { "" });
     let ratio = best.map_or(f64::NAN, |best| best.mean_ns / line.mean_ns);
     let met = line.disagreements == 0 && target.is_some_and(|target| ratio >= target);
-    let verdict = match target {
+    let result = match target {
         _ if line.disagreements > 0 => "WRONG",
         None => "",
         Some(_) if met => "met",
@@ -82,7 +82,7 @@ fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f6
     let (name, time) = best.map_or(("none", String::new()), |best| (&best.lib, grouped(best.mean_ns)));
     let ratio = best.map_or(String::new(), |_| format!("{ratio:.1}"));
     let target = target.map_or(String::new(), |target| format!("{target:.0}"));
-    row(out, [&line.set, &query, &grouped(line.mean_ns), name, &time, &ratio, &target, verdict]);
+    row(out, [&line.set, &query, &grouped(line.mean_ns), name, &time, &ratio, &target, result]);
     met
 }
 
@@ -115,8 +115,8 @@ fn agreement(out: &mut String, lines: &[Line], notes: &[String]) {
     }
 }
 
-fn row(out: &mut String, [set, query, ours, peer, ns, ratio, target, verdict]: [&str; 8]) {
-    let text = format!("{set:15} {query:13} {ours:>12}  {peer:21} {ns:>12} {ratio:>7} {target:>5} {verdict}");
+fn row(out: &mut String, [set, query, ours, peer, ns, ratio, target, result]: [&str; 8]) {
+    let text = format!("{set:15} {query:13} {ours:>12}  {peer:21} {ns:>12} {ratio:>7} {target:>5} {result}");
     let _ = writeln!(out, "{}", text.trim_end());
 }
 

@@ -106,7 +106,7 @@ impl Runner {
     fn read(&mut self) -> Result<String, String> {
         let mut line = String::new();
         match self.output.read_line(&mut line) {
-            Ok(0) => Err(format!("{} ended; what it said stands above", self.name)),
+            Ok(0) => Err(format!("{} ended; what it said is above", self.name)),
             Ok(_) => Ok(line.trim_end().to_owned()),
             Err(e) => Err(format!("{}: {e}", self.name)),
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::answers::same_distance;
+use super::agreement::same_distance;
 use super::groups::{Entry, Group};
 use super::runner::Runner;
 
@@ -10,7 +10,7 @@ use super::runner::Runner;
 const BORDER: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Verdict {
+pub enum Classification {
     /// The distance is at the border: yes and no are right.
     Either,
     /// Both measure the same distance, off the border: this answer follows.
@@ -40,30 +40,30 @@ impl<'a> Witnesses<'a> {
     }
 
     /// What the distances of this record say, and the distances in words.
-    pub fn judge(&mut self, record: usize) -> (Verdict, String) {
+    pub fn classify(&mut self, record: usize) -> (Classification, String) {
         let Self { entries, border, runners, folder } = self;
         let [ours, theirs] = entries.map(|entry| {
             let answer = runners[entry.runner].answers(entry.number, record, 1, folder);
             answer.and_then(|answers| answers.first().copied()).unwrap_or(f64::NAN)
         });
-        let told = format!("distances {ours:e} m, {theirs:e} m: ");
-        (verdict(ours, theirs, *border, entries[0].cell.size), told)
+        let distances = format!("distances {ours:e} m, {theirs:e} m: ");
+        (classification(ours, theirs, *border, entries[0].cell.size), distances)
     }
 }
 
-fn verdict(ours: f64, theirs: f64, border: f64, size: f64) -> Verdict {
+fn classification(ours: f64, theirs: f64, border: f64, size: f64) -> Classification {
     // Without a tolerance every overlap, however deep, measures 0: that is no border.
     if border == 0.0 && ours <= 0.0 && theirs <= 0.0 {
-        return Verdict::Is(1.0);
+        return Classification::Is(1.0);
     }
     let near = |d: f64| (d.max(0.0) - border).abs() <= BORDER * size && !d.is_nan();
     if near(ours) && near(theirs) {
-        return Verdict::Either;
+        return Classification::Either;
     }
     if same_distance(ours, theirs, size) {
-        return Verdict::Is(f64::from(u8::from(theirs <= border)));
+        return Classification::Is(f64::from(u8::from(theirs <= border)));
     }
-    Verdict::Open
+    Classification::Open
 }
 
 #[cfg(test)]
@@ -72,12 +72,12 @@ mod tests {
 
     #[test]
     fn the_distances_decide_only_where_they_agree() {
-        assert_eq!(verdict(0.0, 5e-10, 0.0, 1.0), Verdict::Either);
-        assert_eq!(verdict(0.0, -0.1, 0.0, 1.0), Verdict::Is(1.0));
-        assert_eq!(verdict(6e-7, 6e-7, 0.0, 1.0), Verdict::Is(0.0));
-        assert_eq!(verdict(0.04, 0.04, 0.05, 1.0), Verdict::Is(1.0));
-        assert_eq!(verdict(0.0, 0.0, 0.05, 1.0), Verdict::Is(1.0));
-        assert_eq!(verdict(0.0, 6e-7, 0.0, 1.0), Verdict::Open);
-        assert_eq!(verdict(f64::NAN, 0.0, 0.0, 1.0), Verdict::Open);
+        assert_eq!(classification(0.0, 5e-10, 0.0, 1.0), Classification::Either);
+        assert_eq!(classification(0.0, -0.1, 0.0, 1.0), Classification::Is(1.0));
+        assert_eq!(classification(6e-7, 6e-7, 0.0, 1.0), Classification::Is(0.0));
+        assert_eq!(classification(0.04, 0.04, 0.05, 1.0), Classification::Is(1.0));
+        assert_eq!(classification(0.0, 0.0, 0.05, 1.0), Classification::Is(1.0));
+        assert_eq!(classification(0.0, 6e-7, 0.0, 1.0), Classification::Open);
+        assert_eq!(classification(f64::NAN, 0.0, 0.0, 1.0), Classification::Open);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{make, native};
+use super::native;
 
 /// Where the files are.
 pub struct Workload {
@@ -29,7 +29,7 @@ pub fn prepare(root: &Path, folder: &Path, given: Option<&Path>) -> Result<Workl
     let extra = folder.join("extra");
     // What an earlier workload left must not be taken for this one's.
     let _ = std::fs::remove_dir_all(&extra);
-    make(&extra)?;
+    xtask::shell::make_folder(&extra)?;
     ours(root, "extend", &[&data, &extra])?;
     Ok(Workload { data, extra })
 }
@@ -46,7 +46,7 @@ fn own(root: &Path, data: &Path) -> Result<PathBuf, String> {
     let done = data.join("complete");
     if !done.is_file() {
         eprintln!("making the workload in {}", data.display());
-        make(data)?;
+        xtask::shell::make_folder(data)?;
         ours(root, "generate", &[data])?;
         std::fs::write(&done, "").map_err(|e| format!("{}: {e}", done.display()))?;
     }

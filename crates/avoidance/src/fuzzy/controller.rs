@@ -2,20 +2,20 @@
 
 use super::{Rule, Variable};
 
-/// Most inputs, outputs, and sets of one variable: what inference keeps on the stack.
-const MOST: usize = 16;
-/// Combinations of the inputs' sets that are looked at.
-const MOST_COMBINATIONS: usize = 200_000;
-/// Places at which an output's sets are known.
+/// Largest number of inputs, outputs, and sets of one variable: the arrays of the inference are on the stack.
+const MAX_SETS: usize = 16;
+/// Largest number of grid points at which the coverage by rules is checked.
+const MAX_GRID_POINTS: usize = 200_000;
+/// Number of samples of the sets of an output.
 const SAMPLES: usize = 129;
 
-/// Why variables and rules make no controller.
+/// Why variables and rules are not a valid controller.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{what}\n  write: {write_instead}", line.map(|l| format!("line {l}: ")).unwrap_or_default())]
 pub struct FuzzyError {
-    /// Line of the text, from 1, where there is one.
+    /// Line of the text, from 1, where known.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub what: String,
     /// What to write instead.
     pub write_instead: String,
@@ -31,7 +31,7 @@ impl FuzzyError {
     }
 }
 
-/// Inputs to outputs, by rules.
+/// A fuzzy controller: from inputs to outputs, by rules.
 ///
 /// ```
 /// use elbowroom_avoidance::fuzzy::Controller;
@@ -61,14 +61,14 @@ pub struct Controller {
     inputs: Vec<Variable>,
     outputs: Vec<Variable>,
     rules: Vec<Rule>,
-    /// Per output: the places, and at each the degree of every set.
+    /// Per output: the samples of its sets.
     samples: Vec<Samples>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Samples {
     at: Vec<f64>,
-    /// Per set, `SAMPLES` degrees.
+    /// Per set the membership at each sample.
     degrees: Vec<Vec<f64>>,
 }
 
@@ -83,8 +83,8 @@ impl Samples {
 }
 
 impl Controller {
-    /// Checked: every name once, every set of an output hit by a sample, and for every input within the ranges at least
-    /// one rule that speaks about each output.
+    /// Validates that names are unique, that every set of an output contains a sample, and that at every input within the
+    /// ranges at least one rule applies to each output.
     ///
     /// # Errors
     /// [`FuzzyError`] without a line.
@@ -103,7 +103,7 @@ impl Controller {
             }
         }
         let controller = Self { inputs, outputs, rules, samples };
-        controller.check_cover()?;
+        controller.check_coverage()?;
         Ok(controller)
     }
 
@@ -122,18 +122,18 @@ impl Controller {
         &self.rules
     }
 
-    /// One number per input to one per output. Numbers are taken into the variables' ranges; NaN is taken for the lower
-    /// end of the range, missing inputs too. Does not allocate.
+    /// Computes one number per output from one number per input. Numbers are clamped to the ranges of the variables; NaN and
+    /// missing inputs count as the lower end of the range. Does not allocate.
     pub fn infer(&self, inputs: &[f64], outputs: &mut [f64]) {
         let degrees = self.degrees(inputs);
         for (number, out) in outputs.iter_mut().enumerate().take(self.outputs.len()) {
             let strengths = self.strengths(&degrees, number);
-            *out = self.centre(number, &strengths);
+            *out = self.centre_of_gravity(number, &strengths);
         }
     }
 
-    fn degrees(&self, inputs: &[f64]) -> [[f64; MOST]; MOST] {
-        let mut degrees = [[0.0; MOST]; MOST];
+    fn degrees(&self, inputs: &[f64]) -> [[f64; MAX_SETS]; MAX_SETS] {
+        let mut degrees = [[0.0; MAX_SETS]; MAX_SETS];
         for (i, variable) in self.inputs.iter().enumerate() {
             let x = variable.within(inputs.get(i).copied().unwrap_or(f64::NAN), variable.range[0]);
             for (degree, (_, set)) in degrees[i].iter_mut().zip(&variable.sets) {
@@ -143,9 +143,9 @@ impl Controller {
         degrees
     }
 
-    /// How much each set of an output holds.
-    fn strengths(&self, degrees: &[[f64; MOST]; MOST], output: usize) -> [f64; MOST] {
-        let mut strengths = [0.0_f64; MOST];
+    /// The strength of each set of an output.
+    fn strengths(&self, degrees: &[[f64; MAX_SETS]; MAX_SETS], output: usize) -> [f64; MAX_SETS] {
+        let mut strengths = [0.0_f64; MAX_SETS];
         for rule in &self.rules {
             let Some((_, set)) = rule.conclusions.iter().find(|(o, _)| *o == output) else { continue };
             let strength = rule.conditions.iter().map(|&(i, s)| degrees[i][s]).fold(1.0, f64::min);
@@ -154,8 +154,8 @@ impl Controller {
         strengths
     }
 
-    /// Centre of gravity of the sets, each cut off at its strength.
-    fn centre(&self, output: usize, strengths: &[f64; MOST]) -> f64 {
+    /// Centre of gravity of the sets, each clipped at its strength.
+    fn centre_of_gravity(&self, output: usize, strengths: &[f64; MAX_SETS]) -> f64 {
         let samples = &self.samples[output];
         let mut joined = [0.0_f64; SAMPLES];
         for (set, strength) in samples.degrees.iter().zip(strengths).filter(|(_, s)| **s > 0.0) {
@@ -169,24 +169,24 @@ impl Controller {
             moment += degree * x;
         }
         let variable = &self.outputs[output];
-        let middle = f64::midpoint(variable.range[0], variable.range[1]);
-        variable.within(moment / area, middle)
+        let center = f64::midpoint(variable.range[0], variable.range[1]);
+        variable.within(moment / area, center)
     }
 
-    /// Looks at a grid over the inputs' ranges, sets' corners included.
-    fn check_cover(&self) -> Result<(), FuzzyError> {
+    /// Checks the coverage on a grid over the ranges of the inputs that includes the corners of the sets.
+    fn check_coverage(&self) -> Result<(), FuzzyError> {
         let mut x = vec![0.0; self.inputs.len()];
-        let ticks: Vec<Vec<f64>> = self.inputs.iter().map(ticks).collect();
-        let combinations: usize = ticks.iter().map(Vec::len).product();
-        if combinations > MOST_COMBINATIONS {
-            let what = format!("the sets of the inputs make {combinations} combinations, too many to look at all");
+        let grid: Vec<Vec<f64>> = self.inputs.iter().map(grid_values).collect();
+        let combinations: usize = grid.iter().map(Vec::len).product();
+        if combinations > MAX_GRID_POINTS {
+            let what = format!("the sets of the inputs make {combinations} combinations, too many to check all");
             return Err(FuzzyError::new(what, "fewer inputs, or fewer sets of each"));
         }
         for index in 0..combinations {
             let mut rest = index;
-            for (value, ticks) in x.iter_mut().zip(&ticks) {
-                *value = ticks[rest % ticks.len()];
-                rest /= ticks.len();
+            for (value, grid) in x.iter_mut().zip(&grid) {
+                *value = grid[rest % grid.len()];
+                rest /= grid.len();
             }
             let degrees = self.degrees(&x);
             for (number, output) in self.outputs.iter().enumerate() {
@@ -199,29 +199,29 @@ impl Controller {
     }
 
     fn uncovered(&self, x: &[f64], output: &Variable) -> FuzzyError {
-        let place: Vec<String> = self.inputs.iter().zip(x).map(|(v, x)| format!("{} = {x:.4}", v.name)).collect();
+        let at: Vec<String> = self.inputs.iter().zip(x).map(|(v, x)| format!("{} = {x:.4}", v.name)).collect();
         FuzzyError::new(
-            format!("at {} no rule says anything about `{}`", place.join(" and "), output.name),
+            format!("at {} no rule says anything about `{}`", at.join(" and "), output.name),
             "sets that overlap, and a rule for each of their combinations",
         )
     }
 }
 
-/// Corners within the range and the middles between them.
-fn ticks(variable: &Variable) -> Vec<f64> {
+/// The corners within the range and the midpoints between them.
+fn grid_values(variable: &Variable) -> Vec<f64> {
     let [low, high] = variable.range;
     let mut corners: Vec<f64> = variable.sets.iter().flat_map(|(_, s)| s.corners()).collect();
     corners.extend(variable.range);
     corners.retain(|c| *c >= low && *c <= high);
     corners.sort_by(f64::total_cmp);
     corners.dedup();
-    let middles: Vec<f64> = corners.windows(2).map(|w| f64::midpoint(w[0], w[1])).collect();
-    corners.extend(middles);
+    let midpoints: Vec<f64> = corners.windows(2).map(|w| f64::midpoint(w[0], w[1])).collect();
+    corners.extend(midpoints);
     corners
 }
 
 fn check_variables(role: &str, list: &[Variable]) -> Result<(), FuzzyError> {
-    // The check of the cover looks at every combination: four inputs of a few sets are some 100,000.
+    // The coverage check visits every combination: four inputs of a few sets have about 100,000.
     if list.is_empty() || list.len() > 4 {
         return Err(FuzzyError::new(
             format!("there are {} {role}s", list.len()),
@@ -234,9 +234,9 @@ fn check_variables(role: &str, list: &[Variable]) -> Result<(), FuzzyError> {
             let what = format!("the range of `{}` is [{low}, {high}]", v.name);
             return Err(FuzzyError::new(what, "range = [low, high]"));
         }
-        if v.sets.is_empty() || v.sets.len() > MOST {
+        if v.sets.is_empty() || v.sets.len() > MAX_SETS {
             let what = format!("`{}` has {} sets", v.name, v.sets.len());
-            return Err(FuzzyError::new(what, format!("1 to {MOST} sets, each as name = [a, b, c, d]")));
+            return Err(FuzzyError::new(what, format!("1 to {MAX_SETS} sets, each as name = [a, b, c, d]")));
         }
         let twice = list[..i].iter().any(|o| o.name == v.name);
         let set_twice = v.sets.iter().enumerate().any(|(i, (n, _))| v.sets[..i].iter().any(|(o, _)| o == n));

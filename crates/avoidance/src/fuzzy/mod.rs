@@ -1,15 +1,15 @@
 //! Fuzzy control in general: variables with named sets, rules as sentences, Mamdani inference, control surfaces.
 //!
-//! The usual choices, named: degrees are trapezoids; "and" is the minimum; a rule cuts its conclusion off at its own
-//! strength (minimum); conclusions about one output are joined by the maximum; the output is the centre of gravity of what
-//! results (Mamdani and Assilian 1975). Inference does not allocate.
+//! Membership functions are trapezoids; "and" is the minimum; a rule clips its conclusion at its strength (minimum);
+//! conclusions about one output are joined by the maximum; the output is the centre of gravity of the result (Mamdani and
+//! Assilian 1975, "An experiment in linguistic synthesis with a fuzzy logic controller"). Inference does not allocate.
 
 mod controller;
-mod file;
-mod picture;
 mod rule;
 mod set;
 mod surface;
+mod svg;
+mod toml_format;
 mod variable;
 
 pub use controller::{Controller, FuzzyError};

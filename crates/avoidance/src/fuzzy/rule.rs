@@ -1,23 +1,23 @@
-//! One rule, and how it is written.
+//! Rules.
 
 use super::Variable;
 
-/// `if` all conditions hold `then` all conclusions do, to the degree of the weakest condition.
+/// `if` all conditions hold, `then` all conclusions hold to the degree of the weakest condition.
 ///
 /// Written as a sentence: `if proximity is near and speed is fast then size is large and direction is aside`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rule {
-    /// (input, set) by number.
+    /// Indices of input and set.
     pub conditions: Vec<(usize, usize)>,
-    /// (output, set) by number.
+    /// Indices of output and set.
     pub conclusions: Vec<(usize, usize)>,
 }
 
 impl Rule {
-    /// Reads a sentence; the error says what is wrong with it.
+    /// Reads a sentence.
     ///
     /// # Errors
-    /// Another form, or a word that no variable or set bears; the message says which words there are.
+    /// Another form, or an unknown name; the message lists the known names.
     pub fn parse(sentence: &str, inputs: &[Variable], outputs: &[Variable]) -> Result<Self, String> {
         let words: Vec<&str> = sentence.split_whitespace().collect();
         let then = words.iter().position(|w| *w == "then");
@@ -31,13 +31,13 @@ impl Rule {
         Ok(Self { conditions, conclusions })
     }
 
-    /// The sentence.
+    /// Writes the sentence.
     pub fn to_sentence(&self, inputs: &[Variable], outputs: &[Variable]) -> String {
-        let say = |variables: &[Variable], list: &[(usize, usize)]| {
+        let write = |variables: &[Variable], list: &[(usize, usize)]| {
             let clause = |&(v, s): &(usize, usize)| format!("{} is {}", variables[v].name, variables[v].sets[s].0);
             list.iter().map(clause).collect::<Vec<_>>().join(" and ")
         };
-        format!("if {} then {}", say(inputs, &self.conditions), say(outputs, &self.conclusions))
+        format!("if {} then {}", write(inputs, &self.conditions), write(outputs, &self.conclusions))
     }
 }
 

@@ -1,7 +1,7 @@
-//! One fuzzy set.
+//! Fuzzy sets.
 
-/// A trapezoid: how much a number belongs to the set, from 0 at `corners[0]` up to 1 between `corners[1]` and
-/// `corners[2]`, and down to 0 at `corners[3]`. Equal corners are steep sides; a triangle has its middle ones equal.
+/// A fuzzy set with a trapezoidal membership function: it rises from 0 at `corners[0]` to 1 between `corners[1]` and
+/// `corners[2]`, and falls to 0 at `corners[3]`. Equal corners are vertical sides; a triangle has equal inner corners.
 ///
 /// ```
 /// use elbowroom_avoidance::fuzzy::Set;
@@ -15,18 +15,18 @@ pub struct Set {
 }
 
 impl Set {
-    /// `None` unless the corners are finite and do not fall.
+    /// `None` unless the corners are finite and ascending.
     pub fn new(corners: [f64; 4]) -> Option<Self> {
-        let sound = corners.iter().all(|c| c.is_finite()) && corners.windows(2).all(|w| w[0] <= w[1]);
-        sound.then_some(Self { corners })
+        let is_valid = corners.iter().all(|c| c.is_finite()) && corners.windows(2).all(|w| w[0] <= w[1]);
+        is_valid.then_some(Self { corners })
     }
 
-    /// The corners, in the variable's unit.
+    /// The corners, in the unit of the variable.
     pub fn corners(&self) -> [f64; 4] {
         self.corners
     }
 
-    /// How much `x` belongs to the set, 0 to 1; 0 for NaN.
+    /// The degree of membership of `x`, 0 to 1; 0 for NaN.
     pub fn degree(&self, x: f64) -> f64 {
         let [a, b, c, d] = self.corners;
         if x >= b && x <= c {

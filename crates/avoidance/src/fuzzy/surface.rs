@@ -1,21 +1,19 @@
-//! What a controller does, as a picture.
-
-use std::fmt::Write;
+//! Control surfaces.
 
 use super::Controller;
 
-/// An output over two inputs.
+/// A control surface: an output over two inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Name of the first input (across).
+    /// Name of the first input.
     pub x_name: String,
-    /// Name of the second (upwards).
+    /// Name of the second input.
     pub y_name: String,
     /// Name of the output.
     pub z_name: String,
     /// Values of the first input.
     pub x: Vec<f64>,
-    /// Values of the second.
+    /// Values of the second input.
     pub y: Vec<f64>,
     /// `z[j][i]` is the output at `x[i]`, `y[j]`.
     pub z: Vec<Vec<f64>>,
@@ -24,14 +22,14 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Output `output` of a controller over its first two inputs, `steps` values of each; other inputs are at the low end
-    /// of their ranges. `None` where there are fewer inputs or outputs, or fewer than two steps.
+    /// Output `output` of a controller over its first two inputs, with `steps` values of each; the other inputs are at the
+    /// lower end of their ranges. `None` where there are fewer inputs or outputs, or fewer than two steps.
     ///
     /// ```
     /// use elbowroom_avoidance::{Rules, fuzzy::Surface};
     /// let size = Surface::of(Rules::default().controller(), 0, 33).unwrap();
     /// assert_eq!((size.x_name.as_str(), size.y_name.as_str()), ("proximity", "speed"));
-    /// assert!(size.z[32][0] > size.z[0][32], "near and fast asks for more than far and slow");
+    /// assert!(size.z[32][0] > size.z[0][32], "the correction for near and fast exceeds that for far and slow");
     /// ```
     pub fn of(controller: &Controller, output: usize, steps: usize) -> Option<Self> {
         let [a, b, rest @ ..] = controller.inputs() else { return None };
@@ -57,20 +55,5 @@ impl Surface {
             .collect();
         let (x_name, y_name, z_name) = (a.name.clone(), b.name.clone(), out.name.clone());
         Some(Self { x_name, y_name, z_name, x, y, z, z_range: out.range })
-    }
-
-    /// A table: first input across, second downwards.
-    pub fn to_csv(&self) -> String {
-        let mut text = format!("{}\\{}", self.y_name, self.x_name);
-        for x in &self.x {
-            _ = write!(text, ",{x}");
-        }
-        for (y, row) in self.y.iter().zip(&self.z) {
-            _ = write!(text, "\n{y}");
-            for z in row {
-                _ = write!(text, ",{z}");
-            }
-        }
-        text + "\n"
     }
 }

@@ -1,18 +1,21 @@
-//! A three-joint arm, a table, and a ball or two that come.
+//! A three-joint arm, a table, and two balls as dynamic obstacles.
 #![allow(dead_code)]
 
-use elbowroom_avoidance::{Advice, Around, Avoider, AvoiderSettings, JointLimit, PathKind, Reference, Rules, Seen};
-use elbowroom_planner::RouteOptions;
-use elbowroom_proximity::impact::Steady;
+use elbowroom_avoidance::{
+    Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, ObservedObject, PathKind, Reference, Rules,
+};
+use elbowroom_planner::RrtConnectSettings;
+use elbowroom_proximity::ccd::ConstantTwist;
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
-use elbowroom_scene::{Checker, Move, Object, Options, Scene, SceneState, Selection, SweepOptions, example};
-use elbowroom_spatial::{Motion, Pose, Vec3};
+use elbowroom_robot::{ObjectId, RobotId, example};
+use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection, SweepMove, SweepOptions};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 pub const DT: f64 = 0.004;
 /// Radius of a ball, m.
 pub const BALL: f64 = 0.08;
 
-/// Object 0 is a low table that is known, 1 and 2 are balls.
+/// Object 0 is a known low table, objects 1 and 2 are balls.
 pub fn scene() -> Scene {
     let mut builder = Scene::builder();
     builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
@@ -35,108 +38,109 @@ pub fn limits(scene: &Scene) -> Vec<JointLimit> {
 }
 
 pub fn avoider<'s>(scene: &'s Scene, q: &[f64]) -> Avoider<'s> {
-    Avoider::new(scene, 0, q, &limits(scene), Rules::default(), AvoiderSettings::default()).unwrap()
+    Avoider::new(scene, RobotId(0), q, &limits(scene), Rules::default(), AvoiderSettings::default()).unwrap()
 }
 
-/// A ball that flies straight until it stops.
+/// A ball that moves straight until it stops.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball {
-    pub object: usize,
+    pub object: ObjectId,
     pub from: Vec3,
     pub velocity: Vec3,
     pub stops_s: f64,
 }
 
 impl Ball {
-    pub fn seen(&self, t: f64) -> Seen {
+    pub fn observed(&self, t: f64) -> ObservedObject {
         let at = self.from + self.velocity * t.min(self.stops_s);
         let velocity = if t < self.stops_s { self.velocity } else { Vec3::ZERO };
-        Seen {
+        ObservedObject {
             object: self.object,
             in_world: Pose::from_translation(at),
-            motion: Motion { velocity, ..Motion::REST },
+            motion: FrameMotion { velocity, ..FrameMotion::REST },
             known: false,
         }
     }
 }
 
-/// What a path wants at a time of its own, with its velocity.
-pub type Course<'a> = &'a dyn Fn(f64) -> (Vec<f64>, Vec<f64>);
+/// Configuration and velocity of a path at path time.
+pub type Path<'a> = &'a dyn Fn(f64) -> (Vec<f64>, Vec<f64>);
 
-/// One run: the path at the rate that the advice allows, every step judged by a sweep.
-pub struct Stage<'s> {
+/// One run: the path at the rate of the output, every step checked by a sweep.
+pub struct Simulation<'s> {
     pub scene: &'s Scene,
     pub avoider: Avoider<'s>,
-    judge: Checker<'s>,
+    checker: Checker<'s>,
     state: SceneState,
     pub t: f64,
     pub tau: f64,
     pub rate: f64,
-    /// Contacts that the judge saw: when.
+    /// Times of the hits that the sweeps found.
     pub hits: Vec<f64>,
-    /// Times at which each joint turned back.
-    pub turns: Vec<Vec<f64>>,
+    /// Times of the reversals of each joint.
+    pub reversals: Vec<Vec<f64>>,
     sign: Vec<f64>,
-    /// Largest share of a joint's speed that was commanded.
-    pub fastest: f64,
-    pub advice: Advice,
-    /// Ways that were planned.
+    /// Largest commanded speed, as a fraction of the top speed.
+    pub max_speed: f64,
+    pub output: AvoiderOutput,
+    /// Number of planned detours.
     pub planned: usize,
 }
 
-impl<'s> Stage<'s> {
+impl<'s> Simulation<'s> {
     pub fn new(scene: &'s Scene, q: &[f64]) -> Self {
         Self {
             scene,
             avoider: avoider(scene, q),
-            judge: Checker::new(scene, Options::default()),
+            checker: Checker::new(scene, CheckerOptions::default()),
             state: SceneState::new(scene),
             t: 0.0,
             tau: 0.0,
             rate: 1.0,
             hits: Vec::new(),
-            turns: vec![Vec::new(); q.len()],
+            reversals: vec![Vec::new(); q.len()],
             sign: vec![0.0; q.len()],
-            fastest: 0.0,
-            advice: Advice::default(),
+            max_speed: 0.0,
+            output: AvoiderOutput::default(),
             planned: 0,
         }
     }
 
-    pub fn step(&mut self, course: Course, path: PathKind, balls: &[Ball], speed_override: f64) -> Advice {
+    pub fn step(&mut self, reference_at: Path, path: PathKind, balls: &[Ball], speed_override: f64) -> AvoiderOutput {
         let before = self.avoider.q().to_vec();
-        let seen: Vec<Seen> = balls.iter().map(|b| b.seen(self.t)).collect();
+        let observed: Vec<ObservedObject> = balls.iter().map(|b| b.observed(self.t)).collect();
         self.tau += self.rate * DT * speed_override;
-        let (q, qd) = course(self.tau);
-        let around = Around { objects: &seen, robots: &[] };
-        let advice = self.avoider.tick(DT, &Reference { q: &q, qd: &qd, path }, &around, speed_override).unwrap();
-        self.rate = advice.rate.clamp(self.rate - DT / 0.1, self.rate + DT / 0.25).clamp(0.0, 1.0);
-        self.judge(&before, &seen);
-        self.note();
+        let (q, qd) = reference_at(self.tau);
+        let obstacles = DynamicObstacles { objects: &observed, robots: &[] };
+        let output = self.avoider.tick(DT, &Reference { q: &q, qd: &qd, path }, &obstacles, speed_override).unwrap();
+        self.rate = output.rate.clamp(self.rate - DT / 0.1, self.rate + DT / 0.25).clamp(0.0, 1.0);
+        self.record_hits(&before, &observed);
+        self.record_command();
         self.t += DT;
-        self.advice = advice;
-        advice
+        self.output = output;
+        output
     }
 
-    /// Another way to `goal` where the arm does not get on.
+    /// Plans a detour to `goal` where one is requested.
     pub fn plan(&mut self, goal: &[f64]) -> bool {
-        if !self.advice.wants_way {
+        if !self.output.requests_detour {
             return false;
         }
-        let options = |clearance_m| RouteOptions { clearance_m, ..RouteOptions::default() };
+        let options = |clearance_m| RrtConnectSettings { clearance_m, ..RrtConnectSettings::default() };
         let planned =
             self.avoider.plan_to(goal, &options(0.06)).is_ok() || self.avoider.plan_to(goal, &options(0.0)).is_ok();
         self.planned += usize::from(planned);
         planned
     }
 
-    fn judge(&mut self, before: &[f64], seen: &[Seen]) {
-        self.state.set_q(self.scene, 0, before).unwrap();
+    fn record_hits(&mut self, before: &[f64], observed: &[ObservedObject]) {
+        self.state.set_q(self.scene, RobotId(0), before).unwrap();
         let to = self.avoider.q().to_vec();
-        let paths: Vec<Steady> = seen.iter().map(|s| Steady::from_motion(s.in_world, &s.motion, DT)).collect();
-        let mut moves = vec![Move::Robot { robot: 0, to: &to }];
-        moves.extend(seen.iter().zip(&paths).map(|(s, path)| Move::Object { object: s.object, path }));
-        let hit = self.judge.between(Selection::Robot(0), Selection::All).sweep(
+        let paths: Vec<ConstantTwist> =
+            observed.iter().map(|s| ConstantTwist::from_motion(s.in_world, &s.motion, DT)).collect();
+        let mut moves = vec![SweepMove::Robot { robot: RobotId(0), to: &to }];
+        moves.extend(observed.iter().zip(&paths).map(|(s, path)| SweepMove::Object { object: s.object, path }));
+        let hit = self.checker.between(Selection::Robot(RobotId(0)), Selection::All).sweep(
             &self.state,
             &moves,
             &SweepOptions::default(),
@@ -146,14 +150,14 @@ impl<'s> Stage<'s> {
         }
     }
 
-    fn note(&mut self) {
+    fn record_command(&mut self) {
         for (j, limit) in limits(self.scene).iter().enumerate() {
             let (q, v) = (self.avoider.q()[j], self.avoider.qd()[j]);
             assert!(q >= limit.lower && q <= limit.upper, "joint {j} at {q}");
-            self.fastest = self.fastest.max(v.abs() / limit.speed);
+            self.max_speed = self.max_speed.max(v.abs() / limit.speed);
             if v.abs() > 1e-4 * limit.speed {
                 if self.sign[j] * v < 0.0 {
-                    self.turns[j].push(self.t);
+                    self.reversals[j].push(self.t);
                 }
                 self.sign[j] = v.signum();
             }
@@ -161,9 +165,9 @@ impl<'s> Stage<'s> {
     }
 
     /// Shortest time between two reversals of a joint, s.
-    pub fn quietest(&self) -> f64 {
-        let gaps = self.turns.iter().flat_map(|t| t.windows(2).map(|w| w[1] - w[0]));
-        gaps.fold(f64::INFINITY, f64::min)
+    pub fn min_reversal_interval(&self) -> f64 {
+        let intervals = self.reversals.iter().flat_map(|t| t.windows(2).map(|w| w[1] - w[0]));
+        intervals.fold(f64::INFINITY, f64::min)
     }
 }
 

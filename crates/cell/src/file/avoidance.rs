@@ -1,24 +1,24 @@
-//! `[avoidance.ROBOT]`: how a robot evades what moves.
+//! `[avoidance.ROBOT]`: how a robot avoids dynamic obstacles.
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::FormatError;
 
 use super::read::{Table, Value};
-use super::{robot_of, suggest};
-use crate::{AvoidanceSpec, Cell, Units};
+use super::robot::robot_of;
+use crate::{AvoidanceSpec, Cell, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-const KEYS: &[&str] = &["rules", "objects", "robots", "speed", "clearance", "return_speed", "patience", "replan"];
+const KEYS: &[&str] = &["rules", "objects", "robots", "speed", "clearance", "return_speed", "stall_timeout", "replan"];
 
-/// Of a collision point, least and most, m/s: slower nothing is evaded, and faster no robot is.
+/// Range of the speed of an evasion, m/s.
 const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
-/// Kept to what is fled from, least and most, m; rules bound it further.
+/// Range of the clearance, m; rules limit it further.
 const CLEARANCES_M: (f64, f64) = (1e-4, 5.0);
-/// Less than this share of the joints' speeds is no way back.
+/// Smallest return speed, as a share of the joints' speeds.
 const LEAST_RETURN: f64 = 0.01;
-/// Before another way is planned, least and most, s.
-const PATIENCES_S: (f64, f64) = (0.01, 60.0);
+/// Range of the stall timeout, s.
+const STALL_TIMEOUTS_S: (f64, f64) = (0.01, 60.0);
 
 pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<AvoidanceSpec>>> {
     let mut all = vec![None; cell.robots.len()];
@@ -34,40 +34,40 @@ fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
     let units = cell.units;
     let mut settings = AvoiderSettings::default();
     if let Some(v) = t.get("speed") {
-        settings.reflex.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;
+        settings.reactive.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;
     }
     if let Some(v) = t.get("clearance") {
-        settings.reflex.clearance_m = length(&v, units, CLEARANCES_M, "")?;
+        settings.reactive.clearance_m = length(&v, units, CLEARANCES_M, "")?;
     }
     if let Some(v) = t.get("return_speed") {
-        settings.return_share = v.percent()?;
-        if settings.return_share < LEAST_RETURN {
-            let what = "is less than 1 percent: the robot would hardly come back";
+        settings.return_speed_fraction = v.percent()?;
+        if settings.return_speed_fraction < LEAST_RETURN {
+            let what = "is less than 1 percent: the robot would hardly return";
             return Err(v.error(what).hint("return_speed = 50   (percent)"));
         }
     }
-    if let Some(v) = t.get("patience") {
-        settings.patience_s = v.positive()?;
-        if !within(PATIENCES_S, settings.patience_s) {
-            let (least, most) = PATIENCES_S;
-            let what = format!("is {} s, and can be {least} to {most} s", settings.patience_s);
+    if let Some(v) = t.get("stall_timeout") {
+        settings.stall_timeout_s = v.positive()?;
+        if !within(STALL_TIMEOUTS_S, settings.stall_timeout_s) {
+            let (least, most) = STALL_TIMEOUTS_S;
+            let what = format!("is {} s, and can be {least} to {most} s", settings.stall_timeout_s);
             return Err(v
                 .error(what)
-                .hint("patience = 0.6   (seconds without headway, before another way is planned)"));
+                .hint("stall_timeout = 0.6   (seconds without progress before another path is planned)"));
         }
     }
     let rules = t.get("rules").map_or_else(|| Ok(Rules::default()), |v| rules(&v))?;
     let reach = rules.reach_m();
-    if settings.reflex.clearance_m >= reach {
-        let what = format!("is not less than the {} that the rules look ahead", units.show_length(reach));
-        // Without the key the rules look less far than the default.
+    if settings.reactive.clearance_m >= reach {
+        let what = format!("is not less than the {} range of the rules", units.show_length(reach));
+        // Without the key the default clearance is too large for the rules.
         let error = t
             .get("clearance")
             .map_or_else(|| t.error(format!("`{}`: the default clearance {what}", t.name)), |v| v.error(&what));
         return Err(error.hint("clearance = 50, or rules with a wider range of proximity"));
     }
     let objects = match t.get("objects") {
-        None => cell.movers.iter().map(|m| m.object).collect(),
+        None => cell.moving_objects.iter().map(|m| m.object).collect(),
         Some(v) => v.list("objects = [\"cart\"]")?.iter().map(|v| object(v, cell)).collect::<Result<_>>()?,
     };
     let robots = match t.get("robots") {
@@ -77,7 +77,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
     Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)? })
 }
 
-/// A length (m), or with `per` a speed, that makes sense.
+/// A length (m), or with `per` a speed, within its range.
 fn length(v: &Value<'_>, units: Units, bounds: (f64, f64), per: &str) -> Result<f64> {
     let metres = units.positive_length(v)?;
     if within(bounds, metres) {
@@ -118,7 +118,7 @@ fn neighbour(v: &Value<'_>, cell: &Cell, own: usize) -> Result<usize> {
     })
 }
 
-/// The rules of the named file, its own errors told with its own lines.
+/// The rules of the named file; its errors carry its own lines.
 fn rules(v: &Value<'_>) -> Result<Rules> {
     let path = v.file.parent().unwrap_or(v.file).join(v.text()?);
     let text = std::fs::read_to_string(&path).map_err(|e| {

@@ -1,31 +1,31 @@
-//! `follow = { … }` of a region: what carries it, and how fast that can be.
+//! `follow = { … }` of a region: the source that moves it, and its largest plausible speed.
 
 use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::motion_bound::motion_bound;
 use elbowroom_kinematics::{JointKind, LinkId};
 use elbowroom_monitor::SourceLimits;
-use elbowroom_scene::pairs::motion_bound;
 use elbowroom_spatial::Pose;
 
+use super::definitions::{Definitions, encoder_index, robot_index};
+use super::poses;
 use super::read::{Table, Value};
-use super::region::{Known, encoder_index, robot_index};
 use super::robot::unknown_link;
-use super::{poses, suggest};
-use crate::{CellRobot, Follow, PoseTrack, Units};
+use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: { encoder = \"conveyor\" }, { object = \"cart\" }, \
                        { poses = \"cart.csv\" })";
-/// What a region can ride on.
+/// Sources of regions.
 const SOURCES: [&str; 4] = ["robot", "encoder", "object", "poses"];
-/// A joint is believed to be faster than its rated speed by so much: as in the monitor's watchdog.
+/// Factor on the rated joint speeds for plausibility, as in the monitor's watchdog.
 const FASTER: f64 = 1.5;
 
-/// Reads the table; a file of poses is added to `known`.
+/// Reads the table; a pose file is added to `known`.
 pub(super) fn read(
     v: &Value<'_>,
     units: Units,
-    known: &mut Known<'_>,
+    known: &mut Definitions<'_>,
     warnings: &mut Vec<Warning>,
 ) -> Result<(Follow, SourceLimits)> {
     let t = v.table(EXAMPLE)?;
@@ -33,10 +33,10 @@ pub(super) fn read(
     let mut named = SOURCES.iter().filter_map(|k| Some((*k, t.get(k)?)));
     let Some((kind, source)) = named.next() else { return Err(v.error("names nothing to follow").hint(EXAMPLE)) };
     if let Some((_, other)) = named.next() {
-        return Err(other.error(format!("stands beside `{kind}`: a region follows one thing")).hint(EXAMPLE));
+        return Err(other.error(format!("contradicts `{kind}`: a region follows one source")).hint(EXAMPLE));
     }
     if let Some(frame) = t.get("frame").filter(|_| kind != "robot") {
-        return Err(frame.error(format!("goes with `robot`; `{kind}` has one frame")).hint("leave it out"));
+        return Err(frame.error(format!("belongs to `robot`; `{kind}` has one frame")).hint("leave it out"));
     }
     let mut limits = SourceLimits::default();
     let follow = match kind {
@@ -55,7 +55,8 @@ pub(super) fn read(
         }
         "object" => {
             let index = object_index(&source, known)?;
-            if let Some(crate::Drive::Belt(encoder)) = known.movers.iter().find(|m| m.object == index).map(|m| &m.drive)
+            if let Some(crate::Drive::Belt(encoder)) =
+                known.moving_objects.iter().find(|m| m.object == index).map(|m| &m.drive)
             {
                 limits.wrap_m = encoder.wrap_m.map(|travel| encoder.direction * travel);
             }
@@ -82,17 +83,17 @@ pub(super) fn read(
     Ok((follow, limits))
 }
 
-/// Limits of a source beyond these would let every jump pass, m/s and rad/s.
+/// Larger limits of a source would permit every jump, m/s and rad/s.
 const MOST_SPEED_M_S: f64 = 1000.0;
 const MOST_TURN_RAD_S: f64 = 500.0;
 
-/// `max_speed` and `max_turn`, where the file states them.
+/// `max_speed` and `max_turn`, where given.
 fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     if let Some(v) = t.get("max_speed") {
         limits.speed_m_s = units.positive_length(&v)?;
         if limits.speed_m_s > MOST_SPEED_M_S {
             let what = format!(
-                "is {}/s: nothing in a cell is so fast, so no jump would be noticed",
+                "is {}/s: no source in a cell is that fast, so no jump would be noticed",
                 units.show_length(limits.speed_m_s)
             );
             return Err(v.error(what).hint(format!("at most {}/s", units.show_length(MOST_SPEED_M_S))));
@@ -102,7 +103,7 @@ fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
         limits.turn_rad_s = units.angle.to_radians(v.positive()?);
         if limits.turn_rad_s > MOST_TURN_RAD_S {
             let what = format!(
-                "is {:.0} rad/s: nothing in a cell turns so fast, so no jump would be noticed",
+                "is {:.0} rad/s: no source in a cell turns that fast, so no jump would be noticed",
                 limits.turn_rad_s
             );
             return Err(v.error(what).hint(format!("at most {MOST_TURN_RAD_S} rad/s, or 28647 deg/s")));
@@ -111,7 +112,7 @@ fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     Ok(())
 }
 
-/// No frame of a robot is faster than its joints allow, but at least the default is believed.
+/// Upper bound of the motion of a robot's frame from its joint speeds, at least the default.
 fn fastest(robot: &CellRobot, link: LinkId, in_link: Pose) -> SourceLimits {
     let chain = &robot.robot.chain;
     let path = chain.path(link);
@@ -122,13 +123,13 @@ fn fastest(robot: &CellRobot, link: LinkId, in_link: Pose) -> SourceLimits {
         .filter(|(j, _)| chain.joints()[chain.active_joints()[*j].0].kind != JointKind::Prismatic);
     let default = SourceLimits::default();
     SourceLimits {
-        speed_m_s: bound.iter().map(|(j, lever)| lever * speed(*j)).sum::<f64>().max(default.speed_m_s),
+        speed_m_s: bound.iter().map(|(j, bound)| bound * speed(*j)).sum::<f64>().max(default.speed_m_s),
         turn_rad_s: turning.map(|(j, _)| speed(j)).sum::<f64>().max(default.turn_rad_s),
         wrap_m: None,
     }
 }
 
-fn object_index(v: &Value<'_>, known: &Known<'_>) -> Result<usize> {
+fn object_index(v: &Value<'_>, known: &Definitions<'_>) -> Result<usize> {
     let name = v.text()?;
     let names = || known.objects.iter().map(|o| o.name.as_str());
     names().position(|n| n == name).ok_or_else(|| {
@@ -149,16 +150,17 @@ fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
     }
 }
 
-/// Says before a run where the monitors will take a motion of the file for a jump.
+/// Warns before a run where the monitors will take a motion in the file for a jump.
 fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units: Units, warnings: &mut Vec<Warning>) {
-    let too_fast = |(_, speed, turn): &(f64, f64, f64)| *speed > limits.speed_m_s || *turn > limits.turn_rad_s;
-    let Some((t_s, speed, turn)) = track.rates().find(too_fast) else { return };
-    let (file, speed) = (track.file.display(), units.show_length(speed));
-    warn_of_jump(t, &format!("{file}: from t_s = {t_s} on the poses move at {speed}/s and {turn:.3} rad/s"), warnings);
+    let too_fast = |rate: &PoseRate| rate.speed_m_s > limits.speed_m_s || rate.turn_rad_s > limits.turn_rad_s;
+    let Some(PoseRate { from_s, speed_m_s, turn_rad_s }) = track.rates().find(too_fast) else { return };
+    let (file, speed) = (track.file.display(), units.show_length(speed_m_s));
+    let what = format!("{file}: from t_s = {from_s} on the poses move at {speed}/s and {turn_rad_s:.3} rad/s");
+    warn_of_jump(t, &what, warnings);
 }
 
 fn warn_of_jump(t: &Table<'_>, what: &str, warnings: &mut Vec<Warning>) {
     let what = format!("{what}: the monitor takes that for a jump and stops the robots");
-    let hint = "max_speed and max_turn in `follow`, where the source can be so fast";
+    let hint = "max_speed and max_turn in `follow`, if the source can be that fast";
     warnings.push(Warning::new(t.file, t.line, what).hint(hint));
 }

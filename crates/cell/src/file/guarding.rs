@@ -1,8 +1,8 @@
-//! Does a region guard anything of the robots that it concerns?
+//! Checks that a region guards something of each robot it applies to.
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::LinkId;
-use elbowroom_monitor::{Guards, Kind, Part, Region};
+use elbowroom_monitor::{Guards, Part, Region, RegionKind};
 use elbowroom_spatial::Vec3;
 
 use super::read::Table;
@@ -10,9 +10,9 @@ use crate::{CellRegion, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Refuses a region that would guard nothing of a robot, and warns where it would overlook the links.
+/// Refuses a region that guards nothing of a robot, and warns where it does not guard the links.
 ///
-/// A monitored region that slows nothing is only warned about: its output never rises.
+/// A monitored region without slow-down is only warned about: its output never rises.
 pub(super) fn check(
     t: &Table<'_>,
     region: &CellRegion,
@@ -21,44 +21,45 @@ pub(super) fn check(
 ) -> Result<()> {
     if region.robots.is_empty() && !robots.is_empty() {
         let what = format!(
-            "region \"{}\" concerns no robot: one that carries a region is not kept out of it",
+            "region \"{}\" concerns no robot: a robot is not guarded against a region that follows it",
             region.region.name
         );
         let line = t.get("follow").map_or(t.line, |v| v.line);
         let error = FormatError::new(t.file, line, what)
-            .hint("robots = [\"…\"]   (the robots to keep out; or follow something else)");
+            .hint("robots = [\"…\"]   (the robots to keep out; or another source to follow)");
         match region.region.kind {
-            Kind::Monitored { .. } => warnings.push(error.into()),
-            Kind::Forbidden | Kind::Exchange { .. } => return Err(error),
+            RegionKind::Monitored { .. } => warnings.push(error.into()),
+            RegionKind::Forbidden | RegionKind::Exchange { .. } => return Err(error),
         }
     }
     let line = t.get("guards").map_or(t.line, |v| v.line);
     for robot in region.robots.iter().map(|r| &robots[*r]) {
-        let Some(gap) = Gap::of(robot, region.region.guards) else { continue };
-        let error = FormatError::new(t.file, line, gap.what(&region.region, robot)).hint(gap.hint(robot, robots.len()));
+        let Some(missing) = MissingPart::of(robot, region.region.guards) else { continue };
+        let error =
+            FormatError::new(t.file, line, missing.what(&region.region, robot)).hint(missing.hint(robot, robots.len()));
         match region.region.kind {
-            _ if gap == Gap::Links => warnings.push(error.into()),
-            Kind::Monitored { slow_to: None } => warnings.push(error.into()),
+            _ if missing == MissingPart::Links => warnings.push(error.into()),
+            RegionKind::Monitored { slow_to: None } => warnings.push(error.into()),
             _ => return Err(error),
         }
     }
     Ok(())
 }
 
-/// What a region asks for and the robot does not have.
+/// What a region guards and the robot does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Gap {
-    /// The part that is guarded stands still: no joint moves it.
-    Still,
+enum MissingPart {
+    /// The guarded part is fixed: no joint moves it.
+    Fixed,
     /// Neither tool nor load.
     Tool,
-    /// No solid at all that a joint moves.
+    /// No solid that a joint moves.
     Solids,
     /// Tool or load, but no link has a solid.
     Links,
 }
 
-impl Gap {
+impl MissingPart {
     fn of(robot: &CellRobot, guards: Guards) -> Option<Self> {
         let moves = |link: LinkId| {
             let chain = &robot.robot.chain;
@@ -68,9 +69,10 @@ impl Gap {
         if guards.tcp && flange_moves {
             return None;
         }
-        let links = robot.bare().bodies.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
-        let carried = flange_moves && robot.carried().next().is_some();
-        // A point is guarded in place of a tool's solid only where the file says that there is a tool.
+        let links =
+            robot.without_payload().colliders.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
+        let carried = flange_moves && robot.payload().next().is_some();
+        // A point is guarded in place of a tool's solid only where the file defines a tool.
         let point_tool = || {
             let tool = robot.tcp_in_flange.translation != Vec3::ZERO;
             flange_moves && tool && robot.guarded_volumes().iter().any(|v| v.part == Part::TcpOutside)
@@ -80,14 +82,14 @@ impl Gap {
             (true, false, true) => Some(Self::Links),
             (true, false, false) => Some(Self::Solids),
             (false, _, false) if guards.tool && point_tool() => None,
-            (false, _, false) => Some(if guards.tool { Self::Tool } else { Self::Still }),
+            (false, _, false) => Some(if guards.tool { Self::Tool } else { Self::Fixed }),
         }
     }
 
     fn what(self, region: &Region, robot: &CellRobot) -> String {
         let (region, robot) = (&region.name, &robot.name);
         let why = match self {
-            Self::Still => "no joint moves its tool centre point",
+            Self::Fixed => "no joint moves its tool centre point",
             Self::Tool => "it has no tool and no load",
             Self::Solids => "none of its links that move has a solid (a URDF needs <collision>, not only <visual>)",
             Self::Links => {
@@ -103,7 +105,7 @@ impl Gap {
         let solid = "solids for the links: `links = [{ capsule = { … } }, …]` beside `dh`, <collision> in a URDF";
         let name = &robot.name;
         let mut hint = match self {
-            Self::Still => format!("`flange` of [robot.{name}]: a link that a joint moves"),
+            Self::Fixed => format!("`flange` of [robot.{name}]: a link that a joint moves"),
             Self::Tool => {
                 format!("guards = [\"arm\"], or [robot.{name}.tool] box = {{ at = [0, 0, 125], size = [80, 80, 250] }}")
             }

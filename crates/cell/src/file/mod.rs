@@ -1,6 +1,8 @@
-//! The cell file: TOML in, [`Cell`](crate::Cell) out. `docs/cell-file.md` describes every key.
+//! The cell file: TOML to [`Cell`](crate::Cell). `docs/cell-file.md` describes every key.
 
 mod avoidance;
+mod definitions;
+mod document;
 mod follow;
 mod guarding;
 mod models;
@@ -11,8 +13,8 @@ mod poses;
 mod program;
 pub(crate) mod read;
 mod region;
-pub(crate) mod robot;
-pub(crate) mod suggest;
+mod renamed;
+mod robot;
 mod words;
 
 use std::path::Path;
@@ -20,15 +22,14 @@ use std::path::Path;
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
 
+pub use document::CellFile;
 pub use models::NumberTable;
 use read::{Table, Value};
+use robot::robot_of;
 
-use crate::{Cell, CellLaws, CellRobot, MapSpec, Units, configure, seal};
+use crate::{Cell, CellLaws, MapSpec, Units, configure, seal, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
-
-/// Largest cell file that is read, bytes.
-const MOST_BYTES: u64 = 64 << 20;
 
 const KEYS: &[&str] = &[
     "version",
@@ -47,68 +48,20 @@ const KEYS: &[&str] = &[
     "program",
 ];
 
-/// A cell file, parsed but not yet resolved: every key and value with its line.
-#[derive(Debug, Clone)]
-pub struct CellFile {
-    pub(crate) file: std::path::PathBuf,
-    pub(crate) entries: Vec<node::Entry>,
-    /// True where it was read from the disk, and so must be what was sealed there.
-    on_disk: bool,
-}
-
 impl CellFile {
-    /// Reads a file.
+    /// Resolves all names, reads the files it names, converts to SI units. A file from disk must match its seal, where
+    /// it has one or needs one: see [`seal`](crate::seal).
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be read or is not TOML.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let unreadable = |e: std::io::Error| {
-            FormatError::new(path, None, format!("cannot be read: {e}"))
-                .hint("the path of a cell file (see docs/cell-file.md)")
-        };
-        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
-            return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
-        }
-        let bytes = std::fs::read(path).map_err(unreadable)?;
-        let text = String::from_utf8(bytes).map_err(|e| {
-            let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
-            FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
-        })?;
-        Ok(Self { on_disk: true, ..Self::parse(path, &text)? })
-    }
-
-    /// Parses text as if it stood in the file `path`; files it names are relative to that. What is sealed is the file on the
-    /// disk, not this text: no seal is asked for.
-    ///
-    /// # Errors
-    /// [`FormatError`] where it is not TOML.
-    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
-        let file = path.as_ref().to_owned();
-        let entries = node::parse(&file, text)?;
-        Ok(Self { file, entries, on_disk: false })
-    }
-
-    /// Names of the regions, in file order.
-    pub(crate) fn region_names(&self) -> Vec<String> {
-        let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {
-            node::Data::Table(tables) => Some(tables),
-            _ => None,
-        });
-        tables.flatten().map(|e| e.key.clone()).collect()
-    }
-
-    /// Looks everything up, reads the files it names, converts to SI. A file that was read from the disk must be as it was
-    /// sealed, where it was sealed or has to be: see [`seal`](crate::seal).
-    ///
-    /// # Errors
-    /// [`FormatError`] at the first line that is wrong, or that is not as it was sealed.
+    /// [`FormatError`] at the first wrong line, or the first line that differs from the seal.
     pub fn resolve(&self) -> Result<Cell> {
-        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
+        let mut warnings = Vec::new();
+        // A copy: the seal covers the text as it was written.
+        let entries = renamed::with_new_names(&self.file, &self.entries, &mut warnings)?;
+        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &entries };
         root.only(KEYS)?;
         version(&root)?;
         let units = Units::read(&root)?;
-        let mut warnings = Vec::new();
         let mut cell = Cell {
             file: self.file.clone(),
             name: name(&root)?,
@@ -117,7 +70,7 @@ impl CellFile {
             max_s: root.get("max_s").map_or(Ok(600.0), |v| v.positive())?,
             robots: Vec::new(),
             objects: Vec::new(),
-            movers: Vec::new(),
+            moving_objects: Vec::new(),
             regions: Vec::new(),
             encoders: Vec::new(),
             pose_tracks: Vec::new(),
@@ -140,10 +93,10 @@ impl CellFile {
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
-        // Builds what the monitors will be given, so that whatever they refuse is refused here, with its line.
+        // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
         if self.on_disk {
-            // Before the checksum: a seal tells what differs.
+            // Before the checksum: the seal names what differs.
             cell.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
@@ -153,18 +106,19 @@ impl CellFile {
     }
 }
 
-/// Compares the checksum with the one that was approved, where the file names one.
+/// Compares the checksum with the approved one, where the file gives it.
 fn check(root: &Table<'_>, cell: &Cell) -> Result<()> {
     let Some(v) = root.get("checksum") else { return Ok(()) };
     let expected = v.text()?;
     if expected.eq_ignore_ascii_case(&cell.checksum) {
         return Ok(());
     }
-    // The checksum of what stands here is not told: whoever changed the file would only have to copy it.
+    // The new checksum is not printed: otherwise it could simply be copied into the file.
     let what =
         format!("is {expected}, but the configuration in this file has another: it was changed since it was approved");
     Err(v.error(what).hint(
-        "what was approved; or whoever answers for the change takes the line out, checks the cell and approves it anew",
+        "the approved configuration; or the person responsible for the change removes the line, checks the cell and \
+         approves it again",
     ))
 }
 
@@ -177,7 +131,7 @@ impl Cell {
         CellFile::read(path)?.resolve()
     }
 
-    /// Resolves text as if it stood in the file `path`.
+    /// Resolves text as the file `path`.
     ///
     /// # Errors
     /// As for [`Cell::load`].
@@ -221,22 +175,22 @@ fn tick_ms(v: &Value<'_>) -> Result<f64> {
     Err(v.error(format!("is {ms} ms")).hint("tick_ms = 2   (0.01 to 1000)"))
 }
 
-/// Age of input from which on it is not trusted: whoever sets it to seconds has no watchdog.
+/// Age from which input is not trusted; a large value would disable the watchdog.
 fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Warning>) -> Result<f64> {
     let ms = v.positive()?;
     if ms > 1000.0 {
-        let what = format!("is {ms} ms: for so long a robot would go on by input that nobody has renewed");
+        let what = format!("is {ms} ms: for so long a robot would move with outdated input");
         return Err(v.error(what).hint("stale_ms = 20   (at most 1000)"));
     }
     if ms > 100.0 {
-        let what = format!("`{}` is {ms} ms: a robot at 1 m/s goes {ms} mm before lost input stops it", v.name);
+        let what = format!("`{}` is {ms} ms: a robot at 1 m/s moves {ms} mm before lost input stops it", v.name);
         warnings.push(Warning::new(v.file, v.line, what).hint("stale_ms = 20   (a few ticks)"));
     }
     Ok(ms)
 }
 
 fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
-    // By default the reaction is the time until the next tick obeys.
+    // Default reaction time: one tick.
     let tick_s = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0;
     let Some(v) = root.get("monitor") else {
         return Ok(CellLaws { reaction_s: tick_s, ..CellLaws::default() });
@@ -259,16 +213,16 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
         laws,
         reaction_s,
         stopping_reaction_s: stopping.then_some(reaction_s),
-        obeyed_after_s: if t.get("reaction_ms").is_some() { reaction_s } else { 0.0 },
+        reaction_delay_s: if t.get("reaction_ms").is_some() { reaction_s } else { 0.0 },
     })
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
-    let mut known = region::Known {
+    let mut known = definitions::Definitions {
         robots: &cell.robots,
         encoders: &cell.encoders,
         objects: &cell.objects,
-        movers: &cell.movers,
+        moving_objects: &cell.moving_objects,
         pose_tracks: Vec::new(),
     };
     let mut regions = Vec::new();
@@ -280,14 +234,6 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;
     Ok(())
-}
-
-/// The robot that a table `[map.NAME]` or `[program.NAME]` is about.
-fn robot_of<'a>(name: &str, t: &Table<'_>, robots: &'a [CellRobot]) -> Result<(usize, &'a CellRobot)> {
-    robots.iter().enumerate().find(|(_, r)| r.name == name).ok_or_else(|| {
-        t.error(format!("`{}` is about the robot \"{name}\", which is not in this cell", t.name))
-            .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
-    })
 }
 
 fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {

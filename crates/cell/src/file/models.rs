@@ -1,18 +1,18 @@
-//! Files that a cell file names: models, meshes, tables.
+//! Files named by a cell file: models, meshes, tables.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::{FormatError, LoadOptions, MeshData, Warning, mesh as mesh_file, robot as robot_file};
 use elbowroom_proximity::Shape;
-use elbowroom_scene::Robot;
+use elbowroom_robot::Robot;
 use elbowroom_spatial::units::LengthUnit;
 
 use super::read::{Table, Value};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Largest table that is read, bytes.
+/// Largest table, bytes.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// The file that a value names, relative to the cell file; it must exist.
@@ -37,27 +37,36 @@ fn folder(file: &Path) -> String {
     }
 }
 
-/// The robot of `model`, with what the cell file says of its SRDF, joints and unit.
+/// The robot of `model`, with its SRDF, joints file and unit.
 pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<Robot> {
     let file = path(v)?;
-    let unit = t.get("unit").map(|u| super::words::mesh_unit(&u)).transpose()?;
+    let unit = t.get("unit").map(|u| mesh_unit(&u)).transpose()?;
     let of = |key: &str| t.get(key).map(|v| path(&v)).transpose();
     let options = LoadOptions { srdf: of("srdf")?, joints: of("joints")?, unit, ..LoadOptions::default() };
     let loaded = robot_file::load(&file, &options)?;
     if loaded.robot.chain.dof() == 0 {
         let why = loaded.warnings.into_iter().find(|w| w.what.starts_with("no joint moves"));
         let hint = why.and_then(|w| w.write_instead);
-        let hint = hint.unwrap_or_else(|| "a model of a robot; solid things go under [object.NAME]".to_owned());
+        let hint = hint.unwrap_or_else(|| "a model of a robot; solid objects go under [object.NAME]".to_owned());
         return Err(v.error("names a model without a joint that moves").hint(hint));
     }
     warnings.extend(loaded.warnings);
     Ok(loaded.robot)
 }
 
-/// The pairs that the file of `srdf` disables.
+/// Disables the pairs in the file of `srdf`.
 pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Warning>) -> Result<()> {
     warnings.extend(robot_file::apply_srdf(robot, &path(v)?)?);
     Ok(())
+}
+
+pub(super) fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {
+    v.word(&[
+        ("m", LengthUnit::Metre),
+        ("mm", LengthUnit::Millimetre),
+        ("cm", LengthUnit::Centimetre),
+        ("in", LengthUnit::Inch),
+    ])
 }
 
 pub(super) fn mesh(v: &Value<'_>, unit: LengthUnit) -> Result<Shape> {
@@ -75,9 +84,9 @@ pub(super) fn mesh(v: &Value<'_>, unit: LengthUnit) -> Result<Shape> {
     whole.into_trimesh(&path).map(|m| Shape::Mesh(m.into()))
 }
 
-/// A CSV of numbers with a header.
+/// A CSV file of numbers with a header.
 pub struct NumberTable {
-    /// Where it was read.
+    /// The file.
     pub file: PathBuf,
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -89,7 +98,8 @@ impl NumberTable {
     /// Reads the file; empty lines are skipped.
     ///
     /// # Errors
-    /// [`FormatError`] with the line of what is no number, a row of another length, or a header that repeats a name.
+    /// [`FormatError`] with the line of a cell that is not a number, a row of another length, or a header with a
+    /// repeated name.
     pub fn read(path: &Path) -> Result<Self> {
         let size = fs::metadata(path).map_err(|e| FormatError::new(path, None, format!("cannot be read: {e}")))?.len();
         if size > MOST_BYTES {
@@ -134,7 +144,7 @@ impl NumberTable {
             _ => Err(FormatError::new(
                 path,
                 line,
-                format!("column `{}` holds \"{cell}\", which is no finite number", columns[i]),
+                format!("column `{}` holds \"{cell}\", which is not a finite number", columns[i]),
             )
             .hint("a number such as 0.25")),
         };
@@ -144,7 +154,7 @@ impl NumberTable {
     /// Index of a column.
     ///
     /// # Errors
-    /// [`FormatError`] that lists the columns there are.
+    /// [`FormatError`] with the list of columns.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.columns.iter().position(|c| c == name).ok_or_else(|| {
             let what = format!("has no column `{name}`; its columns are {}", self.columns.join(", "));
@@ -152,7 +162,7 @@ impl NumberTable {
         })
     }
 
-    /// The rows as times and values, time strictly rising.
+    /// The rows with increasing times.
     pub(super) fn timed(&self, columns: &[usize]) -> Result<Vec<(usize, f64, Vec<f64>)>> {
         let time = self.column("t_s")?;
         let mut last = f64::NEG_INFINITY;
@@ -177,14 +187,14 @@ pub(super) fn number_table(v: &Value<'_>) -> Result<NumberTable> {
     NumberTable::read(&path(v)?)
 }
 
-/// `t_s,travel_m` of an encoder, in SI.
+/// `t_s,travel_m` of an encoder, in SI units.
 pub(super) fn travel(v: &Value<'_>) -> Result<Vec<(f64, f64)>> {
     let table = number_table(v)?;
     let column = table.column("travel_m")?;
     Ok(table.timed(&[column])?.into_iter().map(|(_, t, row)| (t, row[0])).collect())
 }
 
-/// A cell without the quotation marks that some programs put around everything.
+/// Removes the quotation marks that some programs put around every cell.
 fn unquoted(cell: &str) -> &str {
     cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')).map_or(cell, str::trim)
 }

@@ -1,18 +1,18 @@
-//! TOML with the line of every key and value, and no type yet.
+//! TOML with the line of every key and value, untyped.
 
 use std::path::Path;
 
 use elbowroom_formats::FormatError;
 use toml::de::{DeTable, DeValue};
 
-/// A value and the line where it stands (from 1).
+/// A value and its line (from 1).
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub line: usize,
     pub data: Data,
 }
 
-/// What a value is.
+/// The data of a value.
 #[derive(Debug, Clone)]
 pub(crate) enum Data {
     Text(String),
@@ -46,7 +46,7 @@ impl Data {
     }
 }
 
-/// Byte offsets to lines.
+/// Byte offsets of line starts.
 struct Lines(Vec<usize>);
 
 impl Lines {

@@ -1,18 +1,18 @@
-//! `[object.NAME]`: solid things, and what moves them.
+//! `[object.NAME]`: solid objects, and their motion.
 
 use elbowroom_formats::FormatError;
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::definitions::encoder_index;
 use super::read::{Table, Value};
-use super::region::encoder_index;
-use crate::{Cell, Drive, Mover, Repeat, Units, Way};
+use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 const COMMON: &[&str] = &["shape", "at", "rpy", "follow", "motion"];
 const MOTION: &str = "motion = { via = [[2000, 1000, 100]], speed = 500 }";
-/// Corners nearer than this (m) are one.
+/// Corners closer than this (m) are one point.
 const ONE_POINT_M: f64 = 1e-9;
 
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
@@ -36,27 +36,28 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
             _ => units.mesh(&t, "mesh"),
         }?;
         if cell.robots.iter().any(|r| r.name == name) {
-            let what = format!("object and robot are both named \"{name}\"; reports could not tell them apart");
+            let what = format!("object and robot are both named \"{name}\"; reports could not distinguish them");
             return Err(t.error(what).hint(format!("[object.{name}_2]")));
         }
         let drive = drive(&t, cell, in_world)?;
-        let mover = drive.map(|drive| Mover { object: cell.objects.len(), rest_in_world: in_world, drive });
-        let in_world = mover.as_ref().map_or(in_world, |m| m.pose(0.0));
+        let moving_object =
+            drive.map(|drive| MovingObject { object: cell.objects.len(), rest_in_world: in_world, drive });
+        let in_world = moving_object.as_ref().map_or(in_world, |m| m.pose(0.0));
         cell.objects.push(Object { name: name.to_owned(), shape, in_world });
-        cell.movers.extend(mover);
+        cell.moving_objects.extend(moving_object);
     }
     Ok(())
 }
 
-/// What moves the object; `None` where it stands.
+/// What moves the object; `None` for a fixed one.
 fn drive(t: &Table<'_>, cell: &Cell, rest_in_world: Pose) -> Result<Option<Drive>> {
     match (t.get("follow"), t.get("motion")) {
         (None, None) => Ok(None),
-        (Some(_), Some(motion)) => {
-            Err(motion.error("stands beside `follow`: one thing moves an object").hint("either follow or motion"))
-        }
+        (Some(_), Some(motion)) => Err(motion
+            .error("contradicts `follow`: an object has one source of motion")
+            .hint("either follow or motion")),
         (Some(v), None) => belt(&v, cell).map(Some),
-        (None, Some(v)) => way(&v, cell.units, rest_in_world).map(|way| Some(Drive::Way(way))),
+        (None, Some(v)) => path(&v, cell.units, rest_in_world).map(|path| Some(Drive::Path(path))),
     }
 }
 
@@ -64,7 +65,7 @@ fn belt(v: &Value<'_>, cell: &Cell) -> Result<Drive> {
     const EXAMPLE: &str = "follow = { encoder = \"belt\" }";
     let t = v.table(EXAMPLE)?;
     if let Some(robot) = t.get("robot") {
-        let what = "makes an object ride on a robot: what a robot carries is its `load` or its tool";
+        let what = "attaches an object to a robot: a carried part is its `load` or its tool";
         return Err(robot
             .error(what)
             .hint("[robot.NAME] load = { box = { at = [0, 0, 350], size = [200, 200, 200] } }"));
@@ -74,30 +75,31 @@ fn belt(v: &Value<'_>, cell: &Cell) -> Result<Drive> {
     Ok(Drive::Belt(cell.encoders[index].clone()))
 }
 
-fn way(v: &Value<'_>, units: Units, rest_in_world: Pose) -> Result<Way> {
+fn path(v: &Value<'_>, units: Units, rest_in_world: Pose) -> Result<ObjectPath> {
     let t = v.table(MOTION)?;
     t.only(&["via", "speed", "start", "repeat", "turn"])?;
-    let turn = t.get("turn").map_or(Ok(Vec3::ZERO), |v| v.three().map(|w| w * units.angle.to_radians(1.0)))?;
+    let angular_velocity =
+        t.get("turn").map_or(Ok(Vec3::ZERO), |v| v.three().map(|w| w * units.angle.to_radians(1.0)))?;
     let start_s = t.get("start").map_or(Ok(0.0), |v| v.not_negative())?;
-    let corners = corners(&t, units, rest_in_world.translation, turn)?;
+    let corners = corners(&t, units, rest_in_world.translation, angular_velocity)?;
     if corners.len() == 1 {
         if let Some(v) = ["speed", "repeat"].iter().find_map(|k| t.get(k)) {
-            return Err(v.error("goes with `via`: what only turns has no way").hint(MOTION));
+            return Err(v.error("belongs to `via`: an object that only rotates has no path").hint(MOTION));
         }
-        return Ok(Way::new(corners, 0.0, start_s, Repeat::No, turn));
+        return Ok(ObjectPath::new(corners, 0.0, start_s, PathRepeat::Once, angular_velocity));
     }
     let speed = units.positive_length(&t.need("speed", "speed = 500   (length units per second)")?)?;
-    let repeat = t.get("repeat").map_or(Ok(Repeat::No), |v| {
-        v.word(&[("no", Repeat::No), ("loop", Repeat::Loop), ("back and forth", Repeat::BackAndForth)])
+    let repeat = t.get("repeat").map_or(Ok(PathRepeat::Once), |v| {
+        v.word(&[("no", PathRepeat::Once), ("loop", PathRepeat::Loop), ("ping-pong", PathRepeat::PingPong)])
     })?;
-    Ok(Way::new(corners, speed, start_s, repeat, turn))
+    Ok(ObjectPath::new(corners, speed, start_s, repeat, angular_velocity))
 }
 
-/// From where the object stands through the points of `via`.
-fn corners(t: &Table<'_>, units: Units, rest: Vec3, turn: Vec3) -> Result<Vec<Vec3>> {
-    const EXAMPLE: &str = "via = [[2000, 1000, 100]]   (where the object goes from its `at`, one point or more)";
+/// The initial position and the points of `via`.
+fn corners(t: &Table<'_>, units: Units, rest: Vec3, angular_velocity: Vec3) -> Result<Vec<Vec3>> {
+    const EXAMPLE: &str = "via = [[2000, 1000, 100]]   (one point or more; the object starts at its `at`)";
     let Some(via) = t.get("via") else {
-        if turn != Vec3::ZERO {
+        if angular_velocity != Vec3::ZERO {
             return Ok(vec![rest]);
         }
         return Err(t.error(format!("`{}` moves nothing: it has neither `via` nor `turn`", t.name)).hint(EXAMPLE));
@@ -113,7 +115,7 @@ fn corners(t: &Table<'_>, units: Units, rest: Vec3, turn: Vec3) -> Result<Vec<Ve
         }
         let point = units.point(v)?;
         if corners.last().is_some_and(|last| last.distance(point) < ONE_POINT_M) {
-            let what = "is where the object is already: before the first point of `via` it stands at its `at`";
+            let what = "is where the object is already: the path starts at its `at`";
             return Err(v.error(what).hint("each point away from the one before"));
         }
         corners.push(point);

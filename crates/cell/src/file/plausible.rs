@@ -1,32 +1,32 @@
-//! Are these numbers in the unit that the file states? A millimetre read as a metre puts a region a thousand times too far.
+//! Plausibility of units: a millimetre read as a metre puts a region a thousand times too far away.
 
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
 use elbowroom_proximity::{Shape, Sphere, separation, within};
-use elbowroom_scene::Body;
+use elbowroom_robot::Collider;
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::read::Table;
-use crate::run::frames::Frames;
+use crate::frames::Frames;
 use crate::{Cell, CellRegion, CellRobot, Follow};
 
 type Result<T> = std::result::Result<T, elbowroom_formats::FormatError>;
 
-/// What is thinner than this (m) is no solid thing in a robot cell.
+/// Solid objects thinner than this (m) are implausible.
 const THIN_M: f64 = 1e-3;
-/// What is larger than this (m) is no thing in a robot cell.
+/// Objects larger than this (m) are implausible.
 const LARGE_M: f64 = 100.0;
-/// Solid objects out of reach are walls and fences; farther than so many reaches away they are a mistake.
+/// Objects out of reach are walls and fences; beyond this multiple of the reach they are implausible.
 const FAR_OBJECT: f64 = 5.0;
-/// What moves is looked at where it is in this time (s), at so many instants.
+/// Moving objects are sampled over this time (s), at this number of instants.
 const LOOK_S: f64 = 120.0;
 const LOOKS: usize = 240;
 
-/// Warns of every region, object and tool that no robot can reach, that is thinner than a millimetre or larger than 100 m,
-/// with the unit in which it would make sense.
+/// Warns of every region, object and tool that no robot can reach, that is thinner than a millimetre or larger than 100
+/// m, with the unit in which it would be plausible.
 pub(super) fn check(root: &Table<'_>, cell: &Cell, warnings: &mut Vec<Warning>) -> Result<()> {
-    let plausible = Plausible { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
+    let plausible = PlausibilityCheck { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
     for (robot, (_, t)) in cell.robots.iter().zip(root.named("robot")?) {
         plausible.tool(&t, robot, warnings);
     }
@@ -39,7 +39,7 @@ pub(super) fn check(root: &Table<'_>, cell: &Cell, warnings: &mut Vec<Warning>) 
     Ok(())
 }
 
-/// A ball that holds every guarded or solid point of a robot, whatever its joint values.
+/// A ball that contains every guarded or solid point of a robot, at any joint values.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     base: Vec3,
@@ -47,11 +47,11 @@ struct Reach {
 }
 
 impl Reach {
-    /// Offsets, strokes and solids, added up along the chain; with or without what the flange carries.
+    /// Sum of offsets, strokes and solids along the chain, with or without tool and load.
     fn of(robot: &CellRobot, with_tool: bool) -> Self {
         let chain = &robot.robot.chain;
-        let bare = robot.bare();
-        let bodies = if with_tool { &robot.robot.bodies } else { &bare.bodies };
+        let without_payload = robot.without_payload();
+        let bodies = if with_tool { &robot.robot.colliders } else { &without_payload.colliders };
         let along = |link: LinkId| {
             let joint = |j: &elbowroom_kinematics::JointId| {
                 let joint = &chain.joints()[j.0];
@@ -61,11 +61,12 @@ impl Reach {
             };
             chain.path(link).iter().map(joint).sum::<f64>()
         };
-        let radius = |b: &Body| {
+        let radius = |b: &Collider| {
             let boxed = b.shape.aabb(&b.in_link);
             boxed.min.abs().max(boxed.max.abs()).length()
         };
-        let link = |(i, bodies): (usize, &Vec<Body>)| along(LinkId(i)) + bodies.iter().map(radius).fold(0.0, f64::max);
+        let link =
+            |(i, bodies): (usize, &Vec<Collider>)| along(LinkId(i)) + bodies.iter().map(radius).fold(0.0, f64::max);
         let tcp = if with_tool { robot.tcp_in_flange.translation.length() } else { 0.0 };
         let solids = bodies.iter().enumerate().map(link).fold(0.0, f64::max);
         Self { base: robot.base_in_world.translation, radius_m: solids.max(along(robot.flange) + tcp) }
@@ -78,16 +79,16 @@ impl Reach {
 
     fn meets(&self, shape: &Shape, in_world: &Pose, more_m: f64) -> bool {
         let limit = self.radius_m + more_m;
-        // What is endless is within everybody's reach.
+        // An unbounded reach contains everything.
         !limit.is_finite() || within(&POINT, &Pose::from_translation(self.base), shape, in_world, limit)
     }
 }
 
 const POINT: Shape = Shape::Sphere(Sphere { radius: 0.0 });
 
-/// What is odd about a solid.
-enum Odd {
-    /// Nobody reaches it: how far it is from the nearest base, and how far that robot reaches, m.
+/// An implausible solid.
+enum Implausibility {
+    /// Out of reach: its distance from the nearest base, and the reach of that robot, m.
     Far { distance_m: f64, reach_m: f64 },
     /// Its smallest extent, m.
     Thin(f64),
@@ -95,16 +96,16 @@ enum Odd {
     Large(f64),
 }
 
-struct Plausible<'a> {
+struct PlausibilityCheck<'a> {
     cell: &'a Cell,
     /// Per robot.
     reaches: Vec<Reach>,
 }
 
-impl Plausible<'_> {
+impl PlausibilityCheck<'_> {
     fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Warning>) {
         let region = &r.region;
-        let odd = size(&region.shape).or_else(|| {
+        let implausibility = size(&region.shape).or_else(|| {
             let in_source = region.anchor * region.shape_in_anchor;
             let more_m = region.warning_m;
             match r.follow {
@@ -119,15 +120,15 @@ impl Plausible<'_> {
             }
         });
         let what = format!("region \"{}\"", region.name);
-        self.warn(t, &what, odd, warnings);
+        self.warn(t, &what, implausibility, warnings);
     }
 
     fn object(&self, t: &Table<'_>, index: usize, warnings: &mut Vec<Warning>) {
         let object = &self.cell.objects[index];
-        let odd = size(&object.shape).or_else(|| {
-            let mover = self.cell.movers.iter().find(|m| m.object == index);
-            let places: Vec<Pose> = match mover {
-                Some(mover) => instants(self.cell).map(|t_s| mover.pose(t_s)).collect(),
+        let implausibility = size(&object.shape).or_else(|| {
+            let moving_object = self.cell.moving_objects.iter().find(|m| m.object == index);
+            let places: Vec<Pose> = match moving_object {
+                Some(moving_object) => instants(self.cell).map(|t_s| moving_object.pose(t_s)).collect(),
                 None => vec![object.in_world],
             };
             let far = |r: &Reach| Reach { radius_m: r.radius_m * FAR_OBJECT, ..*r };
@@ -135,32 +136,37 @@ impl Plausible<'_> {
             beyond(&self.reaches, &object.shape, &places, 0.0)
         });
         let what = format!("object \"{}\"", object.name);
-        self.warn(t, &what, odd, warnings);
+        self.warn(t, &what, implausibility, warnings);
     }
 
-    /// The TCP, tool and load: seen from the flange they are no farther than the arm is long.
+    /// Checks the TCP, tool and load: seen from the flange they are not farther than the arm is long.
     fn tool(&self, t: &Table<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) {
         let arm = Reach { base: Vec3::ZERO, ..Reach::of(robot, false) };
-        // A carriage of no length may carry a tool of any that fits into a cell.
+        // A chain without length may carry a tool of any plausible size.
         let arm = Reach { radius_m: arm.radius_m.max(1.0), ..arm };
         for (key, body) in [("tool", &robot.tool), ("load", &robot.load)] {
             let Some(body) = body else { continue };
-            let odd = size(&body.shape).or_else(|| beyond(&[arm], &body.shape, &[body.in_link], 0.0));
+            let implausibility = size(&body.shape).or_else(|| beyond(&[arm], &body.shape, &[body.in_link], 0.0));
             let what = format!("the {key} of robot \"{}\"", robot.name);
-            self.warn(&at(t, key), &what, odd, warnings);
+            self.warn(&at(t, key), &what, implausibility, warnings);
         }
         let length_m = robot.tcp_in_flange.translation.length();
-        let odd = if length_m > arm.radius_m {
-            Some(Odd::Far { distance_m: length_m, reach_m: arm.radius_m })
+        let implausibility = if length_m > arm.radius_m {
+            Some(Implausibility::Far { distance_m: length_m, reach_m: arm.radius_m })
         } else if length_m > 1e-9 && length_m < THIN_M {
-            Some(Odd::Thin(length_m))
+            Some(Implausibility::Thin(length_m))
         } else {
             None
         };
-        self.warn(&at(t, "tool"), &format!("the tool centre point of robot \"{}\"", robot.name), odd, warnings);
+        self.warn(
+            &at(t, "tool"),
+            &format!("the tool centre point of robot \"{}\"", robot.name),
+            implausibility,
+            warnings,
+        );
     }
 
-    /// Where a region is while its source moves.
+    /// Poses of a region while its source moves.
     fn places(&self, follow: Option<Follow>, in_source: Pose) -> Vec<Pose> {
         let Some(follow) = follow else { return vec![in_source] };
         let frames = Frames::new(self.cell);
@@ -168,22 +174,22 @@ impl Plausible<'_> {
         instants(self.cell).map(|t_s| frames.source(&follow, &states, t_s).pose * in_source).collect()
     }
 
-    fn warn(&self, t: &Table<'_>, what: &str, odd: Option<Odd>, warnings: &mut Vec<Warning>) {
-        let Some(odd) = odd else { return };
+    fn warn(&self, t: &Table<'_>, what: &str, implausibility: Option<Implausibility>, warnings: &mut Vec<Warning>) {
+        let Some(implausibility) = implausibility else { return };
         let units = self.cell.units;
         let show = |m: f64| units.show_length(short(m));
-        let text = match odd {
-            Odd::Far { distance_m, reach_m } => {
+        let text = match implausibility {
+            Implausibility::Far { distance_m, reach_m } => {
                 format!("is beyond reach: {} away, where {} can be reached", show(distance_m), show(reach_m))
             }
-            Odd::Thin(m) => format!("is only {} thick or long", show(m)),
-            Odd::Large(m) => format!("is {} large", show(m)),
+            Implausibility::Thin(m) => format!("is only {} thick or long", show(m)),
+            Implausibility::Large(m) => format!("is {} large", show(m)),
         };
         let other = if units.length == LengthUnit::Metre { LengthUnit::Millimetre } else { LengthUnit::Metre };
         let factor = other.to_metres(1.0) / units.length.to_metres(1.0);
-        let (value, sensible) = match odd {
-            Odd::Far { distance_m, reach_m } => (distance_m, distance_m * factor <= FAR_OBJECT * reach_m),
-            Odd::Thin(m) | Odd::Large(m) => (m, (THIN_M..=LARGE_M).contains(&(m * factor))),
+        let (value, sensible) = match implausibility {
+            Implausibility::Far { distance_m, reach_m } => (distance_m, distance_m * factor <= FAR_OBJECT * reach_m),
+            Implausibility::Thin(m) | Implausibility::Large(m) => (m, (THIN_M..=LARGE_M).contains(&(m * factor))),
         };
         let (unit, angle) = (other.symbol(), units.angle.symbol());
         let warning = if sensible {
@@ -194,14 +200,14 @@ impl Plausible<'_> {
                     units.length.symbol()
                 ))
         } else {
-            let hint = "a place within reach and a size from 1 mm to 100 m, or nothing where it is meant so";
+            let hint = "a place within reach and a size from 1 mm to 100 m; no change if it is intended";
             Warning::new(t.file, t.line, format!("{what} {text}")).hint(hint)
         };
         warnings.push(warning);
     }
 }
 
-/// The value of a key as something that has a line; the table itself where the key is not there.
+/// The table at the line of a key; at its own line where the key is missing.
 fn at<'a>(t: &Table<'a>, key: &str) -> Table<'a> {
     let line = t.get(key).map_or(t.line, |v| v.line);
     t.clone().at_line(line)
@@ -212,19 +218,19 @@ fn instants(cell: &Cell) -> impl Iterator<Item = f64> {
     (0..=LOOKS).map(move |i| end_s * i as f64 / LOOKS as f64)
 }
 
-/// Far, where the solid is beyond all of these at all of these places; never where there are none.
-fn beyond(reaches: &[Reach], shape: &Shape, places: &[Pose], more_m: f64) -> Option<Odd> {
+/// `Far`, where the solid is out of reach of all robots at all poses; never without robots.
+fn beyond(reaches: &[Reach], shape: &Shape, places: &[Pose], more_m: f64) -> Option<Implausibility> {
     if reaches.iter().any(|r| places.iter().any(|p| r.meets(shape, p, more_m))) {
         return None;
     }
     let place = places.first()?;
     let distances = reaches.iter().map(|r| (r.distance_m(shape, place), r.radius_m));
     let (distance_m, reach_m) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Odd::Far { distance_m, reach_m })
+    Some(Implausibility::Far { distance_m, reach_m })
 }
 
-/// Thin or large; planes are neither, and a mesh may be flat.
-fn size(shape: &Shape) -> Option<Odd> {
+/// `Thin` or `Large`; never for planes. A mesh may be flat.
+fn size(shape: &Shape) -> Option<Implausibility> {
     if matches!(shape, Shape::HalfSpace(_)) {
         return None;
     }
@@ -234,12 +240,12 @@ fn size(shape: &Shape) -> Option<Odd> {
         _ => extent.min_element(),
     };
     if extent.max_element() > LARGE_M {
-        return Some(Odd::Large(extent.max_element()));
+        return Some(Implausibility::Large(extent.max_element()));
     }
-    (least < THIN_M).then_some(Odd::Thin(least))
+    (least < THIN_M).then_some(Implausibility::Thin(least))
 }
 
-/// To four digits.
+/// Rounded to four digits.
 fn short(v: f64) -> f64 {
     if v == 0.0 || !v.is_finite() {
         return v;

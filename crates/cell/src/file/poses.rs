@@ -1,4 +1,4 @@
-//! A CSV file of poses over time: `follow = { poses = "cart.csv" }`.
+//! CSV files of poses over time: `follow = { poses = "cart.csv" }`.
 
 use elbowroom_formats::FormatError;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
@@ -6,8 +6,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::models::{self, NumberTable};
 use super::read::Value;
-use super::suggest;
-use crate::{PoseTrack, Units};
+use crate::{PoseTrack, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -17,7 +16,7 @@ const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const EXAMPLE: &str =
     "t_s,x_m,y_m,z_m,qx,qy,qz,qw   (or x,y,z in the cell's unit; roll,pitch,yaw or roll_deg,…; or no rotation)";
 
-/// Which columns hold what.
+/// Meaning of the columns.
 struct Columns {
     position: [usize; 3],
     length: LengthUnit,
@@ -92,7 +91,7 @@ impl Columns {
     }
 }
 
-/// The columns of these names with one of the suffixes, and what it means.
+/// The columns of these names with one of the suffixes, and its unit.
 fn one_of<const N: usize, U: Copy>(
     table: &NumberTable,
     names: &[&str; N],

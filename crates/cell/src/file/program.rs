@@ -4,10 +4,12 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::Chain;
 use elbowroom_monitor::Life;
 
+use super::models;
 use super::read::{Table, Value};
 use super::robot::joint_values;
-use super::{models, suggest};
-use crate::{Action, CellRegion, CellRobot, Program, ProgramBody, Step, Target, TrajectoryRow, Units};
+use crate::{
+    CellRegion, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units, suggest,
+};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -25,7 +27,7 @@ pub(super) fn read(
     let speed_override = t.get("override").map_or(Ok(1.0), |v| v.percent())?;
     let repeat = t.get("repeat").map_or(Ok(1), |v| v.whole(1, 1_000_000))?;
     let body = match (t.get("steps"), t.get("trajectory")) {
-        (Some(_), Some(v)) => return Err(v.error("stands beside `steps`").hint("one of the two: steps or trajectory")),
+        (Some(_), Some(v)) => return Err(v.error("contradicts `steps`").hint("one of the two: steps or trajectory")),
         (Some(steps), None) => {
             let list = steps.list("steps = [{ move = \"joint\", to = [0, 0, 0, 0, 0, 0] }]")?;
             ProgramBody::Steps(list.iter().map(|s| step(s, units, robot, regions)).collect::<Result<_>>()?)
@@ -39,7 +41,7 @@ pub(super) fn read(
     Ok(Program { speed_override, repeat, body, line: t.line })
 }
 
-fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) -> Result<Step> {
+fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) -> Result<ProgramStep> {
     const KINDS: [&str; 4] = ["move", "region", "wait", "override"];
     const EXAMPLE: &str =
         "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 } or { override = 50 }";
@@ -50,47 +52,47 @@ fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) 
         ["region"] => switch(&t, regions)?,
         ["wait"] => {
             t.only(&["wait"])?;
-            Action::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
+            StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
         }
         ["override"] => {
             t.only(&["override"])?;
-            Action::Override(t.need("override", "override = 50")?.percent()?)
+            StepAction::Override(t.need("override", "override = 50")?.percent()?)
         }
         [] => {
             t.only(&["move", "to", "speed", "region", "active", "wait", "override"])?;
-            return Err(v.error("is no step").hint(EXAMPLE));
+            return Err(v.error("is not a step").hint(EXAMPLE));
         }
         _ => return Err(v.error("is several steps in one").hint("one of move, region, wait, override per step")),
     };
-    Ok(Step { line: t.line, action })
+    Ok(ProgramStep { line: t.line, action })
 }
 
-fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Action> {
+fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction> {
     t.only(&["move", "to", "speed"])?;
     let linear = t.need("move", "move = \"joint\"")?.word(&[("joint", false), ("linear", true)])?;
     let example =
         if linear { "to = { at = [900, 600, 700], rpy = [180, 0, 0] }" } else { "to = [0, -20, 90, 0, 40, 0]" };
     let to = t.need("to", example)?;
     let to = if to.is_table() {
-        Target::Tcp(units.pose(&to)?)
+        MoveTarget::Tcp(units.pose(&to)?)
     } else if to.is_list() {
-        Target::Joints(joint_values(&to, &robot.robot.chain, units)?)
+        MoveTarget::Joints(joint_values(&to, &robot.robot.chain, units)?)
     } else {
         return Err(to.error("is neither joint values nor a pose").hint(example));
     };
     let speed = t.get("speed");
     if linear {
         let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
-        return Ok(Action::Linear { to, speed });
+        return Ok(StepAction::Linear { to, speed });
     }
     let speed = speed.map_or(Ok(1.0), |v| {
         v.positive()?;
         v.percent()
     })?;
-    Ok(Action::Joint { to, speed })
+    Ok(StepAction::Joint { to, speed })
 }
 
-fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<Action> {
+fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
     t.only(&["region", "active"])?;
     let v = t.need("region", "region = \"column\"")?;
     let name = v.text()?;
@@ -108,7 +110,7 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<Action> {
         return Err(v.error(what).hint(format!("life = \"temporary\" in [region.{name}], or leave the step out")));
     }
     let active = t.need("active", "active = true")?.flag()?;
-    Ok(Action::Switch { region, active })
+    Ok(StepAction::Switch { region, active })
 }
 
 fn trajectory(v: &Value<'_>, chain: &Chain, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {

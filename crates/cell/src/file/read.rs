@@ -1,4 +1,4 @@
-//! Typed access to the nodes, with errors that teach.
+//! Typed access to the nodes, with instructive errors.
 
 use std::path::Path;
 
@@ -6,11 +6,11 @@ use elbowroom_formats::FormatError;
 use elbowroom_spatial::Vec3;
 
 use super::node::{Data, Entry, Node};
-use super::suggest;
+use crate::suggest;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// A table of the file and its name there: `robot.ns16.tool`.
+/// A table of the file and its full name: `robot.ns16.tool`.
 #[derive(Clone)]
 pub(crate) struct Table<'a> {
     pub file: &'a Path,
@@ -19,7 +19,7 @@ pub(crate) struct Table<'a> {
     pub entries: &'a [Entry],
 }
 
-/// A value of the file and its name there.
+/// A value of the file and its full name.
 #[derive(Clone)]
 pub(crate) struct Value<'a> {
     pub file: &'a Path,
@@ -37,7 +37,7 @@ impl<'a> Table<'a> {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
-    fn said(&self) -> String {
+    fn display_name(&self) -> String {
         if self.name.is_empty() { "the cell file".into() } else { format!("`{}`", self.name) }
     }
 
@@ -48,7 +48,7 @@ impl<'a> Table<'a> {
     /// Refuses keys that are not in `known`.
     pub fn only(&self, known: &[&str]) -> Result<()> {
         let Some(entry) = self.entries.iter().find(|e| !known.contains(&e.key.as_str())) else { return Ok(()) };
-        let what = format!("{} has no key `{}`", self.said(), entry.key);
+        let what = format!("{} has no key `{}`", self.display_name(), entry.key);
         let hint = suggest::hint(&entry.key, known.iter().copied());
         Err(FormatError::new(self.file, entry.line, what).hint(hint))
     }
@@ -57,12 +57,12 @@ impl<'a> Table<'a> {
         self.entries.iter().find(|e| e.key == key).map(|e| self.value(e))
     }
 
-    /// The value of a key that must be there; `example` is what to write.
+    /// The value of a required key; `example` is what to write.
     pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
-        self.get(key).ok_or_else(|| self.error(format!("{} needs the key `{key}`", self.said())).hint(example))
+        self.get(key).ok_or_else(|| self.error(format!("{} needs the key `{key}`", self.display_name())).hint(example))
     }
 
-    /// The values in file order, with their keys.
+    /// The keys and values in file order.
     pub fn each(&self) -> impl Iterator<Item = (&'a str, Value<'a>)> + '_ {
         self.entries.iter().map(|e| (e.key.as_str(), self.value(e)))
     }
@@ -76,9 +76,9 @@ impl<'a> Table<'a> {
             .into_iter()
             .map(|(e, v)| {
                 if e.key.trim().is_empty() || e.key.contains(['/', ',', '"', '\n', '\r']) {
-                    let what = format!("`{}` is no name for a {key}", e.key.escape_debug());
+                    let what = format!("`{}` is not a name for a {key}", e.key.escape_debug());
                     return Err(FormatError::new(v.file, e.line, what)
-                        .hint("a name without slash, comma, quote and line break, for it appears in CSV files"));
+                        .hint("a name without slash, comma, quote and line break, because it appears in CSV files"));
                 }
                 Ok((e.key.as_str(), v.table_like(&format!("[{key}.{}]", e.key))?.at_line(e.line)))
             })
@@ -129,7 +129,7 @@ impl<'a> Value<'a> {
         if v >= 0.0 { Ok(v) } else { Err(self.error(format!("must be 0 or more, not {v}")).hint(more())) }
     }
 
-    /// A number from 0 to 100, as a fraction.
+    /// A percentage from 0 to 100, as a fraction.
     pub fn percent(&self) -> Result<f64> {
         let v = self.number()?;
         if (0.0..=100.0).contains(&v) {
@@ -161,7 +161,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// One of some words.
+    /// One of a set of words.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Result<T> {
         let list = || words.iter().map(|w| w.0);
         let Data::Text(text) = &self.node.data else {
@@ -204,7 +204,7 @@ impl<'a> Value<'a> {
         self.list(example)?.iter().map(Value::number).collect()
     }
 
-    /// Three numbers, unit not applied.
+    /// Three numbers, without unit.
     pub fn three(&self) -> Result<Vec3> {
         let example = format!("{} = [0, 0, 0]", self.key());
         let v = self.numbers(&example)?;

@@ -1,15 +1,15 @@
 //! `[region.NAME]` and `[encoder.NAME]`.
 
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_monitor::{Guards, Kind, Life, Region, SlotId, SourceLimits};
+use elbowroom_monitor::{Guards, Life, Region, RegionKind, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
-use elbowroom_scene::Object;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
 
+use super::definitions::{Definitions, robot_index};
 use super::read::{Table, Value};
-use super::{follow, models, suggest};
-use crate::{CellRegion, CellRobot, Encoder, Follow, Mover, PoseTrack, Travel, Units};
+use super::{follow, models};
+use crate::{CellRegion, Encoder, Follow, Travel, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -28,30 +28,20 @@ const COMMON: &[&str] = &[
     "warning_output",
 ];
 
-/// Thicker warning zones, and a larger hysteresis, are refused, m.
+/// Largest warning zone and hysteresis, m.
 const MOST_M: f64 = 10_000.0;
-/// Thicker warning zones are warned about, m.
+/// Thicker warning zones cause a warning, m.
 const LARGE_WARNING_M: f64 = 10.0;
 /// The thinnest warning zone of an exchange region, m.
 const LEAST_EXCHANGE_WARNING_M: f64 = 1e-3;
-/// A larger hysteresis is warned about, m.
+/// A larger hysteresis causes a warning, m.
 const LARGE_HYSTERESIS_M: f64 = 1.0;
-
-/// What a region may name.
-pub(super) struct Known<'a> {
-    pub robots: &'a [CellRobot],
-    pub encoders: &'a [Encoder],
-    pub objects: &'a [Object],
-    pub movers: &'a [Mover],
-    /// Read with the regions that follow them.
-    pub pose_tracks: Vec<PoseTrack>,
-}
 
 pub(super) fn read(
     name: &str,
     t: &Table<'_>,
     units: Units,
-    known: &mut Known<'_>,
+    known: &mut Definitions<'_>,
     warnings: &mut Vec<Warning>,
 ) -> Result<CellRegion> {
     let mut region = solid(name, t, units)?;
@@ -74,12 +64,12 @@ pub(super) fn read(
     Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
 }
 
-/// A thickness or a hysteresis: one beyond `plausible` metres is warned about, one beyond [`MOST_M`] refused.
+/// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MOST_M`] an error.
 fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Warning>) -> Result<f64> {
     let metres = units.not_negative_length(v)?;
     let shown = units.show_length(metres);
     if metres > MOST_M {
-        let what = format!("is {shown}: no cell is so large");
+        let what = format!("is {shown}: no cell is that large");
         return Err(v.error(what).hint(format!("a length up to {}", units.show_length(plausible))));
     }
     if metres > plausible {
@@ -97,14 +87,14 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<War
 
 fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
     match region.kind {
-        // A robot that is kept out stops half a millimetre before the border: there it must have asked.
-        Kind::Exchange { .. } if region.warning_m < LEAST_EXCHANGE_WARNING_M => Err(t
+        // A robot without the grant stops half a millimetre before the border: there it must already have requested it.
+        RegionKind::Exchange { .. } if region.warning_m < LEAST_EXCHANGE_WARNING_M => Err(t
             .error(format!(
-                "region \"{name}\" is an exchange region: robots ask for it in its warning zone, so it needs one of 1 mm \
+                "region \"{name}\" is an exchange region: robots request it in its warning zone, so it needs one of 1 mm \
                  or more"
             ))
             .hint("warning = 250")),
-        Kind::Forbidden if region.warning_m <= 0.0 => {
+        RegionKind::Forbidden if region.warning_m <= 0.0 => {
             let what = format!("region \"{name}\" has no warning zone: robots stop only when they touch it");
             warnings.push(Warning::new(t.file, t.line, what).hint("warning = 250"));
             Ok(())
@@ -169,7 +159,7 @@ fn cuboid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     let rotation = units.rotation(t.get("rpy"))?;
     if t.get("base").is_some() || t.get("size").is_some() {
         if let Some(v) = t.get("from").or_else(|| t.get("to")) {
-            return Err(v.error("stands beside `base` and `size`").hint("either from and to, or base and size"));
+            return Err(v.error("contradicts `base` and `size`").hint("either from and to, or base and size"));
         }
         let base = units.point(&t.need("base", "base = [900, 0, 0]")?)?;
         return Ok(Region::cuboid(name, base, units.size(&t.need("size", "size = [600, 400, 700]")?)?, rotation));
@@ -187,18 +177,16 @@ fn cuboid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     Ok(region)
 }
 
-fn kind(t: &Table<'_>) -> Result<Kind> {
-    let exchange = Kind::Exchange { slot: SlotId(0) };
-    let monitored = Kind::Monitored { slow_to: None };
-    let kind = t.get("kind").map_or(Ok(Kind::Forbidden), |v| {
-        v.word(&[("forbidden", Kind::Forbidden), ("monitored", monitored), ("exchange", exchange)])
+fn kind(t: &Table<'_>) -> Result<RegionKind> {
+    let exchange = RegionKind::Exchange { slot: SlotId(0) };
+    let monitored = RegionKind::Monitored { slow_to: None };
+    let kind = t.get("kind").map_or(Ok(RegionKind::Forbidden), |v| {
+        v.word(&[("forbidden", RegionKind::Forbidden), ("monitored", monitored), ("exchange", exchange)])
     })?;
     let Some(slow_to) = t.get("slow_to") else { return Ok(kind) };
     match kind {
-        Kind::Monitored { .. } => Ok(Kind::Monitored { slow_to: Some(slow_to.percent()?) }),
-        _ => {
-            Err(slow_to.error("makes a speed zone of a monitored region; this one is not").hint("kind = \"monitored\""))
-        }
+        RegionKind::Monitored { .. } => Ok(RegionKind::Monitored { slow_to: Some(slow_to.percent()?) }),
+        _ => Err(slow_to.error("requires a monitored region; this one is not").hint("kind = \"monitored\"")),
     }
 }
 
@@ -219,24 +207,7 @@ fn guards(v: &Value<'_>) -> Result<Guards> {
     Ok(guards)
 }
 
-pub(super) fn robot_index(v: &Value<'_>, robots: &[CellRobot]) -> Result<usize> {
-    let name = v.text()?;
-    robots.iter().position(|r| r.name == name).ok_or_else(|| {
-        v.error(format!("names the robot \"{name}\", which is not in this cell"))
-            .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
-    })
-}
-
-pub(super) fn encoder_index(v: &Value<'_>, encoders: &[Encoder]) -> Result<usize> {
-    let name = v.text()?;
-    let names = || encoders.iter().map(|e| e.name.as_str());
-    names().position(|n| n == name).ok_or_else(|| {
-        let what = format!("names the encoder \"{name}\", which has no table [encoder.{name}]");
-        v.error(what).hint(suggest::hint(name, names()))
-    })
-}
-
-fn robots(t: &Table<'_>, known: &Known<'_>, follow: Option<Follow>) -> Result<Vec<usize>> {
+fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Result<Vec<usize>> {
     let followed = match follow {
         Some(Follow::Robot { robot, .. }) => Some(robot),
         _ => None,
@@ -246,13 +217,13 @@ fn robots(t: &Table<'_>, known: &Known<'_>, follow: Option<Follow>) -> Result<Ve
     };
     let list = v.list("robots = [\"r1\"]")?;
     if list.is_empty() {
-        return Err(v.error("is empty: the region would concern nobody").hint("leave it out for all robots"));
+        return Err(v.error("is empty: the region would apply to no robot").hint("leave it out for all robots"));
     }
     let mut robots = Vec::new();
     for item in &list {
         let index = robot_index(item, known.robots)?;
         if Some(index) == followed {
-            let what = "names the robot that carries the region: it would stop itself";
+            let what = "names the robot that the region follows: it would stop itself";
             return Err(item.error(what).hint("the other robots only, or leave `robots` out"));
         }
         if robots.contains(&index) {
@@ -271,11 +242,11 @@ pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder
     let wrap_m = t.get("wrap").map(|v| units.positive_length(&v)).transpose()?;
     let travel = match (t.get("file"), t.get("speed")) {
         (Some(_), Some(speed)) => {
-            return Err(speed.error("stands beside `file`").hint("one of the two: speed or file"));
+            return Err(speed.error("contradicts `file`").hint("one of the two: speed or file"));
         }
         (Some(file), None) => {
             if let Some(v) = ["at", "start", "end"].iter().find_map(|k| t.get(k)) {
-                return Err(v.error("goes with `speed`; the file says when and where").hint("leave it out"));
+                return Err(v.error("belongs to `speed`; the file gives times and travel").hint("leave it out"));
             }
             Travel::Table(models::travel(&file)?)
         }

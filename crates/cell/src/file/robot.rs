@@ -5,12 +5,12 @@ use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::{Chain, JointKind, Limits, LinkId};
 use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::Pose;
 
+use super::models;
 use super::read::{Table, Value};
-use super::{models, suggest};
-use crate::{CellRobot, JointLimits, Units, resting};
+use crate::{CellRobot, JointLimits, Units, resting, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -21,7 +21,7 @@ const KEYS: &[&str] = &[
     "unit",
     "dh",
     "links",
-    "foot",
+    "base_link",
     "base",
     "flange",
     "start",
@@ -34,20 +34,20 @@ const KEYS: &[&str] = &[
     "stop_time",
 ];
 
-/// Longer stop times (s) are refused,
+/// Longest stop time, s.
 const MOST_STOP_TIME_S: f64 = 60.0;
-/// and so are larger speeds, accelerations and jerks, in the file's units.
+/// Largest speeds, accelerations and jerks, in the file's units.
 const MOST_RATE: f64 = 1e9;
 
-/// Full speed to rest in this time, where `stop_time` does not say otherwise.
+/// Default time from full speed to rest.
 pub(crate) const STOP_TIME_S: f64 = 0.1;
-/// Rest to full speed in this time, where neither model nor `acceleration` say otherwise.
+/// Default time from rest to full speed, where neither the model nor `acceleration` gives one.
 pub(crate) const ACCELERATION_TIME_S: f64 = 0.25;
-/// Full acceleration within this time, where `jerk` does not say otherwise.
+/// Default time to full acceleration.
 pub(crate) const JERK_TIME_S: f64 = 0.1;
-/// Speed of a revolute joint that has none, rad/s.
+/// Default speed of revolute joints, rad/s.
 const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
-/// Speed of a prismatic joint that has none, m/s.
+/// Default speed of prismatic joints, m/s.
 const PRISMATIC_SPEED: f64 = 1.0;
 
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
@@ -57,7 +57,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
     let load = t.get("load").map(|v| solid(&v, units, "load")).transpose()?;
-    robot.bodies[flange.0].extend(tool.iter().chain(&load).cloned());
+    robot.colliders[flange.0].extend(tool.iter().chain(&load).cloned());
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
     warnings.extend(
@@ -86,16 +86,16 @@ fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Rob
     let example =
         "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
     match (t.get("model"), t.get("dh")) {
-        (Some(model), Some(_)) => Err(model.error("stands beside `dh`").hint("one of the two: model or dh")),
+        (Some(model), Some(_)) => Err(model.error("contradicts `dh`").hint("one of the two: model or dh")),
         (Some(file), None) => {
-            if let Some(v) = t.get("links").or_else(|| t.get("foot")) {
-                return Err(v.error("goes with `dh`; a model brings its own solids").hint("leave it out"));
+            if let Some(v) = t.get("links").or_else(|| t.get("base_link")) {
+                return Err(v.error("belongs to `dh`; a model has its own solids").hint("leave it out"));
             }
             models::robot(&file, t, warnings)
         }
         (None, Some(dh)) => {
             if let Some(v) = ["joints", "unit"].iter().find_map(|key| t.get(key)) {
-                return Err(v.error("goes with `model`, not with `dh`").hint("leave it out"));
+                return Err(v.error("belongs to `model`, not to `dh`").hint("leave it out"));
             }
             let mut robot = dh_robot(t, &dh, units)?;
             if let Some(srdf) = t.get("srdf") {
@@ -114,10 +114,10 @@ fn dh_robot(t: &Table<'_>, dh: &Value<'_>, units: Units) -> Result<Robot> {
     }
     let rows = rows.iter().enumerate().map(|(i, v)| dh_row(i, v, units)).collect::<Result<Vec<_>>>()?;
     let chain = Chain::from_dh(t.name.rsplit('.').next().unwrap_or("robot"), &rows)
-        .map_err(|e| dh.error(format!("gives no chain: {e}")))?;
+        .map_err(|e| dh.error(format!("is not a valid chain: {e}")))?;
     let mut robot = Robot::new(chain);
-    if let Some(foot) = t.get("foot") {
-        robot.bodies[robot.chain.root().0] = solids(&foot, units, "foot")?;
+    if let Some(base) = t.get("base_link") {
+        robot.colliders[robot.chain.root().0] = solids(&base, units, "base_link")?;
     }
     let Some(links) = t.get("links") else { return Ok(robot) };
     let entries = links.list("links = [{ capsule = { from = [0, 0, 0], to = [0, 0, 400], radius = 60 } }, …]")?;
@@ -128,7 +128,7 @@ fn dh_robot(t: &Table<'_>, dh: &Value<'_>, units: Units) -> Result<Robot> {
     for (i, entry) in entries.iter().enumerate() {
         let name = format!("link_{}", i + 1);
         let Some(link) = robot.chain.link(&name) else { continue };
-        robot.bodies[link.0] = solids(entry, units, &name)?;
+        robot.colliders[link.0] = solids(entry, units, &name)?;
     }
     Ok(robot)
 }
@@ -149,12 +149,14 @@ fn dh_row(index: usize, v: &Value<'_>, units: Units) -> Result<ClassicalRow> {
         (false, Some(min), Some(max)) => (JointKind::Revolute, min, max),
         (false, None, None) => (JointKind::Continuous, f64::NEG_INFINITY, f64::INFINITY),
         (true, ..) => {
-            return Err(t.error(format!("`{}` slides: it needs min and max", t.name)).hint("min = 0, max = 1000"));
+            return Err(t
+                .error(format!("`{}` is prismatic: it needs min and max", t.name))
+                .hint("min = 0, max = 1000"));
         }
         _ => {
             return Err(t
                 .error(format!("`{}` has one bound", t.name))
-                .hint("both min and max, or neither for endless turning"));
+                .hint("both min and max, or neither for a continuous joint"));
         }
     };
     let joint = match t.get("name") {
@@ -174,7 +176,7 @@ fn dh_row(index: usize, v: &Value<'_>, units: Units) -> Result<ClassicalRow> {
     })
 }
 
-fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Body>> {
+fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Collider>> {
     if v.is_list() {
         return v.list("[]")?.iter().map(|s| solid(s, units, name)).collect();
     }
@@ -182,8 +184,8 @@ fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Body>> {
     if empty { Ok(Vec::new()) } else { solid(v, units, name).map(|b| vec![b]) }
 }
 
-/// `{ capsule = { … } }`, likewise box, sphere, cylinder, mesh.
-fn solid(v: &Value<'_>, units: Units, name: &str) -> Result<Body> {
+/// `{ capsule = { … } }`, or box, sphere, cylinder, mesh.
+fn solid(v: &Value<'_>, units: Units, name: &str) -> Result<Collider> {
     const KINDS: &[&str] = &["box", "sphere", "cylinder", "capsule", "mesh"];
     const EXAMPLE: &str = "{ capsule = { from = [0, 0, 0], to = [0, 0, 400], radius = 60 } }";
     let t = v.table(EXAMPLE)?;
@@ -193,7 +195,7 @@ fn solid(v: &Value<'_>, units: Units, name: &str) -> Result<Body> {
         return Err(v.error("must be exactly one of box, sphere, cylinder, capsule, mesh").hint(EXAMPLE));
     };
     let (shape, in_link) = named_solid(kind, &inner, &t, units)?;
-    Ok(Body { name: name.to_owned(), shape, in_link })
+    Ok(Collider { name: name.to_owned(), shape, in_link })
 }
 
 fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -> Result<(Shape, Pose)> {
@@ -210,18 +212,18 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
     }
 }
 
-fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Body>)> {
+fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
     t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy"])?;
     if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "mesh_unit"].iter().find_map(|k| t.get(k))) {
         return Err(v
-            .error("says where a tool's mesh is, and there is none")
+            .error("places the tool's mesh, but there is none")
             .hint("box = { at = [0, 0, 125], size = [80, 80, 250] }"));
     }
     let tcp = t.get("tcp").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
-    let body = |(shape, in_link)| Some(Body { name: "tool".into(), shape, in_link });
+    let body = |(shape, in_link)| Some(Collider { name: "tool".into(), shape, in_link });
     match (t.get("box"), t.get("mesh")) {
-        (Some(_), Some(mesh)) => Err(mesh.error("stands beside `box`").hint("one of the two: box or mesh")),
+        (Some(_), Some(mesh)) => Err(mesh.error("contradicts `box`").hint("one of the two: box or mesh")),
         (Some(cuboid), None) => Ok((tcp, body(named_solid("box", &cuboid, &t, units)?))),
         (None, Some(mesh)) => Ok((tcp, body(named_solid("mesh", &mesh, &t, units)?))),
         (None, None) => Ok((tcp, None)),
@@ -234,7 +236,7 @@ fn flange(t: &Table<'_>, chain: &Chain) -> Result<LinkId> {
     chain.link(name).ok_or_else(|| unknown_link(&v, name, chain))
 }
 
-/// "has no link …", with the links that it has.
+/// The error for an unknown link, with the links of the chain.
 pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> FormatError {
     let hint = suggest::hint(name, chain.links().iter().map(String::as_str));
     v.error(format!("names the link \"{name}\", which robot \"{}\" does not have", chain.name())).hint(hint)
@@ -250,7 +252,7 @@ fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
     ])
 }
 
-/// Joint values of a list in the file's units, checked against number of joints and limits.
+/// Joint values in the file's units, checked against the number of joints and their limits.
 pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     let zeros = vec!["0"; chain.dof()].join(", ");
     let raw = v.numbers(&format!("[{zeros}]"))?;
@@ -291,17 +293,17 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
     Ok(clamped)
 }
 
-/// One number for all joints, or a list with one per joint.
-/// Full speed to rest, s.
+/// Time from full speed to rest, s.
 fn stop_time(v: &Value<'_>) -> Result<f64> {
     let time_s = v.positive()?;
     if time_s > MOST_STOP_TIME_S {
-        let what = format!("is {time_s} s: no robot brakes for so long");
+        let what = format!("is {time_s} s: no robot brakes for that long");
         return Err(v.error(what).hint(format!("stop_time = 0.5   (at most {MOST_STOP_TIME_S})")));
     }
     Ok(time_s)
 }
 
+/// One number for all joints, or a list with one per joint.
 fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     let values = if v.is_list() {
         v.list("[…]")?.iter().map(Value::positive).collect::<Result<Vec<_>>>()?
@@ -313,13 +315,13 @@ fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
         return Err(v.error(what).hint("one number for all joints, or a list with one per joint"));
     }
     if let Some(value) = values.iter().find(|x| **x > MOST_RATE) {
-        return Err(v.error(format!("has {value:e}: no joint is so fast")).hint(format!("at most {MOST_RATE:e}")));
+        return Err(v.error(format!("has {value:e}: no joint is that fast")).hint(format!("at most {MOST_RATE:e}")));
     }
     let prismatic = |j: &elbowroom_kinematics::JointId| chain.joints()[j.0].kind == JointKind::Prismatic;
     Ok(values.iter().zip(chain.active_joints()).map(|(x, j)| units.joint(prismatic(j), *x)).collect())
 }
 
-/// The chain with the cell's speeds in it: the monitor judges by them what is plausible.
+/// The chain with the cell's speeds, which the monitor uses for plausibility checks.
 fn with_speeds(t: &Table<'_>, chain: &Chain, limits: &[JointLimits]) -> Result<Chain> {
     let mut joints = chain.joints().to_vec();
     for (id, limit) in chain.active_joints().iter().zip(limits) {
@@ -357,11 +359,19 @@ fn limits(
     }
     if !unknown.is_empty() {
         let what = format!(
-            "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s where sliding)",
+            "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s for prismatic joints)",
             unknown.join(", ")
         );
         warnings
             .push(Warning::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"));
     }
     Ok(limits)
+}
+
+/// The robot that a table `[map.NAME]` or `[program.NAME]` refers to.
+pub(super) fn robot_of<'a>(name: &str, t: &Table<'_>, robots: &'a [CellRobot]) -> Result<(usize, &'a CellRobot)> {
+    robots.iter().enumerate().find(|(_, r)| r.name == name).ok_or_else(|| {
+        t.error(format!("`{}` refers to the robot \"{name}\", which is not in this cell", t.name))
+            .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
+    })
 }

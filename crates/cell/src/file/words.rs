@@ -12,7 +12,7 @@ use crate::Units;
 type Result<T> = std::result::Result<T, FormatError>;
 
 impl Units {
-    /// From the key `units`, which must be there.
+    /// From the required key `units`.
     pub(super) fn read(root: &Table<'_>) -> Result<Self> {
         const EXAMPLE: &str = "units = { length = \"mm\", angle = \"deg\" }";
         let table = root.need("units", EXAMPLE)?.table(EXAMPLE)?;
@@ -26,17 +26,17 @@ impl Units {
     }
 
     /// A joint value in the file's unit, for messages.
-    pub(crate) fn show_joint(self, prismatic: bool, value: f64) -> String {
+    pub fn show_joint(self, prismatic: bool, value: f64) -> String {
         if prismatic { self.show_length(value) } else { format!("{} {}", trim(self.angle(value)), self.angle.symbol()) }
     }
 
     /// A length in the file's unit, for messages.
-    pub(crate) fn show_length(self, metres: f64) -> String {
+    pub fn show_length(self, metres: f64) -> String {
         format!("{} {}", self.in_file_units(metres), self.length.symbol())
     }
 
-    /// A length as the number that stands in the file.
-    pub(crate) fn in_file_units(self, metres: f64) -> String {
+    /// A length as the number in the file.
+    pub fn in_file_units(self, metres: f64) -> String {
         trim(metres / self.length.to_metres(1.0))
     }
 
@@ -82,7 +82,7 @@ impl Units {
         Ok(Rotation::from_rpy(rad(a.x), rad(a.y), rad(a.z)))
     }
 
-    /// From the keys `at` and `rpy`, each zero where missing.
+    /// From the keys `at` and `rpy`, zero where missing.
     pub(super) fn place(self, t: &Table<'_>) -> Result<Pose> {
         let at = t.get("at").map_or(Ok(Vec3::ZERO), |v| self.point(&v))?;
         Ok(Pose::new(self.rotation(t.get("rpy"))?, at))
@@ -95,7 +95,7 @@ impl Units {
         self.place(&t)
     }
 
-    /// The frame of a solid that may be given by `from` and `to` along its z axis, and its length.
+    /// The frame and length of a solid along z, optionally given by `from` and `to`.
     fn along(self, t: &Table<'_>) -> Result<(Pose, f64)> {
         if t.get("from").is_none() && t.get("to").is_none() {
             let height =
@@ -140,7 +140,7 @@ impl Units {
 
     pub(super) fn mesh(self, t: &Table<'_>, key: &str) -> Result<(Shape, Pose)> {
         let file = t.need(key, &format!("{key} = \"part.stl\""))?;
-        let unit = t.get("mesh_unit").map_or(Ok(LengthUnit::Metre), |v| mesh_unit(&v))?;
+        let unit = t.get("mesh_unit").map_or(Ok(LengthUnit::Metre), |v| models::mesh_unit(&v))?;
         Ok((models::mesh(&file, unit)?, self.place(t)?))
     }
 
@@ -149,16 +149,7 @@ impl Units {
     }
 }
 
-pub(super) fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {
-    v.word(&[
-        ("m", LengthUnit::Metre),
-        ("mm", LengthUnit::Millimetre),
-        ("cm", LengthUnit::Centimetre),
-        ("in", LengthUnit::Inch),
-    ])
-}
-
-/// Up to six digits after the point, no trailing zeros.
+/// Up to six decimals, without trailing zeros.
 fn trim(v: f64) -> String {
     let text = format!("{v:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,10 +1,11 @@
-//! What an edit changed.
+//! A change of a sealed value.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A key of the cell file and its values before and after, as TOML; `None` where it was not, or is no longer, there.
+/// A key of the cell file and its values before and after, as TOML; `None` where it was missing before or is missing
+/// now.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
@@ -12,37 +13,37 @@ pub struct Change {
     pub item: String,
     /// The key in it.
     pub field: String,
-    /// What was sealed.
+    /// The sealed value.
     pub before: Option<String>,
-    /// What stands there now.
+    /// The present value.
     pub after: Option<String>,
 }
 
-/// The field that stands for what a robot or region amounts to with defaults filled in and files read: a checksum.
+/// The field for the resolved form of a robot or region, with defaults and files: a checksum.
 pub(super) const RESOLVED: &str = "resolved";
 
-/// How a field begins that stands for what a region follows, with the files that it was read from: a checksum. No key of a
-/// cell file has a blank, unless it is in quotes.
+/// Prefix of the fields for the source that a region follows, with its files: a checksum. Unquoted keys of a cell file
+/// contain no space, so it is unique.
 pub(super) const FOLLOWS: &str = "follows ";
 
 impl Change {
-    /// What the region follows, where that is what this is about.
+    /// The source of the region, where the field is about that.
     fn followed(&self) -> Option<&str> {
         self.field.strip_prefix(FOLLOWS)
     }
 
-    /// True for what somebody wrote in the cell file; false for what that, or a file, amounts to.
+    /// True for a key of the cell file; false for a checksum of resolved data.
     pub(super) fn is_written(&self) -> bool {
         self.field != RESOLVED && self.followed().is_none()
     }
 
-    /// True for what carries a region, false for the region itself.
+    /// True for the source of a region, false for the region itself.
     pub(super) fn is_of_source(&self) -> bool {
         self.followed().is_some() || self.field.starts_with("follow.") || self.field.starts_with(OBJECT)
     }
 }
 
-/// How the keys of an object begin that a region follows: they are sealed with the region.
+/// Prefix of the keys of an object that a region follows: they are sealed with the region.
 pub(super) const OBJECT: &str = "object.";
 
 impl fmt::Display for Change {
@@ -57,7 +58,7 @@ impl fmt::Display for Change {
         }
         match (&self.before, &self.after) {
             (Some(_), Some(_)) if field == RESOLVED => {
-                write!(f, "`{item}`: a file that it names, or a default, is not what was sealed")
+                write!(f, "`{item}`: a file that it names, or a default, differs from the seal")
             }
             (Some(before), Some(after)) => write!(f, "`{item}`: {field} is {after}, sealed was {before}"),
             (None, Some(_)) if field == RESOLVED => write!(f, "`{item}` was added"),

@@ -1,4 +1,4 @@
-//! Edits of a sealed cell file. What they do not concern stays as it was written, comments too.
+//! Edits of a sealed cell file. Unaffected text stays unchanged, comments included.
 
 use std::fs::File;
 use std::io::Write;
@@ -10,25 +10,26 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::authorize::authorize;
 use super::change::Change;
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::keys::PrivateKey;
-use super::log::Log;
-use super::state::{State, least_class, without_consequences};
+use super::log::{Log, log_of};
+use super::result::Result;
+use super::state::{SealedState, least_class, without_consequences};
 use super::trust::{self, TrustedKeys};
-use super::{Result, log_of, text, time};
+use super::{text, time};
 use crate::{Cell, CellFile};
 
-/// What is to be changed. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`; what is no TOML is taken as a text.
+/// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`; anything that is not TOML is taken as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Edit {
-    /// Adds regions: tables `[region.NAME]`, as they are to stand in the cell file.
+pub enum CellEdit {
+    /// Adds regions: tables `[region.NAME]` of a cell file.
     Add {
         /// The tables.
         toml: String,
-        /// Where they come from, for messages.
+        /// Their origin, for messages.
         from: PathBuf,
     },
-    /// Sets keys of a region and takes others out.
+    /// Sets and removes keys of a region.
     Change {
         /// The region.
         region: String,
@@ -42,7 +43,7 @@ pub enum Edit {
         /// The region.
         region: String,
     },
-    /// Sets keys of `[monitor]` and takes others out.
+    /// Sets and removes keys of `[monitor]`.
     Laws {
         /// Keys and their values.
         set: Vec<(String, String)>,
@@ -51,23 +52,23 @@ pub enum Edit {
     },
 }
 
-/// Who edits.
+/// The author of an edit.
 #[derive(Debug, Clone, Copy)]
 pub struct Signer<'a> {
-    /// The class on whose behalf.
+    /// The access class.
     pub class: AccessClass,
-    /// The key that proves it.
+    /// Its private key.
     pub key: &'a PrivateKey,
-    /// Why, for the log.
+    /// A note for the log.
     pub note: Option<&'a str>,
 }
 
-/// Edits a sealed cell file, and logs it.
+/// Edits a sealed cell file and logs the edit.
 ///
 /// # Errors
-/// [`FormatError`] where the cell is not as it was sealed, the class or the key may not, or the result is no sound cell. Then
-/// nothing is changed.
-pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &Edit) -> Result<Entry> {
+/// [`FormatError`] where the cell differs from its seal, the class or the key is not permitted, or the result is not a
+/// valid cell. Then nothing is changed.
+pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
     signer.check(cell, &trusted)?;
     let path = log_of(cell);
@@ -91,16 +92,16 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &Edit) -> Result<Entry> {
     draft.commit(cell, signer, edit.action(&only), changes, log, held)
 }
 
-/// Seals a cell file as it stands, and logs what was changed since it was sealed last.
+/// Seals a cell file in its present state and logs all changes since the last seal.
 ///
 /// # Errors
-/// [`FormatError`] where the class or the key may not, the cell is not sound, or the log is not as it was written.
-pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<Entry> {
+/// [`FormatError`] where the class or the key is not permitted, the cell is not valid, or the log was modified.
+pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
     signer.check(cell, &trusted)?;
     let path = log_of(cell);
     let draft = Draft::new(cell, text::read(cell)?)?;
-    // Where writing the first line failed, an empty log was left.
+    // A failed first write leaves an empty log.
     let first = !std::fs::metadata(&path).is_ok_and(|m| m.len() > 0);
     if first && signer.class < AccessClass::Integrator {
         let what = format!("was never sealed: its first seal is the integrator's, not the {}'s", signer.class.name());
@@ -124,7 +125,7 @@ fn trusted(cell: &Path) -> Result<TrustedKeys> {
         );
     }
     TrustedKeys::find(cell)?.ok_or_else(|| {
-        let what = format!("there is no {} that says whose keys count", trust::FILE);
+        let what = format!("there is no file of trusted keys, {}", trust::FILE);
         FormatError::new(cell, None, what).hint(
             "elbowroom region keygen --as integrator --name \"integration, line 4\" --out integrator.key >> trusted-keys.toml   \
              (beside the cell file; docs/roles.md)",
@@ -132,7 +133,7 @@ fn trusted(cell: &Path) -> Result<TrustedKeys> {
     })
 }
 
-/// Keeps others from editing at the same time; makes the log where there is none.
+/// Locks the log against concurrent edits; creates it where it is missing.
 fn hold(log: &Path) -> Result<File> {
     let file = File::options().append(true).create(true).open(log).map_err(text::unwritable(log))?;
     file.lock().map_err(text::unwritable(log))?;
@@ -140,7 +141,7 @@ fn hold(log: &Path) -> Result<File> {
 }
 
 impl Signer<'_> {
-    /// The key must be one that counts, for this class.
+    /// The key must be trusted for this class.
     fn check(&self, cell: &Path, trusted: &TrustedKeys) -> Result<()> {
         let class = self.class.name();
         let wrong = |what: String, hint: &str| Err(FormatError::new(cell, None, what).hint(hint));
@@ -168,7 +169,7 @@ impl Signer<'_> {
         }
     }
 
-    /// Keys beside the cell: only those that were sealed with it.
+    /// Keys beside the cell count only if they were sealed with it.
     fn check_sealed(&self, cell: &Path, trusted: &TrustedKeys, log: &Log) -> Result<()> {
         let id = self.key.public().id();
         let sealed = log.state.sealed_key(&id).is_some_and(|k| trust::may_sign(k, self.class));
@@ -193,8 +194,8 @@ impl Signer<'_> {
         if self.class < least { Err(self.refusal(cell, log, &draft.state, changes)) } else { Ok(()) }
     }
 
-    /// Names a change that this class may not make.
-    fn refusal(&self, cell: &Path, log: &Log, now: &State, changes: &[Change]) -> FormatError {
+    /// The error for a change that this class may not make.
+    fn refusal(&self, cell: &Path, log: &Log, now: &SealedState, changes: &[Change]) -> FormatError {
         let least = |c: &Change| least_class(&log.state, now, std::slice::from_ref(c));
         let shown = without_consequences(changes);
         let Some(change) = shown.into_iter().find(|c| least(c) > self.class) else {
@@ -207,19 +208,19 @@ impl Signer<'_> {
     }
 }
 
-fn first_line(now: &State, changes: &[Change]) -> Option<usize> {
+fn first_line(now: &SealedState, changes: &[Change]) -> Option<usize> {
     without_consequences(changes).first().and_then(|c| now.line(c))
 }
 
-/// A cell file that is not written yet.
+/// An edited cell file before it is written.
 struct Draft {
     text: String,
     cell: Cell,
-    state: State,
+    state: SealedState,
 }
 
 impl Draft {
-    /// A checksum in the file becomes that of the draft.
+    /// A checksum in the file is updated.
     fn new(path: &Path, text: String) -> Result<Self> {
         let mut file = CellFile::parse(path, &text)?;
         let mut text = text;
@@ -234,7 +235,7 @@ impl Draft {
         } else {
             file.resolve()?
         };
-        let state = State::of(&file, &cell)?;
+        let state = SealedState::of(&file, &cell)?;
         Ok(Self { text, cell, state })
     }
 
@@ -246,8 +247,8 @@ impl Draft {
         changes: Vec<Change>,
         log: Log,
         mut held: File,
-    ) -> Result<Entry> {
-        let entry = Entry {
+    ) -> Result<LogEntry> {
+        let entry = LogEntry {
             sequence: log.entries.len() as u64 + 1,
             time: time::now(),
             class: signer.class.name().into(),
@@ -270,8 +271,8 @@ impl Draft {
     }
 }
 
-impl Edit {
-    /// The tables that it may change.
+impl CellEdit {
+    /// The tables that the edit may change.
     fn items(&self, draft: &Draft) -> Result<Vec<String>> {
         Ok(match self {
             Self::Add { toml, from } => {
@@ -279,7 +280,7 @@ impl Edit {
                 names.into_iter().map(|name| format!("region.{name}")).collect()
             }
             Self::Change { region, .. } | Self::Remove { region } => vec![format!("region.{region}")],
-            // What the laws need of each robot is filled in per robot.
+            // Laws have per-robot settings.
             Self::Laws { .. } => {
                 let robots = draft.cell.robots.iter().map(|r| format!("robot.{}", r.name));
                 std::iter::once("monitor".to_owned()).chain(robots).collect()
@@ -298,20 +299,20 @@ impl Edit {
 }
 
 /// The text of the cell file after the edit.
-fn edited(cell: &Path, text: &str, edit: &Edit) -> Result<String> {
+fn edited(cell: &Path, text: &str, edit: &CellEdit) -> Result<String> {
     let mut document = document(cell, text)?;
     match edit {
-        Edit::Add { toml, from } => {
+        CellEdit::Add { toml, from } => {
             return added(cell, &document, text, toml, from);
         }
-        Edit::Change { region, set, unset } => {
+        CellEdit::Change { region, set, unset } => {
             let table = regions(&mut document).and_then(|r| r.get_mut(region)).and_then(Item::as_table_like_mut);
             change(cell, table.ok_or_else(|| unknown(cell, text, region))?, &format!("region.{region}"), set, unset)?;
         }
-        Edit::Remove { region } => {
+        CellEdit::Remove { region } => {
             regions(&mut document).and_then(|r| r.remove(region)).ok_or_else(|| unknown(cell, text, region))?;
         }
-        Edit::Laws { set, unset } => {
+        CellEdit::Laws { set, unset } => {
             let item = document.as_table_mut().entry("monitor").or_insert_with(toml_edit::table);
             let what = || FormatError::new(cell, None, "`monitor` is no table").hint("[monitor]");
             change(cell, item.as_table_like_mut().ok_or_else(what)?, "monitor", set, unset)?;
@@ -321,7 +322,7 @@ fn edited(cell: &Path, text: &str, edit: &Edit) -> Result<String> {
 }
 
 fn document(path: &Path, text: &str) -> Result<DocumentMut> {
-    // What is no TOML was refused with its line when the file was read.
+    // The file was already parsed; errors there have lines.
     text.parse().map_err(|e: toml_edit::TomlError| FormatError::new(path, None, e.message().to_owned()))
 }
 
@@ -332,10 +333,10 @@ fn regions(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
 fn unknown(cell: &Path, text: &str, region: &str) -> FormatError {
     let names: Vec<String> = CellFile::parse(cell, text).map(|f| f.region_names()).unwrap_or_default();
     FormatError::new(cell, None, format!("there is no region `{region}`"))
-        .hint(crate::file::suggest::hint(region, names.iter().map(String::as_str)))
+        .hint(crate::suggest::hint(region, names.iter().map(String::as_str)))
 }
 
-/// The tables stand at the end, as they were written.
+/// Appends the tables as written.
 fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Path) -> Result<String> {
     let new = CellFile::parse(from, toml)?;
     let wrong = |line: Option<usize>, what: String| {
@@ -377,7 +378,7 @@ fn change(
     Ok(())
 }
 
-/// Sets a key; blanks and comments around a value that was there stay.
+/// Sets a key; whitespace and comments around an existing value stay.
 fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     if let Some(old) = table.get_mut(key).and_then(Item::as_value_mut) {
         *value.decor_mut() = old.decor().clone();

@@ -1,50 +1,50 @@
-//! A line of the log.
+//! An entry of the edit log.
 
 use serde::{Deserialize, Serialize};
 
 use super::change::Change;
 use super::keys::{PrivateKey, PublicKey};
 
-/// An edit, by whom, and the state of the cell after it; signed.
+/// An edit, its author, and the state of the cell after it; signed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct LogEntry {
     /// Counted from 1.
     pub sequence: u64,
-    /// When, in UTC, by the clock of whoever edited.
+    /// Time in UTC, by the clock of the author's computer.
     pub time: String,
-    /// The class on whose behalf: `programmer` or `integrator`.
+    /// The access class: `programmer` or `integrator`.
     pub class: String,
-    /// Short name of the key that signed.
+    /// Short id of the signing key.
     pub key: String,
     /// The program that wrote the entry, with its version.
     pub program: String,
-    /// What was done: `seal`, `add region.cart`, `change monitor`.
+    /// The action: `seal`, `add region.cart`, `change monitor`.
     pub action: String,
-    /// Why, in the words of whoever edited.
+    /// The author's note.
     pub note: Option<String>,
-    /// What differs from the entry before; all that is sealed, in the first.
+    /// Changes since the last entry; everything sealed, in the first one.
     pub changes: Vec<Change>,
-    /// SHA-256 (hex) of all keys and values that are sealed, after the changes.
+    /// SHA-256 (hex) of all sealed keys and values after the changes.
     pub state: String,
-    /// The cell's checksum, as `run` shows it.
+    /// The cell's checksum, as printed by `run`.
     pub checksum: String,
-    /// SHA-256 (hex) of the line before; 64 zeros in the first.
+    /// SHA-256 (hex) of the previous line; 64 zeros in the first entry.
     pub previous: String,
-    /// Ed25519 (hex), over this entry without it.
+    /// Ed25519 signature (hex) of this entry with an empty signature.
     pub signature: String,
 }
 
-impl Entry {
-    /// As it stands in the log.
+impl LogEntry {
+    /// The line in the log.
     pub(super) fn line(&self) -> String {
-        // Structs of texts and numbers have no reason to fail; were there one, no signature would fit.
+        // Serialization of texts and numbers cannot fail; an empty line would fail the signature check.
         serde_json::to_string(self).unwrap_or_default()
     }
 
     pub(super) fn parse(line: &str) -> Option<Self> {
         let entry: Self = serde_json::from_str(line).ok()?;
-        // Else two lines could tell the same entry, and blanks or a repeated key would go unseen.
+        // Only the canonical form is accepted: otherwise spaces or repeated keys would go unnoticed.
         (entry.line() == line).then_some(entry)
     }
 

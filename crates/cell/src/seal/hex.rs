@@ -1,4 +1,4 @@
-//! Bytes as hexadecimal text.
+//! Hexadecimal text.
 
 use std::fmt::Write as _;
 
@@ -11,14 +11,14 @@ pub(super) fn encode(bytes: &[u8]) -> String {
     })
 }
 
-/// `N` bytes of `2·N` digits; `None` for anything else.
+/// Decodes `2·N` digits; `None` for anything else.
 pub(super) fn decode<const N: usize>(text: &str) -> Option<[u8; N]> {
     let digits: Vec<u8> = text.chars().map(|c| c.to_digit(16).map(|d| d as u8)).collect::<Option<_>>()?;
     let bytes: Vec<u8> = digits.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect();
     if digits.len() == 2 * N { bytes.try_into().ok() } else { None }
 }
 
-/// SHA-256.
+/// SHA-256, hex.
 pub(super) fn hash(bytes: &[u8]) -> String {
     encode(&Sha256::digest(bytes))
 }
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_back_and_nothing_else_is_taken() {
+    fn encoding_round_trips_and_other_text_is_refused() {
         let bytes = [0, 1, 15, 16, 127, 128, 255];
         assert_eq!(decode(&encode(&bytes)), Some(bytes));
         for wrong in ["", "0", "000102030405", "0001020304050g", "000102030405060", "00010203040506ff", "é001020304050"]

@@ -1,4 +1,4 @@
-//! Keys: the private one of whoever signs, the public one of whoever checks.
+//! Private keys for signing, public keys for verification.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -8,14 +8,15 @@ use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
-use super::{Result, hex, text};
+use super::result::Result;
+use super::{hex, text};
 use crate::file::node;
 use crate::file::read::{Table, Value};
 
-/// Written before what is signed, so that a signature for something else is none for an edit.
+/// Context of signatures: a signature for another purpose is not valid for an edit.
 const CONTEXT: &[u8] = b"elbowroom edit 1\n";
 
-/// Whoever has it signs on behalf of its class.
+/// A private key, which signs on behalf of its class.
 #[derive(Debug)]
 pub struct PrivateKey {
     class: AccessClass,
@@ -23,30 +24,30 @@ pub struct PrivateKey {
     key: SigningKey,
 }
 
-/// Tells whether the private key signed.
+/// A public key, which verifies signatures.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PublicKey(VerifyingKey);
 
 impl PrivateKey {
-    /// A new key, of random numbers of the operating system.
+    /// A new key from random numbers of the operating system.
     ///
     /// # Errors
-    /// [`io::Error`] where the system has none to give.
+    /// [`io::Error`] where the system provides none.
     pub fn generate(class: AccessClass, name: &str) -> io::Result<Self> {
         let mut secret = [0; 32];
         getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
         Ok(Self { class, name: name.into(), key: SigningKey::from_bytes(&secret) })
     }
 
-    /// Writes it to a new file that only its owner may read (mode 0600).
+    /// Writes the key to a new file that only its owner may read (mode 0600).
     ///
     /// # Errors
-    /// [`io::Error`] where there is such a file already, or it cannot be written.
+    /// [`io::Error`] where the file exists already or cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let mut file = create(path)?;
         write!(
             file,
-            "# An elbowroom private key. Whoever has it can act for its class: keep it to yourself.\n\
+            "# An elbowroom private key. Its holder can act for its class: keep it secret.\n\
              class = \"{}\"\nname = {}\nprivate = \"{}\"\n",
             self.class.name(),
             serde_json::Value::from(self.name.as_str()),
@@ -55,10 +56,10 @@ impl PrivateKey {
         file.sync_all()
     }
 
-    /// Reads what [`write`](Self::write) wrote.
+    /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be read, is no key, or others than its owner may read it.
+    /// [`FormatError`] where it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         kept_to_oneself(path)?;
         let text = text::read(path)?;
@@ -74,7 +75,7 @@ impl PrivateKey {
         Ok(Self { class, name, key: SigningKey::from_bytes(&bytes) })
     }
 
-    /// The class that it was made for.
+    /// The class of the key.
     pub fn class(&self) -> AccessClass {
         self.class
     }
@@ -84,7 +85,7 @@ impl PrivateKey {
         &self.name
     }
 
-    /// The public key that belongs to it.
+    /// The corresponding public key.
     pub fn public(&self) -> PublicKey {
         PublicKey(self.key.verifying_key())
     }
@@ -95,10 +96,10 @@ impl PrivateKey {
 }
 
 impl PublicKey {
-    /// From the 64 hexadecimal digits of [`to_hex`](Self::to_hex); `None` where they are no key.
+    /// From the 64 hexadecimal digits of [`to_hex`](Self::to_hex); `None` for an invalid key.
     pub fn from_hex(digits: &str) -> Option<Self> {
         let key = VerifyingKey::from_bytes(&hex::decode(digits)?).ok()?;
-        // A weak key accepts signatures that nobody made.
+        // Weak keys accept forged signatures.
         (!key.is_weak()).then_some(Self(key))
     }
 
@@ -107,7 +108,7 @@ impl PublicKey {
         hex::encode(self.0.as_bytes())
     }
 
-    /// Its short name: the first 16 hexadecimal digits of its hash.
+    /// Its short id: the first 16 hexadecimal digits of its hash.
     pub fn id(&self) -> String {
         hex::hash(self.0.as_bytes()).chars().take(16).collect()
     }
@@ -118,7 +119,7 @@ impl PublicKey {
     }
 }
 
-/// One of the classes that may sign.
+/// The class of a signing key.
 pub(super) fn class(value: &Value<'_>) -> Result<AccessClass> {
     value.word(&[("programmer", AccessClass::Programmer), ("integrator", AccessClass::Integrator)])
 }
@@ -156,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_was_signed_is_signed() {
+    fn a_signature_covers_only_the_signed_bytes() {
         let key = PrivateKey::generate(AccessClass::Programmer, "P").unwrap();
         let signature = key.sign(b"move the wall");
         let public = PublicKey::from_hex(&key.public().to_hex()).unwrap();
@@ -167,7 +168,7 @@ mod tests {
         assert!(!public.has_signed(b"move the wall", "") && !public.has_signed(b"move the wall", &signature[2..]));
     }
 
-    /// RFC 8032, section 7.1, test 2: the key pair, for what is signed here has a context before it.
+    /// RFC 8032, section 7.1, test 2: the key pair only, because signatures here have a context.
     #[test]
     fn the_public_key_is_that_of_ed25519() {
         let secret = hex::decode("4ccd089b28ff96da9db6c346ec114e0f5b8a319f35aba624da8cf6ed4fb8a6fb").unwrap();
@@ -177,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_public_key_is_none() {
+    fn invalid_public_keys_are_refused() {
         assert_eq!(PublicKey::from_hex(""), None);
         assert_eq!(PublicKey::from_hex(&"00".repeat(32)), None, "a weak key");
         let identity = format!("01{}", "00".repeat(31));

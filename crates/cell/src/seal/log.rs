@@ -1,39 +1,46 @@
-//! The log of edits, verified from its first line to its last.
+//! The edit log, verified from its first line to its last.
 
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
-use super::entry::Entry;
-use super::state::{State, least_class};
+use super::entry::LogEntry;
+use super::result::Result;
+use super::signatory::Seal;
+use super::state::{SealedState, least_class};
 use super::trust::{self, TrustedKey, TrustedKeys};
-use super::{Result, Seal, hex, text};
+use super::{hex, text};
 
-/// A log, and the state that its edits lead to.
+/// The log of a cell file: `cell.seal.jsonl` beside `cell.toml`.
+pub fn log_of(cell: &Path) -> PathBuf {
+    cell.with_extension("seal.jsonl")
+}
+
+/// A verified log, and the state that its edits lead to.
 #[derive(Debug)]
 pub(super) struct Log {
     pub file: PathBuf,
-    pub entries: Vec<Entry>,
-    pub state: State,
+    pub entries: Vec<LogEntry>,
+    pub state: SealedState,
     /// Hash of the last line.
     pub head: String,
 }
 
 impl Log {
-    /// One without entries.
+    /// An empty log.
     pub fn new(file: &Path) -> Self {
-        Self { file: file.to_owned(), entries: Vec::new(), state: State::default(), head: "0".repeat(64) }
+        Self { file: file.to_owned(), entries: Vec::new(), state: SealedState::default(), head: "0".repeat(64) }
     }
 
-    /// Reads a log and checks every entry: chain, signature, class, and that it leads to the state it names.
+    /// Reads a log and verifies every entry: hash chain, signature, class, and resulting state.
     pub fn read(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
         let log = Self::read_to_continue(file, trusted)?;
         log.check_retired(trusted)?;
         Ok(log)
     }
 
-    /// As [`read`](Self::read), for an entry that approves what retired keys have signed.
+    /// As [`read`](Self::read), but permits entries of retired keys, for an entry that approves them.
     pub fn read_to_continue(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
         let text = text::read(file)?;
         let mut log = Self::new(file);
@@ -41,7 +48,7 @@ impl Log {
             log.take(line, trusted)?;
         }
         if log.entries.is_empty() {
-            return Err(FormatError::new(file, None, "is empty: whoever emptied it took the seal away").hint(RESTORE));
+            return Err(FormatError::new(file, None, "is empty: the seal was removed").hint(RESTORE));
         }
         Ok(log)
     }
@@ -50,7 +57,7 @@ impl Log {
         let number = self.entries.len() + 1;
         let wrong = |what: String| FormatError::new(&self.file, number, what).hint(RESTORE);
         let entry =
-            Entry::parse(line).ok_or_else(|| wrong("is no entry of an edit log, or not as it was written".into()))?;
+            LogEntry::parse(line).ok_or_else(|| wrong("is not an entry of an edit log, or was modified".into()))?;
         if entry.sequence != number as u64 || entry.previous != self.head {
             return Err(wrong(format!("entry {} does not follow the one before it", entry.sequence)));
         }
@@ -65,7 +72,7 @@ impl Log {
                 "was signed with the key {} of \"{}\", which was not sealed with the cell",
                 entry.key, key.name
             );
-            return Err(wrong(what + ": somebody added it, and sealed with it"));
+            return Err(wrong(what + ": it was added later"));
         }
         let state = self
             .state
@@ -84,17 +91,18 @@ impl Log {
         Ok(())
     }
 
-    fn signer<'a>(&self, entry: &Entry, trusted: &'a TrustedKeys) -> Result<&'a TrustedKey> {
+    fn signer<'a>(&self, entry: &LogEntry, trusted: &'a TrustedKeys) -> Result<&'a TrustedKey> {
         trusted.get(&entry.key).ok_or_else(|| {
             let what = format!("was signed with the key {}, which {} does not name", entry.key, trusted.file.display());
-            FormatError::new(&self.file, self.entries.len() + 1, what)
-                .hint("a key that is no longer used stays there with `retired = true`; a key that nobody knows is a forged log")
+            FormatError::new(&self.file, self.entries.len() + 1, what).hint(
+                "a key that is no longer used stays there with `retired = true`; an unknown key means a forged log",
+            )
         })
     }
 
-    /// What a key signed before it was retired counts by an integrator's entry that follows.
+    /// Entries of a retired key are valid only with a later entry of an integrator.
     fn check_retired(&self, trusted: &TrustedKeys) -> Result<()> {
-        let active = |e: &Entry| trusted.get(&e.key).is_some_and(|k| !k.retired);
+        let active = |e: &LogEntry| trusted.get(&e.key).is_some_and(|k| !k.retired);
         let approved = self.entries.iter().rposition(|e| active(e) && e.class == AccessClass::Integrator.name());
         let rest = approved.map_or(0, |at| at + 1);
         let Some(at) = self.entries[rest..].iter().position(|e| !active(e)) else { return Ok(()) };
@@ -105,15 +113,15 @@ impl Log {
             .hint("elbowroom region seal CELL --as integrator --key FILE"))
     }
 
-    /// The last entry as what `run` shows.
+    /// The last entry, for `run`.
     pub fn seal(&self, trusted: &TrustedKeys) -> Seal {
         let last = self.entries.last();
-        let text = |field: fn(&Entry) -> &String| last.map(field).cloned().unwrap_or_default();
+        let text = |field: fn(&LogEntry) -> &String| last.map(field).cloned().unwrap_or_default();
         let key = text(|e| &e.key);
         let name = trusted.get(&key).map(|k| k.name.clone()).unwrap_or_default();
         Seal { class: text(|e| &e.class), name, key, time: text(|e| &e.time), entries: self.entries.len() as u64 }
     }
 }
 
-const RESTORE: &str = "the log as it was, from a backup; where there is none, the integrator keeps this one as evidence \
-                       under another name, checks every region, and seals the cell anew";
+const RESTORE: &str = "the original log, from a backup; where there is none, the integrator keeps this one as evidence \
+                       under another name, checks every region, and seals the cell again";

@@ -1,12 +1,12 @@
-//! Seals: who may change what in a cell file, and who did (S1.12).
+//! Seals: who may change what in a cell file, and a log of all edits (S1.12).
 //!
-//! A sealed cell has a log beside it, `cell.seal.jsonl` for `cell.toml`: a line of JSON per edit, each signed (Ed25519) by
-//! whoever made it, each with the hash of the line before. The last line is the seal. It covers all that the monitors go by:
-//! robots, regions, what regions follow (objects too), laws, units, tick, and the files that these name. [`Cell::load`](crate::Cell::load)
-//! refuses a cell that is not as it was sealed, and names what differs.
+//! A sealed cell has a log beside it, `cell.seal.jsonl` for `cell.toml`: one JSON line per edit, signed (Ed25519) by
+//! its author and chained to the previous line by its hash. The last line is the seal. It covers all inputs of the
+//! monitors: robots, regions, the sources that regions follow (objects included), laws, units, tick, and the files that
+//! these name. [`Cell::load`](crate::Cell::load) refuses a cell that differs from its seal, and names the differences.
 //!
-//! Whose signature counts is said by [`TrustedKeys`]. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
-//! [`history`] reads the log. `docs/roles.md` says what this protects against, and what it does not.
+//! [`TrustedKeys`] lists the accepted keys. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
+//! [`history`] reads the log. `docs/roles.md` states what this protects against, and what it does not.
 
 mod authorize;
 mod change;
@@ -15,61 +15,45 @@ mod entry;
 mod hex;
 mod keys;
 mod log;
+mod result;
+mod signatory;
 mod source;
 mod state;
 mod text;
 mod time;
 mod trust;
+mod value;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
 pub use change::Change;
-pub use edit::{Edit, Signer, edit, seal};
-pub use entry::Entry;
+pub use edit::{CellEdit, Signer, edit, seal};
+pub use entry::LogEntry;
 pub use keys::{PrivateKey, PublicKey};
+pub use log::log_of;
+pub use signatory::Seal;
 pub use trust::{TrustedKey, TrustedKeys};
 
 use crate::{Cell, CellFile};
 use log::Log;
-use state::State;
+use result::Result;
+use state::SealedState;
 
-type Result<T> = std::result::Result<T, FormatError>;
-
-/// Who sealed a cell last.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Seal {
-    /// The class on whose behalf.
-    pub class: String,
-    /// The owner of the key.
-    pub name: String,
-    /// The key's short name: the first 16 hex digits of its hash.
-    pub key: String,
-    /// When, in UTC, by the clock of whoever sealed.
-    pub time: String,
-    /// How many entries the log has.
-    pub entries: u64,
-}
-
-/// A log that has been verified, and how the cell differs from what was sealed.
+/// A verified log, and the differences between the cell and its seal.
 #[derive(Debug, Clone)]
 pub struct History {
     /// From the first seal to the last edit.
-    pub entries: Vec<Entry>,
-    /// What was changed since without a key: nothing where the seal is good.
+    pub entries: Vec<LogEntry>,
+    /// Unsealed changes; empty where the seal is valid.
     pub unsealed: Vec<Change>,
-    /// Whose keys count.
+    /// The accepted keys.
     pub trusted: TrustedKeys,
 }
 
-/// The log of a cell file: `cell.seal.jsonl` beside `cell.toml`.
-pub fn log_of(cell: &Path) -> PathBuf {
-    cell.with_extension("seal.jsonl")
-}
-
-/// Checks the seal of a cell. `None` where it has none and needs none.
+/// Verifies the seal of a cell. `None` where it has none and needs none.
 pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
     let path = log_of(&file.file);
     let trusted = TrustedKeys::find(&file.file)?;
@@ -79,17 +63,17 @@ pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
         (Some(trusted), false) => Err(unsealed(&file.file, &trusted)),
         (Some(trusted), true) => {
             let log = Log::read(&path, &trusted)?;
-            let now = State::of(file, cell)?;
+            let now = SealedState::of(file, cell)?;
             let changes = log.state.changes_to(&now);
             if changes.is_empty() { Ok(Some(log.seal(&trusted))) } else { Err(differs(file, &log, &now, &changes)) }
         }
     }
 }
 
-/// Reads and verifies the log of a cell file, whether or not the cell is still as it was sealed.
+/// Reads and verifies the log of a cell file, whether or not the cell matches its seal.
 ///
 /// # Errors
-/// [`FormatError`] where the cell cannot be read or is not sealed, or at the line of the log that is not as it was signed.
+/// [`FormatError`] where the cell cannot be read or is not sealed, or at the line of the log that is not valid.
 pub fn history(cell: &Path) -> Result<History> {
     let path = log_of(cell);
     let Some(trusted) = TrustedKeys::find(cell)? else { return Err(trust::missing(cell, &path)) };
@@ -99,14 +83,14 @@ pub fn history(cell: &Path) -> Result<History> {
     let log = Log::read(&path, &trusted)?;
     let text = text::read(cell)?;
     let mut file = CellFile::parse(cell, &text)?;
-    // One that does not fit is not what is asked about.
+    // A wrong checksum is not part of the question.
     file.entries.retain(|e| e.key != "checksum");
-    let now = State::of(&file, &file.resolve()?)?;
+    let now = SealedState::of(&file, &file.resolve()?)?;
     let unsealed = log.state.changes_to(&now);
     Ok(History { entries: log.entries, unsealed, trusted })
 }
 
-/// The changes that people make, of all that they lead to: not that a checksum changed where a key that it covers did.
+/// The changes made by people, without derived changes of checksums.
 pub fn shown(changes: &[Change]) -> Vec<&Change> {
     state::without_consequences(changes)
 }
@@ -123,15 +107,15 @@ fn unsealed(cell: &Path, trusted: &TrustedKeys) -> FormatError {
 fn seal_command(cell: &Path, class: AccessClass) -> String {
     let class = class.name();
     format!(
-        "elbowroom region seal {} --as {class} --key FILE   (whoever has the key of the {class} class)",
+        "elbowroom region seal {} --as {class} --key FILE   (by a holder of the key of the {class} class)",
         cell.display()
     )
 }
 
-/// At most this many differences are named.
+/// Largest number of differences in a message.
 const NAMED: usize = 5;
 
-fn differs(file: &CellFile, log: &Log, now: &State, changes: &[Change]) -> FormatError {
+fn differs(file: &CellFile, log: &Log, now: &SealedState, changes: &[Change]) -> FormatError {
     let shown = state::without_consequences(changes);
     let mut what = String::from("is not as it was sealed: ");
     let named: Vec<String> = shown.iter().take(NAMED).map(std::string::ToString::to_string).collect();
@@ -141,5 +125,5 @@ fn differs(file: &CellFile, log: &Log, now: &State, changes: &[Change]) -> Forma
     }
     let line = shown.first().and_then(|c| now.line(c));
     let least = state::least_class(&log.state, now, changes);
-    FormatError::new(&file.file, line, what).hint(format!("what was sealed; or {}", seal_command(&file.file, least)))
+    FormatError::new(&file.file, line, what).hint(format!("the sealed version; or {}", seal_command(&file.file, least)))
 }

@@ -1,27 +1,27 @@
-//! What carries a region: it decides where the region is, and so is sealed with it.
+//! The source that moves a region: it determines the region's pose, and so is sealed with it.
 
 use elbowroom_monitor::{Region, SourceLimits};
 use sha2::{Digest, Sha256};
 
 use super::hex;
-use super::state::{key, text};
+use super::value::{key, text};
 use crate::file::node::{Data, Entry, Node};
-use crate::{Cell, CellFile, CellRegion, Drive, Follow, Mover};
+use crate::{Cell, CellFile, CellRegion, Drive, Follow, MovingObject};
 
-/// What a region follows.
-pub(super) struct Source<'a> {
+/// The source that a region follows.
+pub(super) struct SealedSource<'a> {
     /// Its kind and name: `encoder belt`.
     name: String,
-    /// Its table, where it is an object: objects that no region follows are not sealed.
+    /// Its table, for an object: objects that no region follows are not sealed.
     pub object: Option<&'a Entry>,
-    /// Names of the files that it was read from, as the cell file has them.
+    /// Names of its files, as in the cell file.
     pub files: Vec<&'a Node>,
-    /// SHA-256 (hex) of all that decides where it is, files read.
+    /// SHA-256 (hex) of all data that defines its pose, files included.
     pub checksum: String,
 }
 
-impl<'a> Source<'a> {
-    /// `None` for a region that stands.
+impl<'a> SealedSource<'a> {
+    /// `None` for a fixed region.
     pub fn of(file: &'a CellFile, cell: &Cell, region: &CellRegion) -> Option<Self> {
         let follow = region.follow?;
         let find = |path: &[&str]| find(&file.entries, path);
@@ -35,9 +35,9 @@ impl<'a> Source<'a> {
             }
             Follow::Object(i) => {
                 let name = &cell.objects[i].name;
-                let belt = mover(cell, i).and_then(|m| match &m.drive {
+                let belt = moving_object(cell, i).and_then(|m| match &m.drive {
                     Drive::Belt(encoder) => encoder_file(&encoder.name),
-                    Drive::Way(_) => None,
+                    Drive::Path(_) => None,
                 });
                 let files = [value(&["object", name, "mesh"]), belt];
                 (format!("object {}", key(name)), find(&["object", name]), files)
@@ -58,7 +58,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The entry under these keys, one in the other.
+/// The entry under nested keys.
 fn find<'a>(entries: &'a [Entry], path: &[&str]) -> Option<&'a Entry> {
     let (first, rest) = path.split_first()?;
     let entry = entries.iter().find(|e| e.key == *first)?;
@@ -69,20 +69,20 @@ fn find<'a>(entries: &'a [Entry], path: &[&str]) -> Option<&'a Entry> {
     }
 }
 
-fn mover(cell: &Cell, object: usize) -> Option<&Mover> {
-    cell.movers.iter().find(|m| m.object == object)
+fn moving_object(cell: &Cell, object: usize) -> Option<&MovingObject> {
+    cell.moving_objects.iter().find(|m| m.object == object)
 }
 
-/// Of the source as it was read, not of the text of its files: what was read is what is run. Every kind and every field is
-/// named, so that a new one cannot be forgotten.
+/// Checksum of the source as it was read, not of the text of its files. Every variant and every field is named, so that
+/// a new one cannot be forgotten.
 fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
     let mut hash = Sha256::new();
-    // -0 and 0 are one number.
+    // -0 and 0 have the same checksum.
     let mut number = |v: f64| hash.update((v + 0.0).to_bits().to_le_bytes());
     let SourceLimits { speed_m_s, turn_rad_s, wrap_m } = limits;
     [*speed_m_s, *turn_rad_s].into_iter().chain(wrap_m.unwrap_or_default().to_array()).for_each(&mut number);
     match follow {
-        // The robot has a checksum of its own.
+        // The robot has its own checksum.
         Follow::Robot { robot: _, link, in_link } => {
             number(link.0 as f64);
             in_link.to_rows().into_iter().flatten().for_each(&mut number);
@@ -97,23 +97,23 @@ fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
     hex::encode(&hash.finalize())
 }
 
-/// The numbers of an object's motion; returned is the checksum of its shape where it rests.
+/// Passes the numbers of an object's motion; returns the checksum of its shape at its initial pose.
 fn object(cell: &Cell, index: usize, number: &mut dyn FnMut(f64)) -> String {
     let object = &cell.objects[index];
-    let rest_in_world = match mover(cell, index) {
+    let rest_in_world = match moving_object(cell, index) {
         None => {
             number(0.0);
             object.in_world
         }
-        Some(Mover { object: _, rest_in_world, drive }) => {
+        Some(MovingObject { object: _, rest_in_world, drive }) => {
             match drive {
                 Drive::Belt(encoder) => {
                     number(1.0);
                     encoder.numbers(number);
                 }
-                Drive::Way(way) => {
+                Drive::Path(path) => {
                     number(2.0);
-                    way.numbers(number);
+                    path.numbers(number);
                 }
             }
             *rest_in_world

@@ -1,4 +1,4 @@
-//! What a seal covers: every key of the cell file that the monitors go by, as text.
+//! Contents of a seal: every key of the cell file that affects the monitors, as text.
 
 use std::collections::BTreeMap;
 
@@ -6,29 +6,30 @@ use elbowroom_formats::FormatError;
 use elbowroom_monitor::{AccessClass, Life};
 
 use super::change::{Change, FOLLOWS, OBJECT, RESOLVED};
-use super::source::Source;
+use super::source::SealedSource;
+use super::value::{key, text};
 use super::{hex, trust};
 use crate::file::node::{Data, Entry, Node};
 use crate::{Cell, CellFile, configure};
 
-/// Tables and keys that no monitor goes by: user programs, what they plan with, and words. All else is sealed. An object that
-/// a region follows is sealed with the region.
+/// Tables and keys that do not affect the monitors. Everything else is sealed. An object that a region follows is
+/// sealed with the region.
 const FREE: &[&str] = &["version", "name", "max_s", "checksum", "object", "map", "avoidance", "program"];
-/// Tables of which each has a name: `[robot.NAME]`.
+/// Tables with names: `[robot.NAME]`.
 const NAMED: &[&str] = &["robot", "region", "encoder"];
-/// Where a robot stands when a simulation starts.
+/// Initial joint values of a robot in the simulation.
 const START: &str = "start";
 
 /// Values by table and key.
 #[derive(Debug, Clone, Default)]
-pub(super) struct State {
+pub(super) struct SealedState {
     values: BTreeMap<(String, String), String>,
-    /// Line of each value; none in a state that a log tells.
+    /// Line of each value; empty in a state read from a log.
     lines: BTreeMap<(String, String), usize>,
 }
 
-impl State {
-    /// What a cell file says, and what its files amount to.
+impl SealedState {
+    /// The state of a cell file and the files it names.
     pub fn of(file: &CellFile, cell: &Cell) -> Result<Self, FormatError> {
         let mut state = Self::default();
         for e in file.entries.iter().filter(|e| !FREE.contains(&e.key.as_str())) {
@@ -48,7 +49,7 @@ impl State {
         for r in &cell.regions {
             let item = format!("region.{}", r.region.name);
             state.resolved(item.clone(), Some(r.line), r.region.checksum());
-            if let Some(source) = Source::of(file, cell, r) {
+            if let Some(source) = SealedSource::of(file, cell, r) {
                 state.add_source(&item, r.line, &source);
             }
         }
@@ -64,8 +65,8 @@ impl State {
         self.values.insert(at, checksum);
     }
 
-    /// What carries a region is part of the region: whoever may move the one may move the other.
-    fn add_source(&mut self, region: &str, line: usize, source: &Source<'_>) {
+    /// The source of a region is part of the region: the same class may change both.
+    fn add_source(&mut self, region: &str, line: usize, source: &SealedSource<'_>) {
         if let Some(object) = source.object {
             self.add(region, &format!("{OBJECT}{}", key(&object.key)), &object.node);
         }
@@ -87,7 +88,7 @@ impl State {
         }
     }
 
-    /// A table within adds a value for each of its keys.
+    /// A nested table adds one value per key.
     fn add(&mut self, item: &str, field: &str, node: &Node) {
         match &node.data {
             Data::Table(entries) if !entries.is_empty() => {
@@ -103,13 +104,13 @@ impl State {
         }
     }
 
-    /// The line of a change in the cell file; for what was removed, that of its table.
+    /// The line of a change in the cell file; for a removed key, that of its table.
     pub fn line(&self, change: &Change) -> Option<usize> {
         let at = |field: &str| self.lines.get(&(change.item.clone(), field.to_owned())).copied();
         at(&change.field).or_else(|| at(RESOLVED))
     }
 
-    /// All that differs.
+    /// All differences.
     pub fn changes_to(&self, after: &Self) -> Vec<Change> {
         let mut all: Vec<_> = self.values.keys().chain(after.values.keys()).collect();
         all.sort_unstable();
@@ -123,7 +124,7 @@ impl State {
         all.into_iter().filter(|at| self.values.get(at) != after.values.get(at)).map(change).collect()
     }
 
-    /// This state with the changes; `None` where it does not have what they change.
+    /// This state with the changes applied; `None` where they do not fit.
     pub fn with(&self, changes: &[Change]) -> Option<Self> {
         let mut state = Self { values: self.values.clone(), lines: BTreeMap::new() };
         for c in changes {
@@ -139,7 +140,7 @@ impl State {
         Some(state)
     }
 
-    /// SHA-256 over everything, each text with its length.
+    /// SHA-256 over everything; each text is preceded by its length.
     pub fn digest(&self) -> String {
         let mut bytes = Vec::new();
         for ((item, field), value) in &self.values {
@@ -151,12 +152,12 @@ impl State {
         hex::hash(&bytes)
     }
 
-    /// What was sealed of a key beside the cell.
+    /// The sealed entry of a key beside the cell.
     pub fn sealed_key(&self, id: &str) -> Option<&str> {
         self.values.get(&(trust::FILE.to_owned(), id.to_owned())).map(String::as_str)
     }
 
-    /// The life of a region; `None` where there is no such region.
+    /// The life of a region; `None` for an unknown region.
     fn life(&self, item: &str) -> Option<Life> {
         let value = |field: &str| self.values.get(&(item.to_owned(), field.to_owned()));
         value(RESOLVED)?;
@@ -164,9 +165,9 @@ impl State {
     }
 }
 
-/// The least class that may make these changes: the programmer where all of them concern regions that are temporary before
-/// and after.
-pub(super) fn least_class(before: &State, after: &State, changes: &[Change]) -> AccessClass {
+/// The lowest class that may make these changes: the programmer where all of them concern regions that are temporary
+/// before and after.
+pub(super) fn least_class(before: &SealedState, after: &SealedState, changes: &[Change]) -> AccessClass {
     let of = |change: &Change| {
         if !change.item.starts_with("region.") {
             return AccessClass::Integrator;
@@ -177,46 +178,19 @@ pub(super) fn least_class(before: &State, after: &State, changes: &[Change]) -> 
     changes.iter().map(of).max().unwrap_or(AccessClass::Programmer)
 }
 
-/// The changes that were made: not that a checksum changed where a key that it covers did.
+/// The changes without derived changes of checksums.
 pub(super) fn without_consequences(changes: &[Change]) -> Vec<&Change> {
     let made = |c: &&Change| c.is_written();
-    // Units and laws count for all.
+    // Units and laws affect everything.
     let everywhere = changes.iter().filter(made).any(|c| !NAMED.iter().any(|n| c.item.starts_with(&format!("{n}."))));
     let whole = |c: &Change| c.before.is_none() || c.after.is_none();
-    let news = |item: &str| changes.iter().any(|c| c.item == item && c.field == RESOLVED && whole(c));
+    let is_new_or_removed = |item: &str| changes.iter().any(|c| c.item == item && c.field == RESOLVED && whole(c));
     let shown = |c: &&Change| {
-        if news(&c.item) {
+        if is_new_or_removed(&c.item) {
             return c.field == RESOLVED;
         }
         let covers = |other: &Change| other.item == c.item && other.is_of_source() == c.is_of_source();
         c.is_written() || !(everywhere || changes.iter().filter(made).any(covers))
     };
     changes.iter().filter(shown).collect()
-}
-
-/// A key as TOML writes it.
-pub(super) fn key(name: &str) -> String {
-    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { name.to_owned() } else { quoted(name) }
-}
-
-fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
-}
-
-/// A value as TOML writes it, the same however the file does: tables in the order of their keys.
-pub(super) fn text(node: &Node) -> String {
-    match &node.data {
-        Data::Text(t) => quoted(t),
-        // -0 and 0 are one number.
-        Data::Number(v) => format!("{}", v + 0.0),
-        Data::Flag(b) => b.to_string(),
-        Data::Date => "date".into(),
-        Data::List(nodes) => format!("[{}]", nodes.iter().map(text).collect::<Vec<_>>().join(", ")),
-        Data::Table(entries) => {
-            let sorted: BTreeMap<_, _> = entries.iter().map(|e| (key(&e.key), text(&e.node))).collect();
-            let pairs: Vec<_> = sorted.iter().map(|(k, v)| format!("{k} = {v}")).collect();
-            if pairs.is_empty() { "{}".into() } else { format!("{{ {} }}", pairs.join(", ")) }
-        }
-    }
 }

@@ -1,13 +1,13 @@
-//! Files read whole, and replaced whole.
+//! Reading and atomic replacement of text files.
 
 use std::fs;
 use std::path::Path;
 
 use elbowroom_formats::FormatError;
 
-use super::Result;
+use super::result::Result;
 
-/// Largest file that is read, bytes.
+/// Largest file, bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
 pub(super) fn read(path: &Path) -> Result<String> {
@@ -18,7 +18,7 @@ pub(super) fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).map_err(unreadable)
 }
 
-/// Where a file cannot be written.
+/// The error for a file that cannot be written.
 pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
     move |e| {
         FormatError::new(path, None, format!("cannot be written: {e}"))
@@ -26,8 +26,8 @@ pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError 
     }
 }
 
-/// Puts a text in the place of a file's: first into a new file beside it, with its permissions, so that there is never half a
-/// one, and so that `before_last_step` runs only where the text could be written.
+/// Replaces the text of a file atomically: writes a new file beside it, with its permissions, then calls
+/// `before_last_step`, then renames the new file.
 pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
     let path = &path.canonicalize().map_err(unwritable(path))?;
     let mut name = path.file_name().unwrap_or_default().to_owned();
@@ -39,7 +39,7 @@ pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -
         .and_then(|()| before_last_step())
         .and_then(|()| fs::rename(&new, path).map_err(unwritable(path)));
     if written.is_err() {
-        // The first error is the one to tell.
+        // The first error is returned.
         let _ = fs::remove_file(&new);
     }
     written

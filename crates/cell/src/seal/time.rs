@@ -14,8 +14,8 @@ fn text(unix_s: u64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{:02}:{:02}:{:02}Z", s / 3600, s / 60 % 60, s % 60)
 }
 
-/// Year, month and day of a number of days since 1970-01-01, in the Gregorian calendar. Years are counted from March, so that
-/// a leap day is the last of its year; they repeat every 400 years.
+/// Year, month and day of a number of days since 1970-01-01, in the Gregorian calendar. Years are counted from March,
+/// so a leap day is the last day of its year; years repeat every 400 years.
 fn date(days: u64) -> (u64, u64, u64) {
     const ERA_DAYS: u64 = 146_097;
     let days = days + 719_468;
@@ -46,9 +46,9 @@ mod tests {
         }
     }
 
-    /// Beside a calendar that counts day by day.
+    /// Against a calendar that counts day by day.
     #[test]
-    fn every_day_of_five_centuries() {
+    fn dates_are_correct_for_five_centuries() {
         let leap = |y: u64| y.is_multiple_of(4) && (!y.is_multiple_of(100) || y.is_multiple_of(400));
         let (mut y, mut m, mut d) = (1970, 1, 1);
         for days in 0..182_000 {

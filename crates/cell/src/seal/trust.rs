@@ -1,4 +1,4 @@
-//! `trusted-keys.toml`: whose keys count, and for which class.
+//! `trusted-keys.toml`: the accepted keys, and their classes.
 
 use std::path::{Path, PathBuf};
 
@@ -6,20 +6,21 @@ use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
 use super::keys::{PublicKey, class};
-use super::{Result, text};
+use super::result::Result;
+use super::text;
 use crate::file::node;
 use crate::file::read::{Table, Value};
 
-/// Its name, and that of its entry in what is sealed.
+/// Name of the file, and of its entry in the sealed state.
 pub(super) const FILE: &str = "trusted-keys.toml";
-/// The keys of a machine: they count for every cell there, and users cannot name others.
+/// The keys of the machine: they apply to every cell there, and users cannot name others.
 const MACHINE: &str = "/etc/elbowroom/trusted-keys.toml";
-/// Behind the name in quotes.
+/// Suffix after the quoted name.
 const RETIRED: &str = ", retired";
-/// Names a file of keys where the machine has none.
+/// Names a key file where the machine has none.
 const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
 
-/// The public keys that count, as a file names them:
+/// The accepted public keys, as listed in a file:
 ///
 /// ```toml
 /// [[key]]
@@ -29,35 +30,35 @@ const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TrustedKeys {
-    /// The file that names them.
+    /// The file.
     pub file: PathBuf,
     /// In file order.
     pub keys: Vec<TrustedKey>,
-    /// True where they stand beside the cell: whoever may write there could add his own. Then only those count that were
-    /// sealed with the cell.
+    /// True where the file is beside the cell: anybody who may write there could add a key. Then only keys that were
+    /// sealed with the cell count.
     pub beside: bool,
 }
 
-/// One of them.
+/// An accepted key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TrustedKey {
-    /// The highest class that it may act for.
+    /// The highest class it may act for.
     pub class: AccessClass,
     /// Its owner.
     pub name: String,
     /// The key.
     pub public: PublicKey,
-    /// True where it signs nothing any more. What it signed counts where another integrator's entry follows.
+    /// True where it no longer signs. Its entries count where an entry of another integrator follows.
     pub retired: bool,
 }
 
 impl TrustedKeys {
-    /// Those that count for a cell file: `/etc/elbowroom/trusted-keys.toml`; where there is none, the file that the
-    /// environment variable `ELBOWROOM_TRUSTED_KEYS` names; where it names none, `trusted-keys.toml` beside the cell file.
-    /// `None` where none of them is there: then cells need no seal.
+    /// The keys for a cell file: `/etc/elbowroom/trusted-keys.toml`; otherwise the file named by the environment
+    /// variable `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file. `None` where none of them
+    /// exists: then cells need no seal.
     ///
     /// # Errors
-    /// [`FormatError`] where the file cannot be read, or at the line that is wrong.
+    /// [`FormatError`] where the file cannot be read, or at the wrong line.
     pub fn find(cell: &Path) -> Result<Option<Self>> {
         let named = std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
         let beside = cell.with_file_name(FILE);
@@ -65,7 +66,7 @@ impl TrustedKeys {
         Ok(Some(Self { beside: file == beside, ..Self::read(&file)? }))
     }
 
-    /// Reads a file of keys.
+    /// Reads a key file.
     ///
     /// # Errors
     /// As for [`find`](Self::find).
@@ -85,7 +86,7 @@ impl TrustedKeys {
         Ok(Self { file: file.to_owned(), keys, beside: false })
     }
 
-    /// The key of this short name.
+    /// The key with this short id.
     pub fn get(&self, id: &str) -> Option<&TrustedKey> {
         self.keys.iter().find(|k| k.public.id() == id)
     }
@@ -106,7 +107,7 @@ fn trusted(value: &Value<'_>) -> Result<TrustedKey> {
     })
 }
 
-/// The machine's before all: a user who could name another file could trust a key of his own.
+/// The machine's file has priority: otherwise users could name a file with their own keys.
 fn locate(machine: &Path, named: Option<PathBuf>, beside: &Path) -> Option<PathBuf> {
     if machine.exists() {
         return Some(machine.to_owned());
@@ -114,7 +115,7 @@ fn locate(machine: &Path, named: Option<PathBuf>, beside: &Path) -> Option<PathB
     named.or_else(|| beside.exists().then(|| beside.to_owned()))
 }
 
-/// The keys beside a cell, as they are sealed with it: short name, and what it may do; [`may_sign`] reads that.
+/// The keys beside a cell, as sealed with it: short id and permissions; [`may_sign`] reads them.
 pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
     let file = cell.with_file_name(FILE);
     if !file.exists() {
@@ -127,15 +128,15 @@ pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
     Ok(TrustedKeys::read(&file)?.keys.into_iter().map(value).collect())
 }
 
-/// True where what was sealed of a key lets it sign on behalf of a class.
+/// True where the sealed entry of a key permits it to sign on behalf of a class.
 pub(super) fn may_sign(sealed: &str, who: AccessClass) -> bool {
     let class = sealed.split(' ').next().and_then(AccessClass::parse);
     class.is_some_and(|c| c >= who) && !sealed.ends_with(RETIRED)
 }
 
-/// There is a seal, and nobody says whose keys count.
+/// The error for a sealed cell without a key file.
 pub(super) fn missing(cell: &Path, log: &Path) -> FormatError {
-    let what = format!("is sealed by {}, but there is no file that says whose keys count", log.display());
+    let what = format!("is sealed by {}, but there is no file of trusted keys", log.display());
     FormatError::new(cell, None, what).hint(format!(
         "the integrator's {FILE} beside the cell file, or at {MACHINE}, or {VARIABLE}=FILE (docs/roles.md)"
     ))
@@ -146,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_keys_of_the_machine_come_first_and_those_beside_the_cell_last() {
+    fn the_keys_of_the_machine_have_precedence_over_those_beside_the_cell() {
         let dir = tempfile::tempdir().unwrap();
         let [machine, named, beside] = ["machine", "named", "beside"].map(|n| dir.path().join(n));
         assert_eq!(locate(&machine, None, &beside), None);

@@ -1,4 +1,4 @@
-//! What can be typed after `elbowroom region`.
+//! Arguments of `elbowroom region`.
 
 use std::path::PathBuf;
 
@@ -10,27 +10,27 @@ use elbowroom::monitor::AccessClass;
 pub(crate) enum RegionCommand {
     /// Add regions: tables [region.NAME] from a file, or from standard input
     Add(AddArgs),
-    /// Set keys of a region, or take them out
+    /// Set or remove keys of a region
     Change(ChangeArgs),
     /// Remove a region
     Remove(RemoveArgs),
-    /// Set keys of `monitor`, the laws, or take them out
+    /// Set or remove keys of `monitor`, the laws
     Laws(LawsArgs),
-    /// Seal a cell file as it stands now
+    /// Seal the present contents of a cell file
     Seal(SealArgs),
-    /// Verify the seal and show every edit: when, by whom, what
+    /// Verify the seal and list all edits with time, author and changes
     Log(LogArgs),
-    /// Make a key: the private one goes to a file, the public one to standard output
+    /// Generate a key pair: the private key goes to a file, the public key to standard output
     Keygen(KeygenArgs),
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Class {
-    /// Looks; changes nothing
+    /// Read only
     Operator,
-    /// Changes temporary regions
+    /// May change temporary regions
     Programmer,
-    /// Changes everything
+    /// May change everything
     Integrator,
 }
 
@@ -44,16 +44,16 @@ impl From<Class> for AccessClass {
     }
 }
 
-/// Who edits.
+/// The signer of an edit.
 #[derive(Debug, Args)]
 pub(crate) struct SignArgs {
-    /// The class on whose behalf
+    /// The access class of the edit
     #[arg(long = "as", value_name = "CLASS", value_enum)]
     pub(crate) class: Class,
-    /// The private key that proves it; default: the file that the environment variable `ELBOWROOM_KEY` names
+    /// The private key of that class; default: the file named by the environment variable `ELBOWROOM_KEY`
     #[arg(long, value_name = "FILE")]
     pub(crate) key: Option<PathBuf>,
-    /// Why, for the log
+    /// A comment for the log
     #[arg(long, value_name = "TEXT")]
     pub(crate) note: Option<String>,
 }
@@ -86,14 +86,14 @@ pub(crate) struct ChangeArgs {
     pub(crate) sign: SignArgs,
 }
 
-/// Keys to set and to take out.
+/// Keys to set and to remove.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 pub(crate) struct KeysArgs {
-    /// Keys and their values as they stand in the cell file
+    /// Keys and values in cell-file syntax
     #[arg(value_name = "KEY=VALUE", value_parser = key_value)]
     pub(crate) set: Vec<(String, String)>,
-    /// A key to take out; may be repeated
+    /// A key to remove; may be repeated
     #[arg(long, value_name = "KEY")]
     pub(crate) unset: Vec<String>,
 }
@@ -134,7 +134,7 @@ pub(crate) struct SealArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit status: 0 where the cell is as it was sealed; 1 where it is not; 2 where the log is not as it was signed."
+    after_help = "Exit status: 0 if the cell is as sealed; 1 if it differs; 2 if the log does not match its signatures."
 )]
 pub(crate) struct LogArgs {
     /// The cell file
@@ -148,10 +148,10 @@ pub(crate) struct LogArgs {
 #[command(after_help = "Example:
   elbowroom region keygen --as integrator --name 'integration, line 4' --out integrator.key >> trusted-keys.toml")]
 pub(crate) struct KeygenArgs {
-    /// The class it is for
+    /// The access class of the key
     #[arg(long = "as", value_name = "CLASS", value_enum)]
     pub(crate) class: Class,
-    /// Its owner
+    /// The owner of the key
     #[arg(long, value_name = "NAME")]
     pub(crate) name: String,
     /// The new file for the private key

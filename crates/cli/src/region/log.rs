@@ -2,16 +2,16 @@
 
 use std::fmt::Write as _;
 
-use elbowroom::cell::seal::{self, Change, Entry, History};
+use elbowroom::cell::seal::{self, Change, History, LogEntry};
 use serde_json::json;
 
 use super::args::LogArgs;
-use crate::output::{Failure, Verdict, note, print, print_json};
+use crate::output::{ExitStatus, Failure, note, print, print_json};
 
-/// The first seal changes everything; of such entries the rest is in the JSON.
+/// Most changes printed per entry; the JSON document has all of them.
 const MOST: usize = 12;
 
-pub(crate) fn log(args: &LogArgs) -> Result<Verdict, Failure> {
+pub(crate) fn log(args: &LogArgs) -> Result<ExitStatus, Failure> {
     let history = seal::history(&args.cell)?;
     let good = history.unsealed.is_empty();
     if args.json {
@@ -27,7 +27,7 @@ pub(crate) fn log(args: &LogArgs) -> Result<Verdict, Failure> {
     if !good {
         note(format_args!("{}: is not as it was sealed:\n{}", args.cell.display(), lines(&history.unsealed)));
     }
-    Ok(if good { Verdict::Good } else { Verdict::Bad })
+    Ok(if good { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
 fn document(history: &History) -> serde_json::Value {
@@ -40,18 +40,18 @@ fn document(history: &History) -> serde_json::Value {
     })
 }
 
-fn with_name(entry: &Entry, name: &str) -> serde_json::Value {
+fn with_name(entry: &LogEntry, name: &str) -> serde_json::Value {
     let mut value = json!(entry);
     value["name"] = name.into();
     value
 }
 
-fn name(history: &History, entry: &Entry) -> String {
+fn name(history: &History, entry: &LogEntry) -> String {
     history.trusted.get(&entry.key).map(|k| k.name.clone()).unwrap_or_default()
 }
 
-/// An entry as people read it.
-pub(super) fn entry(e: &Entry, name: &str) -> String {
+/// An entry as text.
+pub(super) fn entry(e: &LogEntry, name: &str) -> String {
     let mut text = format!("{:>4}  {}  {} ({}, key {}): {}", e.sequence, e.time, name, e.class, e.key, e.action);
     if let Some(note) = &e.note {
         let _ = write!(text, " - {note}");

@@ -1,4 +1,4 @@
-//! `elbowroom region`: who may change what in a sealed cell, and who did.
+//! `elbowroom region`: signed edits of a sealed cell, and its edit log.
 
 pub(crate) mod args;
 mod log;
@@ -6,23 +6,23 @@ mod log;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use elbowroom::cell::seal::{self, Edit, Entry, PrivateKey, Signer};
+use elbowroom::cell::seal::{self, CellEdit, LogEntry, PrivateKey, Signer};
 use elbowroom::monitor::AccessClass;
 
-use crate::output::{Failure, Verdict, note, print};
+use crate::output::{ExitStatus, Failure, note, print};
 use args::{AddArgs, KeygenArgs, RegionCommand, SignArgs};
 
-pub(crate) fn region(command: &RegionCommand) -> Result<Verdict, Failure> {
+pub(crate) fn region(command: &RegionCommand) -> Result<ExitStatus, Failure> {
     match command {
         RegionCommand::Add(args) => add(args),
         RegionCommand::Change(args) => {
             let (set, unset) = (args.keys.set.clone(), args.keys.unset.clone());
-            edit(&args.cell, &Edit::Change { region: args.region.clone(), set, unset }, &args.sign)
+            edit(&args.cell, &CellEdit::Change { region: args.region.clone(), set, unset }, &args.sign)
         }
-        RegionCommand::Remove(args) => edit(&args.cell, &Edit::Remove { region: args.region.clone() }, &args.sign),
+        RegionCommand::Remove(args) => edit(&args.cell, &CellEdit::Remove { region: args.region.clone() }, &args.sign),
         RegionCommand::Laws(args) => {
             let (set, unset) = (args.keys.set.clone(), args.keys.unset.clone());
-            edit(&args.cell, &Edit::Laws { set, unset }, &args.sign)
+            edit(&args.cell, &CellEdit::Laws { set, unset }, &args.sign)
         }
         RegionCommand::Seal(args) => signed(&args.cell, &args.sign, |signer| seal::seal(&args.cell, signer)),
         RegionCommand::Log(args) => log::log(args),
@@ -30,7 +30,7 @@ pub(crate) fn region(command: &RegionCommand) -> Result<Verdict, Failure> {
     }
 }
 
-fn add(args: &AddArgs) -> Result<Verdict, Failure> {
+fn add(args: &AddArgs) -> Result<ExitStatus, Failure> {
     let from = &args.regions;
     let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", from.display()));
     let (toml, from) = if from == Path::new("-") {
@@ -40,19 +40,19 @@ fn add(args: &AddArgs) -> Result<Verdict, Failure> {
     } else {
         (std::fs::read_to_string(from).map_err(unreadable)?, from.clone())
     };
-    edit(&args.cell, &Edit::Add { toml, from }, &args.sign)
+    edit(&args.cell, &CellEdit::Add { toml, from }, &args.sign)
 }
 
-fn edit(cell: &Path, edit: &Edit, sign: &SignArgs) -> Result<Verdict, Failure> {
+fn edit(cell: &Path, edit: &CellEdit, sign: &SignArgs) -> Result<ExitStatus, Failure> {
     signed(cell, sign, |signer| seal::edit(cell, signer, edit))
 }
 
-/// Does what a key is needed for, and says what was done.
+/// Performs a signed edit and prints its log entry.
 fn signed(
     cell: &Path,
     sign: &SignArgs,
-    act: impl FnOnce(&Signer<'_>) -> Result<Entry, elbowroom::formats::FormatError>,
-) -> Result<Verdict, Failure> {
+    act: impl FnOnce(&Signer<'_>) -> Result<LogEntry, elbowroom::formats::FormatError>,
+) -> Result<ExitStatus, Failure> {
     let class = AccessClass::from(sign.class);
     if class == AccessClass::Operator {
         let what = format!("{}: an operator changes no regions and no laws", cell.display());
@@ -63,7 +63,7 @@ fn signed(
     let key = private_key(sign, class)?;
     let entry = act(&Signer { class, key: &key, note: sign.note.as_deref() })?;
     print(&log::entry(&entry, key.name()))?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }
 
 fn private_key(sign: &SignArgs, class: AccessClass) -> Result<PrivateKey, Failure> {
@@ -77,7 +77,7 @@ fn private_key(sign: &SignArgs, class: AccessClass) -> Result<PrivateKey, Failur
     Ok(PrivateKey::read(&file)?)
 }
 
-fn keygen(args: &KeygenArgs) -> Result<Verdict, Failure> {
+fn keygen(args: &KeygenArgs) -> Result<ExitStatus, Failure> {
     let class = AccessClass::from(args.class);
     if class == AccessClass::Operator {
         let what = "operators change nothing, so there is no key for them";
@@ -97,5 +97,5 @@ fn keygen(args: &KeygenArgs) -> Result<Verdict, Failure> {
         serde_json::Value::from(args.name.as_str()),
         key.public().to_hex()
     ))?;
-    Ok(Verdict::Good)
+    Ok(ExitStatus::Success)
 }

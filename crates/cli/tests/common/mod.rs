@@ -14,7 +14,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Checks the status and shows what was said where it differs.
+    /// Checks the exit status; prints the output on a mismatch.
     #[track_caller]
     pub fn expect(self, status: i32) -> Self {
         assert_eq!(self.status, status, "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);

@@ -1,11 +1,11 @@
-//! Fills the joint map of one obstacle, beside two straightforward ways to do it, in one run:
+//! Builds the joint map of one obstacle, and by two straightforward methods for comparison, in one run:
 //! `cargo run --release -p elbowroom-cspace --example joint_map`.
 //!
-//! - `pruned`: the middle of every cell against the exact obstacle, planes and rows out of reach skipped;
-//! - `spheres`: the links as 19 overlapping spheres, the middle of every cell, nothing skipped.
+//! - `pruned`: the centre of every cell against the exact obstacle, planes and rows out of reach skipped;
+//! - `spheres`: the links as 19 overlapping spheres, the centre of every cell, nothing skipped.
 //!
-//! Both mark a cell by its middle; `elbowroom` marks it if any configuration in it can touch. Times are those of the
-//! processor for this thread, the best of several runs.
+//! Both mark a cell by its centre; `elbowroom` marks it if any configuration in it is in collision. Times are processor times
+//! of this thread, the best of several runs.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -17,9 +17,11 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use clock::best;
-use elbowroom_cspace::{Axis, Changes, Filler, Grid, JointMap, Layer, Obstacle, PlanarArm, Table};
+use elbowroom_cspace::{
+    CellChanges, ConvexObstacle, Grid, GridAxis, JointMap, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm,
+};
 use elbowroom_spatial::{Pose, Vec3};
-use straightforward::{Planar, Solid};
+use straightforward::{Planar, RoundedBox};
 
 const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
@@ -33,62 +35,63 @@ fn main() {
             let pruned_blocked = count(&cells);
             let spheres = best(3, || planar.spheres(&solid, &mut cells));
             let spheres_blocked = count(&cells);
-            let (fill, whole, blocked) = ours(&grid, &obstacle);
-            let (entered, anew, moved) = updates(&grid, &obstacle, &moved);
+            let (fill, whole, blocked) = building(&grid, &obstacle);
+            let (added, rebuilt, moved) = updates(&grid, &obstacle, &moved);
             println!("{name}, {step_deg} degrees, {} cells", grid.cells());
-            line("pruned, by middles", pruned, pruned_blocked);
-            line("19 spheres, by middles", spheres, spheres_blocked);
+            line("pruned, by centres", pruned, pruned_blocked);
+            line("19 spheres, by centres", spheres, spheres_blocked);
             line("elbowroom, row intervals", fill, blocked);
-            line("elbowroom, whole table", whole, blocked);
-            line("elbowroom, enters an empty map", entered, blocked);
-            line("elbowroom, all anew, changes told", anew, blocked);
-            line("elbowroom, moves by 1 cm", moved, blocked);
+            line("elbowroom, whole bitmap", whole, blocked);
+            line("elbowroom, added to empty map", added, blocked);
+            line("elbowroom, rebuilt, with changes", rebuilt, blocked);
+            line("elbowroom, moved by 1 cm", moved, blocked);
             let ratio = |other: Duration| other.as_secs_f64() / whole.as_secs_f64();
             println!("  ratio: {:.1} to pruned, {:.1} to spheres", ratio(pruned), ratio(spheres));
             let share = |whole: Duration| moved.as_secs_f64() / whole.as_secs_f64() * 100.0;
-            println!("  a move: {:.0} % of all anew, {:.0} % of entering\n", share(anew), share(entered));
+            println!("  a move: {:.0} % of rebuilding, {:.0} % of adding\n", share(rebuilt), share(added));
         }
     }
 }
 
-/// Name, the solid for the straightforward ways, the obstacle and the same a centimetre on.
-fn workload() -> [(&'static str, Solid, [Obstacle; 2]); 2] {
+/// Name, the solid for the straightforward methods, the obstacle and the same moved by a centimetre.
+fn workload() -> [(&'static str, RoundedBox, [ConvexObstacle; 2]); 2] {
     let at = Vec3::new(1.3, 0.4, 0.9);
-    let ball = |at| Obstacle::sphere(at, 0.25).expect("finite");
+    let ball = |at| ConvexObstacle::sphere(at, 0.25).expect("finite");
     let half = Vec3::new(0.25, 0.2, 0.3);
     let yaw = 30f64.to_radians();
-    let crate_at = |x: f64| Obstacle::cuboid(Pose::from_xyz_rpy([x, 0.4, 0.9], [0.0, 0.0, yaw]), half).expect("finite");
+    let crate_at =
+        |x: f64| ConvexObstacle::cuboid(Pose::from_xyz_rpy([x, 0.4, 0.9], [0.0, 0.0, yaw]), half).expect("finite");
     [
-        ("sphere", Solid::ball(at, 0.25), [ball(at), ball(at + Vec3::X * 0.01)]),
-        ("box", Solid::cuboid(at, yaw, half), [crate_at(1.3), crate_at(1.31)]),
+        ("sphere", RoundedBox::ball(at, 0.25), [ball(at), ball(at + Vec3::X * 0.01)]),
+        ("box", RoundedBox::cuboid(at, yaw, half), [crate_at(1.3), crate_at(1.31)]),
     ]
 }
 
 fn grid(step_deg: f64) -> Grid {
-    let axis = |name: &str, lo, hi| Axis::from_degrees(name, lo, hi, step_deg).expect("a fine axis");
+    let axis = |name: &str, lo, hi| GridAxis::from_degrees(name, lo, hi, step_deg).expect("a fine axis");
     let axes = [axis("base", -170.0, 170.0), axis("shoulder", -90.0, 90.0), axis("elbow", -120.0, 150.0)];
     Grid::new(axes).expect("it fits")
 }
 
-/// Row intervals alone; with clearing and writing the table; blocked cells.
-fn ours(grid: &Grid, obstacle: &Obstacle) -> (Duration, Duration, usize) {
-    let mut filler = Filler::new(ARM, grid).expect("a sound arm");
-    let (mut layer, mut table) = (Layer::new(), Table::new(grid.shape()));
-    let fill = best(200, || filler.fill(obstacle, &mut layer));
+/// Times of the row intervals alone, and with clearing and writing the bitmap; blocked cells.
+fn building(grid: &Grid, obstacle: &ConvexObstacle) -> (Duration, Duration, usize) {
+    let mut builder = ObstacleMapBuilder::new(ARM, grid).expect("a sound arm");
+    let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
+    let fill = best(200, || builder.build_layer(obstacle, &mut layer));
     let whole = best(200, || {
-        filler.fill(obstacle, &mut layer);
-        table.clear();
-        table.add(&layer);
+        builder.build_layer(obstacle, &mut layer);
+        occupancy.clear();
+        occupancy.add(&layer);
     });
-    (fill, whole, table.blocked())
+    (fill, whole, occupancy.blocked())
 }
 
-/// With the changed cells told: an obstacle enters a map, the whole table made anew, an obstacle of a map moves.
-fn updates(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> (Duration, Duration, Duration) {
+/// Times with changed cells: an obstacle is added, the whole map is rebuilt, an obstacle is moved.
+fn updates(grid: &Grid, obstacle: &ConvexObstacle, moved: &ConvexObstacle) -> (Duration, Duration, Duration) {
     let mut map = JointMap::new(ARM, grid).expect("a sound arm");
-    let mut entered = Duration::MAX;
+    let mut added = Duration::MAX;
     for _ in 0..100 {
-        entered = entered.min(best(1, || _ = black_box(map.set("it", obstacle))));
+        added = added.min(best(1, || _ = black_box(map.set("it", obstacle))));
         map.remove("it");
     }
     map.set("it", obstacle);
@@ -96,20 +99,21 @@ fn updates(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> (Duration, Dur
         black_box(map.set("it", moved));
         black_box(map.set("it", obstacle));
     });
-    (entered, anew(grid, obstacle, moved), both / 2)
+    (added, rebuilding(grid, obstacle, moved), both / 2)
 }
 
-/// What a map without layers would do when an obstacle moves.
-fn anew(grid: &Grid, obstacle: &Obstacle, moved: &Obstacle) -> Duration {
-    let mut filler = Filler::new(ARM, grid).expect("a sound arm");
-    let (mut layer, mut old, mut new) = (Layer::new(), Table::new(grid.shape()), Table::new(grid.shape()));
-    filler.fill(obstacle, &mut layer);
+/// The cost of a moved obstacle without layers.
+fn rebuilding(grid: &Grid, obstacle: &ConvexObstacle, moved: &ConvexObstacle) -> Duration {
+    let mut builder = ObstacleMapBuilder::new(ARM, grid).expect("a sound arm");
+    let (mut layer, mut old, mut new) =
+        (Layer::new(), OccupancyBitmap::new(grid.shape()), OccupancyBitmap::new(grid.shape()));
+    builder.build_layer(obstacle, &mut layer);
     old.add(&layer);
     best(100, || {
-        filler.fill(moved, &mut layer);
+        builder.build_layer(moved, &mut layer);
         new.clear();
         new.add(&layer);
-        black_box(Changes::between(&old, &new));
+        black_box(CellChanges::between(&old, &new));
     })
 }
 

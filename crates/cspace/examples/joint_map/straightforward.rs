@@ -1,4 +1,4 @@
-//! What one would write first: forward kinematics per row, distances cell by cell, one byte per cell.
+//! A straightforward implementation: forward kinematics per row, distances cell by cell, one byte per cell.
 
 #![allow(
     clippy::inline_always,
@@ -6,21 +6,21 @@
 )]
 #![allow(clippy::needless_bitwise_bool, reason = "branches would keep the loop from being vectorized")]
 
-use elbowroom_cspace::{Axis, Grid, PlanarArm};
+use elbowroom_cspace::{Grid, GridAxis, PlanarArm};
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Level, dispatch};
 
 type V = [f32; 3];
 
 /// A box with rounded edges: a ball is a box without size.
-pub struct Solid {
+pub struct RoundedBox {
     center: V,
     axes: [V; 3],
     half: V,
     round: f32,
 }
 
-impl Solid {
+impl RoundedBox {
     pub fn ball(center: Vec3, radius: f64) -> Self {
         Self { round: radius as f32, ..Self::cuboid(center, 0.0, Vec3::ZERO) }
     }
@@ -110,7 +110,7 @@ pub struct Planar {
 
 impl Planar {
     pub fn new(arm: &PlanarArm, grid: &Grid) -> Self {
-        let turns = |axis: &Axis| -> Vec<[f32; 2]> {
+        let turns = |axis: &GridAxis| -> Vec<[f32; 2]> {
             (0..axis.count()).map(|i| axis.center(i).sin_cos()).map(|(s, c)| [s as f32, c as f32]).collect()
         };
         let [base, shoulder, elbow] = grid.axes();
@@ -132,12 +132,12 @@ impl Planar {
     }
 
     /// Planes out of reach are skipped, rows of which the elbow is too far, rows that the upper arm blocks.
-    pub fn pruned(&self, solid: &Solid, cells: &mut [u8]) {
+    pub fn pruned(&self, solid: &RoundedBox, cells: &mut [u8]) {
         dispatch!(self.level, _simd => self.pruned_lanes(solid, cells));
     }
 
     #[inline(always)]
-    fn pruned_lanes(&self, solid: &Solid, cells: &mut [u8]) {
+    fn pruned_lanes(&self, solid: &RoundedBox, cells: &mut [u8]) {
         let arm = &self.arm;
         let [r1, r2, r3] = [arm.upper_radius_m, arm.fore_radius_m, arm.wrist_radius_m].map(|r| r as f32 + solid.round);
         let around = solid.around();
@@ -176,12 +176,12 @@ impl Planar {
     }
 
     /// Links as overlapping spheres that cover them, every cell.
-    pub fn spheres(&self, solid: &Solid, cells: &mut [u8]) {
+    pub fn spheres(&self, solid: &RoundedBox, cells: &mut [u8]) {
         dispatch!(self.level, _simd => self.spheres_lanes(solid, cells));
     }
 
     #[inline(always)]
-    fn spheres_lanes(&self, solid: &Solid, cells: &mut [u8]) {
+    fn spheres_lanes(&self, solid: &RoundedBox, cells: &mut [u8]) {
         let arm = &self.arm;
         let cover = |radius: f64, length: f64| (radius.hypot(length / 16.0)) as f32 + solid.round;
         let upper = cover(arm.upper_radius_m, arm.upper_length_m);

@@ -1,10 +1,10 @@
-//! How long the map of a whole robot takes: its own solids among a table, a column, a mesh obstacle of 5,000 triangles, and a
-//! cell of 50,000.
+//! Times of building the map of a whole robot: its own solids among a table, a column, a mesh obstacle of 5,000 triangles,
+//! and one of 50,000.
 //!
 //! `cargo run --release -p elbowroom-cspace --example robot_map [ROBOT.urdf [STEP_DEG [THREADS]]]`
 //!
-//! Without a robot: the KR125 of the examples. First three joints, the others at 0. `looks` is how often a cell at the border is
-//! cut in two before it counts as blocked. Times are the best of three.
+//! Without a robot: the KR125 of the examples. First three joints, the others at 0. `bisect` is how often a cell at the
+//! boundary is bisected before it counts as blocked. Times are the best of three.
 #![allow(clippy::print_stdout, reason = "it is what the example is for")]
 
 use std::error::Error;
@@ -12,10 +12,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use elbowroom_cspace::{Axis, FillCounts, Others, RobotFiller};
+use elbowroom_cspace::{GridAxis, RemainingJoints, RobotMapBuilder, RobotMapSettings, RobotMapStats};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_proximity::{Cuboid, Cylinder, Shape, TriMesh};
-use elbowroom_scene::Robot;
+use elbowroom_robot::Robot;
 use elbowroom_spatial::{Pose, Vec3};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -26,38 +26,36 @@ fn main() -> Result<(), Box<dyn Error>> {
     let threads: Option<usize> = args.next().map(|s| s.parse()).transpose()?;
     let robot = load(&file, &LoadOptions::default())?.robot;
     let begin = Instant::now();
-    let mut filler = filler(&robot, step)?;
+    let builder = builder(&robot, step)?;
     println!("prepared in {:.1} ms", begin.elapsed().as_secs_f64() * 1e3);
-    if let Some(threads) = threads {
-        filler = filler.with_threads(threads);
-    }
     let chain = &robot.chain;
     let reach: f64 = chain.path(chain.tip()).iter().map(|j| chain.joints()[j.0].origin.translation.length()).sum();
     println!(
-        "{:<17} {:>5} {:>9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>7} {:>7}",
-        "obstacles", "looks", "ms", "blocked", "of", "kB", "boxes", "asked", "tried", "unsure"
+        "{:<17} {:>6} {:>9} {:>9} {:>9} {:>6} {:>8} {:>9} {:>10} {:>9}",
+        "obstacles", "bisect", "ms", "blocked", "of", "kB", "boxes", "distances", "collisions", "undecided"
     );
     for (name, obstacles) in obstacles(reach) {
-        for looks in [0, 18] {
-            row(name, &obstacles, &filler.clone().with_looks(looks), looks)?;
+        for bisections in [0, 18] {
+            let settings = RobotMapSettings { bisections: Some(bisections), threads, ..RobotMapSettings::default() };
+            row(name, &obstacles, &builder.clone().with_settings(settings), bisections)?;
         }
     }
     Ok(())
 }
 
-fn filler(robot: &Robot, step_deg: f64) -> Result<RobotFiller, Box<dyn Error>> {
+fn builder(robot: &Robot, step_deg: f64) -> Result<RobotMapBuilder, Box<dyn Error>> {
     let chain = &robot.chain;
     let joints = chain.active_joints().iter().take(3).map(|id| &chain.joints()[id.0]);
     let axes = joints
-        .map(|j| Axis::new(&j.name, j.limits.lower, j.limits.upper, step_deg.to_radians()))
+        .map(|j| GridAxis::new(&j.name, j.limits.lower, j.limits.upper, step_deg.to_radians()))
         .collect::<Result<Vec<_>, _>>()?;
     let zeros = vec![0.0; chain.dof()];
-    Ok(RobotFiller::new(robot, Pose::IDENTITY, &axes, &[0, 1, 2], Others::Held(&zeros))?)
+    Ok(RobotMapBuilder::new(robot, Pose::IDENTITY, &axes, &[0, 1, 2], RemainingJoints::Fixed(&zeros))?)
 }
 
 type Placed = Vec<(Shape, Pose)>;
 
-/// Around a robot of this reach, metres.
+/// Obstacles around a robot of this reach, metres.
 fn obstacles(reach: f64) -> [(&'static str, Placed); 4] {
     let at = |x: f64, y: f64, z: f64| Pose::from_translation(Vec3::new(x, y, z) * reach);
     let lump = |radius: f64, at: Pose| (Shape::Mesh(Arc::new(lumpy(51, radius * reach))), at);
@@ -75,24 +73,25 @@ fn obstacles(reach: f64) -> [(&'static str, Placed); 4] {
     ]
 }
 
-fn row(name: &str, obstacles: &Placed, filler: &RobotFiller, looks: u32) -> Result<(), Box<dyn Error>> {
+fn row(name: &str, obstacles: &Placed, builder: &RobotMapBuilder, bisections: u32) -> Result<(), Box<dyn Error>> {
     let mut best = f64::INFINITY;
     let mut last = None;
     for _ in 0..3 {
         let begin = Instant::now();
-        last = Some(filler.fill_counted(obstacles)?);
+        last = Some(builder.build_with_stats(obstacles)?);
         best = best.min(begin.elapsed().as_secs_f64() * 1e3);
     }
-    let (blocks, counts) = last.ok_or("three is more than none")?;
-    let FillCounts { boxes, looks: asked, tried, unsure } = counts;
-    let (blocked, cells, kilobytes) = (blocks.blocked(), blocks.cells(), blocks.bytes() / 1000);
+    let (tree, stats) = last.ok_or("three is more than none")?;
+    let RobotMapStats { boxes, distance_queries, collision_queries, undecided } = stats;
+    let (blocked, cells, kilobytes) = (tree.blocked(), tree.cells(), tree.bytes() / 1000);
     println!(
-        "{name:<17} {looks:>5} {best:>9.1} {blocked:>9} {cells:>9} {kilobytes:>6} {boxes:>8} {asked:>8} {tried:>7} {unsure:>7}"
+        "{name:<17} {bisections:>6} {best:>9.1} {blocked:>9} {cells:>9} {kilobytes:>6} {boxes:>8} {distance_queries:>9} \
+         {collision_queries:>10} {undecided:>9}"
     );
     Ok(())
 }
 
-/// A closed lumpy ball of 2n(n-1) triangles or so.
+/// A closed lumpy ball of about 2n(n-1) triangles.
 fn lumpy(n: usize, radius: f64) -> TriMesh {
     let mut vertices = vec![Vec3::Z * radius];
     let (rings, around) = (n, n);

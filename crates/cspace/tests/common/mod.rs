@@ -2,11 +2,13 @@
 //! `elbowroom-proximity`, and boxes of joint space by subdivision.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use elbowroom_cspace::{Axis, Cell, Filler, Grid, Layer, Obstacle, PlanarArm, Table};
+use elbowroom_cspace::{
+    CellIndex, ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm,
+};
 use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// Random numbers that are the same everywhere (xorshift).
+/// Reproducible random numbers (xorshift).
 pub struct Random(pub u64);
 
 impl Random {
@@ -34,8 +36,8 @@ impl Random {
         [self.within(a.min(), a.max()), self.within(b.min(), b.max()), self.within(c.min(), c.max())]
     }
 
-    /// Anywhere in a cell's box; often on its border.
-    pub fn inside(&mut self, grid: &Grid, cell: Cell) -> [f64; 3] {
+    /// A sample of a cell's box, often on its border.
+    pub fn inside(&mut self, grid: &Grid, cell: CellIndex) -> [f64; 3] {
         let (q, half) = (grid.center(cell), grid.half_widths());
         let mut offset = || match self.below(4) {
             0 => -1.0,
@@ -53,19 +55,19 @@ pub fn grid(step_deg: f64) -> Grid {
 }
 
 pub fn grid_of(step_deg: f64, ranges: [[f64; 2]; 3]) -> Grid {
-    let axis = |name, [lo, hi]: [f64; 2]| Axis::from_degrees(name, lo, hi, step_deg).unwrap();
+    let axis = |name, [lo, hi]: [f64; 2]| GridAxis::from_degrees(name, lo, hi, step_deg).unwrap();
     let [a, b, c] = ranges;
     Grid::new([axis("base", a), axis("shoulder", b), axis("elbow", c)]).unwrap()
 }
 
-pub fn fill(arm: &PlanarArm, grid: &Grid, obstacle: &Obstacle) -> Table {
-    let mut filler = Filler::new(*arm, grid).unwrap();
+pub fn fill(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> OccupancyBitmap {
+    let mut builder = ObstacleMapBuilder::new(*arm, grid).unwrap();
     let mut layer = Layer::new();
-    filler.fill(obstacle, &mut layer);
+    builder.build_layer(obstacle, &mut layer);
     assert!(layer.spans().windows(2).all(|w| w[0].row <= w[1].row), "rows ascend");
-    let mut table = Table::new(grid.shape());
-    table.add(&layer);
-    table
+    let mut occupancy = OccupancyBitmap::new(grid.shape());
+    occupancy.add(&layer);
+    occupancy
 }
 
 fn capsule(a: Vec3, b: Vec3, radius: f64) -> (Shape, Pose) {
@@ -91,50 +93,50 @@ pub fn touches(arm: &PlanarArm, q: [f64; 3], obstacle: &(Shape, Pose)) -> bool {
     clearance(arm, q, obstacle) <= 0.0
 }
 
-/// What is certain about a box of joint space.
+/// What is proven of a box of joint space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Truth {
+pub enum BoxState {
     Free,
     Touching,
     Unknown,
 }
 
-/// The whole box by subdivision: free where the distance at the middle is more than any point of the arm can move.
-pub fn truth(arm: &PlanarArm, q: [f64; 3], half: [f64; 3], obstacle: &(Shape, Pose), depth: u32) -> Truth {
+/// Proof by subdivision: a box is free where the distance at its centre is more than any point of the arm can move.
+pub fn box_state(arm: &PlanarArm, q: [f64; 3], half: [f64; 3], obstacle: &(Shape, Pose), depth: u32) -> BoxState {
     let gap = clearance(arm, q, obstacle);
     if gap <= 0.0 {
-        return Truth::Touching;
+        return BoxState::Touching;
     }
     let radius = arm.offset_m.abs() + arm.upper_length_m + arm.fore_length_m;
     let moves = [radius, arm.upper_length_m + arm.fore_length_m, arm.fore_length_m];
     let each = [half[0] * moves[0], half[1] * moves[1], half[2] * moves[2]];
     if gap > each[0] + each[1] + each[2] {
-        return Truth::Free;
+        return BoxState::Free;
     }
     if depth == 0 {
-        return Truth::Unknown;
+        return BoxState::Unknown;
     }
     let widest = (0..3).max_by(|&i, &j| each[i].total_cmp(&each[j])).unwrap();
     let mut smaller = half;
     smaller[widest] *= 0.5;
-    let mut result = Truth::Free;
+    let mut result = BoxState::Free;
     for side in [-1.0, 1.0] {
         let mut middle = q;
         middle[widest] += side * smaller[widest];
-        match truth(arm, middle, smaller, obstacle, depth - 1) {
-            Truth::Touching => return Truth::Touching,
-            Truth::Unknown => result = Truth::Unknown,
-            Truth::Free => {}
+        match box_state(arm, middle, smaller, obstacle, depth - 1) {
+            BoxState::Touching => return BoxState::Touching,
+            BoxState::Unknown => result = BoxState::Unknown,
+            BoxState::Free => {}
         }
     }
     result
 }
 
-/// Free cells beside blocked ones along any axis.
-pub fn border(table: &Table) -> Vec<Cell> {
-    let shape = table.shape();
+/// Free neighbours of blocked cells.
+pub fn free_neighbours(occupancy: &OccupancyBitmap) -> Vec<CellIndex> {
+    let shape = occupancy.shape();
     let mut found = Vec::new();
-    for cell in table.iter() {
+    for cell in occupancy.iter() {
         for axis in 0..3 {
             let here = cell[axis];
             for moved in [here.checked_sub(1), here.checked_add(1)].into_iter().flatten() {
@@ -143,7 +145,7 @@ pub fn border(table: &Table) -> Vec<Cell> {
                 }
                 let mut beside = cell;
                 beside[axis] = moved;
-                if !table.is_blocked(beside) {
+                if !occupancy.is_blocked(beside) {
                     found.push(beside);
                 }
             }
@@ -154,13 +156,13 @@ pub fn border(table: &Table) -> Vec<Cell> {
     found
 }
 
-/// How many samples contradict the table: an arm that touches in a free cell. `uniform` samples anywhere, `beside` samples
-/// in free cells beside blocked ones; a third as many as `uniform` again turn their back on the obstacle.
-pub fn misses(
+/// Number of samples in contact in a free cell. `uniform` samples are anywhere, `beside` samples in free neighbours of
+/// blocked cells; a third as many as `uniform` are bent backwards over the base.
+pub fn missed_contacts(
     arm: &PlanarArm,
     grid: &Grid,
-    table: &Table,
-    obstacle: &Obstacle,
+    occupancy: &OccupancyBitmap,
+    obstacle: &ConvexObstacle,
     (uniform, beside): (usize, usize),
     random: &mut Random,
 ) -> usize {
@@ -169,18 +171,18 @@ pub fn misses(
     for _ in 0..uniform {
         let q = random.configuration(grid);
         let cell = grid.cell(q).unwrap();
-        missed += usize::from(!table.is_blocked(cell) && touches(arm, q, &shape));
+        missed += usize::from(!occupancy.is_blocked(cell) && touches(arm, q, &shape));
     }
-    // An arm bent backwards reaches what is behind its base.
+    // An arm bent backwards reaches obstacles behind its base.
     let center = obstacle.enclosing_sphere().0;
     let behind = center.y.atan2(center.x) + std::f64::consts::PI;
     for _ in 0..uniform / 3 {
         let mut q = random.configuration(grid);
         q[0] = (behind + random.within(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
             - std::f64::consts::PI;
-        missed += usize::from(grid.cell(q).is_some_and(|cell| !table.is_blocked(cell)) && touches(arm, q, &shape));
+        missed += usize::from(grid.cell(q).is_some_and(|cell| !occupancy.is_blocked(cell)) && touches(arm, q, &shape));
     }
-    let cells = border(table);
+    let cells = free_neighbours(occupancy);
     for _ in 0..beside {
         if cells.is_empty() {
             break;
@@ -192,22 +194,22 @@ pub fn misses(
     missed
 }
 
-/// Share of blocked cells that are certainly free in their whole box, out of `samples` blocked cells.
-pub fn needless(
+/// Share of blocked cells that are proven free in their whole box, out of `samples` blocked cells.
+pub fn needless_share(
     arm: &PlanarArm,
     grid: &Grid,
-    table: &Table,
-    obstacle: &Obstacle,
+    occupancy: &OccupancyBitmap,
+    obstacle: &ConvexObstacle,
     samples: usize,
     random: &mut Random,
 ) -> f64 {
-    let cells: Vec<Cell> = table.iter().collect();
+    let cells: Vec<CellIndex> = occupancy.iter().collect();
     let shape = obstacle.shape();
     let mut free = 0;
     for _ in 0..samples {
         let cell = cells[random.below(cells.len())];
-        let answer = truth(arm, grid.center(cell), grid.half_widths(), &shape, 24);
-        free += usize::from(answer == Truth::Free);
+        let answer = box_state(arm, grid.center(cell), grid.half_widths(), &shape, 24);
+        free += usize::from(answer == BoxState::Free);
     }
     free as f64 / samples as f64
 }

@@ -1,15 +1,16 @@
-//! One robot, its map, and the naive oracle: every solid at single configurations.
+//! One robot, its map, and the naive oracle: collision queries of every solid at single configurations.
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use std::sync::Arc;
 
-use elbowroom_cspace::{Axis, Blocks, Others, RobotFiller};
+use elbowroom_cspace::{BoxTree, GridAxis, RemainingJoints, RobotMapBuilder};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Cuboid, Cylinder, Shape, TriMesh, collides, separation};
-use elbowroom_scene::{Body, Robot, example};
+use elbowroom_robot::example;
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-/// A small generator: the same numbers on every machine.
+/// Reproducible random numbers.
 pub struct Random(pub u64);
 
 impl Random {
@@ -28,7 +29,7 @@ pub fn cuboid(at: [f64; 3], rpy: [f64; 3], size: [f64; 3]) -> (Shape, Pose) {
 }
 
 /// A box as a closed mesh.
-pub fn crate_mesh(size: f64) -> TriMesh {
+pub fn box_mesh(size: f64) -> TriMesh {
     let half = size * 0.5;
     let side = |i: usize, bit: usize| if i >> bit & 1 == 1 { half } else { -half };
     let corners = (0..8).map(|i| Vec3::new(side(i, 0), side(i, 1), side(i, 2))).collect();
@@ -68,15 +69,15 @@ pub fn six_joints() -> Robot {
         links.push(format!("wrist_link_{i}"));
     }
     let mut robot = Robot::new(Chain::new("six", links, joints).unwrap());
-    robot.bodies[..4].clone_from_slice(&arm.bodies);
-    let body = |shape, at: [f64; 3], rpy| Body { name: String::new(), shape, in_link: Pose::from_xyz_rpy(at, rpy) };
-    robot.bodies[4].push(body(Shape::Mesh(Arc::new(crate_mesh(0.08))), [0.0, 0.0, 0.02], [0.3, 0.2, 0.1]));
-    robot.bodies[5].push(body(
+    robot.colliders[..4].clone_from_slice(&arm.colliders);
+    let body = |shape, at: [f64; 3], rpy| Collider { name: String::new(), shape, in_link: Pose::from_xyz_rpy(at, rpy) };
+    robot.colliders[4].push(body(Shape::Mesh(Arc::new(box_mesh(0.08))), [0.0, 0.0, 0.02], [0.3, 0.2, 0.1]));
+    robot.colliders[5].push(body(
         Shape::Cylinder(Cylinder { half_length: 0.05, radius: 0.03 }),
         [0.02, 0.0, 0.05],
         [0.4, 0.0, 0.0],
     ));
-    robot.bodies[6].push(body(
+    robot.colliders[6].push(body(
         Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.02, 0.05, 0.03) }),
         [0.0, 0.03, 0.06],
         [0.0; 3],
@@ -84,20 +85,20 @@ pub fn six_joints() -> Robot {
     robot
 }
 
-pub fn axes(robot: &Robot, joints: &[usize], step: f64) -> Vec<Axis> {
+pub fn axes(robot: &Robot, joints: &[usize], step: f64) -> Vec<GridAxis> {
     let axis = |&j: &usize| {
         let joint = &robot.chain.joints()[robot.chain.active_joints()[j].0];
         let step = if joint.kind == JointKind::Prismatic { step / 30.0 } else { step.to_radians() };
-        Axis::new(&joint.name, joint.limits.lower, joint.limits.upper, step).unwrap()
+        GridAxis::new(&joint.name, joint.limits.lower, joint.limits.upper, step).unwrap()
     };
     joints.iter().map(axis).collect()
 }
 
-/// A robot, a map of it, and what is asked about it.
+/// A robot and the parameters of its map.
 pub struct Case {
     pub robot: Robot,
     pub joints: Vec<usize>,
-    pub held: Option<Vec<f64>>,
+    pub fixed: Option<Vec<f64>>,
     pub base: Pose,
     pub obstacles: Vec<(Shape, Pose)>,
     pub step: f64,
@@ -106,21 +107,27 @@ pub struct Case {
 impl Case {
     pub fn new(obstacles: Vec<(Shape, Pose)>) -> Self {
         let robot = example::arm().unwrap();
-        Self { robot, joints: vec![0, 1, 2], held: None, base: Pose::IDENTITY, obstacles, step: 4.0 }
+        Self { robot, joints: vec![0, 1, 2], fixed: None, base: Pose::IDENTITY, obstacles, step: 4.0 }
     }
 
-    pub fn filler(&self) -> RobotFiller {
-        let others = self.held.as_deref().map_or(Others::Any, Others::Held);
-        RobotFiller::new(&self.robot, self.base, &axes(&self.robot, &self.joints, self.step), &self.joints, others)
-            .unwrap()
+    pub fn builder(&self) -> RobotMapBuilder {
+        let remaining = self.fixed.as_deref().map_or(RemainingJoints::Swept, RemainingJoints::Fixed);
+        RobotMapBuilder::new(
+            &self.robot,
+            self.base,
+            &axes(&self.robot, &self.joints, self.step),
+            &self.joints,
+            remaining,
+        )
+        .unwrap()
     }
 
-    /// True where a link that the map's joints move is in contact.
-    pub fn touches(&self, state: &mut ChainState, q: &[f64], links: &[usize], around: &[Aabb]) -> bool {
+    /// True where a link that the map's joints move is in collision.
+    pub fn collides(&self, state: &mut ChainState, q: &[f64], links: &[usize], around: &[Aabb]) -> bool {
         state.q.copy_from_slice(q);
         self.robot.chain.forward(state);
         links.iter().any(|&link| {
-            self.robot.bodies[link].iter().any(|body| {
+            self.robot.colliders[link].iter().any(|body| {
                 let in_world = self.base * state.link_in_root(LinkId(link)) * body.in_link;
                 let bounds = body.shape.aabb(&in_world).inflated(1e-9);
                 self.obstacles
@@ -131,13 +138,13 @@ impl Case {
         })
     }
 
-    /// Least distance of a link that the map's joints move from an obstacle.
+    /// Least distance of an obstacle from a link that the map's joints move.
     pub fn gap(&self, state: &mut ChainState, q: &[f64]) -> f64 {
         state.q.copy_from_slice(q);
         self.robot.chain.forward(state);
         let mut least = f64::INFINITY;
         for link in self.moving_links() {
-            for body in &self.robot.bodies[link] {
+            for body in &self.robot.colliders[link] {
                 let in_world = self.base * state.link_in_root(LinkId(link)) * body.in_link;
                 for (shape, at) in &self.obstacles {
                     if collides(&body.shape, &in_world, shape, at) {
@@ -159,11 +166,11 @@ impl Case {
         (0..chain.links().len()).filter(|l| chain.path(LinkId(*l)).iter().any(moves)).collect()
     }
 
-    /// All joint values, the map's being `q`.
-    pub fn whole(&self, q: &[f64], random: &mut Random) -> Vec<f64> {
+    /// All joint values; those of the map's joints are `q`.
+    pub fn all_values(&self, q: &[f64], random: &mut Random) -> Vec<f64> {
         let (low, high) = (self.robot.chain.lower(), self.robot.chain.upper());
-        let mut all: Vec<f64> = match &self.held {
-            Some(held) => held.clone(),
+        let mut all: Vec<f64> = match &self.fixed {
+            Some(fixed) => fixed.clone(),
             None => (0..low.len()).map(|i| random.between(low[i], high[i])).collect(),
         };
         for (&j, &v) in self.joints.iter().zip(q) {
@@ -172,61 +179,62 @@ impl Case {
         all
     }
 
-    /// No configuration that touches lies in a free cell: over all cells, and in the free cells beside blocked ones.
-    pub fn check(&self, samples: usize) -> Blocks {
-        let blocks = self.filler().fill(&self.obstacles).unwrap();
-        self.compare(&blocks, samples);
-        blocks
+    /// Builds the map and checks that no collision lies in a free cell: in all cells, and in free neighbours of blocked ones.
+    pub fn check(&self, samples: usize) -> BoxTree {
+        let tree = self.builder().build(&self.obstacles).unwrap();
+        self.compare(&tree, samples);
+        tree
     }
 
-    /// The same for a map that is there.
-    pub fn compare(&self, blocks: &Blocks, samples: usize) {
+    /// The same for an existing map.
+    pub fn compare(&self, tree: &BoxTree, samples: usize) {
         let mut random = Random(7);
         let mut state = ChainState::new(&self.robot.chain);
-        let border = border_cells(blocks);
+        let boundary = free_neighbours(tree);
         let around: Vec<Aabb> = self.obstacles.iter().map(|(shape, at)| shape.aabb(at)).collect();
         let links = self.moving_links();
-        let mut touching = 0;
+        let mut collisions = 0;
         for i in 0..samples {
-            let q: Vec<f64> = if i % 2 == 0 || border.is_empty() {
-                blocks.axes().iter().map(|a| random.between(a.min(), a.max())).collect()
+            let q: Vec<f64> = if i % 2 == 0 || boundary.is_empty() {
+                tree.axes().iter().map(|a| random.between(a.min(), a.max())).collect()
             } else {
-                let cell = &border[(random.unit() * border.len() as f64) as usize];
-                let within = |(a, c): (&Axis, &u16)| {
+                let cell = &boundary[(random.unit() * boundary.len() as f64) as usize];
+                let within = |(a, c): (&GridAxis, &u16)| {
                     let low = a.border(usize::from(*c));
                     random.between(low, (low + a.step()).min(a.max()))
                 };
-                blocks.axes().iter().zip(cell).map(within).collect()
+                tree.axes().iter().zip(cell).map(within).collect()
             };
-            let whole = self.whole(&q, &mut random);
-            if self.touches(&mut state, &whole, &links, &around) {
-                touching += 1;
-                assert!(blocks.is_blocked(&q), "{q:?} touches and is free");
+            let all_values = self.all_values(&q, &mut random);
+            if self.collides(&mut state, &all_values, &links, &around) {
+                collisions += 1;
+                assert!(tree.is_blocked(&q), "{q:?} collides and is free");
             }
         }
-        assert!(touching > 0 || blocks.blocked() == 0, "the samples never touch: they show nothing");
+        assert!(collisions > 0 || tree.blocked() == 0, "no sample is in collision: the test is void");
     }
 
-    /// Share of the blocked cells in which no configuration touches, as far as a close look at each of some shows.
-    pub fn needlessly(&self, blocks: &Blocks, looks: usize) -> f64 {
+    /// Share of the blocked cells in which a local search finds no collision, out of some.
+    pub fn needless_share(&self, tree: &BoxTree, samples: usize) -> f64 {
         let mut random = Random(3);
         let mut state = ChainState::new(&self.robot.chain);
         let mut cells = Vec::new();
-        blocks.each(|b| each_cell(b.first, b.last, |c| cells.push(c.to_vec())));
+        tree.for_each_box(|b| each_cell(b.first, b.last, |c| cells.push(c.to_vec())));
         let mut needless = 0u32;
-        for _ in 0..looks {
+        for _ in 0..samples {
             let cell = &cells[(random.unit() * cells.len() as f64) as usize];
-            needless += u32::from(!self.touches_in(&mut state, blocks.axes(), cell));
+            needless += u32::from(!self.collides_in(&mut state, tree.axes(), cell));
         }
-        f64::from(needless) / looks as f64
+        f64::from(needless) / samples as f64
     }
 
-    /// Goes to where the gap is least, by smaller and smaller steps from the nearest of the cell's corners and middle.
-    pub fn touches_in(&self, state: &mut ChainState, axes: &[Axis], cell: &[u16]) -> bool {
+    /// True where a local search for the least distance, from the nearest of the cell's corners and centre with decreasing
+    /// steps, finds a collision.
+    pub fn collides_in(&self, state: &mut ChainState, axes: &[GridAxis], cell: &[u16]) -> bool {
         let n = axes.len();
         let low: Vec<f64> = axes.iter().zip(cell).map(|(a, c)| a.border((*c).into())).collect();
         let high: Vec<f64> = axes.iter().zip(&low).map(|(a, l)| (l + a.step()).min(a.max())).collect();
-        let mut gap = |q: &[f64]| self.gap(state, &self.whole(q, &mut Random(1)));
+        let mut gap = |q: &[f64]| self.gap(state, &self.all_values(q, &mut Random(1)));
         let mut best: Vec<f64> = (0..n).map(|i| 0.5 * (low[i] + high[i])).collect();
         let mut least = gap(&best);
         for corner in 0..1 << n {
@@ -267,15 +275,15 @@ pub fn each_cell(first: &[u16], last: &[u16], mut found: impl FnMut(&[u16])) {
 }
 
 /// Free cells with a blocked neighbour.
-pub fn border_cells(blocks: &Blocks) -> Vec<Vec<u16>> {
+pub fn free_neighbours(tree: &BoxTree) -> Vec<Vec<u16>> {
     let mut out = std::collections::BTreeSet::new();
-    blocks.each(|b| {
+    tree.for_each_box(|b| {
         each_cell(b.first, b.last, |cell| {
             for axis in 0..cell.len() {
                 for at in [cell[axis].checked_sub(1), cell[axis].checked_add(1)].into_iter().flatten() {
                     let mut next = cell.to_vec();
                     next[axis] = at;
-                    if usize::from(at) < blocks.axes()[axis].count() && !blocks.is_blocked_cell(&next) {
+                    if usize::from(at) < tree.axes()[axis].count() && !tree.is_blocked_cell(&next) {
                         out.insert(next);
                     }
                 }

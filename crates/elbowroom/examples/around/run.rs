@@ -1,34 +1,44 @@
-//! The clock: frames are rendered and sent, ticks move the arm, the judge looks on.
+//! The simulation: frames are rendered and sent, ticks move the arm, the ground truth is checked.
 
 use std::path::Path;
 use std::time::Instant;
 
-use elbowroom::cell::watch::{Doing, FrameEntry, Sighting, Step, TickEntry, Truth, WatchLog};
 use elbowroom::kinematics::ChainState;
+use elbowroom::perception::{
+    ExecutorState, ExecutorStep, FrameEntry, GroundTruth, ObstacleUpdate, PerceptionLog, TickEntry,
+};
 use elbowroom::scene::Scene;
 use elbowroom::spatial::Pose;
-use elbowroom::vision::render::{Conditions, Renderer};
+use elbowroom::vision::render::{RenderConditions, Renderer};
 use elbowroom::vision::{ArmPart, Channels, Frame, Point2, encode_png};
 
-use crate::album::Album;
-use crate::judge::Judge;
+use crate::album::Images;
+use crate::ground_truth::GroundTruthChecker;
+use crate::obstacles::MovingBox;
 use crate::station::{Failure, LATENCY_S, PERIOD_S, STATIONS, Station, TICK_S, radians};
-use crate::things::Thing;
 
-/// What is kept of a run.
+/// Results of a run.
 pub struct Record {
-    pub log: WatchLog,
-    /// What was really hit, and when.
+    pub log: PerceptionLog,
+    /// Collisions: time and names.
     pub hits: Vec<(f64, String)>,
     pub arrivals: usize,
-    /// Frames in which a thing was wholly in sight, and in how many of them its prism held it until the next frame's.
-    pub held: (usize, usize),
+    pub coverage: Coverage,
 }
 
-/// What goes wrong with frames, and when.
+/// How often the prisms contained the true obstacles.
+#[derive(Debug, Default)]
+pub struct Coverage {
+    /// Obstacles fully in view, summed over the frames.
+    pub visible: usize,
+    /// Those of them that a prism contained until the next frame had been processed.
+    pub contained: usize,
+}
+
+/// The bytes of the frame at a time, with camera faults.
 fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
     if (6.6..7.1).contains(&t) {
-        return Ok(None); // the cable is loose
+        return Ok(None); // connection lost
     }
     let mut bytes = encode_png(frame)?;
     if (t - 14.0).abs() < 1e-6 {
@@ -37,35 +47,35 @@ fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
     Ok(Some(bytes))
 }
 
-/// Runs the cell; frames and pictures go to `album`.
-pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Album) -> Result<Record, Failure> {
+/// Runs the cell; images go to `images`.
+pub fn run(station: &mut Station, obstacles: &[MovingBox], end_s: f64, images: &mut Images) -> Result<Record, Failure> {
     let mut builder = Scene::builder();
     builder.robot("kr125", station.arm.robot.clone(), Pose::IDENTITY);
-    for thing in things {
-        builder.object(thing.object());
+    for obstacle in obstacles {
+        builder.object(obstacle.object());
     }
     let scene = builder.build()?;
     let mut q = radians(STATIONS[0]);
-    let mut judge = Judge::new(&scene, &q)?;
+    let mut ground_truth = GroundTruthChecker::new(&scene, &q)?;
     let mut stage = Stage::new(station);
-    let mut record = Record { log: log(things), hits: vec![], arrivals: 0, held: (0, 0) };
-    let learning_s = f64::from(station.watch.vision().settings().learning_frames) * PERIOD_S;
-    let every = (PERIOD_S / TICK_S).round() as usize;
-    let late = (LATENCY_S / TICK_S).round() as usize;
+    let mut record = Record { log: log(obstacles), hits: vec![], arrivals: 0, coverage: Coverage::default() };
+    let learning_s = f64::from(station.pipeline.vision().settings().learning_frames) * PERIOD_S;
+    let period_ticks = (PERIOD_S / TICK_S).round() as usize;
+    let latency_ticks = (LATENCY_S / TICK_S).round() as usize;
     let mut sent: Option<Sent> = None;
     let mut next = 1;
     for tick in 0..(end_s / TICK_S) as usize {
         let t = tick as f64 * TICK_S;
-        if tick.is_multiple_of(every) {
-            sent = stage.shoot(station, things, t, &q)?;
+        if tick.is_multiple_of(period_ticks) {
+            sent = stage.render(station, obstacles, t, &q)?;
         }
-        if tick % every == late
+        if tick % period_ticks == latency_ticks
             && let Some(sent) = sent.take()
         {
-            let entry = see(station, &sent);
-            if let Ok((sighting, outlook)) = &entry.told {
-                hold(sighting, things, &mut record.held);
-                album.keep(station, &sent.bytes, sighting, outlook)?;
+            let entry = process(station, &sent);
+            if let Ok((update, result)) = &entry.result {
+                count_contained(update, obstacles, &mut record.coverage);
+                images.keep(station, &sent.bytes, update, result)?;
             }
             record.log.frames.push(entry);
         }
@@ -73,36 +83,36 @@ pub fn run(station: &mut Station, things: &[Thing], end_s: f64, album: &mut Albu
             wave(t / learning_s)
         } else {
             if t < learning_s + TICK_S {
-                station.guide.go_to(&radians(STATIONS[next]))?;
+                station.executor.set_goal(&radians(STATIONS[next]))?;
             }
-            station.guide.tick(t + TICK_S, TICK_S)
+            station.executor.tick(t + TICK_S, TICK_S)
         };
-        if t > learning_s + TICK_S && step.doing == Doing::Arrived && is_at(&step.q, STATIONS[next]) {
+        if t > learning_s + TICK_S && step.state == ExecutorState::Arrived && is_at(&step.q, STATIONS[next]) {
             (next, record.arrivals) = (1 - next, record.arrivals + 1);
-            station.guide.go_to(&radians(STATIONS[next]))?;
+            station.executor.set_goal(&radians(STATIONS[next]))?;
         }
-        let ways: Vec<[Pose; 2]> = things.iter().map(|x| [x.in_world(t), x.in_world(t + TICK_S)]).collect();
-        let distance_m = Some(judge.go(t + TICK_S, &step.q, &ways)?);
+        let poses: Vec<[Pose; 2]> = obstacles.iter().map(|x| [x.in_world(t), x.in_world(t + TICK_S)]).collect();
+        let distance_m = Some(ground_truth.advance(t + TICK_S, &step.q, &poses)?);
         q.clone_from(&step.q);
-        for (truth, way) in record.log.truth.iter_mut().zip(&ways) {
-            truth.poses.push(way[1]);
+        for (truth, pose) in record.log.ground_truth.iter_mut().zip(&poses) {
+            truth.poses.push(pose[1]);
         }
         record.log.ticks.push(TickEntry { t_s: t + TICK_S, step, distance_m });
     }
-    record.hits = judge.hits;
+    record.hits = ground_truth.hits;
     Ok(record)
 }
 
-fn log(things: &[Thing]) -> WatchLog {
-    let truth = |thing: &Thing| {
-        let object = thing.object();
-        Truth { name: object.name, shape: object.shape, poses: Vec::new() }
+fn log(obstacles: &[MovingBox]) -> PerceptionLog {
+    let truth = |obstacle: &MovingBox| {
+        let object = obstacle.object();
+        GroundTruth { name: object.name, shape: object.shape, poses: Vec::new() }
     };
-    WatchLog {
-        title: "A KR125, a camera, and what comes between".into(),
+    PerceptionLog {
+        title: "A KR125, a camera, and dynamic obstacles".into(),
         tick_s: TICK_S,
-        truth: things.iter().map(truth).collect(),
-        ..WatchLog::default()
+        ground_truth: obstacles.iter().map(truth).collect(),
+        ..PerceptionLog::default()
     }
 }
 
@@ -110,14 +120,14 @@ fn is_at(q: &[f64], station: [f64; 6]) -> bool {
     q.iter().zip(&radians(station)).all(|(a, b)| (a - b).abs() < 1e-6)
 }
 
-/// A frame on its way.
+/// A frame in transmission.
 struct Sent {
     t_s: f64,
     q: Vec<f64>,
     bytes: Vec<u8>,
 }
 
-/// Renders what the camera would send.
+/// Renders the images of the camera.
 struct Stage {
     renderer: Renderer,
     chain: ChainState,
@@ -135,46 +145,53 @@ impl Stage {
         }
     }
 
-    fn shoot(&mut self, station: &Station, things: &[Thing], t: f64, q: &[f64]) -> Result<Option<Sent>, Failure> {
+    fn render(
+        &mut self,
+        station: &Station,
+        obstacles: &[MovingBox],
+        t: f64,
+        q: &[f64],
+    ) -> Result<Option<Sent>, Failure> {
         station.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
-        let solids: Vec<_> = things.iter().map(|thing| thing.solid(t)).collect();
+        let solids: Vec<_> = obstacles.iter().map(|obstacle| obstacle.solid(t)).collect();
         let painted: Vec<_> = self.parts.iter().map(|part| (part.clone(), 235)).collect();
-        let conditions = Conditions { seed: (t / TICK_S) as u64 + 1, ..Conditions::default() };
+        let conditions = RenderConditions { seed: (t / TICK_S) as u64 + 1, ..RenderConditions::default() };
         self.frame.name = format!("frame at {t:.2} s");
         self.renderer.render(&solids, &painted, &conditions, &mut self.frame)?;
         Ok(bytes_at(t, &self.frame)?.map(|bytes| Sent { t_s: t, q: q.to_vec(), bytes }))
     }
 }
 
-fn see(station: &mut Station, sent: &Sent) -> FrameEntry {
+fn process(station: &mut Station, sent: &Sent) -> FrameEntry {
     let began = Instant::now();
-    let seen = station.watch.see(&sent.bytes, Path::new("camera.png"), sent.t_s, &sent.q);
-    let told = seen.map(|sighting| {
-        let outlook = station.guide.look(&sighting);
-        (sighting, outlook)
+    let seen = station.pipeline.process_image(&sent.bytes, Path::new("camera.png"), sent.t_s, &sent.q);
+    let result = seen.map(|update| {
+        let result = station.executor.update(&update);
+        (update, result)
     });
-    let took = began.elapsed();
-    let blocked = station.watch.map().table().blocked();
-    FrameEntry { t_s: sent.t_s, told: told.map_err(|error| error.to_string()), took, blocked }
+    let elapsed = began.elapsed();
+    let blocked = station.pipeline.map().occupancy().blocked();
+    FrameEntry { t_s: sent.t_s, result: result.map_err(|error| error.to_string()), elapsed, blocked }
 }
 
-/// Whether the prisms hold what is really there, from the frame until the next one has been worked up.
-fn hold(sighting: &Sighting, things: &[Thing], held: &mut (usize, usize)) {
-    let t = sighting.stamp_s;
-    let in_sight = |p: &Point2| (-1.3..4.5).contains(&p.x) && (-2.2..2.2).contains(&p.y);
-    for thing in things {
-        let [now, then] = [thing.solid(t).footprint_m, thing.solid(t + PERIOD_S + LATENCY_S).footprint_m];
-        if sighting.is_clear() && now.iter().chain(&then).all(in_sight) {
-            held.0 += 1;
-            held.1 += usize::from(sighting.prisms.iter().any(|p| p.contains(&now) && p.contains(&then)));
+/// Counts prisms that contain the true obstacles from the frame until the next one has been processed.
+fn count_contained(update: &ObstacleUpdate, obstacles: &[MovingBox], coverage: &mut Coverage) {
+    let t = update.stamp_s;
+    let is_visible = |p: &Point2| (-1.3..4.5).contains(&p.x) && (-2.2..2.2).contains(&p.y);
+    for obstacle in obstacles {
+        let [now, then] = [obstacle.solid(t).footprint_m, obstacle.solid(t + PERIOD_S + LATENCY_S).footprint_m];
+        if update.is_accepted() && now.iter().chain(&then).all(is_visible) {
+            coverage.visible += 1;
+            coverage.contained += usize::from(update.prisms.iter().any(|p| p.contains(&now) && p.contains(&then)));
         }
     }
 }
 
-/// While the empty cell is learnt the arm goes to the other station and back, so that all of the floor is in sight once.
-fn wave(share: f64) -> Step {
+/// While the empty cell is learned the arm moves to the other station and back, so that all of the floor is visible
+/// once.
+fn wave(share: f64) -> ExecutorStep {
     let [a, b] = [radians(STATIONS[0]), radians(STATIONS[1])];
     let t = 0.5 - 0.5 * (share * std::f64::consts::TAU).cos();
     let q = a.iter().zip(&b).map(|(a, b)| a + (b - a) * t).collect();
-    Step { q, qd: [0.0; 3], rate: 1.0, doing: Doing::Arrived }
+    ExecutorStep { q, qd: [0.0; 3], rate: 1.0, state: ExecutorState::Arrived }
 }

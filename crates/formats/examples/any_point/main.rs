@@ -1,17 +1,17 @@
-//! Random points of real robots' surfaces as ends of chains, brought to where they can be (S4.6):
+//! Inverse kinematics of random points on the surfaces of real robots (S4.6):
 //! `cargo run --release -p elbowroom-formats --example any_point -- [POINTS] [PINOCCHIO]`.
 //!
-//! POINTS (default 100,000) points for each robot, as many on every link that a joint moves, drawn by area on its collision
-//! solids. A target is where the point (and its normal) is at a random state within the limits; the search starts from
-//! another random state. Answers are judged by the chain's own forward kinematics, not by what the search says.
+//! POINTS (default 100,000) points for each robot, equally many on every moving link, sampled by area on its collision
+//! geometry. A target is the position of the point (and its normal) at a random state within the limits; the search starts
+//! from another random state. Solutions are checked by forward kinematics.
 //!
-//! The first PINOCCHIO (default 0) questions for each link go to a damped least squares with Pinocchio, too: `pin_dls.py`, by
-//! the Python of `ELBOWROOM_PYTHON` (which needs `pin` and `numpy`). Data as in the tests, `ELBOWROOM_DATA`.
+//! The first PINOCCHIO (default 0) problems for each link are also solved by damped least squares with Pinocchio:
+//! `pin_dls.py`, with the Python of `ELBOWROOM_PYTHON` (which needs `pin` and `numpy`). Data as in the tests, `ELBOWROOM_DATA`.
 #![allow(clippy::print_stdout)]
 
-#[allow(dead_code)]
-mod judge;
 mod pinocchio;
+#[allow(dead_code)]
+mod problem;
 mod surface;
 
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_kinematics::LinkId;
 
-use judge::{Line, Question, measure};
+use problem::{IkProblem, SolverResults, measure};
 use surface::{Random, Surface};
 
 const ROBOTS: [&str; 4] = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
@@ -33,7 +33,7 @@ fn main() {
         println!("skipped: no data at {}", data.display());
         return;
     }
-    println!("{}", Line::HEAD);
+    println!("{}", SolverResults::HEAD);
     for name in ROBOTS {
         let path = data.join(format!("urdf/{name}/{name}.urdf"));
         let loaded = match robot::load(&path, &LoadOptions::default()) {
@@ -46,18 +46,18 @@ fn main() {
         let chain = &loaded.chain;
         let moved = |l: &LinkId| chain.path(*l).iter().any(|j| chain.joints()[j.0].kind.moves());
         let links: Vec<LinkId> = (0..chain.links().len()).map(LinkId).filter(moved).collect();
-        let links: Vec<LinkId> = links.into_iter().filter(|l| !loaded.bodies[l.0].is_empty()).collect();
+        let links: Vec<LinkId> = links.into_iter().filter(|l| !loaded.colliders[l.0].is_empty()).collect();
         let mut random = Random(2026);
         for with_normal in [false, true] {
-            let mut whole = Line::default();
+            let mut whole = SolverResults::default();
             for &link in &links {
-                let surface = Surface::of(&loaded.bodies[link.0]);
-                let questions: Vec<Question> = (0..points.div_ceil(links.len()))
-                    .filter_map(|_| Question::draw(chain, link, &surface, with_normal, &mut random))
+                let surface = Surface::of(&loaded.colliders[link.0]);
+                let problems: Vec<IkProblem> = (0..points.div_ceil(links.len()))
+                    .filter_map(|_| IkProblem::draw(chain, link, &surface, with_normal, &mut random))
                     .collect();
-                let line = measure(chain, &questions);
+                let line = measure(chain, &problems);
                 println!("{}", line.text(name, &chain.links()[link.0], with_normal));
-                let few = &questions[..beside.min(questions.len())];
+                let few = &problems[..beside.min(problems.len())];
                 if !few.is_empty() {
                     println!("{}", measure(chain, few).text("  the first of them", "", with_normal));
                     pinocchio::run(&path, chain, few);

@@ -1,4 +1,4 @@
-//! The same questions for a damped least squares with Pinocchio.
+//! The same problems for a damped least squares with Pinocchio.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -8,19 +8,19 @@ use std::process::{Command, Stdio};
 use elbowroom_kinematics::Chain;
 use elbowroom_spatial::Vec3;
 
-use crate::judge::Question;
+use crate::problem::IkProblem;
 
-/// Prints one line, or why there is none.
-pub fn run(urdf: &Path, chain: &Chain, questions: &[Question]) {
+/// Prints one line, or the reason why it failed.
+pub fn run(urdf: &Path, chain: &Chain, problems: &[IkProblem]) {
     let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
-    match ask(&python, urdf, chain, questions) {
+    match ask(&python, urdf, chain, problems) {
         Ok(text) => print!("{text}"),
         Err(e) => println!("  pinocchio: skipped, {python}: {e}"),
     }
 }
 
-fn ask(python: &str, urdf: &Path, chain: &Chain, questions: &[Question]) -> std::io::Result<String> {
-    let Some(first) = questions.first() else { return Ok(String::new()) };
+fn ask(python: &str, urdf: &Path, chain: &Chain, problems: &[IkProblem]) -> std::io::Result<String> {
+    let Some(first) = problems.first() else { return Ok(String::new()) };
     let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/any_point/pin_dls.py");
     let mut child = Command::new(python)
@@ -30,7 +30,7 @@ fn ask(python: &str, urdf: &Path, chain: &Chain, questions: &[Question]) -> std:
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()?;
-    let text = lines(questions);
+    let text = lines(problems);
     let input = child.stdin.take();
     let writer = std::thread::spawn(move || input.map_or(Ok(()), |mut input| input.write_all(text.as_bytes())));
     let output = child.wait_with_output()?;
@@ -41,10 +41,10 @@ fn ask(python: &str, urdf: &Path, chain: &Chain, questions: &[Question]) -> std:
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Per question: point and normal on the link, wanted point, wanted normal (zeros where none is), start.
-fn lines(questions: &[Question]) -> String {
+/// Per problem: point and normal on the link, target point, target normal (or zeros), start.
+fn lines(problems: &[IkProblem]) -> String {
     let mut text = String::new();
-    for q in questions {
+    for q in problems {
         let wanted = q.target.normal_in_root.map_or([0.0; 3], Vec3::to_array);
         let vectors =
             [q.point_in_link.to_array(), q.normal_in_link.to_array(), q.target.point_in_root.to_array(), wanted];

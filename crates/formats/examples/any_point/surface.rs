@@ -1,7 +1,7 @@
 //! Random points of a link's surface.
 
 use elbowroom_proximity::tessellate::tessellate;
-use elbowroom_scene::Body;
+use elbowroom_robot::Collider;
 use elbowroom_spatial::Vec3;
 
 /// A small reproducible generator (`SplitMix64`).
@@ -21,15 +21,15 @@ impl Random {
     }
 }
 
-/// The triangles of a link, in its frame, drawn by their area.
+/// The triangles of a link, in its frame, sampled by area.
 pub struct Surface {
     triangles: Vec<[Vec3; 3]>,
-    /// Area up to and with each triangle, m².
+    /// Cumulative area including each triangle, m².
     area_up_to: Vec<f64>,
 }
 
 impl Surface {
-    pub fn of(bodies: &[Body]) -> Self {
+    pub fn of(bodies: &[Collider]) -> Self {
         let (mut triangles, mut area_up_to, mut area) = (Vec::new(), Vec::new(), 0.0);
         for body in bodies {
             let (vertices, corners) = tessellate(&body.shape, 1e-3);
@@ -46,7 +46,7 @@ impl Surface {
         Self { triangles, area_up_to }
     }
 
-    /// A point, even over the surface, and the normal there; `None` where the link has no solids.
+    /// A point, uniform over the surface, and its normal; `None` for a link without colliders.
     pub fn draw(&self, random: &mut Random) -> Option<(Vec3, Vec3)> {
         let at = random.unit() * self.area_up_to.last()?;
         let index = self.area_up_to.partition_point(|&a| a < at).min(self.triangles.len() - 1);

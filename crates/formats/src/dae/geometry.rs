@@ -7,10 +7,8 @@ use elbowroom_spatial::Vec3;
 use roxmltree::{Node, NodeId};
 
 use super::source::{indices, points, target};
-use crate::error::Warnings;
-use crate::mesh::{MOST_ELEMENTS, MeshData};
-use crate::obj::keep_used_vertices;
-use crate::ply::strip;
+use crate::error::WarningList;
+use crate::mesh_data::{MAX_ELEMENTS, MeshData, split_vertices};
 use crate::{FormatError, Warning, polygon, xml};
 
 type Ids<'a, 'i> = HashMap<&'a str, Node<'a, 'i>>;
@@ -20,11 +18,11 @@ pub(super) fn read<'a, 'i>(
     geometry: Node<'a, 'i>,
     ids: &Ids<'a, 'i>,
     file: &Path,
-    warnings: &mut Warnings,
+    warnings: &mut WarningList,
     points_read: &mut usize,
 ) -> Result<MeshData, FormatError> {
     let name = geometry.attribute("name").or(geometry.attribute("id")).unwrap_or("geometry");
-    let mut reader = Reader {
+    let mut reader = GeometryReader {
         ids,
         file,
         vertices: Vec::new(),
@@ -40,26 +38,26 @@ pub(super) fn read<'a, 'i>(
             _ => {}
         }
     }
-    let Reader { vertices, triangles, .. } = reader;
+    let GeometryReader { vertices, triangles, .. } = reader;
     let mut meshes = [MeshData { name: name.to_owned(), vertices: Vec::new(), triangles }];
-    keep_used_vertices(&vertices, &mut meshes);
+    split_vertices(&vertices, &mut meshes);
     let [mesh] = meshes;
     Ok(mesh)
 }
 
-struct Reader<'a, 'i, 'w> {
+struct GeometryReader<'a, 'i, 'w> {
     ids: &'w Ids<'a, 'i>,
     file: &'w Path,
     vertices: Vec<Vec3>,
-    /// Where each source's points begin in `vertices`, and how many they are.
+    /// First point of each source in `vertices`, and its number of points.
     first_of: HashMap<NodeId, (u32, u32)>,
     triangles: Vec<[u32; 3]>,
-    warnings: &'w mut Warnings,
-    /// Of the whole file: thousands of geometries may share one source, and each reads it.
+    warnings: &'w mut WarningList,
+    /// Points read from the whole file: thousands of geometries may share one source, and each reads it.
     points_read: &'w mut usize,
 }
 
-/// Where a primitive's vertex numbers stand in its `<p>`, and which points they mean.
+/// Positions of vertex indices in `<p>`, and the points that they refer to.
 struct Layout {
     stride: usize,
     offset: usize,
@@ -67,7 +65,7 @@ struct Layout {
     count: u32,
 }
 
-impl<'a, 'i> Reader<'a, 'i, '_> {
+impl<'a, 'i> GeometryReader<'a, 'i, '_> {
     fn primitive(&mut self, node: Node<'a, 'i>) -> Result<(), FormatError> {
         let lists: Vec<Node<'a, 'i>> = xml::children(node, "p").collect();
         let holed: Vec<Node<'a, 'i>> = xml::children(node, "ph").collect();
@@ -85,10 +83,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             match node.tag_name().name() {
                 "triangles" => self.triangles(list, &corners)?,
                 "polylist" => self.polylist(node, list, &corners)?,
-                "tristrips" => strip(&corners, &mut self.triangles),
-                "trifans" => self
-                    .triangles
-                    .extend(corners.get(1..).unwrap_or_default().windows(2).map(|w| [corners[0], w[0], w[1]])),
+                "tristrips" => polygon::strip(&corners, &mut self.triangles),
+                "trifans" => polygon::fan(&corners, &mut self.triangles),
                 _ => polygon::triangulate(&self.vertices, &corners, &mut self.triangles),
             }
         }
@@ -101,7 +97,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let text = input.attribute("offset").unwrap_or("0");
             // No exporter writes more; a huge offset would only make a huge stride.
             let offset = text.trim().parse::<usize>().ok().filter(|&o| o < 1000).ok_or_else(|| {
-                FormatError::new(self.file, xml::line(input), "the input's offset is no small whole number")
+                FormatError::new(self.file, xml::line(input), "the input's offset is no small integer")
                     .hint("offset=\"0\"")
             })?;
             stride = stride.max(offset + 1);
@@ -113,7 +109,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             FormatError::new(
                 self.file,
                 xml::line(node),
-                format!("<{}> does not say its vertices", node.tag_name().name()),
+                format!("<{}> does not state its vertices", node.tag_name().name()),
             )
             .hint("<input semantic=\"VERTEX\" source=\"#VERTICES\" offset=\"0\"/>")
         })?;
@@ -121,7 +117,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         Ok(Layout { stride, offset, first, count })
     }
 
-    /// Follows an input to its points; read once per source.
+    /// The points of an input; read once per source.
     fn positions(&mut self, input: Node<'a, 'i>) -> Result<(u32, u32), FormatError> {
         let mut source = target(self.ids, input, "source", self.file)?;
         if source.tag_name().name() == "vertices" {
@@ -137,8 +133,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         let points = points(source, self.file)?;
         *self.points_read += points.len();
-        if *self.points_read > MOST_ELEMENTS {
-            let what = format!("the geometries together read more than {MOST_ELEMENTS} points");
+        if *self.points_read > MAX_ELEMENTS {
+            let what = format!("the geometries together read more than {MAX_ELEMENTS} points");
             return Err(FormatError::new(self.file, xml::line(source), what).hint("a coarser mesh"));
         }
         let range = (self.vertices.len() as u32, points.len() as u32);
@@ -181,7 +177,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let mut rest = corners;
         for size in sizes {
             let Some((polygon, after)) = rest.split_at_checked(size as usize) else {
-                let what = format!("<vcount> asks for more corners than the {} of <p>", corners.len());
+                let what = format!("<vcount> needs more corners than the {} of <p>", corners.len());
                 return Err(
                     FormatError::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
                 );
@@ -190,7 +186,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             rest = after;
         }
         if !rest.is_empty() {
-            let what = format!("{} corners of <p> belong to no polygon of <vcount>; they are left out", rest.len());
+            let what = format!("{} corners of <p> belong to no polygon of <vcount>; they are dropped", rest.len());
             self.warnings.push_with(|| {
                 Warning::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
             });

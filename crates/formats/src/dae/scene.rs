@@ -8,36 +8,36 @@ use elbowroom_spatial::{Rotation, Vec3};
 use roxmltree::{Node, NodeId};
 
 use super::{geometry, source};
-use crate::error::Warnings;
-use crate::mesh::{MOST_ELEMENTS, MeshData};
-use crate::scan::show;
-use crate::transform::Affine;
+use crate::affine::Affine;
+use crate::error::WarningList;
+use crate::mesh_data::{MAX_ELEMENTS, MeshData};
+use crate::tokens::show;
 use crate::{FormatError, Warning, xml};
 
-/// Nodes that a scene may visit, and how deep: nodes that instance each other grow like powers of two.
-const MOST_VISITS: usize = 100_000;
-const DEEPEST: usize = 200;
+/// Limits of visited nodes and their depth: nodes that instance each other expand exponentially.
+const MAX_VISITS: usize = 100_000;
+const MAX_DEPTH: usize = 200;
 
-pub(super) struct Scene<'a, 'i, 'w> {
+pub(super) struct SceneReader<'a, 'i, 'w> {
     ids: HashMap<&'a str, Node<'a, 'i>>,
     geometries: HashMap<NodeId, Rc<MeshData>>,
     file: &'w Path,
-    warnings: &'w mut Warnings,
+    warnings: &'w mut WarningList,
     elements: usize,
     points_read: usize,
 }
 
-/// All objects of the scene that the file shows; where it shows none, all its geometries as they are.
+/// All objects of the scene of the file; all geometries as they are where the scene is empty.
 pub(super) fn meshes(
     root: Node<'_, '_>,
     to_metres: &Affine,
     file: &Path,
-    warnings: &mut Warnings,
+    warnings: &mut WarningList,
 ) -> Result<Vec<MeshData>, FormatError> {
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
-    let mut scene = Scene { ids, geometries: HashMap::new(), file, warnings, elements: 0, points_read: 0 };
-    let mut meshes = match scene.shown(root)? {
-        Some(visual_scene) => scene.walk(visual_scene, to_metres)?,
+    let mut scene = SceneReader { ids, geometries: HashMap::new(), file, warnings, elements: 0, points_read: 0 };
+    let mut meshes = match scene.visual_scene_of(root)? {
+        Some(visual_scene) => scene.read_scene(visual_scene, to_metres)?,
         None => Vec::new(),
     };
     if meshes.is_empty() {
@@ -46,8 +46,8 @@ pub(super) fn meshes(
     Ok(meshes)
 }
 
-impl<'a, 'i> Scene<'a, 'i, '_> {
-    fn shown(&self, root: Node<'a, 'i>) -> Result<Option<Node<'a, 'i>>, FormatError> {
+impl<'a, 'i> SceneReader<'a, 'i, '_> {
+    fn visual_scene_of(&self, root: Node<'a, 'i>) -> Result<Option<Node<'a, 'i>>, FormatError> {
         let instance = xml::child(root, "scene").and_then(|s| xml::child(s, "instance_visual_scene"));
         match instance {
             Some(instance) => self.target(instance, "url").map(Some),
@@ -60,35 +60,35 @@ impl<'a, 'i> Scene<'a, 'i, '_> {
         source::target(&self.ids, node, attribute, self.file)
     }
 
-    fn walk(&mut self, visual_scene: Node<'a, 'i>, to_metres: &Affine) -> Result<Vec<MeshData>, FormatError> {
+    fn read_scene(&mut self, visual_scene: Node<'a, 'i>, to_metres: &Affine) -> Result<Vec<MeshData>, FormatError> {
         let mut meshes = Vec::new();
         let mut visits = 0;
-        let mut waiting: Vec<_> = xml::children(visual_scene, "node").map(|n| (n, *to_metres, 0)).collect();
-        waiting.reverse();
-        while let Some((node, parent, depth)) = waiting.pop() {
+        let mut stack: Vec<_> = xml::children(visual_scene, "node").map(|n| (n, *to_metres, 0)).collect();
+        stack.reverse();
+        while let Some((node, parent, depth)) = stack.pop() {
             visits += 1;
-            if depth > DEEPEST || visits > MOST_VISITS {
-                let what = "nodes that contain or instance each other too deeply, or in a circle";
+            if depth > MAX_DEPTH || visits > MAX_VISITS {
+                let what = "nodes that contain or instance each other too deeply, or in a cycle";
                 return Err(FormatError::new(self.file, xml::line(node), what).hint("a scene without instance_node"));
             }
             let to_scene = parent.after(&self.transform(node)?);
-            self.show(node, &to_scene, &mut meshes)?;
-            let first_child = waiting.len();
+            self.read_node(node, &to_scene, &mut meshes)?;
+            let first_child = stack.len();
             for child in node.children().filter(Node::is_element) {
                 match child.tag_name().name() {
-                    "node" => waiting.push((child, to_scene, depth + 1)),
-                    "instance_node" => waiting.push((self.target(child, "url")?, to_scene, depth + 1)),
+                    "node" => stack.push((child, to_scene, depth + 1)),
+                    "instance_node" => stack.push((self.target(child, "url")?, to_scene, depth + 1)),
                     _ => {}
                 }
             }
-            // The file's order, last in first out.
-            waiting[first_child..].reverse();
+            // Reversed, as the stack is last in, first out.
+            stack[first_child..].reverse();
         }
         Ok(meshes)
     }
 
-    /// What a node itself shows, as one object.
-    fn show(&mut self, node: Node<'a, 'i>, to_scene: &Affine, out: &mut Vec<MeshData>) -> Result<(), FormatError> {
+    /// The geometry of a node itself, as one object.
+    fn read_node(&mut self, node: Node<'a, 'i>, to_scene: &Affine, out: &mut Vec<MeshData>) -> Result<(), FormatError> {
         let mut object: Option<MeshData> = None;
         for instance in node.children().filter(Node::is_element) {
             let (geometry, bind_shape) = match instance.tag_name().name() {
@@ -112,7 +112,7 @@ impl<'a, 'i> Scene<'a, 'i, '_> {
         Ok(())
     }
 
-    /// The geometry under a controller (skins may stand on morphs), and the skin's bind shape.
+    /// The geometry of a controller (skins may refer to morphs), and the bind shape of the skin.
     fn skinned(&self, instance: Node<'a, 'i>) -> Result<(Node<'a, 'i>, Affine), FormatError> {
         let mut target = self.target(instance, "url")?;
         let mut bind_shape = Affine::IDENTITY;
@@ -138,8 +138,8 @@ impl<'a, 'i> Scene<'a, 'i, '_> {
         }
         let mesh = &self.geometries[&geometry.id()];
         self.elements += mesh.vertices.len() + mesh.triangles.len();
-        if self.elements > MOST_ELEMENTS {
-            let what = format!("the scene unfolds into more than {MOST_ELEMENTS} vertices and triangles");
+        if self.elements > MAX_ELEMENTS {
+            let what = format!("the scene expands to more than {MAX_ELEMENTS} vertices and triangles");
             return Err(
                 FormatError::new(self.file, xml::line(geometry), what).hint("a coarser mesh, or fewer instances")
             );
@@ -160,14 +160,14 @@ impl<'a, 'i> Scene<'a, 'i, '_> {
             out.push(mesh);
         }
         if !out.is_empty() {
-            let what = "the scene shows no geometry; all geometries of the file are taken as they are";
+            let what = "the scene has no geometry; all geometries of the file are taken as they are";
             self.warnings
                 .push_with(|| Warning::new(self.file, None, what).hint("<instance_geometry url=\"#ID\"/> in a <node>"));
         }
         Ok(())
     }
 
-    /// The product of a node's transforms, in the file's order.
+    /// The product of a node's transforms, in the order of the file.
     fn transform(&self, node: Node<'a, 'i>) -> Result<Affine, FormatError> {
         let mut total = Affine::IDENTITY;
         for child in node.children().filter(Node::is_element) {

@@ -6,7 +6,7 @@ use std::path::Path;
 use elbowroom_spatial::Vec3;
 use roxmltree::Node;
 
-use crate::scan::{Words, number, show};
+use crate::tokens::{Tokens, number, show};
 use crate::{FormatError, xml};
 
 /// The element that a `#reference` in an attribute names.
@@ -78,12 +78,12 @@ fn coordinate_columns(accessor: Node<'_, '_>) -> [usize; 3] {
 fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 12);
-    let mut words = Words::at_line(text.as_bytes(), 0);
+    let mut words = Tokens::at_line(text.as_bytes(), 0);
     while let Some(word) = words.next() {
         match number(word) {
             Some(x) if x.is_finite() => numbers.push(x),
             other => {
-                let why = if other.is_some() { "is no place" } else { "is not a number" };
+                let why = if other.is_some() { "is not finite" } else { "is not a number" };
                 let what = format!("`{}` {why}, as number {} of the array", show(word), numbers.len());
                 return Err(FormatError::new(file, xml::line(node) + words.line(), what)
                     .hint("a finite decimal number such as 0.25"));
@@ -93,11 +93,11 @@ fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
     Ok(numbers)
 }
 
-/// Whole numbers from 0: indices and counts.
+/// Non-negative integers: indices and counts.
 pub(super) fn indices(node: Node<'_, '_>, file: &Path) -> Result<Vec<u32>, FormatError> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 6);
-    let mut words = Words::at_line(text.as_bytes(), 0);
+    let mut words = Tokens::at_line(text.as_bytes(), 0);
     while let Some(word) = words.next() {
         let index = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
         numbers.push(index.ok_or_else(|| {

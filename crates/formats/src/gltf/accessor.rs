@@ -1,56 +1,140 @@
-//! Numbers of an accessor, every step checked against the bytes that are there.
+//! Numbers of an accessor, every step checked against the bytes present.
 
 use std::borrow::Cow;
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
-use gltf::accessor::sparse::IndexType;
-use gltf::accessor::{DataType, Dimensions};
-use gltf::buffer::View;
 
-use super::point;
+use super::document::{Accessor, Document, Sparse};
 use crate::FormatError;
 
-/// An accessor without data is all zeros but for its sparse values; more zeros for each of these than this is no mesh,
-/// and memory that the file does not justify.
-const MOST_ZEROS_PER_VALUE: usize = 100;
+/// An accessor without data is all zeros but for its sparse values; more zeros than this for each of these would take
+/// memory out of proportion to the file.
+const MAX_ZEROS_PER_VALUE: usize = 100;
 
-pub(super) struct Reader<'a> {
+/// Type of one number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ComponentType {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl ComponentType {
+    fn of(code: u32) -> Option<Self> {
+        match code {
+            5120 => Some(Self::I8),
+            5121 => Some(Self::U8),
+            5122 => Some(Self::I16),
+            5123 => Some(Self::U16),
+            5125 => Some(Self::U32),
+            5126 => Some(Self::F32),
+            _ => None,
+        }
+    }
+
+    fn is_index(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
+    /// Bytes.
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// Factor of normalized integers.
+    fn normalization(self) -> f64 {
+        match self {
+            Self::I8 => 1.0 / 127.0,
+            Self::U8 => 1.0 / 255.0,
+            Self::I16 => 1.0 / 32767.0,
+            Self::U16 => 1.0 / 65535.0,
+            Self::U32 | Self::F32 => 1.0,
+        }
+    }
+
+    fn decode(self, raw: &[u8]) -> f64 {
+        match (self, raw) {
+            (Self::I8, &[a]) => f64::from(a.cast_signed()),
+            (Self::U8, &[a]) => f64::from(a),
+            (Self::I16, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
+            (Self::U16, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
+            (Self::U32, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
+            (Self::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => f64::NAN,
+        }
+    }
+}
+
+/// Numbers per element.
+fn width(element_type: &str) -> Option<usize> {
+    match element_type {
+        "SCALAR" => Some(1),
+        "VEC2" => Some(2),
+        "VEC3" => Some(3),
+        "VEC4" | "MAT2" => Some(4),
+        "MAT3" => Some(9),
+        "MAT4" => Some(16),
+        _ => None,
+    }
+}
+
+/// Elements of a buffer view: numbers of one type, so many per element.
+struct Elements {
+    buffer_view: usize,
+    offset: usize,
+    count: usize,
+    width: usize,
+    component: ComponentType,
+}
+
+/// Reads accessors of a document.
+pub(super) struct AccessorReader<'a> {
+    pub(super) document: &'a Document,
     pub(super) buffers: &'a [Cow<'a, [u8]>],
     pub(super) file: &'a Path,
 }
 
-impl Reader<'_> {
+impl<'a> AccessorReader<'a> {
     pub(super) fn error(&self, place: &str, what: &str) -> FormatError {
         FormatError::new(self.file, None, format!("{place} {what}"))
     }
 
-    /// Positions; integers as `KHR_mesh_quantization` has them are read too.
-    pub(super) fn points(&self, accessor: &gltf::Accessor<'_>, place: &str) -> Result<Vec<Vec3>, FormatError> {
-        if accessor.dimensions() != Dimensions::Vec3 {
+    /// The accessor of an index; `what` it is for is named in messages.
+    pub(super) fn accessor(&self, index: usize, place: &str, what: &str) -> Result<&'a Accessor, FormatError> {
+        self.document.accessors.get(index).ok_or_else(|| {
+            self.error(place, &format!("has its {what} in accessor {index}, which does not exist"))
+                .hint("the number of an accessor, counted from 0")
+        })
+    }
+
+    /// Positions; integers as of `KHR_mesh_quantization` are read too.
+    pub(super) fn points(&self, accessor: &Accessor, place: &str) -> Result<Vec<Vec3>, FormatError> {
+        if accessor.element_type != "VEC3" {
             return Err(self.error(place, "has positions that are no vectors of three").hint("\"type\": \"VEC3\""));
         }
-        let kind = accessor.data_type();
-        let factor = if accessor.normalized() { normalization(kind) } else { 1.0 };
+        let factor = self.factor(accessor, place)?;
         let rows = self.rows(accessor, place, 3)?;
-        let points: Vec<Vec3> =
-            rows.chunks_exact(3).map(|r| point([r[0] * factor, r[1] * factor, r[2] * factor])).collect();
+        let point = |r: &[f64]| Vec3::new(r[0] * factor, r[1] * factor, r[2] * factor);
+        let points: Vec<Vec3> = rows.chunks_exact(3).map(point).collect();
         if let Some(i) = points.iter().position(|p| !p.is_finite()) {
             return Err(self
-                .error(place, &format!("has a vertex that is no place: {i} (from 0)"))
+                .error(place, &format!("has a vertex that is not finite: {i} (from 0)"))
                 .hint("finite numbers; export again"));
         }
         Ok(points)
     }
 
-    pub(super) fn indices(
-        &self,
-        accessor: &gltf::Accessor<'_>,
-        vertices: usize,
-        place: &str,
-    ) -> Result<Vec<u32>, FormatError> {
-        let is_index = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
-        if accessor.dimensions() != Dimensions::Scalar || !is_index {
+    pub(super) fn indices(&self, accessor: &Accessor, vertices: usize, place: &str) -> Result<Vec<u32>, FormatError> {
+        let is_index = ComponentType::of(accessor.component_type).is_some_and(ComponentType::is_index);
+        if accessor.element_type != "SCALAR" || !is_index {
             return Err(self
                 .error(place, "has indices that are no unsigned integers")
                 .hint("\"type\": \"SCALAR\", \"componentType\": 5125"));
@@ -63,119 +147,106 @@ impl Reader<'_> {
         Ok(numbers.into_iter().map(|i| i as u32).collect())
     }
 
-    /// Vectors as they are, or of integers normalized, of as many numbers each as `width`.
-    pub(super) fn vectors(
-        &self,
-        accessor: &gltf::Accessor<'_>,
-        width: usize,
-        place: &str,
-    ) -> Result<Vec<f64>, FormatError> {
-        if accessor.dimensions().multiplicity() != width {
-            let what = format!("has values of {} numbers instead of {width}", accessor.dimensions().multiplicity());
+    /// Floats, or normalized integers, `width` per element.
+    pub(super) fn vectors(&self, accessor: &Accessor, width: usize, place: &str) -> Result<Vec<f64>, FormatError> {
+        let found = self::width(&accessor.element_type);
+        if found != Some(width) {
+            let found = found.map_or_else(|| accessor.element_type.clone(), |n| n.to_string());
+            let what = format!("has values of {found} numbers instead of {width}");
             return Err(self.error(place, &what).hint("the animation exported again, or left out"));
         }
-        let factor = if accessor.normalized() { normalization(accessor.data_type()) } else { 1.0 };
+        let factor = self.factor(accessor, place)?;
         let rows: Vec<f64> = self.rows(accessor, place, width)?.into_iter().map(|n| n * factor).collect();
         if rows.iter().any(|n| !n.is_finite()) {
-            return Err(self.error(place, "has a number that is none").hint("finite numbers; export again"));
+            return Err(self.error(place, "has a number that is not finite").hint("finite numbers; export again"));
         }
         Ok(rows)
     }
 
+    fn factor(&self, accessor: &Accessor, place: &str) -> Result<f64, FormatError> {
+        let component = self.component(accessor.component_type, place)?;
+        Ok(if accessor.normalized { component.normalization() } else { 1.0 })
+    }
+
+    fn component(&self, code: u32, place: &str) -> Result<ComponentType, FormatError> {
+        ComponentType::of(code).ok_or_else(|| {
+            self.error(place, &format!("has numbers of the unknown type {code}"))
+                .hint("\"componentType\": 5120, 5121, 5122, 5123, 5125 or 5126")
+        })
+    }
+
     /// `count × width` numbers, sparse replacements applied.
-    fn rows(&self, accessor: &gltf::Accessor<'_>, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
-        let (count, kind) = (accessor.count(), accessor.data_type());
-        // Read first: what is really there bounds the zeros that are made below.
-        let sparse = accessor.sparse().map(|s| self.sparse_rows(&s, kind, place, width)).transpose()?;
-        let replaced = sparse.as_ref().map_or(0, |(at, _)| at.len());
-        let mut numbers = match accessor.view() {
-            Some(view) => self.read(&view, accessor.offset(), count, width, kind, place)?,
-            None if replaced > 0 && count / MOST_ZEROS_PER_VALUE <= replaced => vec![0.0; count * width],
+    fn rows(&self, accessor: &Accessor, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
+        let (count, component) = (accessor.count, self.component(accessor.component_type, place)?);
+        // Read first: the number of sparse values bounds the number of zeros.
+        let sparse = accessor.sparse.as_ref().map(|s| self.sparse_rows(s, component, place, width)).transpose()?;
+        let replaced = sparse.as_ref().map_or(0, |(rows, _)| rows.len());
+        let mut numbers = match accessor.buffer_view {
+            Some(buffer_view) => {
+                let offset = accessor.byte_offset;
+                self.read(&Elements { buffer_view, offset, count, width, component }, place)?
+            }
+            None if replaced > 0 && count / MAX_ZEROS_PER_VALUE <= replaced => vec![0.0; count * width],
             None => {
                 return Err(self
                     .error(place, "has an accessor without data")
                     .hint("\"bufferView\": …; or export without compression"));
             }
         };
-        let (at, new) = sparse.unwrap_or_default();
-        for (i, row) in at.into_iter().zip(new.chunks_exact(width)) {
+        let (rows, values) = sparse.unwrap_or_default();
+        for (i, value) in rows.into_iter().zip(values.chunks_exact(width)) {
             let slot = numbers.get_mut((i as usize).saturating_mul(width)..).and_then(|rest| rest.get_mut(..width));
             slot.ok_or_else(|| {
                 self.error(place, "replaces a sparse value that does not exist").hint("export the file again")
             })?
-            .copy_from_slice(row);
+            .copy_from_slice(value);
         }
         Ok(numbers)
     }
 
-    /// Which rows are replaced, and by what.
+    /// The rows that are replaced, and their values.
     fn sparse_rows(
         &self,
-        sparse: &gltf::accessor::sparse::Sparse<'_>,
-        kind: DataType,
+        sparse: &Sparse,
+        component: ComponentType,
         place: &str,
         width: usize,
     ) -> Result<(Vec<f64>, Vec<f64>), FormatError> {
-        let (indices, values) = (sparse.indices(), sparse.values());
-        let index_kind = match indices.index_type() {
-            IndexType::U8 => DataType::U8,
-            IndexType::U16 => DataType::U16,
-            IndexType::U32 => DataType::U32,
-        };
-        let at = self.read(&indices.view(), indices.offset(), sparse.count(), 1, index_kind, place)?;
-        let new = self.read(&values.view(), values.offset(), sparse.count(), width, kind, place)?;
-        Ok((at, new))
+        let (indices, values, count) = (&sparse.indices, &sparse.values, sparse.count);
+        let index_type = ComponentType::of(indices.component_type).filter(|c| c.is_index()).ok_or_else(|| {
+            self.error(place, "has sparse indices that are no unsigned integers").hint("\"componentType\": 5125")
+        })?;
+        let (buffer_view, offset) = (indices.buffer_view, indices.byte_offset);
+        let rows = self.read(&Elements { buffer_view, offset, count, width: 1, component: index_type }, place)?;
+        let (buffer_view, offset) = (values.buffer_view, values.byte_offset);
+        Ok((rows, self.read(&Elements { buffer_view, offset, count, width, component }, place)?))
     }
 
-    fn read(
-        &self,
-        view: &View<'_>,
-        offset: usize,
-        count: usize,
-        width: usize,
-        kind: DataType,
-        place: &str,
-    ) -> Result<Vec<f64>, FormatError> {
-        let size = kind.size();
-        let stride = view.stride().unwrap_or(size * width);
+    fn read(&self, elements: &Elements, place: &str) -> Result<Vec<f64>, FormatError> {
+        let Elements { count, width, component, .. } = *elements;
         let short =
-            || self.error(place, "wants more bytes than its buffer view has").hint("copy or export the file again");
-        let buffer = self.buffers.get(view.buffer().index()).ok_or_else(short)?;
-        let end = view.offset().checked_add(view.length()).ok_or_else(short)?;
-        let bytes = buffer.get(view.offset()..end).and_then(|b| b.get(offset..)).ok_or_else(short)?;
+            || self.error(place, "needs more bytes than its buffer view has").hint("copy or export the file again");
+        let view = self.document.buffer_views.get(elements.buffer_view).ok_or_else(|| {
+            self.error(place, &format!("has its numbers in buffer view {}, which does not exist", elements.buffer_view))
+                .hint("the number of a buffer view, counted from 0")
+        })?;
+        let row_bytes = component.size() * width;
+        // A stride of 0 means packed elements.
+        let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(row_bytes);
+        let buffer = self.buffers.get(view.buffer).ok_or_else(short)?;
+        let end = view.byte_offset.checked_add(view.byte_length).ok_or_else(short)?;
+        let bytes = buffer.get(view.byte_offset..end).and_then(|b| b.get(elements.offset..)).ok_or_else(short)?;
         let needed =
-            count.saturating_sub(1).saturating_mul(stride).saturating_add(if count == 0 { 0 } else { size * width });
-        // A stride below one row would let a small file unfold into a large one.
-        if needed > bytes.len() || stride < size * width {
+            count.saturating_sub(1).saturating_mul(stride).saturating_add(if count == 0 { 0 } else { row_bytes });
+        // With a stride below one row a small file could expand to a large one.
+        if needed > bytes.len() || stride < row_bytes {
             return Err(short());
         }
         let mut numbers = Vec::with_capacity(count * width);
         for i in 0..count {
-            let row = &bytes[i * stride..][..size * width];
-            numbers.extend(row.chunks_exact(size).map(|raw| decode(kind, raw)));
+            let row = &bytes[i * stride..][..row_bytes];
+            numbers.extend(row.chunks_exact(component.size()).map(|raw| component.decode(raw)));
         }
         Ok(numbers)
-    }
-}
-
-fn normalization(kind: DataType) -> f64 {
-    match kind {
-        DataType::I8 => 1.0 / 127.0,
-        DataType::U8 => 1.0 / 255.0,
-        DataType::I16 => 1.0 / 32767.0,
-        DataType::U16 => 1.0 / 65535.0,
-        DataType::U32 | DataType::F32 => 1.0,
-    }
-}
-
-fn decode(kind: DataType, raw: &[u8]) -> f64 {
-    match (kind, raw) {
-        (DataType::I8, &[a]) => f64::from(a.cast_signed()),
-        (DataType::U8, &[a]) => f64::from(a),
-        (DataType::I16, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
-        (DataType::U16, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
-        (DataType::U32, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
-        (DataType::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-        _ => f64::NAN,
     }
 }

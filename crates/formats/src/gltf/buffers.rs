@@ -4,19 +4,18 @@ use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
-use gltf::Document;
-use gltf::buffer::Source;
 
-use crate::scan::show;
-use crate::{FormatError, source};
+use super::document::Document;
+use crate::tokens::show;
+use crate::{FormatError, input};
 
 /// The JSON, and the binary chunk of a GLB.
 type Chunks<'a> = (Cow<'a, [u8]>, Option<&'a [u8]>);
 
-/// Takes a file apart. Text before the chunks means a plain glTF.
+/// Splits a file into its chunks; a plain glTF is all JSON.
 pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, FormatError> {
     if !bytes.starts_with(b"glTF") {
-        return source::text_bytes(bytes, file).map(|json| (json, None));
+        return input::text_bytes(bytes, file).map(|json| (json, None));
     }
     let bad = |what: String| FormatError::new(file, None, what).hint("copy or export the file again, as glTF 2.0");
     let word = |at: usize| {
@@ -54,17 +53,17 @@ pub(super) fn load<'a>(
     file: &Path,
 ) -> Result<Vec<Cow<'a, [u8]>>, FormatError> {
     let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let place = format!("buffer {}", buffer.index());
-        let bytes = match buffer.source() {
-            Source::Bin => Cow::Borrowed(binary.ok_or_else(|| {
+    for (i, buffer) in document.buffers.iter().enumerate() {
+        let place = format!("buffer {i}");
+        let bytes = match &buffer.uri {
+            None => Cow::Borrowed(binary.ok_or_else(|| {
                 FormatError::new(file, None, format!("{place} has no uri, and the file has no binary chunk"))
                     .hint("\"uri\": \"model.bin\"")
             })?),
-            Source::Uri(uri) => Cow::Owned(fetch(uri, &place, file)?),
+            Some(uri) => Cow::Owned(fetch(uri, &place, file)?),
         };
-        if bytes.len() < buffer.length() {
-            let what = format!("{place} announces {} bytes and has {}", buffer.length(), bytes.len());
+        if bytes.len() < buffer.byte_length {
+            let what = format!("{place} announces {} bytes and has {}", buffer.byte_length, bytes.len());
             return Err(FormatError::new(file, None, what).hint("copy or export the files again"));
         }
         buffers.push(bytes);
@@ -93,7 +92,7 @@ fn fetch(uri: &str, place: &str, file: &Path) -> Result<Vec<u8>, FormatError> {
         .hint("\"uri\": \"model.bin\", a file beside the .gltf; or export as .glb"));
     }
     let path = file.parent().unwrap_or(Path::new("")).join(relative);
-    source::read(&path).map_err(|e| {
+    input::read(&path).map_err(|e| {
         error(format!("{} {}", path.display(), e.what)).hint("the file beside the .gltf; or export as .glb")
     })
 }

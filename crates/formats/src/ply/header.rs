@@ -1,9 +1,9 @@
-//! The header: which elements follow, with which properties.
+//! The header: elements and their properties.
 
 use std::path::Path;
 
 use crate::FormatError;
-use crate::scan::show;
+use crate::tokens::show;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
@@ -13,7 +13,7 @@ pub(super) enum Encoding {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ScalarType {
     I8,
     U8,
     I16,
@@ -24,7 +24,7 @@ pub(super) enum Kind {
     F64,
 }
 
-impl Kind {
+impl ScalarType {
     fn parse(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "int8" => Self::I8,
@@ -51,9 +51,9 @@ impl Kind {
 
 pub(super) struct Property {
     pub(super) name: String,
-    pub(super) kind: Kind,
-    /// The kind of the count in front of a list; `None` for a single value.
-    pub(super) list_count: Option<Kind>,
+    pub(super) kind: ScalarType,
+    /// The type of the count before a list; `None` for a single value.
+    pub(super) list_count: Option<ScalarType>,
 }
 
 pub(super) struct Element {
@@ -66,7 +66,7 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Lines of the header, so that lines of an ASCII body can be counted on.
+    /// Number of lines of the header.
     pub(super) lines: usize,
 }
 
@@ -76,7 +76,7 @@ impl Header {
     }
 }
 
-/// Splits the header off; the rest is the body.
+/// Parses the header; returns it and the body.
 pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), FormatError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
@@ -92,8 +92,8 @@ pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8
         let Ok(text) = std::str::from_utf8(text).map(str::trim) else {
             return bad("the header is damaged: a line is not text".into(), "copy or export the file again");
         };
-        let words: Vec<&str> = text.split_ascii_whitespace().collect();
-        match words[..] {
+        let tokens: Vec<&str> = text.split_ascii_whitespace().collect();
+        match tokens[..] {
             [] | ["comment" | "obj_info", ..] => {}
             ["ply"] if line == 1 => {}
             ["format", name, _version] => match name {
@@ -116,13 +116,13 @@ pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8
             ["end_header"] => break,
             _ => {
                 return bad(
-                    format!("`{}` does not belong into the header", show(text.as_bytes())),
+                    format!("`{}` is no line of a header", show(text.as_bytes())),
                     "format ascii 1.0, element vertex 8, property float x, … end_header",
                 );
             }
         }
     }
-    let missing = || FormatError::new(file, line, "the header does not say its format").hint("format ascii 1.0");
+    let missing = || FormatError::new(file, line, "the header does not state its format").hint("format ascii 1.0");
     Ok((Header { encoding: encoding.ok_or_else(missing)?, elements, lines: line }, rest))
 }
 
@@ -145,12 +145,14 @@ fn element(name: &str, count: &str, before: &[Element], file: &Path, line: usize
     Ok(Element { name: name.to_owned(), count, properties: Vec::new(), line })
 }
 
-fn property(words: &[&str]) -> Option<Property> {
-    match *words {
-        ["list", count, kind, name] => {
-            Some(Property { name: name.to_owned(), kind: Kind::parse(kind)?, list_count: Some(Kind::parse(count)?) })
-        }
-        [kind, name] => Some(Property { name: name.to_owned(), kind: Kind::parse(kind)?, list_count: None }),
+fn property(tokens: &[&str]) -> Option<Property> {
+    match *tokens {
+        ["list", count, kind, name] => Some(Property {
+            name: name.to_owned(),
+            kind: ScalarType::parse(kind)?,
+            list_count: Some(ScalarType::parse(count)?),
+        }),
+        [kind, name] => Some(Property { name: name.to_owned(), kind: ScalarType::parse(kind)?, list_count: None }),
         _ => None,
     }
 }

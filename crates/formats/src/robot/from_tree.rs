@@ -1,4 +1,4 @@
-//! Robots out of node trees: every node is a link, and what moves is said by tracks, by a file of joints, or by options.
+//! Robots from node trees: every node is a link; joints are given by animation tracks, by a file of joints, or by options.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -6,46 +6,44 @@ use std::sync::Arc;
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::Shape;
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::ask;
-use super::motion::{Found, Motion, motion, show};
-use crate::error::Warnings;
+use super::joint_candidates::missing_joints_warning;
+use super::pose_difference::{SAME_POSE, pose_difference};
+use super::track_joint::{InferredJoint, TrackJoint, infer_joint, show_vector};
+use crate::error::WarningList;
 use crate::joints::{AxisFrame, JointSpec};
-use crate::names::Names;
+use crate::names::{UniqueNames, list_names};
 use crate::nodetree::NodeTree;
 use crate::{FormatError, Warning};
 
-/// More links than any robot has, and than a pair matrix should.
-pub const MOST_LINKS: usize = 2000;
+/// Largest number of links of a robot, which bounds the size of its allowed collision matrix.
+pub const MAX_LINKS: usize = 2000;
 
-/// Two poses nearer than this (m, rad) are one.
-pub(super) const SAME: f64 = 1e-9;
-
-/// The robot of a tree. `file` is named in messages; `beside` is the file of joints that was looked for.
+/// The robot of a tree. `file` is named in messages; `default_path` is the file in which joints can be specified.
 pub(super) fn robot(
     tree: NodeTree,
     specs: &[JointSpec],
-    (file, beside): (&Path, &Path),
-    warnings: &mut Warnings,
+    (file, default_path): (&Path, &Path),
+    warnings: &mut WarningList,
 ) -> Result<Robot, FormatError> {
-    if tree.nodes.len() > MOST_LINKS {
-        let what = format!("has {} nodes; a robot has at most {MOST_LINKS} links", tree.nodes.len());
+    if tree.nodes.len() > MAX_LINKS {
+        let what = format!("has {} nodes; a robot has at most {MAX_LINKS} links", tree.nodes.len());
         return Err(FormatError::new(file, None, what).hint("the robot alone, without its surroundings"));
     }
-    let builder = Builder::new(tree, file);
-    let moves = builder.moves(specs, warnings)?;
-    if moves.iter().all(Option::is_none) && specs.is_empty() {
-        warnings.extend(ask::what_moves(&builder.tree, &builder.names, file, beside));
+    let builder = RobotBuilder::new(tree, file);
+    let node_joints = builder.node_joints(specs, warnings)?;
+    if node_joints.iter().all(Option::is_none) && specs.is_empty() {
+        warnings.extend(missing_joints_warning(&builder.tree, &builder.names, file, default_path));
     }
-    tell_tracks(&builder, &moves, specs, file, beside, warnings);
-    builder.build(&moves)
+    warn_of_inferred_joints(&builder, &node_joints, specs, file, default_path, warnings);
+    builder.build(&node_joints)
 }
 
-/// How a node moves on its parent.
+/// The joint between a node and its parent.
 #[derive(Debug, Clone)]
-pub(super) struct Move {
+pub(super) struct NodeJoint {
     name: String,
     kind: JointKind,
     /// In the node's frame.
@@ -56,27 +54,31 @@ pub(super) struct Move {
     mimic: Option<(String, f64, f64)>,
 }
 
-struct Builder<'a> {
+struct RobotBuilder<'a> {
     tree: NodeTree,
     /// Unique, one per node.
     names: Vec<String>,
-    /// Of the link that carries all, where the file has none.
+    /// Name of the root link that is added where the file has none.
     own_root: String,
     frames: Vec<Pose>,
     file: &'a Path,
 }
 
-impl<'a> Builder<'a> {
+impl<'a> RobotBuilder<'a> {
     fn new(tree: NodeTree, file: &'a Path) -> Self {
-        let mut taken = Names::default();
+        let mut taken = UniqueNames::default();
         let names = tree.nodes.iter().map(|n| taken.unique(named(&n.name))).collect();
         let own_root = taken.unique(named(&tree.name));
         let frames = tree.in_world();
         Self { tree, names, own_root, frames, file }
     }
 
-    /// What moves each node; `None` where it is fixed.
-    fn moves(&self, specs: &[JointSpec], warnings: &mut Warnings) -> Result<Vec<Option<Move>>, FormatError> {
+    /// The joint of each node; `None` where it is fixed.
+    fn node_joints(
+        &self,
+        specs: &[JointSpec],
+        warnings: &mut WarningList,
+    ) -> Result<Vec<Option<NodeJoint>>, FormatError> {
         let size = self.tree.aabb().extent().max_element();
         let size = if size.is_finite() && size > 0.0 { size } else { 1.0 };
         let mut by_node: HashMap<usize, &JointSpec> = HashMap::new();
@@ -85,30 +87,32 @@ impl<'a> Builder<'a> {
                 return Err(spec.error(format!("`{}` is named twice", spec.node)).hint("one entry per node"));
             }
         }
-        let mut moves = Vec::with_capacity(self.tree.nodes.len());
+        let mut node_joints = Vec::with_capacity(self.tree.nodes.len());
         for (i, node) in self.tree.nodes.iter().enumerate() {
             let spec = by_node.get(&i).copied();
-            let found = match motion(node, size) {
-                Motion::Joint(found) => Some(found),
-                Motion::None => None,
-                Motion::Unclear(how) => {
+            let inferred = match infer_joint(node, size) {
+                TrackJoint::Joint(inferred) => Some(inferred),
+                TrackJoint::None => None,
+                TrackJoint::NoJoint(how) => {
                     if spec.is_none_or(|s| s.axis.is_none()) {
-                        let what =
-                            format!("the track of `{}` is no joint's: it {how}; it is taken as fixed", self.names[i]);
+                        let what = format!(
+                            "the track of `{}` is not that of a joint: it {how}; the node is fixed",
+                            self.names[i]
+                        );
                         warnings.push_with(|| {
                             Warning::new(self.file, None, what)
-                                .hint("keys that turn about one axis, or the axis in a file of joints")
+                                .hint("keys that rotate about one axis, or the axis in a file of joints")
                         });
                     }
                     None
                 }
             };
-            moves.push(match spec {
-                Some(spec) => self.told(i, spec, found)?,
-                None => found.map(|f| self.found(i, f)),
+            node_joints.push(match spec {
+                Some(spec) => self.specified_joint(i, spec, inferred)?,
+                None => inferred.map(|f| self.inferred(i, f)),
             });
         }
-        Ok(moves)
+        Ok(node_joints)
     }
 
     fn node(&self, spec: &JointSpec) -> Result<usize, FormatError> {
@@ -118,23 +122,28 @@ impl<'a> Builder<'a> {
         let what = format!("there is no node `{}` in {}", spec.node, self.file.display());
         let close = |n: &&String| n.eq_ignore_ascii_case(&spec.node);
         let hint = self.names.iter().find(close).map_or_else(
-            || format!("one of {}", ask::listed(self.names.iter().map(String::as_str))),
+            || format!("one of {}", list_names(self.names.iter().map(String::as_str))),
             |close| format!("[joint.{}]", crate::joints::key(close)),
         );
         Err(spec.error(what).hint(hint))
     }
 
-    fn found(&self, i: usize, found: Found) -> Move {
-        let Found { kind, axis, at, lower, upper } = found;
-        Move { name: self.names[i].clone(), kind, axis, at, limits: Limits::range(lower, upper), mimic: None }
+    fn inferred(&self, i: usize, inferred: InferredJoint) -> NodeJoint {
+        let InferredJoint { kind, axis, at, lower, upper } = inferred;
+        NodeJoint { name: self.names[i].clone(), kind, axis, at, limits: Limits::range(lower, upper), mimic: None }
     }
 
-    /// What the user says, and for the rest the track.
-    fn told(&self, i: usize, spec: &JointSpec, found: Option<Found>) -> Result<Option<Move>, FormatError> {
+    /// The joint that the user specifies, with the track for what is not specified.
+    fn specified_joint(
+        &self,
+        i: usize,
+        spec: &JointSpec,
+        inferred: Option<InferredJoint>,
+    ) -> Result<Option<NodeJoint>, FormatError> {
         let bounded = spec.min.is_some() || spec.max.is_some();
-        let kind = spec.kind.or(found.map(|f| f.kind));
+        let kind = spec.kind.or(inferred.map(|f| f.kind));
         let kind = kind.unwrap_or(if bounded { JointKind::Revolute } else { JointKind::Continuous });
-        // Limits make a bounded joint of one whose track goes round.
+        // With limits, a joint whose track makes whole turns is bounded.
         let kind =
             if kind == JointKind::Continuous && bounded && spec.kind.is_none() { JointKind::Revolute } else { kind };
         if kind == JointKind::Fixed {
@@ -145,22 +154,22 @@ impl<'a> Builder<'a> {
             AxisFrame::Parent => self.tree.nodes[i].in_parent.inverse(),
             AxisFrame::World => self.frames[i].inverse(),
         };
-        let axis = match (spec.axis, found) {
+        let axis = match (spec.axis, inferred) {
             (Some(axis), _) => into_node.transform_vector(axis).try_normalize().unwrap_or(Vec3::Z),
-            (None, Some(found)) => found.axis,
+            (None, Some(inferred)) => inferred.axis,
             (None, None) => {
                 let what = format!("`{}` has no axis, and no track to take it from", spec.node);
                 return Err(spec.error(what).hint("axis = \"z\"   (x, y, z, -x, -y, -z, or a vector: [0, 0, 1])"));
             }
         };
-        let at = match (spec.at, found) {
+        let at = match (spec.at, inferred) {
             (Some(at), _) => into_node.transform_point(at),
-            (None, Some(found)) => found.at,
+            (None, Some(inferred)) => inferred.at,
             (None, None) => Vec3::ZERO,
         };
-        let same_sense = found.filter(|f| (f.kind == JointKind::Prismatic) == (kind == JointKind::Prismatic));
-        let end = |said: Option<f64>, track: fn(&Found) -> f64| {
-            said.map(|v| spec.si(kind, v)).or(same_sense.map(|f| track(&f)))
+        let same_sense = inferred.filter(|f| (f.kind == JointKind::Prismatic) == (kind == JointKind::Prismatic));
+        let end = |is_specified: Option<f64>, track: fn(&InferredJoint) -> f64| {
+            is_specified.map(|v| spec.si(kind, v)).or(same_sense.map(|f| track(&f)))
         };
         let (lower, upper) = match (end(spec.min, |f| f.lower), end(spec.max, |f| f.upper)) {
             _ if kind == JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
@@ -169,7 +178,7 @@ impl<'a> Builder<'a> {
                 let what = format!("the joint of `{}` has no range: it needs min and max", spec.node);
                 return Err(spec
                     .error(what)
-                    .hint("min = -180, max = 180; or kind = \"continuous\" for endless turning"));
+                    .hint("min = -180, max = 180; or kind = \"continuous\" for unlimited rotation"));
             }
         };
         let rate = |v: Option<f64>| v.map(|v| spec.si(kind, v));
@@ -177,16 +186,17 @@ impl<'a> Builder<'a> {
             Limits { velocity: rate(spec.speed), acceleration: rate(spec.acceleration), ..Limits::range(lower, upper) };
         let name = spec.name.clone().unwrap_or_else(|| self.names[i].clone());
         let mimic = spec.mimic.as_ref().map(|(joint, m, offset)| (joint.clone(), *m, spec.si(kind, *offset)));
-        Ok(Some(Move { name, kind, axis, at, limits, mimic }))
+        Ok(Some(NodeJoint { name, kind, axis, at, limits, mimic }))
     }
 
-    fn build(self, moves: &[Option<Move>]) -> Result<Robot, FormatError> {
+    fn build(self, node_joints: &[Option<NodeJoint>]) -> Result<Robot, FormatError> {
         let nodes = &self.tree.nodes;
-        // A link's frame is its node's, moved to the joint's axis where that is elsewhere.
+        // The frame of a link is that of its node, translated to the axis of the joint.
         let link_in_node: Vec<Pose> =
-            moves.iter().map(|m| Pose::from_translation(m.as_ref().map_or(Vec3::ZERO, |m| m.at))).collect();
+            node_joints.iter().map(|m| Pose::from_translation(m.as_ref().map_or(Vec3::ZERO, |m| m.at))).collect();
         let tops: Vec<usize> = self.tree.children(None).collect();
-        let is_root = |i: usize| moves[i].is_none() && apart(&nodes[i].in_parent, &Pose::IDENTITY) <= SAME;
+        let is_root =
+            |i: usize| node_joints[i].is_none() && pose_difference(&nodes[i].in_parent, &Pose::IDENTITY) <= SAME_POSE;
         let own_root = !(tops.len() == 1 && is_root(tops[0]));
         let mut links = self.names.clone();
         let root = links.len();
@@ -194,13 +204,13 @@ impl<'a> Builder<'a> {
             links.push(self.own_root.clone());
         }
         let mut joints = Vec::new();
-        let mut joint_names = Names::default();
+        let mut joint_names = UniqueNames::default();
         for (i, node) in nodes.iter().enumerate() {
             if node.parent.is_none() && !own_root {
                 continue;
             }
             let parent_link = node.parent.map_or(Pose::IDENTITY, |p| link_in_node[p]);
-            let fixed = Move {
+            let fixed = NodeJoint {
                 name: self.names[i].clone(),
                 kind: JointKind::Fixed,
                 axis: Vec3::X,
@@ -208,7 +218,7 @@ impl<'a> Builder<'a> {
                 limits: Limits::UNLIMITED,
                 mimic: None,
             };
-            let moved = moves[i].as_ref().unwrap_or(&fixed);
+            let moved = node_joints[i].as_ref().unwrap_or(&fixed);
             joints.push(Joint {
                 name: joint_names.unique(named(&moved.name)),
                 kind: moved.kind,
@@ -220,7 +230,7 @@ impl<'a> Builder<'a> {
                 mimic: None,
             });
         }
-        self.follow(moves, &mut joints)?;
+        self.set_mimics(node_joints, &mut joints)?;
         let name = if self.tree.name.is_empty() { "model".to_owned() } else { self.tree.name.clone() };
         let chain = Chain::new(name, links, joints).map_err(|e| FormatError::new(self.file, None, e.to_string()))?;
         let mut robot = Robot::new(chain);
@@ -228,15 +238,16 @@ impl<'a> Builder<'a> {
             for mesh in node.meshes {
                 let name = mesh.name.clone();
                 let shape = Shape::Mesh(Arc::new(mesh.into_trimesh(self.file)?));
-                robot.bodies[i].push(Body { name, shape, in_link: link_in_node[i].inverse() });
+                robot.colliders[i].push(Collider { name, shape, in_link: link_in_node[i].inverse() });
             }
         }
         Ok(robot)
     }
 
-    fn follow(&self, moves: &[Option<Move>], joints: &mut [Joint]) -> Result<(), FormatError> {
+    fn set_mimics(&self, node_joints: &[Option<NodeJoint>], joints: &mut [Joint]) -> Result<(), FormatError> {
         for i in 0..joints.len() {
-            let Some((name, multiplier, offset)) = moves[joints[i].child.0].as_ref().and_then(|m| m.mimic.clone())
+            let Some((name, multiplier, offset)) =
+                node_joints[joints[i].child.0].as_ref().and_then(|m| m.mimic.clone())
             else {
                 continue;
             };
@@ -250,49 +261,44 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn tell_tracks(
-    builder: &Builder<'_>,
-    moves: &[Option<Move>],
+fn warn_of_inferred_joints(
+    builder: &RobotBuilder<'_>,
+    node_joints: &[Option<NodeJoint>],
     specs: &[JointSpec],
     file: &Path,
-    beside: &Path,
-    warnings: &mut Warnings,
+    default_path: &Path,
+    warnings: &mut WarningList,
 ) {
-    let said = |i: usize| specs.iter().any(|s| s.node == builder.names[i]);
-    let unsaid: Vec<String> = moves
+    let is_specified = |i: usize| specs.iter().any(|s| s.node == builder.names[i]);
+    let inferred_list: Vec<String> = node_joints
         .iter()
         .enumerate()
-        .filter(|(i, _)| !said(*i))
+        .filter(|(i, _)| !is_specified(*i))
         .filter_map(|(_, m)| {
-            let Move { name, kind, axis, limits, .. } = m.as_ref()?;
-            let axis = show(*axis);
+            let NodeJoint { name, kind, axis, limits, .. } = m.as_ref()?;
+            let axis = show_vector(*axis);
             Some(match kind {
                 JointKind::Prismatic => {
-                    format!("`{name}` slides along {axis}, {:.4} to {:.4} m", limits.lower, limits.upper)
+                    format!("`{name}` translates along {axis}, {:.4} to {:.4} m", limits.lower, limits.upper)
                 }
-                JointKind::Continuous => format!("`{name}` turns endlessly about {axis}"),
+                JointKind::Continuous => format!("`{name}` rotates without limits about {axis}"),
                 _ => format!(
-                    "`{name}` turns about {axis}, {:.2} to {:.2} deg",
+                    "`{name}` rotates about {axis}, {:.2} to {:.2} deg",
                     limits.lower.to_degrees(),
                     limits.upper.to_degrees()
                 ),
             })
         })
         .collect();
-    if unsaid.is_empty() {
+    if inferred_list.is_empty() {
         return;
     }
     let what = format!(
         "joints, axes (in the node's frame) and limits are taken from the tracks; speeds are unknown: {}",
-        unsaid.join("; ")
+        inferred_list.join("; ")
     );
-    let hint = format!("where that is wrong, [joint.NODE] with axis, min, max, speed in {}", beside.display());
+    let hint = format!("where that is wrong, [joint.NODE] with axis, min, max, speed in {}", default_path.display());
     warnings.push(Warning::new(file, None, what).hint(hint));
-}
-
-/// Farthest of turn (rad) and way (m) between two poses.
-pub(super) fn apart(a: &Pose, b: &Pose) -> f64 {
-    (a.rotation.inverse() * b.rotation).angle().max(a.translation.distance(b.translation))
 }
 
 fn named(name: &str) -> &str {

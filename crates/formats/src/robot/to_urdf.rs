@@ -1,20 +1,20 @@
-//! A robot as a URDF with STL meshes.
+//! Converts a robot to a URDF with STL meshes.
 
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{Chain, Joint, JointKind};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::mesh::MeshData;
+use crate::mesh_data::MeshData;
 use crate::{FormatError, stl};
 
-/// Stands for an endless slide (m): a URDF needs an end.
-const ENDLESS_M: f64 = 1e6;
+/// Replaces the limit of an unlimited prismatic joint (m), which a URDF requires.
+const UNLIMITED_M: f64 = 1e6;
 
-/// A URDF and what it names.
+/// A URDF, its SRDF and its meshes.
 #[derive(Debug, Clone, Default)]
 pub struct UrdfExport {
     /// The text of the URDF.
@@ -25,14 +25,14 @@ pub struct UrdfExport {
     pub meshes: Vec<(String, MeshData)>,
 }
 
-/// Writes a robot as a URDF: links, joints, limits, mimics, and solids as exact primitives or as meshes of triangles, for
-/// collision and to look at. A capsule becomes a cylinder and two spheres, which every URDF reader knows. `name` is the
-/// robot's.
+/// Converts a robot to a URDF: links, joints, limits, mimics, and geometry as exact primitives or triangle meshes, for
+/// collision and as visuals. A capsule becomes a cylinder and two spheres, which every URDF reader supports. `name` is the
+/// name of the robot.
 ///
 /// ```
 /// use elbowroom_formats::robot;
 /// use elbowroom_kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
-/// use elbowroom_scene::Robot;
+/// use elbowroom_robot::Robot;
 /// let row = ClassicalRow {
 ///     joint: "turn".into(), kind: JointKind::Revolute, a: 0.3, alpha: 0.0, d: 0.5, theta: 0.0,
 ///     limits: Limits::symmetric(2.5),
@@ -51,8 +51,8 @@ pub fn to_urdf(robot: &Robot, name: &str) -> UrdfExport {
     export
 }
 
-/// Writes a robot as `DIR/NAME.urdf` with its meshes in `DIR/meshes`, and `DIR/NAME.srdf` where pairs are disabled; the
-/// answer is the files, the URDF first.
+/// Writes a robot as `DIR/NAME.urdf` with its meshes in `DIR/meshes`, and `DIR/NAME.srdf` where pairs are disabled.
+/// Returns the files, the URDF first.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -85,21 +85,21 @@ pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>,
 fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, MeshData)>) -> fmt::Result {
     let chain = &robot.chain;
     writeln!(out, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(name))?;
-    // Robots that are written beside each other keep their own meshes.
+    // Robots written to the same directory have their own meshes.
     let folder = plain_name(name);
     for (i, link) in chain.links().iter().enumerate() {
-        let collisions = solids(link, (&folder, ""), i, &robot.bodies[i], meshes);
+        let collisions = elements(link, (&folder, ""), i, &robot.colliders[i], meshes);
         let visuals = match &robot.visuals[i][..] {
             [] => collisions.clone(),
-            visuals => solids(link, (&folder, "visual_"), i, visuals, meshes),
+            visuals => elements(link, (&folder, "visual_"), i, visuals, meshes),
         };
         if collisions.is_empty() && visuals.is_empty() {
             writeln!(out, "  <link name=\"{}\"/>", escaped(link))?;
             continue;
         }
         writeln!(out, "  <link name=\"{}\">", escaped(link))?;
-        for (element, solids) in [("visual", &visuals), ("collision", &collisions)] {
-            for Solid { name, in_link, geometry } in solids {
+        for (element, elements) in [("visual", &visuals), ("collision", &collisions)] {
+            for GeometryElement { name, in_link, geometry } in elements {
                 writeln!(
                     out,
                     "    <{element} name=\"{}\">{}<geometry>{geometry}</geometry></{element}>",
@@ -118,37 +118,38 @@ fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, M
 
 /// One `<collision>` or `<visual>`.
 #[derive(Clone)]
-struct Solid {
+struct GeometryElement {
     name: String,
     in_link: Pose,
     geometry: String,
 }
 
-fn solids(
+fn elements(
     link: &str,
     (folder, prefix): (&str, &str),
     index: usize,
-    bodies: &[Body],
+    bodies: &[Collider],
     meshes: &mut Vec<(String, MeshData)>,
-) -> Vec<Solid> {
-    let mut solids = Vec::new();
+) -> Vec<GeometryElement> {
+    let mut elements = Vec::new();
     for (b, body) in bodies.iter().enumerate() {
-        let mut solid =
-            |in_link: Pose, geometry: String| solids.push(Solid { name: body.name.clone(), in_link, geometry });
+        let mut element = |in_link: Pose, geometry: String| {
+            elements.push(GeometryElement { name: body.name.clone(), in_link, geometry });
+        };
         match &body.shape {
             Shape::Cuboid(c) => {
                 let [x, y, z] = (c.half_extents * 2.0).to_array();
-                solid(body.in_link, format!("<box size=\"{x:?} {y:?} {z:?}\"/>"));
+                element(body.in_link, format!("<box size=\"{x:?} {y:?} {z:?}\"/>"));
             }
-            Shape::Sphere(s) => solid(body.in_link, sphere(s.radius)),
-            Shape::Cylinder(c) => solid(body.in_link, cylinder(c.radius, c.half_length)),
+            Shape::Sphere(s) => element(body.in_link, sphere(s.radius)),
+            Shape::Cylinder(c) => element(body.in_link, cylinder(c.radius, c.half_length)),
             Shape::Capsule(c) => {
-                solid(body.in_link, cylinder(c.radius, c.half_length));
+                element(body.in_link, cylinder(c.radius, c.half_length));
                 for z in [c.half_length, -c.half_length] {
-                    solid(body.in_link * Pose::from_translation(Vec3::Z * z), sphere(c.radius));
+                    element(body.in_link * Pose::from_translation(Vec3::Z * z), sphere(c.radius));
                 }
             }
-            // No link of a robot is endless; a patch would be a lie.
+            // A URDF cannot contain unbounded geometry.
             Shape::HalfSpace(_) => {}
             Shape::Hull(_) | Shape::Mesh(_) => {
                 let (vertices, triangles) = tessellate(&body.shape, 0.0);
@@ -157,15 +158,15 @@ fn solids(
                     "meshes/{folder}/{index:02}_{prefix}{link}{}.stl",
                     if b == 0 { String::new() } else { format!("_{}", b + 1) }
                 );
-                solid(body.in_link, format!("<mesh filename=\"{file}\"/>"));
+                element(body.in_link, format!("<mesh filename=\"{file}\"/>"));
                 meshes.push((file, MeshData { name: body.name.clone(), vertices, triangles }));
             }
         }
     }
-    solids
+    elements
 }
 
-/// A name as part of a file's.
+/// A name as part of a file name.
 fn plain_name(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
     name.chars().map(plain).take(80).collect()
@@ -196,10 +197,10 @@ fn joint_element(chain: &Chain, joint: &Joint, out: &mut String) -> fmt::Result 
         let limits = &joint.limits;
         write!(out, "    <limit")?;
         if joint.kind != JointKind::Continuous {
-            let end = |x: f64| x.clamp(-ENDLESS_M, ENDLESS_M);
+            let end = |x: f64| x.clamp(-UNLIMITED_M, UNLIMITED_M);
             write!(out, " lower=\"{:?}\" upper=\"{:?}\"", end(limits.lower), end(limits.upper))?;
         }
-        // 0 means unknown: readers want the attributes.
+        // 0 means unknown: the attributes are required.
         let (effort, velocity) = (limits.effort.unwrap_or(0.0), limits.velocity.unwrap_or(0.0));
         write!(out, " effort=\"{effort:?}\" velocity=\"{velocity:?}\"")?;
         if let Some(acceleration) = limits.acceleration {

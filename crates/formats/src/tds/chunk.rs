@@ -1,4 +1,4 @@
-//! Chunks in chunks, and the numbers in them; every length is checked against what holds it.
+//! Nested chunks and their numbers; every length is checked against the enclosing chunk.
 
 use std::path::Path;
 
@@ -6,19 +6,19 @@ use elbowroom_spatial::Vec3;
 
 use crate::FormatError;
 
-/// Number and length.
+/// Bytes of id and length.
 const HEAD: usize = 6;
 
-/// A numbered stretch of bytes.
+/// A chunk: an id and bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub(super) id: u16,
     body: &'a [u8],
-    /// Where the body begins in the file.
+    /// Offset of the body in the file.
     at: usize,
 }
 
-/// The chunk that is the whole file. Its length is not believed: some writers leave it at 0 or forget what they added.
+/// The chunk of the whole file. Its length is ignored where it does not fit: some writers leave it at 0.
 pub(super) fn main<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunk<'a>, FormatError> {
     if bytes.len() < HEAD || !bytes.starts_with(&[0x4d, 0x4d]) {
         return Err(FormatError::new(file, None, "is no 3DS file: it does not begin with the bytes 4D 4D")
@@ -39,7 +39,7 @@ impl<'a> Chunk<'a> {
     }
 }
 
-/// The chunks in a stretch of bytes.
+/// Consecutive chunks.
 pub(super) struct Children<'a, 'f> {
     cursor: Cursor<'a, 'f>,
 }
@@ -48,7 +48,7 @@ impl<'a> Iterator for Children<'a, '_> {
     type Item = Result<Chunk<'a>, FormatError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        // A few bytes too many are the padding of some writers.
+        // Some writers pad with a few bytes.
         if self.cursor.rest.len() < HEAD {
             return None;
         }
@@ -60,7 +60,7 @@ impl<'a> Iterator for Children<'a, '_> {
     }
 }
 
-/// Reads numbers one after the other.
+/// Reads consecutive numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'a, 'f> {
     rest: &'a [u8],
@@ -108,7 +108,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(())
     }
 
-    /// A count of things that take so many bytes each, no more than can be there.
+    /// Checks a count of elements of so many bytes each against the remaining bytes.
     pub(super) fn count(&self, count: usize, bytes_each: usize, of: &str) -> Result<usize, FormatError> {
         if self.rest.len() / bytes_each < count {
             let what = format!("claims {count} {of}, and has bytes for {}", self.rest.len() / bytes_each);
@@ -131,14 +131,14 @@ impl<'a, 'f> Cursor<'a, 'f> {
         if number.is_finite() {
             return Ok(number);
         }
-        Err(self.error(&format!("has a number that is none: {number}")).hint("finite numbers; export again"))
+        Err(self.error(&format!("has a number that is not finite: {number}")).hint("finite numbers; export again"))
     }
 
     pub(super) fn vector(&mut self) -> Result<Vec3, FormatError> {
         Ok(Vec3::new(f64::from(self.f32()?), f64::from(self.f32()?), f64::from(self.f32()?)))
     }
 
-    /// A text that ends with a zero; one byte is one character.
+    /// A text that ends with a zero byte; one byte is one character.
     pub(super) fn text(&mut self) -> Result<String, FormatError> {
         let Some(length) = self.rest.iter().position(|&b| b == 0) else {
             return Err(self.error("has a name without an end").hint("the whole file: copy or export it again"));

@@ -6,27 +6,27 @@ use elbowroom_spatial::{Rotation, Vec3};
 
 use super::chunk::Chunk;
 use super::track::{self, Track};
-use crate::error::Warnings;
+use crate::error::WarningList;
 use crate::{FormatError, Warning};
 
-/// What a node stands for.
+/// The kind of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum NodeKind {
     /// An object, or a dummy.
     Object,
-    /// A camera or a spotlight: looks at its target along -z.
-    Looks,
-    /// What a camera or a spotlight looks at.
+    /// A camera or a spotlight, whose -z axis points to its target.
+    Aimed,
+    /// The target of a camera or a spotlight.
     Target,
-    /// A light that shines everywhere.
+    /// An omnidirectional light.
     Light,
 }
 
-/// A node as it stands in the file.
+/// A node as in the file.
 pub(super) struct FileNode {
-    pub(super) kind: Kind,
+    pub(super) kind: NodeKind,
     pub(super) name: String,
-    /// Tells dummies, and copies of one object, from each other.
+    /// Distinguishes dummies, and instances of one object.
     pub(super) instance: Option<String>,
     pub(super) number: Option<u16>,
     pub(super) parent: Option<u16>,
@@ -42,24 +42,28 @@ impl FileNode {
         !(self.position.is_empty() && self.rotation.is_empty() && self.scale.is_empty())
     }
 
-    /// What it is called in the tree.
-    pub(super) fn shown_name(&self) -> String {
+    /// Its name in the tree.
+    pub(super) fn display_name(&self) -> String {
         match &self.instance {
             Some(instance) if self.name.starts_with("$$$") => instance.clone(),
             Some(instance) => format!("{}.{instance}", self.name),
-            None if self.kind == Kind::Target => format!("{}.target", self.name),
+            None if self.kind == NodeKind::Target => format!("{}.target", self.name),
             None => self.name.clone(),
         }
     }
 }
 
-/// A node, or nothing where the chunk is something else.
-pub(super) fn read(chunk: &Chunk<'_>, file: &Path, warnings: &mut Warnings) -> Result<Option<FileNode>, FormatError> {
+/// A node; `None` for other chunks.
+pub(super) fn read(
+    chunk: &Chunk<'_>,
+    file: &Path,
+    warnings: &mut WarningList,
+) -> Result<Option<FileNode>, FormatError> {
     let kind = match chunk.id {
-        0xb002 => Kind::Object,
-        0xb003 | 0xb007 => Kind::Looks,
-        0xb004 | 0xb006 => Kind::Target,
-        0xb005 => Kind::Light,
+        0xb002 => NodeKind::Object,
+        0xb003 | 0xb007 => NodeKind::Aimed,
+        0xb004 | 0xb006 => NodeKind::Target,
+        0xb005 => NodeKind::Light,
         _ => return Ok(None),
     };
     let mut node = FileNode {
@@ -74,10 +78,10 @@ pub(super) fn read(chunk: &Chunk<'_>, file: &Path, warnings: &mut Warnings) -> R
         scale: Vec::new(),
         roll: Vec::new(),
     };
-    for part in chunk.children(file) {
-        let part = part?;
-        let mut cursor = part.cursor(file);
-        match part.id {
+    for child in chunk.children(file) {
+        let child = child?;
+        let mut cursor = child.cursor(file);
+        match child.id {
             0xb010 => {
                 node.name = cursor.text()?;
                 cursor.skip(4)?;

@@ -6,26 +6,26 @@ use elbowroom_spatial::Vec3;
 
 use super::chunk::{Chunk, Cursor};
 use crate::FormatError;
-use crate::transform::Affine;
+use crate::affine::Affine;
 
-/// A mesh as it stands in the file.
+/// A mesh as in the file.
 pub(super) struct Object {
     pub(super) name: String,
-    /// In world coordinates, or in the object's frame: see [`super::place`].
+    /// In world coordinates, or in the object's frame: see [`super::assemble`].
     pub(super) vertices: Vec<Vec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// The object's frame in the world, which may scale and mirror; `None` where the file has none.
     pub(super) axes: Option<Affine>,
 }
 
-/// An object, or nothing where the chunk is a camera or a light.
+/// An object; `None` for cameras and lights.
 pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, FormatError> {
     let mut cursor = chunk.cursor(file);
     let name = cursor.text()?;
-    for part in cursor.children() {
-        let part = part?;
-        if part.id == 0x4100 {
-            return mesh(name, &part, file).map(Some);
+    for child in cursor.children() {
+        let child = child?;
+        if child.id == 0x4100 {
+            return mesh(name, &child, file).map(Some);
         }
     }
     Ok(None)
@@ -33,10 +33,10 @@ pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, For
 
 fn mesh(name: String, chunk: &Chunk<'_>, file: &Path) -> Result<Object, FormatError> {
     let mut object = Object { name, vertices: Vec::new(), triangles: Vec::new(), axes: None };
-    for part in chunk.children(file) {
-        let part = part?;
-        let mut cursor = part.cursor(file);
-        match part.id {
+    for child in chunk.children(file) {
+        let child = child?;
+        let mut cursor = child.cursor(file);
+        match child.id {
             0x4110 => object.vertices = vertices(&mut cursor)?,
             0x4120 => object.triangles = triangles(&mut cursor)?,
             0x4160 => object.axes = Some(axes(&mut cursor)?),
@@ -62,7 +62,7 @@ fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, FormatError> 
     let count = cursor.count(count, 8, "faces")?;
     let mut corner = || cursor.u16().map(u32::from);
     let mut face = || Ok([corner()?, corner()?, corner()?, corner()?]);
-    // The fourth number says which edges are drawn.
+    // The fourth number selects the visible edges.
     (0..count).map(|_| face().map(|[a, b, c, _]| [a, b, c])).collect()
 }
 

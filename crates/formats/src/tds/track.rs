@@ -7,13 +7,13 @@ use elbowroom_spatial::{Rotation, Vec3};
 use super::chunk::Cursor;
 use crate::FormatError;
 
-/// Frames per second of 3D Studio; the file does not say.
+/// Frames per second of 3D Studio; files do not state it.
 pub(super) const FRAMES_PER_SECOND: f64 = 30.0;
 
-/// A rotation farther than this (rad) between two keys gets keys in between: beyond half a turn its sense is lost.
-const FAR: f64 = 0.9 * PI;
-/// A rotation that would get more keys than this is not followed.
-const MOST_KEYS: f64 = 8.0;
+/// Rotations larger than this (rad) between two keys get keys in between: beyond half a turn the direction is ambiguous.
+const MAX_KEY_ANGLE: f64 = 0.9 * PI;
+/// Rotations that would need more keys than this get none.
+const MAX_INSERTED_KEYS: f64 = 8.0;
 
 /// Values at frames, in order of the frames.
 pub(super) type Track<T> = Vec<(f64, T)>;
@@ -48,16 +48,16 @@ pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, FormatE
     keys(cursor, 4, |c| c.f32().map(f64::from))
 }
 
-/// Rotations in the parent's frame. A key is an angle (against the right hand) and an axis, and all but the first turn
-/// on from the key before; large turns get keys in between, so that neighbours are less than half a turn apart.
+/// Rotations in the parent's frame. A key is an angle (left-handed) and an axis, relative to the key before; large
+/// rotations get keys in between, so that neighbours are less than half a turn apart.
 pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, FormatError> {
     let keys = keys(cursor, 16, |c| Ok((f64::from(c.f32()?), c.vector()?)))?;
     let mut track: Track<Rotation> = Vec::with_capacity(keys.len());
     for (frame, (angle, axis)) in keys {
         let axis = axis.try_normalize().unwrap_or(Vec3::Z);
         let (before, from) = track.last().copied().map_or((frame, Rotation::IDENTITY), |(f, r)| (f, r));
-        let parts = (angle.abs() / FAR).ceil().max(1.0);
-        let parts = if track.is_empty() || parts > MOST_KEYS { 1.0 } else { parts };
+        let parts = (angle.abs() / MAX_KEY_ANGLE).ceil().max(1.0);
+        let parts = if track.is_empty() || parts > MAX_INSERTED_KEYS { 1.0 } else { parts };
         for part in 1..=parts as usize {
             let share = part as f64 / parts;
             let turned = Rotation::from_axis_angle(axis, -angle * share) * from;

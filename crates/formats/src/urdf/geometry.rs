@@ -3,15 +3,15 @@
 use elbowroom_spatial::Vec3;
 use roxmltree::Node;
 
-use super::Geometry;
-use super::reader::Reader;
-use crate::scan::show;
+use super::model::Geometry;
+use super::parser::UrdfParser;
+use crate::tokens::show;
 use crate::{FormatError, xml};
 
 const SHAPES: &str = "<box size=\"1 1 1\"/>, <sphere radius=\"0.1\"/>, <cylinder radius=\"0.1\" length=\"1\"/>, \
                       <capsule radius=\"0.1\" length=\"1\"/> or <mesh filename=\"part.stl\"/>";
 
-impl Reader<'_> {
+impl UrdfParser<'_> {
     pub(super) fn geometry(&self, solid: Node<'_, '_>) -> Result<Geometry, FormatError> {
         let element = solid.tag_name().name();
         let geometry = xml::child(solid, "geometry").ok_or_else(|| {

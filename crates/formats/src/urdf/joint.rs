@@ -5,15 +5,16 @@ use std::collections::HashMap;
 use elbowroom_kinematics::{JointKind, Limits};
 use roxmltree::Node;
 
-use super::reader::Reader;
-use super::{Joint, Link, Mimic};
-use crate::scan::show;
+use super::model::{UrdfJoint, UrdfLink, UrdfMimic};
+use super::parser::UrdfParser;
+use crate::cycles::find_cycles;
+use crate::tokens::show;
 use crate::{FormatError, xml};
 
 const LIMIT: &str = "<limit lower=\"-3.14\" upper=\"3.14\" velocity=\"1.5\" effort=\"0\"/>, or type=\"continuous\"";
 
-impl Reader<'_> {
-    pub(super) fn joints(&mut self, root: Node<'_, '_>, links: &[Link]) -> Result<Vec<Joint>, FormatError> {
+impl UrdfParser<'_> {
+    pub(super) fn joints(&mut self, root: Node<'_, '_>, links: &[UrdfLink]) -> Result<Vec<UrdfJoint>, FormatError> {
         let index: HashMap<&str, usize> = links.iter().enumerate().map(|(i, l)| (l.name.as_str(), i)).collect();
         let nodes: Vec<_> = xml::children(root, "joint").collect();
         let mut numbers: HashMap<&str, usize> = HashMap::new();
@@ -23,7 +24,7 @@ impl Reader<'_> {
                 let what = format!(
                     "a second joint `{}`; the first is on line {}",
                     show(name.as_bytes()),
-                    self.lines.line(nodes[first])
+                    self.lines.line_at(nodes[first].range().start)
                 );
                 return Err(self.error(*node, what).hint("a name of its own for each joint"));
             }
@@ -41,12 +42,12 @@ impl Reader<'_> {
         node: Node<'_, '_>,
         links: &HashMap<&str, usize>,
         joints: &HashMap<&str, usize>,
-    ) -> Result<Joint, FormatError> {
+    ) -> Result<UrdfJoint, FormatError> {
         let name = self.required(node, "name")?.to_owned();
         let kind = self.kind(node)?;
         let limits = self.limits(node, kind)?;
-        Ok(Joint {
-            line: self.lines.line(node),
+        Ok(UrdfJoint {
+            line: self.lines.line_at(node.range().start),
             kind,
             parent: self.end(node, "parent", links)?,
             child: self.end(node, "child", links)?,
@@ -154,7 +155,7 @@ impl Reader<'_> {
         Ok((lower, upper))
     }
 
-    fn mimic(&self, joint: Node<'_, '_>, joints: &HashMap<&str, usize>) -> Result<Option<Mimic>, FormatError> {
+    fn mimic(&self, joint: Node<'_, '_>, joints: &HashMap<&str, usize>) -> Result<Option<UrdfMimic>, FormatError> {
         let Some(node) = xml::child(joint, "mimic") else { return Ok(None) };
         let source = self.required(node, "joint")?;
         let source = joints.get(source).copied().ok_or_else(|| {
@@ -163,18 +164,18 @@ impl Reader<'_> {
                 .hint("<mimic joint=\"NAME\" multiplier=\"1\" offset=\"0\"/> with the name of a joint")
         })?;
         let multiplier = self.number(node, "multiplier")?.unwrap_or(1.0);
-        Ok(Some(Mimic { joint: source, multiplier, offset: self.number(node, "offset")?.unwrap_or(0.0) }))
+        Ok(Some(UrdfMimic { joint: source, multiplier, offset: self.number(node, "offset")?.unwrap_or(0.0) }))
     }
 
-    /// A fixed joint follows nobody, and nobody follows one; no joint follows itself, not even around corners.
-    fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [Joint]) -> Result<(), FormatError> {
+    /// A fixed joint neither mimics nor is mimicked; mimics form no cycle.
+    fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [UrdfJoint]) -> Result<(), FormatError> {
         for i in 0..joints.len() {
             let Some(mimic) = joints[i].mimic else { continue };
             let node = xml::child(nodes[i], "mimic").unwrap_or(nodes[i]);
             if !joints[i].kind.moves() {
                 self.warn(
                     node,
-                    "a fixed joint cannot follow another; its <mimic> is passed over",
+                    "a fixed joint cannot follow another; its <mimic> is ignored",
                     "type=\"revolute\", or no <mimic>",
                 );
                 joints[i].mimic = None;
@@ -183,25 +184,11 @@ impl Reader<'_> {
                 return Err(self.error(node, what).hint("the name of a joint that moves"));
             }
         }
-        // 0 unseen, 1 on the present trail, 2 known to end.
-        let mut state = vec![0; joints.len()];
-        for start in 0..joints.len() {
-            let mut trail = Vec::new();
-            let mut next = Some(start);
-            while let Some(i) = next.filter(|&i| state[i] != 2) {
-                if state[i] == 1 {
-                    return Err(self
-                        .error(nodes[i], "mimic joints that follow each other in a circle")
-                        .hint("one joint of them without <mimic>"));
-                }
-                state[i] = 1;
-                trail.push(i);
-                next = joints[i].mimic.map(|m| m.joint);
-            }
-            for i in trail {
-                state[i] = 2;
-            }
+        match find_cycles(joints.len(), |i| joints[i].mimic.map(|m| m.joint)).first() {
+            Some(&i) => Err(self
+                .error(nodes[i], "mimic joints that follow each other in a cycle")
+                .hint("one joint of them without <mimic>")),
+            None => Ok(()),
         }
-        Ok(())
     }
 }

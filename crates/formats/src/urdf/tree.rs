@@ -1,21 +1,22 @@
-//! Links and joints must make one tree.
+//! Links and joints must form one tree.
 
 use std::path::Path;
 
-use super::{Joint, Link};
+use super::model::{UrdfJoint, UrdfLink};
 use crate::FormatError;
-use crate::scan::show;
+use crate::cycles::find_cycles;
+use crate::tokens::show;
 
-pub(super) fn check(links: &[Link], joints: &[Joint], file: &Path) -> Result<(), FormatError> {
+pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Result<(), FormatError> {
     let name = |i: usize| show(links[i].name.as_bytes());
-    let mut carrier: Vec<Option<usize>> = vec![None; links.len()];
+    let mut parent_joint: Vec<Option<usize>> = vec![None; links.len()];
     for (j, joint) in joints.iter().enumerate() {
         if joint.parent == joint.child {
             let what =
                 format!("the joint `{}` joins the link `{}` to itself", show(joint.name.as_bytes()), name(joint.child));
             return Err(FormatError::new(file, joint.line, what).hint("two different links as <parent> and <child>"));
         }
-        if let Some(first) = carrier[joint.child].replace(j) {
+        if let Some(first) = parent_joint[joint.child].replace(j) {
             let what = format!(
                 "the link `{}` is already the child of the joint on line {}",
                 name(joint.child),
@@ -25,7 +26,7 @@ pub(super) fn check(links: &[Link], joints: &[Joint], file: &Path) -> Result<(),
                 .hint("one joint for each child; a closed chain is opened at one joint"));
         }
     }
-    let roots: Vec<usize> = (0..links.len()).filter(|&i| carrier[i].is_none()).collect();
+    let roots: Vec<usize> = (0..links.len()).filter(|&i| parent_joint[i].is_none()).collect();
     if let [first, second, ..] = roots[..] {
         let names: Vec<String> = roots.iter().take(5).map(|&i| format!("`{}`", name(i))).collect();
         let more = if roots.len() > 5 { ", …" } else { "" };
@@ -36,27 +37,18 @@ pub(super) fn check(links: &[Link], joints: &[Joint], file: &Path) -> Result<(),
             name(second)
         )));
     }
-    refuse_circles(links, joints, &carrier, file)
+    refuse_cycles(links, joints, &parent_joint, file)
 }
 
-/// Follows every link towards the root; who never arrives is in a circle, or hangs on one.
-fn refuse_circles(links: &[Link], joints: &[Joint], carrier: &[Option<usize>], file: &Path) -> Result<(), FormatError> {
-    let mut arrives = vec![false; links.len()];
-    for start in 0..links.len() {
-        let mut trail = vec![start];
-        while let Some(joint) = trail.last().and_then(|&link| carrier[link]).map(|j| &joints[j]) {
-            if arrives[joint.parent] {
-                break;
-            }
-            if trail.len() > links.len() {
-                let what = format!("the joint `{}` closes a circle of links", show(joint.name.as_bytes()));
-                return Err(FormatError::new(file, joint.line, what).hint("a tree: open the circle at one joint"));
-            }
-            trail.push(joint.parent);
-        }
-        for link in trail {
-            arrives[link] = true;
-        }
-    }
-    Ok(())
+/// Refuses links that do not reach the root, because they are in a cycle or below one.
+fn refuse_cycles(
+    links: &[UrdfLink],
+    joints: &[UrdfJoint],
+    parent_joint: &[Option<usize>],
+    file: &Path,
+) -> Result<(), FormatError> {
+    let cycles = find_cycles(links.len(), |link| parent_joint[link].map(|j| joints[j].parent));
+    let Some(joint) = cycles.first().and_then(|&link| parent_joint[link]).map(|j| &joints[j]) else { return Ok(()) };
+    let what = format!("the joint `{}` closes a cycle of links", show(joint.name.as_bytes()));
+    Err(FormatError::new(file, joint.line, what).hint("a tree: open the cycle at one joint"))
 }

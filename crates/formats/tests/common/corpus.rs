@@ -1,4 +1,4 @@
-//! Small sound files of every kind, ways to damage them, and one door to all readers.
+//! Small valid files of every format, damage to them, and one function for all readers.
 
 #[path = "waving.rs"]
 mod waving;
@@ -9,10 +9,10 @@ use elbowroom_formats::mesh::{self, UpAxis};
 use elbowroom_formats::nodetree::{Node, NodeTree};
 use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
 use elbowroom_spatial::Pose;
-/// All readers; `mesh` is the one that finds out the kind by itself.
+/// All readers; `mesh` detects the format.
 pub const PARSERS: [&str; 10] = ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "mesh"];
 
-/// What a reader made of some bytes: the size of its result in bytes, roughly.
+/// The approximate size of a reader's result, bytes.
 pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
     let file = Path::new("fuzz").with_extension(parser);
     let size = |loaded: LoadedMeshes| {
@@ -56,7 +56,7 @@ fn tree_size(tree: &NodeTree) -> usize {
     tree.nodes.iter().map(of).sum()
 }
 
-/// Sound files for a reader.
+/// Valid files for a reader.
 pub fn samples(parser: &str) -> Vec<Vec<u8>> {
     let of = |texts: &[&str]| texts.iter().map(|t| t.as_bytes().to_vec()).collect::<Vec<_>>();
     match parser {
@@ -184,7 +184,7 @@ const EXTREMES: [&str; 16] = [
     "",
 ];
 
-/// Damages a file a few times over: bits, cuts, copies, pieces of another file, numbers at the edge.
+/// Damages a file several times: bits, cuts, copies, pieces of another file, extreme numbers.
 pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8]) {
     for _ in 0..=random.below(6) {
         let n = bytes.len();
@@ -218,7 +218,7 @@ fn extreme_bytes(random: &mut Random, bytes: &mut [u8], at: usize) {
     }
 }
 
-/// Replaces the number that stands next after a place.
+/// Replaces the next number after an offset.
 fn extreme_number(random: &mut Random, bytes: &mut Vec<u8>, at: usize) {
     let is_part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
     let Some(begin) = bytes[at..].iter().position(u8::is_ascii_digit).map(|i| i + at) else { return };

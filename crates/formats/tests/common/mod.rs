@@ -1,8 +1,8 @@
-//! The real data beside the repository, where there is any.
+//! The data set beside the repository, where it is present.
 
 use std::path::{Path, PathBuf};
 
-/// `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace; `None` and a line on standard error where missing.
+/// `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace; `None` and a message on standard error where it is missing.
 pub fn data() -> Option<PathBuf> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = std::env::var_os("ELBOWROOM_DATA").map_or(default, PathBuf::from);

@@ -1,10 +1,10 @@
-//! A small tree that has everything.
+//! A small tree with meshes, hierarchy and animation.
 
 use elbowroom_formats::MeshData;
-use elbowroom_formats::nodetree::{Key, Node, NodeTree};
+use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// A pole with a flag that waves on it.
+/// A pole with a moving flag.
 pub fn waving() -> NodeTree {
     let mut tree = NodeTree::new("waving");
     let pole = tree.push(Node::new("pole", None, Pose::from_xyz_rpy([1.0, 2.0, 3.0], [0.1, -0.2, 0.3])));
@@ -15,7 +15,7 @@ pub fn waving() -> NodeTree {
     let key = |i: i32| {
         let turn =
             Pose::new(Rotation::from_axis_angle(Vec3::Y, 0.3 * f64::from(i)), Vec3::new(0.0, 0.0, 0.1 * f64::from(i)));
-        Key { time_s: f64::from(i), in_parent: rest * turn }
+        Keyframe { time_s: f64::from(i), in_parent: rest * turn }
     };
     flag.track = (0..4).map(key).collect();
     tree.push(flag);

@@ -2,29 +2,29 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::{Row, Table};
+use super::generalized::{GeneralizedRow, GeneralizedTable};
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
-/// One classical row: `T = Rz(θ+q)·Tz(d)·Tx(a)·Rx(α)`, or with q added to d where the joint slides.
+/// One classical row: `T = Rz(θ+q)·Tz(d)·Tx(a)·Rx(α)`, or with q added to d where the joint is prismatic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassicalRow {
     /// Name of the joint.
     pub joint: String,
     /// How it moves.
     pub kind: JointKind,
-    /// Along the new x axis, m.
+    /// Translation along the new x axis, m.
     pub a: f64,
-    /// Turn about the new x axis, rad.
+    /// Rotation about the new x axis, rad.
     pub alpha: f64,
-    /// Along the old z axis, m.
+    /// Translation along the old z axis, m.
     pub d: f64,
-    /// Turn about the old z axis at joint value 0, rad.
+    /// Rotation about the old z axis at joint value 0, rad.
     pub theta: f64,
-    /// What the joint may do.
+    /// Limits of the joint.
     pub limits: Limits,
 }
 
-impl From<&ClassicalRow> for Row {
+impl From<&ClassicalRow> for GeneralizedRow {
     fn from(row: &ClassicalRow) -> Self {
         let joint = (row.kind != JointKind::Fixed).then(|| row.joint.clone());
         Self { joint, kind: row.kind, theta: row.theta, a: row.a, b: 0.0, d: row.d, alpha: row.alpha }
@@ -34,26 +34,27 @@ impl From<&ClassicalRow> for Row {
 impl Chain {
     /// A serial chain from classical rows. Its links are `base` and, for row i (from 1), `link_i_drive`, which moves with
     /// the joint, and on it `link_i`: the row's frame, after d, a and α. The last `link_i` is the flange and the
-    /// [`Chain::tip`]. The joints bear the rows' names, the fixed ones between drive and link `NAME_frame`.
+    /// [`Chain::tip`]. The joints have the names of the rows, the fixed ones between drive and link `NAME_frame`.
     ///
     /// # Errors
     /// [`ChainError`] as in [`Chain::new`]: names used twice, bounds out of order, numbers that are not finite.
     pub fn from_dh(name: impl Into<String>, rows: &[ClassicalRow]) -> Result<Self, ChainError> {
         let limits = |i: usize| rows.get(i).map_or(Limits::UNLIMITED, |r: &ClassicalRow| r.limits);
-        let generalized: Vec<Row> = rows.iter().map(Row::from).collect();
+        let generalized: Vec<GeneralizedRow> = rows.iter().map(GeneralizedRow::from).collect();
         let names = rows.iter().map(|r| r.joint.clone()).collect();
         serial(name.into(), &generalized, names, limits)
     }
 }
 
-impl Table {
+impl GeneralizedTable {
     /// The serial chain of the table, links as in [`Chain::from_dh`], without limits. Rows without joint become fixed
-    /// joints `fixed_i`; mimic joints become free ones.
+    /// joints `fixed_i`; mimic joints become independent ones.
     ///
     /// # Errors
     /// [`ChainError`] as in [`Chain::new`].
     pub fn to_chain(&self, name: impl Into<String>) -> Result<Chain, ChainError> {
-        let named = |(i, row): (usize, &Row)| row.joint.clone().unwrap_or_else(|| format!("fixed_{}", i + 1));
+        let named =
+            |(i, row): (usize, &GeneralizedRow)| row.joint.clone().unwrap_or_else(|| format!("fixed_{}", i + 1));
         let names = self.rows.iter().enumerate().map(named).collect();
         serial(name.into(), &self.rows, names, |_| Limits::UNLIMITED)
     }
@@ -61,7 +62,7 @@ impl Table {
 
 fn serial(
     name: String,
-    rows: &[Row],
+    rows: &[GeneralizedRow],
     names: Vec<String>,
     limits: impl Fn(usize) -> Limits,
 ) -> Result<Chain, ChainError> {
@@ -78,8 +79,8 @@ fn serial(
     Chain::new(name, links, joints)
 }
 
-fn at_zero(row: &Row) -> Pose {
-    Row { kind: JointKind::Fixed, ..row.clone() }.transform(0.0)
+fn at_zero(row: &GeneralizedRow) -> Pose {
+    GeneralizedRow { kind: JointKind::Fixed, ..row.clone() }.transform(0.0)
 }
 
 fn joint_of(name: String, kind: JointKind, (parent, child): (LinkId, LinkId), origin: Pose, limits: Limits) -> Joint {

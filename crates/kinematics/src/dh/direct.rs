@@ -1,23 +1,25 @@
-//! One row per given frame, as in the paper.
+//! One row per frame of the model, as in S4.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::extract::{residual, with_joint, z_onto};
+use super::extract::{with_joint, z_onto};
+use super::generalized::{GeneralizedRow, GeneralizedTable};
+use super::residual::residual;
 use super::split::{along_z, exact_row, row_and_rest};
-use super::{Row, Table};
 use crate::{Chain, JointKind, LinkId};
 
-/// A generalized table that follows the frames of the model (S4.3, S4.4), where [`Table::extract`] follows the axes.
+/// A generalized table that follows the frames of the model (S4.3, S4.4), while [`GeneralizedTable::extract`] follows the
+/// axes.
 ///
-/// Every frame on the way keeps its origin: that of the root link, of each joint and of each link on a fixed joint; at the
-/// end that of the tip. A frame whose z axis is its joint's axis, and a frame without joint, keeps its orientation, too; any
-/// other is turned so that its joint acts about or along z, as the convention wants it, and about that so that entry (3,1)
-/// of its row is 0. Each frame is one row with a, b, d, α and θ; only where a kept frame has (3,1) ≠ 0 an auxiliary
-/// frame comes before it, marked by `*`. A model of a base and six joints has seven rows, as the paper's table 1, and behind
-/// them what the last joint carries: the tip, or the point that is to be steered.
+/// Every frame between root and tip keeps its origin: that of the root link, of each joint, of each link on a fixed joint,
+/// and of the tip. A frame whose z axis is its joint's axis, and a frame without joint, keeps its orientation, too; any
+/// other is rotated so that its joint acts about or along z, as the convention requires, and about that axis so that entry
+/// (3,1) of its row is 0. Each frame is one row with a, b, d, α and θ; only where a kept frame has (3,1) ≠ 0 an auxiliary frame
+/// precedes it, marked by `*`. A model of a base and six joints has seven rows, as in table 1 of S4, followed by what the
+/// last joint carries: the tip, or a point of a surface.
 ///
 /// ```
 /// use elbowroom_kinematics::dh::DirectTable;
@@ -39,10 +41,10 @@ use crate::{Chain, JointKind, LinkId};
 #[derive(Debug, Clone, PartialEq)]
 pub struct DirectTable {
     /// The frame that each row leads to: a link where it has no joint, else the joint that acts in it (from the next row
-    /// on). Auxiliary frames bear the name of the frame that they help, with a `*`.
+    /// on). An auxiliary frame has the name of the frame that it precedes, with a `*`.
     pub frames: Vec<String>,
-    /// The rows, and how well their product is the chain.
-    pub table: Table,
+    /// The rows, and how well their product reproduces the chain.
+    pub table: GeneralizedTable,
 }
 
 impl DirectTable {
@@ -51,11 +53,14 @@ impl DirectTable {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface that is to be
-    /// steered (S4.6).
+    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface (S4.6).
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
-        let mut rows = Rows { frames: vec![chain.links()[chain.root().0].clone()], list: vec![nothing()], joint: None };
-        let mut pending = Pose::IDENTITY; // from the frame of the last row
+        let mut rows = Rows {
+            frames: vec![chain.links()[chain.root().0].clone()],
+            list: vec![GeneralizedRow::IDENTITY],
+            joint: None,
+        };
+        let mut pending = Pose::IDENTITY; // since the frame of the last row
         for id in chain.path(tip) {
             let next = &chain.joints()[id.0];
             let frame = pending * next.origin;
@@ -64,18 +69,18 @@ impl DirectTable {
                 pending = Pose::IDENTITY;
                 continue;
             }
-            let turn = if next.axis == Vec3::Z { Rotation::IDENTITY } else { one_row_turn(&frame, next.axis) };
-            let turn = Pose::new(turn, Vec3::ZERO);
-            rows.push(&next.name, &(frame * turn));
+            let rotation = if next.axis == Vec3::Z { Rotation::IDENTITY } else { one_row_rotation(&frame, next.axis) };
+            let rotation = Pose::new(rotation, Vec3::ZERO);
+            rows.push(&next.name, &(frame * rotation));
             rows.joint = Some((next.name.clone(), next.kind));
-            // The joint moves what follows its frame; turning back puts the link's own frame behind it.
-            pending = turn.inverse();
+            // The joint moves what follows its frame; rotating back leads to the link's own frame.
+            pending = rotation.inverse();
         }
         let end = pending * tool_in_tip;
         if rows.joint.is_some() || end != Pose::IDENTITY {
             rows.push(&chain.links()[tip.0], &end);
         }
-        let mut table = Table { rows: rows.list, residual: 0.0 };
+        let mut table = GeneralizedTable { rows: rows.list, residual: 0.0 };
         table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
         Self { frames: rows.frames, table }
     }
@@ -84,8 +89,8 @@ impl DirectTable {
 /// The table under construction.
 struct Rows {
     frames: Vec<String>,
-    list: Vec<Row>,
-    /// Acts in the last frame, that is in the next row.
+    list: Vec<GeneralizedRow>,
+    /// The joint that acts in the last frame, that is in the next row.
     joint: Option<(String, JointKind)>,
 }
 
@@ -104,21 +109,17 @@ impl Rows {
     }
 }
 
-/// The turn of a frame that takes its z onto the axis and entry (3,1) of its row to 0.
-fn one_row_turn(frame: &Pose, axis: Vec3) -> Rotation {
+/// The rotation of a frame that takes its z onto the axis and entry (3,1) of its row to 0.
+fn one_row_rotation(frame: &Pose, axis: Vec3) -> Rotation {
     let onto = z_onto(axis);
     let [x, y, _] = (frame.rotation * onto).rows()[2];
-    // x·cos φ + y·sin φ = 0, by the smaller of both turns; of two quarter turns the positive one, whatever the rounding.
+    // x·cos φ + y·sin φ = 0, by the smaller angle; of two quarter turns the positive one, independent of rounding.
     let angle = if x.abs() < 1e-12 { 0.0 } else { (-x / y).atan() };
     let angle = if angle < 1e-9 - FRAC_PI_2 { angle + PI } else { angle };
-    onto.turned_about(2, angle)
+    onto.rotated_about(2, angle)
 }
 
-fn nothing() -> Row {
-    Row { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 }
-}
-
-/// The paper's columns: lengths in m, angles in rad.
+/// The columns of table 1 of S4: lengths in m, angles in rad.
 impl fmt::Display for DirectTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(5);
@@ -134,7 +135,7 @@ impl fmt::Display for DirectTable {
     }
 }
 
-/// To the last digit shown; adding 0 takes the sign off a zero.
+/// To the last digit shown; adding 0 removes the sign of a zero.
 fn round(v: f64) -> f64 {
     (v * 1e3).round() / 1e3 + 0.0
 }

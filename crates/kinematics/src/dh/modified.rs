@@ -2,26 +2,26 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::extract::residual;
-use super::{Row, Table};
+use super::generalized::{GeneralizedRow, GeneralizedTable};
+use super::residual::residual;
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
 /// One modified row (Craig, "Introduction to Robotics", 1986): `T = Rx(α)·Tx(a)·Rz(θ)·Tz(d)`. The joint of a row acts
-/// about or along the z axis of the frame *after* the row: its value is added to θ (turning) or d (sliding).
+/// about or along the z axis of the frame *after* the row: its value is added to θ (revolute) or d (prismatic).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModifiedRow {
-    /// The joint whose value is added to θ (turning) or d (sliding); `None` in fixed and auxiliary rows.
-    /// A mimic joint bears its own name: its value is `multiplier · q(source) + offset`.
+    /// The joint whose value is added to θ (revolute) or d (prismatic); `None` in fixed and auxiliary rows.
+    /// A mimic joint has its own name: its value is `multiplier · q(source) + offset`.
     pub joint: Option<String>,
     /// The joint's kind; [`JointKind::Fixed`] where there is none.
     pub kind: JointKind,
-    /// Turn about the x axis of the frame before, rad.
+    /// Rotation about the x axis of the frame before, rad.
     pub alpha: f64,
-    /// Along the x axis of the frame before, m.
+    /// Translation along the x axis of the frame before, m.
     pub a: f64,
-    /// Turn about the new z axis at joint value 0, rad.
+    /// Rotation about the new z axis at joint value 0, rad.
     pub theta: f64,
-    /// Along the new z axis, m.
+    /// Translation along the new z axis, m.
     pub d: f64,
 }
 
@@ -38,16 +38,16 @@ impl ModifiedRow {
         Pose::new(about_x * Rotation::from_axis_angle(Vec3::Z, theta), translation)
     }
 
-    fn is_nothing(&self) -> bool {
+    fn is_identity(&self) -> bool {
         self.joint.is_none() && self.alpha == 0.0 && self.a == 0.0 && self.theta == 0.0 && self.d == 0.0
     }
 }
 
 /// The modified rows from the root to a tip.
 ///
-/// Made of the generalized table by other brackets around the same factors: `Tx(a)·Rx(α)` of a row and `Rz(θ)·Tz(d)` of the
-/// next are one modified row, for turn about and slide along x commute. So the first row of a robot whose first axis is
-/// z of the root has α = a = 0, and behind the last joint a row without joint leads to the tip. Where a generalized row has
+/// Made from the generalized table by regrouping the same factors: `Tx(a)·Rx(α)` of a row and `Rz(θ)·Tz(d)` of the next are
+/// one modified row, because rotation about and translation along x commute. So the first row of a robot whose first axis
+/// is z of the root has α = a = 0, and after the last joint a row without joint leads to the tip. Where a generalized row has
 /// b (axes less than a thousandth of a radian from parallel, or the tip), it becomes two auxiliary rows without joint:
 /// `Ty(b) = Rz(π/2)·Tx(b)·Rz(−π/2)`.
 ///
@@ -61,7 +61,7 @@ impl ModifiedRow {
 /// let planar = Chain::from_dh("planar", &[row("shoulder", 0.4), row("elbow", 0.3)])?;
 /// let table = ModifiedTable::extract(&planar, planar.tip());
 /// let a: Vec<f64> = table.rows.iter().map(|r| r.a).collect();
-/// assert_eq!(a, [0.0, 0.4, 0.3]); // shoulder, elbow, and the way to the tip
+/// assert_eq!(a, [0.0, 0.4, 0.3]); // shoulder, elbow, and the transform to the tip
 /// assert_eq!(table.rows[2].joint, None);
 /// # Ok::<(), elbowroom_kinematics::ChainError>(())
 /// ```
@@ -69,7 +69,7 @@ impl ModifiedRow {
 pub struct ModifiedTable {
     /// In order from the root.
     pub rows: Vec<ModifiedRow>,
-    /// As [`Table::residual`].
+    /// As [`GeneralizedTable::residual`].
     pub residual: f64,
 }
 
@@ -81,7 +81,7 @@ impl ModifiedTable {
 
     /// As [`ModifiedTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
-        let mut table = Self::from(&Table::extract_to(chain, tip, tool_in_tip));
+        let mut table = Self::from(&GeneralizedTable::extract_to(chain, tip, tool_in_tip));
         table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
         table
     }
@@ -95,7 +95,7 @@ impl ModifiedTable {
     }
 
     /// The serial chain of the table, without limits. Its links are `base` and, for row i (from 1), `link_i`: the row's
-    /// frame. Rows without joint become fixed joints `fixed_i`; mimic joints become free ones.
+    /// frame. Rows without joint become fixed joints `fixed_i`; mimic joints become independent ones.
     ///
     /// # Errors
     /// [`ChainError`] as in [`Chain::new`].
@@ -109,7 +109,7 @@ impl ModifiedTable {
                 kind: row.kind,
                 parent: LinkId(i),
                 child: LinkId(i + 1),
-                // Turn about and slide along z commute with the joint.
+                // Rotation about and translation along z commute with the joint.
                 origin: ModifiedRow { kind: JointKind::Fixed, ..row.clone() }.transform(0.0),
                 axis: Vec3::Z,
                 limits: Limits::UNLIMITED,
@@ -120,55 +120,55 @@ impl ModifiedTable {
     }
 }
 
-/// The same product; the residual is taken over.
-impl From<&Table> for ModifiedTable {
-    fn from(table: &Table) -> Self {
+/// The same product; the residual is kept.
+impl From<&GeneralizedTable> for ModifiedTable {
+    fn from(table: &GeneralizedTable) -> Self {
         let mut rows = Vec::new();
         let mut push = |row: ModifiedRow| {
-            if !row.is_nothing() {
+            if !row.is_identity() {
                 rows.push(row);
             }
         };
         let fixed = ModifiedRow { joint: None, kind: JointKind::Fixed, alpha: 0.0, a: 0.0, theta: 0.0, d: 0.0 };
         let (mut alpha, mut a, mut b) = (0.0, 0.0, 0.0);
         for row in &table.rows {
-            sideways(&mut a, b, &mut push);
+            push_lateral(&mut a, b, &mut push);
             let (joint, kind) = (row.joint.clone(), row.kind);
             push(ModifiedRow { joint, kind, alpha, a, theta: row.theta, d: row.d });
             (alpha, a, b) = (row.alpha, row.a, row.b);
         }
-        sideways(&mut a, b, &mut push);
+        push_lateral(&mut a, b, &mut push);
         push(ModifiedRow { alpha, a, ..fixed });
         Self { rows, residual: table.residual }
     }
 }
 
-/// `Tx(a)·Ty(b)` as auxiliary rows, before a row that takes only α; leaves `a` to that row where there is no b.
-fn sideways(a: &mut f64, b: f64, push: &mut impl FnMut(ModifiedRow)) {
+/// `Tx(a)·Ty(b)` as auxiliary rows, before a row that has only α; leaves `a` to that row where b is 0.
+fn push_lateral(a: &mut f64, b: f64, push: &mut impl FnMut(ModifiedRow)) {
     if b == 0.0 {
         return;
     }
     let quarter = std::f64::consts::FRAC_PI_2;
-    let aside = |a, theta| ModifiedRow { joint: None, kind: JointKind::Fixed, alpha: 0.0, a, theta, d: 0.0 };
-    push(aside(*a, quarter));
-    push(aside(b, -quarter));
+    let auxiliary = |a, theta| ModifiedRow { joint: None, kind: JointKind::Fixed, alpha: 0.0, a, theta, d: 0.0 };
+    push(auxiliary(*a, quarter));
+    push(auxiliary(b, -quarter));
     *a = 0.0;
 }
 
-/// The same product, all b = 0; the residual is taken over. Where the first row has α or a, a row without joint comes first.
-impl From<&ModifiedTable> for Table {
+/// The same product, all b = 0; the residual is kept. Where the first row has α or a, a row without joint precedes it.
+impl From<&ModifiedTable> for GeneralizedTable {
     fn from(table: &ModifiedTable) -> Self {
-        let fixed = Row { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 };
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<GeneralizedRow> = Vec::new();
         for row in &table.rows {
             match rows.last_mut() {
                 Some(last) => (last.alpha, last.a) = (row.alpha, row.a),
                 None if row.alpha != 0.0 || row.a != 0.0 => {
-                    rows.push(Row { alpha: row.alpha, a: row.a, ..fixed.clone() });
+                    rows.push(GeneralizedRow { alpha: row.alpha, a: row.a, ..GeneralizedRow::IDENTITY });
                 }
                 None => {}
             }
-            rows.push(Row { joint: row.joint.clone(), kind: row.kind, theta: row.theta, d: row.d, ..fixed.clone() });
+            let (joint, kind) = (row.joint.clone(), row.kind);
+            rows.push(GeneralizedRow { joint, kind, theta: row.theta, d: row.d, ..GeneralizedRow::IDENTITY });
         }
         Self { rows, residual: table.residual }
     }

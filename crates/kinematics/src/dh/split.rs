@@ -1,74 +1,74 @@
-//! One transform into rows.
+//! Splits a transform into rows.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::Row;
-use crate::JointKind;
+use super::generalized::GeneralizedRow;
 
-/// Sine of the angle under which axes are parallel: the turn they are off by is lost, below every tolerance.
+/// Sine of the angle below which axes count as parallel: the deviation is lost, below every tolerance.
 const PARALLEL: f64 = 1e-11;
-/// Sine of the angle under which a common normal would be absurdly far away, and b is used.
+/// Sine of the angle below which the common normal would be very far away, and b is used.
 const NEARLY_PARALLEL: f64 = 1e-3;
-/// Lengths and angles below are rounding.
-const DUST: f64 = 1e-12;
+/// Lengths and angles below this are rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// `T = row · Rz(θ₂)·Tz(d₂)`, the second factor as a pose. The row's `joint` and `kind` are empty.
-pub fn row_and_rest(t: &Pose) -> (Row, Pose) {
+pub fn row_and_rest(t: &Pose) -> (GeneralizedRow, Pose) {
     let z = t.rotation.z_axis();
     let sine = z.x.hypot(z.y);
     let mut row = if sine < PARALLEL { parallel(t) } else { skew(t, z, sine) };
     tidy(&mut row);
     let rest = row.transform(0.0).inverse() * *t;
-    // Only the turn about z and the slide along it are left; what else the pose holds is rounding.
-    let turn = rest.rotation.x_axis();
-    let about_z = elbowroom_spatial::Rotation::from_axis_angle(Vec3::Z, clean_angle(turn.y.atan2(turn.x)));
+    // Only the rotation about z and the translation along it are left; the rest of the pose is rounding.
+    let x = rest.rotation.x_axis();
+    let about_z = elbowroom_spatial::Rotation::from_axis_angle(Vec3::Z, clean_angle(x.y.atan2(x.x)));
     (row, Pose::new(about_z, Vec3::new(0.0, 0.0, clean(rest.translation.z))))
 }
 
-/// The common normal of parallel axes is free along them: the one through the first origin, so d = 0.
-fn parallel(t: &Pose) -> Row {
+/// The common normal of parallel axes is not unique: the one through the first origin is taken, so d = 0.
+fn parallel(t: &Pose) -> GeneralizedRow {
     let p = t.translation;
     let a = p.x.hypot(p.y);
-    let theta = if a > DUST { p.y.atan2(p.x) } else { 0.0 };
+    let theta = if a > ROUNDING { p.y.atan2(p.x) } else { 0.0 };
     let alpha = if t.rotation.z_axis().z > 0.0 { 0.0 } else { PI };
-    Row { theta, a, alpha, ..fixed() }
+    GeneralizedRow { theta, a, alpha, ..GeneralizedRow::IDENTITY }
 }
 
-/// `z = (sθ·sα, −cθ·sα, cα)` gives θ and α; a, b, d from where the second axis is met.
-fn skew(t: &Pose, z: Vec3, sine: f64) -> Row {
+/// `z = (sθ·sα, −cθ·sα, cα)` gives θ and α; a, b, d from the foot of the common normal.
+fn skew(t: &Pose, z: Vec3, sine: f64) -> GeneralizedRow {
     let theta = z.x.atan2(-z.y);
     let (s, c) = theta.sin_cos();
     let (x_new, y_new) = (Vec3::new(c, s, 0.0), Vec3::new(-s, c, 0.0));
-    // Slide along the second axis to the common normal, or to the first origin's plane where that is too far.
+    // Along the second axis to the common normal, or to the plane of the first origin where that is too far.
     let along = if sine >= NEARLY_PARALLEL { t.translation.dot(y_new) / sine } else { -t.translation.z / z.z };
     let foot = t.translation + z * along;
     let b = if sine >= NEARLY_PARALLEL { 0.0 } else { foot.dot(y_new) };
-    Row { theta, a: foot.dot(x_new), b, d: foot.z, alpha: sine.atan2(z.z), ..fixed() }
+    GeneralizedRow { theta, a: foot.dot(x_new), b, d: foot.z, alpha: sine.atan2(z.z), ..GeneralizedRow::IDENTITY }
 }
 
 /// The row of a transform whose entry (3,1) is zero; `None` where it is not.
-pub fn exact_row(t: &Pose) -> Option<Row> {
+pub fn exact_row(t: &Pose) -> Option<GeneralizedRow> {
     let [r1, r2, r3] = t.rotation.rows();
-    if r3[0].abs() > DUST {
+    if r3[0].abs() > ROUNDING {
         return None;
     }
     let theta = r2[0].atan2(r1[0]);
     let (s, c) = theta.sin_cos();
     let p = t.translation;
     let (a, b) = (c * p.x + s * p.y, c * p.y - s * p.x);
-    let mut row = Row { theta, a, b, d: p.z, alpha: r3[1].atan2(r3[2]), ..fixed() };
+    let mut row = GeneralizedRow { theta, a, b, d: p.z, alpha: r3[1].atan2(r3[2]), ..GeneralizedRow::IDENTITY };
     row.theta = clean_angle(row.theta);
     row.alpha = clean_angle(row.alpha);
     (row.a, row.b, row.d) = (clean(row.a), clean(row.b), clean(row.d));
     Some(row)
 }
 
-/// The same transform up to the rest: a ≥ 0, or |θ| ≤ π/2 where the axes meet; rounding removed.
-fn tidy(row: &mut Row) {
+/// Normalizes a row without changing the transform but for the remainder: a ≥ 0, or |θ| ≤ π/2 where the axes intersect; removes
+/// rounding.
+fn tidy(row: &mut GeneralizedRow) {
     row.a = clean(row.a);
-    let flip = row.a < 0.0 || (row.a == 0.0 && row.theta.abs() > FRAC_PI_2 + DUST);
+    let flip = row.a < 0.0 || (row.a == 0.0 && row.theta.abs() > FRAC_PI_2 + ROUNDING);
     if flip {
         row.theta += if row.theta > 0.0 { -PI } else { PI };
         (row.a, row.b, row.alpha) = (-row.a, -row.b, -row.alpha);
@@ -78,28 +78,24 @@ fn tidy(row: &mut Row) {
     (row.a, row.b, row.d) = (clean(row.a), clean(row.b), clean(row.d));
 }
 
-/// A pose that is a turn about z and a slide along it, as a row.
-pub fn along_z(rest: &Pose) -> Row {
+/// A pose that is a rotation about z and a translation along it, as a row.
+pub fn along_z(rest: &Pose) -> GeneralizedRow {
     let x = rest.rotation.x_axis();
-    Row { theta: clean_angle(x.y.atan2(x.x)), d: clean(rest.translation.z), ..fixed() }
+    GeneralizedRow { theta: clean_angle(x.y.atan2(x.x)), d: clean(rest.translation.z), ..GeneralizedRow::IDENTITY }
 }
 
-/// True where the row does nothing but turn about and slide along z.
-pub fn is_along_z(row: &Row) -> bool {
+/// True where the row is only a rotation about and a translation along z.
+pub fn is_along_z(row: &GeneralizedRow) -> bool {
     row.a == 0.0 && row.b == 0.0 && row.alpha == 0.0
 }
 
-fn fixed() -> Row {
-    Row { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 }
-}
-
 fn clean(v: f64) -> f64 {
-    if v.abs() < DUST { 0.0 } else { v }
+    if v.abs() < ROUNDING { 0.0 } else { v }
 }
 
-/// Quarter turns are written as quarter turns, half turns as +π.
+/// Near quarter turns become exact, half turns +π.
 fn clean_angle(v: f64) -> f64 {
     let quarters = (v / FRAC_PI_2).round();
-    let v = if (v - quarters * FRAC_PI_2).abs() < DUST { quarters * FRAC_PI_2 } else { v };
+    let v = if (v - quarters * FRAC_PI_2).abs() < ROUNDING { quarters * FRAC_PI_2 } else { v };
     if v == -PI { PI } else { v + 0.0 }
 }

@@ -2,23 +2,23 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::{Axis, Frame, Frames, Motion};
-use crate::forward::principal;
+use super::frame::{FrameAxis, FrameChain, JointMotion, LocalFrame};
+use crate::forward_step::principal;
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
-impl Frames {
+impl FrameChain {
     /// The frames from the root link to the link `tip`: one for the root, static and at the origin, and one for every joint,
-    /// named as the link that it carries. Where the last one had to be turned, a static frame `NAME_end` turns back.
+    /// named as the link that it carries. Where the last one had to be rotated, a static frame `NAME_end` rotates back.
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
         let name = |link: LinkId| chain.links()[link.0].clone();
-        let mut frames = vec![Frame::fixed(name(chain.root()), Vec3::ZERO)];
+        let mut frames = vec![LocalFrame::fixed(name(chain.root()), Vec3::ZERO)];
         let mut back = Rotation::IDENTITY;
         for id in chain.path(tip) {
             let joint = &chain.joints()[id.0];
-            let (turn, motion) = motion_of(joint);
-            let origin = Pose::new(back, Vec3::ZERO) * joint.origin * Pose::new(turn, Vec3::ZERO);
-            frames.push(Frame { motion, ..placed(name(joint.child), &origin) });
-            back = turn.inverse();
+            let (rotation, motion) = motion_of(joint);
+            let origin = Pose::new(back, Vec3::ZERO) * joint.origin * Pose::new(rotation, Vec3::ZERO);
+            frames.push(LocalFrame { motion, ..placed(name(joint.child), &origin) });
+            back = rotation.inverse();
         }
         if back != Rotation::IDENTITY {
             frames.push(placed(format!("{}_end", name(tip)), &Pose::new(back, Vec3::ZERO)));
@@ -27,8 +27,8 @@ impl Frames {
     }
 
     /// The serial chain of the frames. Its links are the frames; where the first one is not static at the origin, a link
-    /// `global` comes before. Joints bear the names of the motions, those of static frames are `NAME_fixed`; mimic joints
-    /// become free ones.
+    /// `global` precedes it. Joints have the names of the motions, those of static frames are `NAME_fixed`; mimic joints
+    /// become independent ones.
     ///
     /// # Errors
     /// [`ChainError::BadAxis`] where a frame is rotated about a vector without direction; else as [`Chain::new`].
@@ -36,8 +36,8 @@ impl Frames {
         let mut links = Vec::new();
         let mut joints = Vec::new();
         for frame in &self.frames {
-            let rests = frame.motion.is_none() && frame.fixed_pose() == Pose::IDENTITY;
-            if links.is_empty() && rests {
+            let is_root = frame.motion.is_none() && frame.fixed_pose() == Pose::IDENTITY;
+            if links.is_empty() && is_root {
                 links.push(frame.name.clone());
                 continue;
             }
@@ -51,29 +51,29 @@ impl Frames {
     }
 }
 
-/// The turn that brings the joint's axis onto one of the frame's, and the motion about or along that.
-fn motion_of(joint: &Joint) -> (Rotation, Option<Motion>) {
+/// The rotation that takes the joint's axis onto an axis of the frame, and the motion about or along that axis.
+fn motion_of(joint: &Joint) -> (Rotation, Option<JointMotion>) {
     if joint.kind == JointKind::Fixed {
         return (Rotation::IDENTITY, None);
     }
-    let (turn, along, reversed) = match principal(joint.axis) {
-        Some((0, sign)) => (Rotation::IDENTITY, Axis::X, sign < 0.0),
-        Some((1, sign)) => (Rotation::IDENTITY, Axis::Y, sign < 0.0),
-        Some((_, sign)) => (Rotation::IDENTITY, Axis::Z, sign < 0.0),
-        None => (Rotation::from_z(joint.axis), Axis::Z, false),
+    let (rotation, along, reversed) = match principal(joint.axis) {
+        Some((0, sign)) => (Rotation::IDENTITY, FrameAxis::X, sign < 0.0),
+        Some((1, sign)) => (Rotation::IDENTITY, FrameAxis::Y, sign < 0.0),
+        Some((_, sign)) => (Rotation::IDENTITY, FrameAxis::Z, sign < 0.0),
+        None => (Rotation::from_z(joint.axis), FrameAxis::Z, false),
     };
-    let motion = Motion { joint: joint.name.clone(), kind: joint.kind, along, reversed, limits: joint.limits };
-    (turn, Some(motion))
+    let motion = JointMotion { joint: joint.name.clone(), kind: joint.kind, along, reversed, limits: joint.limits };
+    (rotation, Some(motion))
 }
 
-fn placed(name: String, pose: &Pose) -> Frame {
-    let turn = pose.rotation.to_rotation_vector();
-    let angle = turn.length();
-    let axis = turn.try_normalize().unwrap_or(Vec3::Z);
-    Frame { axis, angle, ..Frame::fixed(name, pose.translation) }
+fn placed(name: String, pose: &Pose) -> LocalFrame {
+    let rotation_vector = pose.rotation.to_rotation_vector();
+    let angle = rotation_vector.length();
+    let axis = rotation_vector.try_normalize().unwrap_or(Vec3::Z);
+    LocalFrame { axis, angle, ..LocalFrame::fixed(name, pose.translation) }
 }
 
-fn joint_of(frame: &Frame, link: usize) -> Result<Joint, ChainError> {
+fn joint_of(frame: &LocalFrame, link: usize) -> Result<Joint, ChainError> {
     let name = frame.motion.as_ref().map_or_else(|| format!("{}_fixed", frame.name), |m| m.joint.clone());
     if frame.angle != 0.0 && frame.axis.try_normalize().is_none() {
         let [x, y, z] = frame.axis.to_array();

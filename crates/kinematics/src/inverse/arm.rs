@@ -2,58 +2,58 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::forward::principal;
+use crate::forward_step::principal;
 use crate::{Chain, JointKind, LinkId};
 
-/// A moving joint on the way to the tip.
+/// A moving joint between root and tip.
 #[derive(Debug, Clone)]
-pub struct Segment {
-    /// This joint's frame in the one before, everything fixed between them included.
+pub struct ArmJoint {
+    /// This joint's frame in the frame of the joint before, fixed joints between them included.
     pub origin: Pose,
-    pub slides: bool,
+    pub prismatic: bool,
     pub axis: Vec3,
     /// Index and sign where the axis is a coordinate axis.
     pub principal: Option<(usize, f64)>,
-    /// Which of the arm's variables drives it.
+    /// Index of the arm's variable that determines its value.
     pub variable: usize,
     pub multiplier: f64,
     pub offset: f64,
 }
 
-impl Segment {
+impl ArmJoint {
     /// Velocity of the point `tip` (m per unit of the variable) and angular velocity, in the root.
     #[inline]
     pub fn twist(&self, at: &AxisInRoot, tip: Vec3) -> (Vec3, Vec3) {
         let axis = at.axis * self.multiplier;
-        if self.slides { (axis, Vec3::ZERO) } else { (axis.cross(tip - at.origin), axis) }
+        if self.prismatic { (axis, Vec3::ZERO) } else { (axis.cross(tip - at.origin), axis) }
     }
 }
 
 /// An independent joint that moves the tip.
 #[derive(Debug, Clone)]
-pub struct Variable {
+pub struct ArmVariable {
     pub name: String,
-    /// Where it stands in the chain's `q`.
+    /// Its index in the chain's `q`.
     pub q_index: usize,
     pub lower: f64,
     pub upper: f64,
     pub turns: bool,
-    /// A full turn leaves the tip where it is.
+    /// True where a full turn leaves the tip in place.
     pub wraps: bool,
 }
 
-/// The way from the root to the tip.
+/// The joints between root and tip, and the tip.
 #[derive(Debug, Clone)]
 pub struct Arm {
-    pub segments: Vec<Segment>,
-    pub variables: Vec<Variable>,
-    /// The tip (tool included) in the last segment's frame.
+    pub joints: Vec<ArmJoint>,
+    pub variables: Vec<ArmVariable>,
+    /// The tip (tool included) in the last joint's frame.
     pub tip_in_last: Pose,
-    /// No pose of the tip is farther from the first joint's origin, m. Infinite with an endless slide.
+    /// Upper bound on the distance of the tip from the first joint's origin, m. Infinite with an unlimited slide.
     pub reach: f64,
 }
 
-/// Where a segment's axis is in the root.
+/// A joint's axis in the root.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisInRoot {
     pub origin: Vec3,
@@ -62,34 +62,34 @@ pub struct AxisInRoot {
 
 impl Arm {
     pub fn new(chain: &Chain, tip: LinkId, tip_offset: Pose) -> Self {
-        let mut arm = Self { segments: Vec::new(), variables: Vec::new(), tip_in_last: Pose::IDENTITY, reach: 0.0 };
+        let mut arm = Self { joints: Vec::new(), variables: Vec::new(), tip_in_last: Pose::IDENTITY, reach: 0.0 };
         let mut pending = Pose::IDENTITY;
         for id in chain.path(tip) {
             let joint = &chain.joints[id.0];
             pending = pending * joint.origin;
-            if let Some(drive) = chain.drives[id.0] {
-                let variable = arm.variable(chain, drive.index);
-                arm.segments.push(Segment {
+            if let Some(coupling) = chain.couplings[id.0] {
+                let variable = arm.variable(chain, coupling.index);
+                arm.joints.push(ArmJoint {
                     origin: pending,
-                    slides: joint.kind == JointKind::Prismatic,
+                    prismatic: joint.kind == JointKind::Prismatic,
                     axis: joint.axis,
                     principal: principal(joint.axis),
                     variable,
-                    multiplier: drive.multiplier,
-                    offset: drive.offset,
+                    multiplier: coupling.multiplier,
+                    offset: coupling.offset,
                 });
                 pending = Pose::IDENTITY;
             }
         }
         arm.set_tip(pending * tip_offset);
         for (i, variable) in arm.variables.iter_mut().enumerate() {
-            let whole = |s: &Segment| s.variable != i || (!s.slides && s.multiplier.fract() == 0.0);
-            variable.wraps = variable.turns && arm.segments.iter().all(whole);
+            let whole_turns = |j: &ArmJoint| j.variable != i || (!j.prismatic && j.multiplier.fract() == 0.0);
+            variable.wraps = variable.turns && arm.joints.iter().all(whole_turns);
         }
         arm
     }
 
-    /// Ends the arm at another frame of its last link.
+    /// Moves the tip to another frame of the last link.
     pub fn set_tip(&mut self, tip_in_last: Pose) {
         self.tip_in_last = tip_in_last;
         self.reach = self.reach_bound();
@@ -100,7 +100,7 @@ impl Arm {
             return known;
         }
         let joint = &chain.joints[chain.active[q_index].0];
-        self.variables.push(Variable {
+        self.variables.push(ArmVariable {
             name: joint.name.clone(),
             q_index,
             lower: joint.limits.lower,
@@ -112,54 +112,39 @@ impl Arm {
     }
 
     fn reach_bound(&self) -> f64 {
-        let stroke = |s: &Segment| {
-            let v = &self.variables[s.variable];
-            let at = |q: f64| (s.multiplier * q + s.offset).abs();
-            if s.slides { at(v.lower).max(at(v.upper)) } else { 0.0 }
+        let stroke = |j: &ArmJoint| {
+            let v = &self.variables[j.variable];
+            let at = |q: f64| (j.multiplier * q + j.offset).abs();
+            if j.prismatic { at(v.lower).max(at(v.upper)) } else { 0.0 }
         };
-        let offsets = self.segments.iter().skip(1).map(|s| s.origin.translation.length()).sum::<f64>();
-        self.segments.iter().map(stroke).sum::<f64>() + offsets + self.tip_in_last.translation.length()
+        let offsets = self.joints.iter().skip(1).map(|j| j.origin.translation.length()).sum::<f64>();
+        self.joints.iter().map(stroke).sum::<f64>() + offsets + self.tip_in_last.translation.length()
     }
 
-    /// A length that makes metres comparable with radians.
+    /// A characteristic length (m) that makes metres comparable with radians.
     pub fn scale(&self) -> f64 {
-        let offsets = self.segments.iter().skip(1).map(|s| s.origin.translation.length()).sum::<f64>()
+        let offsets = self.joints.iter().skip(1).map(|j| j.origin.translation.length()).sum::<f64>()
             + self.tip_in_last.translation.length();
         if offsets > 1e-6 { 0.5 * offsets } else { 1.0 }
     }
 
-    /// The tip in the root; `axes` (one per segment) get every axis on the way.
+    /// The tip in the root; `axes` (one per joint) receive the joint axes.
     pub fn tip_in_root(&self, x: &[f64], axes: &mut [AxisInRoot]) -> Pose {
         let mut at = Pose::IDENTITY;
-        for (segment, out) in self.segments.iter().zip(axes) {
-            at = at * segment.origin;
-            let value = segment.multiplier * x[segment.variable] + segment.offset;
-            let axis = at.rotation * segment.axis;
-            if segment.slides {
+        for (joint, out) in self.joints.iter().zip(axes) {
+            at = at * joint.origin;
+            let value = joint.multiplier * x[joint.variable] + joint.offset;
+            let axis = at.rotation * joint.axis;
+            if joint.prismatic {
                 at.translation += axis * value;
             } else {
-                at.rotation = match segment.principal {
-                    Some((axis, sign)) => at.rotation.turned_about(axis, sign * value),
-                    None => at.rotation * Rotation::from_axis_angle(segment.axis, value),
+                at.rotation = match joint.principal {
+                    Some((axis, sign)) => at.rotation.rotated_about(axis, sign * value),
+                    None => at.rotation * Rotation::from_axis_angle(joint.axis, value),
                 };
             }
             *out = AxisInRoot { origin: at.translation, axis };
         }
         at * self.tip_in_last
     }
-}
-
-/// The rotation vector, in the root, that turns `current` into `wanted`. Exact to rounding even for tiny turns.
-pub fn turn_between(current: Rotation, wanted: Rotation) -> Vec3 {
-    let (mut sine, mut trace) = (Vec3::ZERO, 0.0);
-    for i in 0..3 {
-        sine += current.axis(i).cross(wanted.axis(i)) * 0.5;
-        trace += current.axis(i).dot(wanted.axis(i));
-    }
-    let cosine = 0.5 * (trace - 1.0);
-    let length = sine.length();
-    if cosine < -0.99 {
-        return (wanted * current.inverse()).to_rotation_vector();
-    }
-    if length < 1e-9 { sine } else { sine * (length.atan2(cosine) / length) }
 }

@@ -1,4 +1,4 @@
-//! Starting points that fill the joint space evenly and never change.
+//! Starting points of searches: a low-discrepancy sequence over the joint ranges, the same each time.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ pub fn quasirandom(index: usize, axis: usize, dimensions: usize) -> f64 {
     element(index, axis_step(axis, dimensions))
 }
 
-/// How far the component goes with every index: to be kept where many points are wanted.
+/// Increment of the component per index, for repeated use.
 pub fn axis_step(axis: usize, dimensions: usize) -> f64 {
     let mut phi: f64 = 2.0;
     for _ in 0..30 {
@@ -17,25 +17,25 @@ pub fn axis_step(axis: usize, dimensions: usize) -> f64 {
     phi.powf(-(axis as f64 + 1.0))
 }
 
-/// [`quasirandom`] by the axis' step.
+/// [`quasirandom`] by the increment of the axis.
 pub fn element(index: usize, step: f64) -> f64 {
     (0.5 + step * (index + 1) as f64).fract()
 }
 
-/// The part of a joint's range worth starting from: a full turn suffices for an angle, and a slide without end is searched
-/// over the reach of the rest of the arm.
+/// The part of a joint's range that starting points are taken from: a full turn of an angle, and the reach of the rest of the arm
+/// for an unlimited slide.
 pub fn window(lower: f64, upper: f64, turns: bool, reach: f64) -> (f64, f64) {
     let half = if turns { PI } else { reach.max(1.0) };
     if upper - lower <= 2.0 * half {
         return (lower, upper);
     }
-    // Not `clamp`: bounds may be infinite, and they are in order because the range is wider than the window.
+    // Not `clamp`: bounds may be infinite. They are in order because the range is wider than the window.
     let center = 0.0_f64.max(lower + half).min(upper - half);
     (center - half, center + half)
 }
 
-/// Fills `q` with state `index` of a sequence spread over the chain's joint ranges (a turn, or ±1 m, where endless).
-pub fn spread_state(chain: &crate::Chain, index: usize, q: &mut [f64]) {
+/// Fills `q` with configuration `index` of a sequence over the chain's joint ranges (a turn, or ±1 m, where unlimited).
+pub fn sample_configuration(chain: &crate::Chain, index: usize, q: &mut [f64]) {
     for (i, id) in chain.active.iter().enumerate() {
         let joint = &chain.joints[id.0];
         let (lo, hi) = window(joint.limits.lower, joint.limits.upper, joint.kind.turns(), 1.0);

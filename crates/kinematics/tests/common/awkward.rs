@@ -1,4 +1,4 @@
-//! Chains that are hard on tables: parallel, meeting and coincident axes, quarter and half turns, and nearly all that.
+//! Chains that are hard for tables: parallel, intersecting and coincident axes, quarter and half turns, and nearly so.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -2,17 +2,17 @@
 
 use std::time::Instant;
 
-use elbowroom_kinematics::inverse::{IkError, Method, Options, Solver};
+use elbowroom_kinematics::inverse::{IkError, IkMethod, IkOptions, IkSolver};
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 
 use super::Random;
 
 pub struct Line {
-    pub method: Method,
+    pub method: IkMethod,
     pub axes: usize,
     pub success: f64,
-    /// Of the answers, those that needed the numeric method or another start.
+    /// Share of the solutions that needed the numeric method or another start.
     pub retried: f64,
     pub median_us: f64,
     pub p99_us: f64,
@@ -41,7 +41,7 @@ impl Line {
 /// Targets are poses of random states within the limits, seeds other random states.
 pub fn measure(chain: &Chain, targets: usize) -> Line {
     let tip = chain.tip();
-    let mut solver = Solver::new(chain, tip, Pose::IDENTITY, Options::default());
+    let mut solver = IkSolver::new(chain, tip, Pose::IDENTITY, IkOptions::default());
     let mut state = ChainState::new(chain);
     let mut random = Random(7);
     let mut seed = vec![0.0; chain.dof()];
@@ -57,12 +57,12 @@ pub fn measure(chain: &Chain, targets: usize) -> Line {
         times.push(start.elapsed().as_secs_f64() * 1e6);
         let solution = match answer {
             Ok(solution) => solution,
-            Err(IkError::BadInput(why)) => panic!("{why}"),
+            Err(e @ (IkError::SeedLength | IkError::SeedNotFinite | IkError::TargetNotFinite)) => panic!("{e}"),
             Err(_) => continue,
         };
         found += 1;
         retried += usize::from(solution.restarts > 0);
-        // Judged by the chain's own forward kinematics and limits, not by what the solver says.
+        // Checked by the chain's own forward kinematics and limits.
         state.q.copy_from_slice(&solution.q);
         chain.forward(&mut state);
         let reached = state.link_in_root(tip);

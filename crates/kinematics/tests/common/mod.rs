@@ -1,4 +1,4 @@
-//! A URDF reader just good enough for the tests of this room (the product's own lives in another one).
+//! A minimal URDF reader for the tests of this crate; the complete one is in the `formats` crate, which depends on this one.
 #![allow(dead_code, missing_docs, clippy::missing_panics_doc, clippy::print_stdout)]
 
 pub mod awkward;
@@ -22,12 +22,18 @@ pub fn data() -> Option<PathBuf> {
 
 /// Every robot of `urdf` and `cell`, by name.
 pub fn robots() -> Vec<(String, PathBuf)> {
-    let Some(data) = data() else { return Vec::new() };
+    let Some(data) = data() else {
+        return Vec::new();
+    };
     let mut found = Vec::new();
     for folder in ["urdf", "cell"] {
-        let Ok(entries) = std::fs::read_dir(data.join(folder)) else { continue };
+        let Ok(entries) = std::fs::read_dir(data.join(folder)) else {
+            continue;
+        };
         for entry in entries.flatten() {
-            let Ok(files) = std::fs::read_dir(entry.path()) else { continue };
+            let Ok(files) = std::fs::read_dir(entry.path()) else {
+                continue;
+            };
             for file in files.flatten().map(|f| f.path()) {
                 let name = file.file_name().unwrap().to_string_lossy().into_owned();
                 if let Some(stem) = name.strip_suffix(".urdf")
@@ -95,6 +101,26 @@ pub fn load(path: &Path) -> Chain {
     Chain::new(root.attribute("name").unwrap_or("robot"), links, joints).unwrap()
 }
 
+/// A serial chain of joints (kind, origin, axis, limits).
+pub fn serial(joints: &[(JointKind, Pose, Vec3, Limits)]) -> Chain {
+    let joints: Vec<Joint> = joints
+        .iter()
+        .enumerate()
+        .map(|(i, &(kind, origin, axis, limits))| Joint {
+            name: format!("j{i}"),
+            kind,
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin,
+            axis,
+            limits,
+            mimic: None,
+        })
+        .collect();
+    let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
+    Chain::new("serial", links, joints).unwrap()
+}
+
 /// A small reproducible generator (`SplitMix64`).
 pub struct Random(pub u64);
 
@@ -128,12 +154,12 @@ impl Random {
         Pose::new(elbowroom_spatial::Rotation::from_rotation_vector(turn), self.vector())
     }
 
-    /// A state within the limits; endless joints within a turn or a metre.
+    /// A configuration within the limits; unlimited joints within eight turns or metres.
     pub fn state(&mut self, chain: &Chain, q: &mut [f64]) {
         for (value, id) in q.iter_mut().zip(chain.active_joints()) {
             let joint = &chain.joints()[id.0];
-            let endless = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
-            *value = self.range(joint.limits.lower.max(-endless * 8.0), joint.limits.upper.min(endless * 8.0));
+            let unlimited = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
+            *value = self.range(joint.limits.lower.max(-unlimited * 8.0), joint.limits.upper.min(unlimited * 8.0));
         }
     }
 }

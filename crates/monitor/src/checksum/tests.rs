@@ -6,7 +6,7 @@ use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mim
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::{Configuration, Guards, Kind, Laws, Life, Part, Region, SlotId, SourceId, Stopping, Volume};
+use crate::{Configuration, Guards, Laws, Life, Part, Region, RegionKind, SlotId, SourceId, Stopping, Volume};
 
 type Change = fn(&mut Configuration);
 
@@ -34,7 +34,7 @@ fn configuration() -> Configuration {
         follow: Some(SourceId(0)),
         output: Some(1),
         warning_output: Some(2),
-        ..Region::sphere("r", Vec3::X, 0.2).warning(0.3).kind(Kind::Monitored { slow_to: Some(0.5) })
+        ..Region::sphere("r", Vec3::X, 0.2).warning(0.3).kind(RegionKind::Monitored { slow_to: Some(0.5) })
     };
     let stopping = Stopping {
         reaction_s: 0.01,
@@ -76,11 +76,11 @@ fn top() -> Vec<Named> {
         ("robot", |c| c.robot.push('x')),
         ("base moved", |c| c.base_in_world = moved()),
         ("base turned", |c| c.base_in_world = turned()),
-        ("volume gone", |c| _ = c.volumes.pop()),
+        ("volume removed", |c| _ = c.volumes.pop()),
         ("volumes in another order", |c| c.volumes.reverse()),
-        ("region gone", |c| _ = c.regions.pop()),
+        ("region removed", |c| _ = c.regions.pop()),
         ("regions in another order", |c| c.regions.reverse()),
-        ("source gone", |c| _ = c.sources.pop()),
+        ("source removed", |c| _ = c.sources.pop()),
         ("source renamed", |c| c.sources[1].name.push('x')),
         ("source speed", |c| c.sources[1].limits.speed_m_s += 1e-9),
         ("source turn", |c| c.sources[1].limits.turn_rad_s += 1e-9),
@@ -119,7 +119,7 @@ fn of_chain() -> Vec<Named> {
         ("velocity", |c| joint(c, 1, |j| j.limits.velocity = Some(1.0 + 1e-9))),
         ("velocity unknown", |c| joint(c, 1, |j| j.limits.velocity = None)),
         ("velocity 0", |c| joint(c, 1, |j| j.limits.velocity = Some(0.0))),
-        ("mimic gone", |c| joint(c, 2, |j| j.mimic = None)),
+        ("mimic removed", |c| joint(c, 2, |j| j.mimic = None)),
         ("mimic of another", |c| joint(c, 2, |j| j.mimic = j.mimic.map(|m| Mimic { joint: JointId(1), ..m }))),
         ("mimic multiplier", |c| joint(c, 2, |j| j.mimic = j.mimic.map(|m| Mimic { multiplier: 2.1, ..m }))),
         ("mimic offset", |c| joint(c, 2, |j| j.mimic = j.mimic.map(|m| Mimic { offset: 0.6, ..m }))),
@@ -161,12 +161,12 @@ fn of_region() -> Vec<Named> {
         ("region moved", |c| c.regions[0].anchor = moved()),
         ("region turned", |c| c.regions[0].anchor = Pose::new(turned().rotation, c.regions[0].anchor.translation)),
         ("shape moved", |c| c.regions[0].shape_in_anchor = moved()),
-        ("forbidden", |c| c.regions[0].kind = Kind::Forbidden),
-        ("slow_to", |c| c.regions[0].kind = Kind::Monitored { slow_to: Some(0.6) }),
-        ("slow_to 0", |c| c.regions[0].kind = Kind::Monitored { slow_to: Some(0.0) }),
-        ("not slowed", |c| c.regions[0].kind = Kind::Monitored { slow_to: None }),
-        ("exchange", |c| c.regions[0].kind = Kind::Exchange { slot: SlotId(0) }),
-        ("another slot", |c| c.regions[0].kind = Kind::Exchange { slot: SlotId(1) }),
+        ("forbidden", |c| c.regions[0].kind = RegionKind::Forbidden),
+        ("slow_to", |c| c.regions[0].kind = RegionKind::Monitored { slow_to: Some(0.6) }),
+        ("slow_to 0", |c| c.regions[0].kind = RegionKind::Monitored { slow_to: Some(0.0) }),
+        ("not slowed", |c| c.regions[0].kind = RegionKind::Monitored { slow_to: None }),
+        ("exchange", |c| c.regions[0].kind = RegionKind::Exchange { slot: SlotId(0) }),
+        ("another slot", |c| c.regions[0].kind = RegionKind::Exchange { slot: SlotId(1) }),
         ("life", |c| c.regions[0].life = Life::Temporary),
         ("warning", |c| c.regions[0].warning_m += 1e-9),
         ("guards tcp", |c| c.regions[0].guards.tcp ^= true),
@@ -238,11 +238,11 @@ fn a_change_of_any_field_changes_the_checksum() {
     let changes = [top(), of_chain(), of_volume(), of_region(), of_laws(), of_shapes()].concat();
     let base = configuration().checksum();
     assert_eq!(base, configuration().checksum());
-    let mut seen = HashMap::from([(base, "no change")]);
+    let mut by_checksum = HashMap::from([(base, "no change")]);
     for (name, change) in changes {
         let mut changed = configuration();
         change(&mut changed);
-        if let Some(other) = seen.insert(changed.checksum(), name) {
+        if let Some(other) = by_checksum.insert(changed.checksum(), name) {
             panic!("`{name}` has the checksum of `{other}`");
         }
     }

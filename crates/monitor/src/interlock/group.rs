@@ -1,33 +1,33 @@
-//! Which exchange regions share a slot.
+//! Grouping of the exchange regions that share a slot.
 
 use elbowroom_proximity::within;
 
 use crate::Region;
 
-/// Groups exchange regions whose warning zones overlap, or that move: a group is one slot, granted as a whole, so that
-/// two robots can never each hold what the other needs next. Returns the group's number for each region.
+/// Groups exchange regions whose warning zones overlap, and all dynamic ones. A group is one slot, granted as a whole, so that
+/// two robots never each hold what the other needs next. Returns the number of the group of each region.
 pub fn group_overlapping(regions: &[&Region]) -> Vec<usize> {
     let mut group: Vec<usize> = (0..regions.len()).collect();
     for i in 0..regions.len() {
         for j in 0..i {
-            if zones_meet(regions[i], regions[j]) {
+            if zones_overlap(regions[i], regions[j]) {
                 let (keep, drop) = (group[j].min(group[i]), group[j].max(group[i]));
                 group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
             }
         }
     }
-    let mut names: Vec<usize> = group.clone();
-    names.sort_unstable();
-    names.dedup();
-    group.iter().map(|g| names.partition_point(|n| n < g)).collect()
+    let mut numbers: Vec<usize> = group.clone();
+    numbers.sort_unstable();
+    numbers.dedup();
+    group.iter().map(|g| numbers.partition_point(|n| n < g)).collect()
 }
 
-fn zones_meet(a: &Region, b: &Region) -> bool {
+fn zones_overlap(a: &Region, b: &Region) -> bool {
     if a.follow.is_some() || b.follow.is_some() {
         return true;
     }
-    let at = |r: &Region| r.anchor * r.shape_in_anchor;
-    within(&a.shape, &at(a), &b.shape, &at(b), a.warning_m + b.warning_m)
+    let in_world = |r: &Region| r.anchor * r.shape_in_anchor;
+    within(&a.shape, &in_world(a), &b.shape, &in_world(b), a.warning_m + b.warning_m)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! How far a volume goes is bounded for every program within the stated accelerations: programs that use them up, at random.
+//! The travel bound compared with random programs that use the stated accelerations fully.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::{Course, StoppingLaw, TickState};
+use super::{StopPhases, StoppingInput, StoppingLaw};
 use crate::{Configuration, ConfigurationParts, Laws, Part, Stopping, Volume};
 
 struct Random(u64);
@@ -19,12 +19,12 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    fn list(&mut self, n: usize, most: f64) -> Vec<f64> {
-        (0..n).map(|_| self.between(-most, most)).collect()
+    fn list(&mut self, n: usize, largest: f64) -> Vec<f64> {
+        (0..n).map(|_| self.between(-largest, largest)).collect()
     }
 }
 
-/// A chain of `kinds`, with axes across each other or all along z, and a ball at its end.
+/// A chain of `kinds`, with perpendicular axes or all axes along z, and a sphere at its end.
 fn configuration(kinds: &[JointKind], flat: bool, stopping: Stopping) -> Configuration {
     let joint = |(i, kind): (usize, &JointKind)| Joint {
         name: format!("j{i}"),
@@ -39,7 +39,7 @@ fn configuration(kinds: &[JointKind], flat: bool, stopping: Stopping) -> Configu
     let links = (0..=kinds.len()).map(|i| format!("l{i}")).collect();
     let chain = Chain::new("arm", links, kinds.iter().enumerate().map(joint).collect()).unwrap();
     let volume = Volume {
-        name: "ball".into(),
+        name: "sphere".into(),
         link: LinkId(kinds.len()),
         part: Part::Arm,
         shape: Shape::Sphere(Sphere { radius: 0.01 }),
@@ -64,10 +64,10 @@ fn center(chain: &Chain, q: &[f64]) -> Vec3 {
     state.link_in_root(LinkId(chain.links().len() - 1)).transform_point(Vec3::X * 0.5)
 }
 
-/// The largest and the average share of the bound that programs came to.
-fn shares(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
+/// The largest and the mean travel of the programs, as fractions of the bound.
+fn fractions(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
     let (n, rounds) = (kinds.len(), 1500);
-    let (mut most, mut sum) = (0.0_f64, 0.0);
+    let (mut largest, mut sum) = (0.0_f64, 0.0);
     for _ in 0..rounds {
         let acceleration: Vec<f64> = (0..n).map(|_| r.between(0.5, 12.0)).collect();
         let stopping = Stopping {
@@ -86,8 +86,7 @@ fn shares(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
         let in_world = [state.link_in_root(LinkId(n)) * config.volumes[0].in_link];
         law.begin(
             &config,
-            &stopping,
-            &TickState {
+            &StoppingInput {
                 now: &state,
                 intent: &state,
                 program_is_known: true,
@@ -95,51 +94,57 @@ fn shares(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
                 stamp_s: 0.0,
                 programmed_override: 1.0,
                 uncertain_s: 0.0,
-                unnoticed_s: 0.0,
+                unchanged_s: 0.0,
                 volume_in_world: &in_world,
             },
         );
-        // Toward the first axis, where turning alone brings the ball, or anywhere.
+        // Towards the first axis, which rotation alone reaches, or in a random direction.
         let at = in_world[0].translation;
-        let anywhere = Vec3::new(r.between(-1.0, 1.0), r.between(-1.0, 1.0), r.between(-1.0, 1.0));
-        let towards = if r.unit() < 0.5 { Vec3::new(-at.x, -at.y, 0.0) } else { anywhere };
+        let random_direction = Vec3::new(r.between(-1.0, 1.0), r.between(-1.0, 1.0), r.between(-1.0, 1.0));
+        let towards = if r.unit() < 0.5 { Vec3::new(-at.x, -at.y, 0.0) } else { random_direction };
         let Some(towards) = towards.try_normalize() else { continue };
         let motion = state.link_motion(LinkId(n));
         let offset = at - state.link_in_root(LinkId(n)).translation;
         let speed = motion.velocity_at(offset).dot(towards);
-        let approach = law.approach(&stopping, 0, towards, [speed, speed]);
+        let approach = law.approach(0, towards, speed, speed);
         let u = r.between(0.01, 0.3);
-        let course = Course { run: u, stop: 0.0, total: u };
-        let bound = law.travel(&stopping, 0, &approach, &course, &law.program);
-        // The program speeds every joint up, or down, as hard as it may; mostly the way it goes.
+        let phases = StopPhases { run: u, stop: 0.0, total: u };
+        let bound = law.travel(0, &approach, &phases, &law.program);
+        // Every joint accelerates or decelerates at its limit, mostly in the direction of its motion.
         let then: Vec<f64> = (0..n)
             .map(|j| {
                 let push = if r.unit() < 0.7 { qd[j].signum() } else { r.between(-1.0, 1.0) };
                 q[j] + qd[j] * u + push * acceleration[j] * u * u / 2.0
             })
             .collect();
-        let went = (center(&config.chain, &then) - at).dot(towards);
-        assert!(went <= bound + 1e-12, "went {went}, bound {bound}, u {u}, q {q:?}, qd {qd:?}, A {acceleration:?}");
+        let travelled = (center(&config.chain, &then) - at).dot(towards);
+        assert!(
+            travelled <= bound + 1e-12,
+            "travelled {travelled}, bound {bound}, u {u}, q {q:?}, qd {qd:?}, A {acceleration:?}"
+        );
         if bound > 1e-3 {
-            most = most.max(went / bound);
-            sum += went.max(0.0) / bound;
+            largest = largest.max(travelled / bound);
+            sum += travelled.max(0.0) / bound;
         }
     }
-    (most, sum / f64::from(rounds))
+    (largest, sum / f64::from(rounds))
 }
 
 #[test]
-fn no_program_goes_farther_than_the_bound() {
+fn no_program_travels_farther_than_the_bound() {
     use JointKind::{Prismatic, Revolute};
     let mut r = Random(13);
     for kinds in
         [&[Revolute][..], &[Revolute; 2], &[Prismatic, Revolute], &[Revolute, Prismatic, Revolute], &[Revolute; 6]]
     {
         for flat in [true, false] {
-            let (most, mean) = shares(kinds, flat, &mut r);
-            eprintln!("{} joints, flat {flat}: at most {most:.3} of the bound, {mean:.3} on average", kinds.len());
-            // The bound is one that is nearly reached by some, or the test would prove little.
-            assert!(kinds.len() > 2 || most > 0.9, "{most}");
+            let (largest, mean) = fractions(kinds, flat, &mut r);
+            eprintln!(
+                "{} joints, flat {flat}: at largest {largest:.3} of the bound, {mean:.3} on average",
+                kinds.len()
+            );
+            // Some programs must nearly reach the bound, or the test proves little.
+            assert!(kinds.len() > 2 || largest > 0.9, "{largest}");
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Robots and random numbers for the monitor's tests.
-#![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(dead_code, reason = "each test file uses a part of it")]
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Region, Volume};
@@ -20,7 +20,7 @@ pub fn joint(name: &str, kind: JointKind, parent: usize, origin: Vec3, axis: Vec
     }
 }
 
-/// Three slides and a ball wrist: every pose of the last link is a joint vector.
+/// Three prismatic joints and a spherical wrist: every pose of the last link is a joint vector.
 pub fn gantry() -> Chain {
     let kinds = [JointKind::Prismatic; 3].into_iter().chain([JointKind::Revolute; 3]);
     let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::Z, Vec3::Y, Vec3::X];
@@ -83,7 +83,7 @@ pub fn parts(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> Config
     }
 }
 
-/// xorshift64*: reproducible on every machine.
+/// xorshift64*: the same sequence on every machine.
 pub struct Random(pub u64);
 
 impl Random {

@@ -1,8 +1,9 @@
-//! Robots and cells with more joints and other kinds of them.
+//! Robots with more joints and other kinds of them, among obstacles.
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Shape};
-use elbowroom_scene::{Body, Checker, Object, Options, Robot, Scene, SceneState, Selection, example};
+use elbowroom_robot::{Collider, Robot, RobotId, example};
+use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
 
 pub struct Random(pub u64);
@@ -13,28 +14,28 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Joint values at which the robot touches nothing.
-    pub fn free(&mut self, scene: &Scene, robot: usize) -> Option<Vec<f64>> {
-        let chain = &scene.robots()[robot].robot.chain;
-        let mut checker = Checker::new(scene, Options::default());
+    /// Joint values at which the robot is free.
+    pub fn free(&mut self, scene: &Scene, robot: RobotId) -> Option<Vec<f64>> {
+        let chain = &scene.robots()[robot.0].robot.chain;
+        let mut checker = Checker::new(scene, CheckerOptions::default());
         (0..500).find_map(|_| {
             let each = chain.lower().into_iter().zip(chain.upper());
             let q: Vec<f64> = each.map(|(l, u)| l.max(-3.0) + (u.min(3.0) - l.max(-3.0)) * self.unit()).collect();
-            let state = standing(scene, robot, &q);
+            let state = state_at(scene, robot, &q);
             checker.between(Selection::Robot(robot), Selection::All).within(&state, 1e-3).is_none().then_some(q)
         })
     }
 }
 
-/// One robot somewhere, all others at zero.
-pub fn standing(scene: &Scene, robot: usize, q: &[f64]) -> SceneState {
+/// One robot at a configuration, all others at zero.
+pub fn state_at(scene: &Scene, robot: RobotId, q: &[f64]) -> SceneState {
     let mut state = SceneState::new(scene);
     state.set_q(scene, robot, q).unwrap();
     state
 }
 
-pub fn within_limits(scene: &Scene, robot: usize, q: &[f64]) -> bool {
-    let chain = &scene.robots()[robot].robot.chain;
+pub fn within_limits(scene: &Scene, robot: RobotId, q: &[f64]) -> bool {
+    let chain = &scene.robots()[robot.0].robot.chain;
     q.iter().zip(chain.lower().iter().zip(chain.upper())).all(|(q, (l, u))| *q >= l - 1e-12 && *q <= u + 1e-12)
 }
 
@@ -67,20 +68,28 @@ fn serial(joints: &[(JointKind, Vec3, f64, f64)], length: f64, mimic: Option<(us
     let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
     let joints = joints.iter().enumerate().map(joint).collect();
     let mut robot = Robot::new(Chain::new("serial", links, joints).unwrap());
-    for bodies in robot.bodies.iter_mut().skip(1) {
+    for bodies in robot.colliders.iter_mut().skip(1) {
         let shape = Shape::Capsule(Capsule { half_length: 0.4 * length, radius: 0.03 });
-        bodies.push(Body { name: String::new(), shape, in_link: Pose::from_translation(Vec3::Z * 0.5 * length) });
+        bodies.push(Collider { name: String::new(), shape, in_link: Pose::from_translation(Vec3::Z * 0.5 * length) });
     }
     robot
 }
 
-/// Seven joints, one of them endless, in front of shelves.
+/// Seven joints, one of them continuous, in front of shelves.
 pub fn cabinet() -> Scene {
-    let turn = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
-    let endless = (JointKind::Continuous, Vec3::Z, 0.0, 0.0);
+    let revolute = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
+    let continuous = (JointKind::Continuous, Vec3::Z, 0.0, 0.0);
     let (y, z) = (Vec3::Y, Vec3::Z);
     let robot = serial(
-        &[endless, turn(y, 2.0), turn(z, 2.9), turn(y, 2.2), turn(z, 2.9), turn(y, 2.2), turn(z, 2.9)],
+        &[
+            continuous,
+            revolute(y, 2.0),
+            revolute(z, 2.9),
+            revolute(y, 2.2),
+            revolute(z, 2.9),
+            revolute(y, 2.2),
+            revolute(z, 2.9),
+        ],
         0.17,
         None,
     );
@@ -91,17 +100,17 @@ pub fn cabinet() -> Scene {
     scene(robot, boards.into_iter().chain(sides).chain([post, floor]).collect())
 }
 
-/// Two slides, an endless turn, an arm whose last joint follows the one before.
+/// Two prismatic joints, a continuous one, an arm whose last joint mimics the one before.
 pub fn crane() -> Scene {
-    let slide = |axis, low, high| (JointKind::Prismatic, axis, low, high);
-    let turn = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
+    let prismatic = |axis, low, high| (JointKind::Prismatic, axis, low, high);
+    let revolute = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
     let mimic = Mimic { joint: JointId(3), multiplier: -0.5, offset: 0.1 };
     let joints = [
-        slide(Vec3::X, -1.0, 1.0),
-        slide(Vec3::Y, -0.8, 0.8),
+        prismatic(Vec3::X, -1.0, 1.0),
+        prismatic(Vec3::Y, -0.8, 0.8),
         (JointKind::Continuous, Vec3::Z, 0.0, 0.0),
-        turn(Vec3::Y, 2.4),
-        turn(Vec3::Y, 2.4),
+        revolute(Vec3::Y, 2.4),
+        revolute(Vec3::Y, 2.4),
     ];
     let robot = serial(&joints, 0.3, Some((4, mimic)));
     let posts = [(-0.5, 0.1), (0.4, -0.4), (0.3, 0.5), (0.0, -0.1)];
@@ -109,7 +118,8 @@ pub fn crane() -> Scene {
     scene(robot, posts.to_vec())
 }
 
-/// The example's arm, cut off from the other side: a wall on both sides of the waist, and above the shoulder.
+/// The example's arm, separated from the other half of its workspace by walls on both sides of the waist and above the
+/// shoulder.
 pub fn halved() -> Scene {
     let walls = [
         cuboid("right", [0.65, 0.0, 1.0], [0.55, 0.005, 1.0]),

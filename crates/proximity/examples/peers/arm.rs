@@ -1,4 +1,4 @@
-//! Two arms of seven links, and where they stand.
+//! Two arms of seven links, and their poses.
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -10,7 +10,7 @@ use crate::random::Random;
 use crate::surfaces::Tube;
 
 pub const LINKS: usize = 7;
-/// Metres between the bases, as the files call them.
+/// Metres between the bases, as in the file names.
 pub const DISTANCES: [&str; 5] = ["0.6", "1.0", "1.4", "1.8", "2.2"];
 const STATES: usize = 5000;
 const HARD: usize = 2000;
@@ -57,7 +57,7 @@ fn link_mesh(link: usize, random: &mut Random) -> Outcome<TriMesh> {
     let [rings, sectors] = GRID[link];
     let (step, from, to) = (Vec3::from(STEPS[link]), RADII[link], RADII[link + 1]);
     let direction = step.try_normalize().unwrap_or(Vec3::Z);
-    // The ends lie beyond the joints, so that neighbours overlap as castings do.
+    // The ends extend beyond the joints, so that neighbours overlap as castings do.
     let axis = |s: f64| {
         let bend = Vec3::X * (0.25 * from * (PI * s).sin());
         step * s + bend + direction * ((s - 1.0) * from * 0.8 + s * to * 0.8)

@@ -1,11 +1,11 @@
-//! Every question on every set, ready to be asked by number.
+//! Every query on every set of poses, addressed by number.
 
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
 
-use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Hint, Scratch, collide, distance, distance_at, within};
+use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation, mesh_separation_with, triangles_within};
+use elbowroom_proximity::{DistanceSettings, TriMesh, WarmStart, Workspace};
 
 use crate::arm::{DISTANCES, LINKS};
 use crate::files::{Outcome, Poses, read_mesh, read_meta, read_poses};
@@ -15,7 +15,7 @@ use crate::robots::Arms;
 const LIB: &str = "elbowroom";
 const ROBOT_TOLERANCE: f64 = 0.05;
 
-/// One question on the poses of one set.
+/// One query on the poses of one set.
 pub struct Cell {
     pub lib: String,
     pub set: String,
@@ -24,17 +24,17 @@ pub struct Cell {
     /// Largest extent of a mesh, metres.
     pub size: f64,
     pub tolerance: f64,
-    pub ask: Box<dyn Ask>,
+    pub query_records: Box<dyn Query>,
 }
 
-/// The answer for a record: 0 or 1, or metres. The loop lies within, so that a call through a table is paid per round.
-pub trait Ask {
+/// The answer for a record: 0 or 1, or metres. The loop is inside, so that the dynamic call is paid once per round.
+pub trait Query {
     fn answer(&mut self, record: usize) -> f64;
-    /// Asks for the first `records`, `passes` times over; gives the sum of the answers.
+    /// Queries the first `records`, `passes` times; returns the sum of the answers.
     fn pass(&mut self, records: usize, passes: usize) -> f64;
 }
 
-impl<F: FnMut(usize) -> f64> Ask for F {
+impl<F: FnMut(usize) -> f64> Query for F {
     fn answer(&mut self, record: usize) -> f64 {
         self(record)
     }
@@ -59,7 +59,7 @@ pub fn all(data: &Path, extra: &Path) -> Outcome<Vec<Cell>> {
         }
         let [size, tolerance] = read_meta(&data.join(format!("{tag}.meta")))?;
         let mesh = |side| Ok::<_, String>(Rc::new(read_mesh(&data.join(format!("{tag}_{side}.stl")))?));
-        let pair = Pair { a: mesh("A")?, b: mesh("B")?, size, tolerance };
+        let pair = MeshPair { a: mesh("A")?, b: mesh("B")?, size, tolerance };
         for band in ["touch", "near", "far", "random", "near_path", "far_path"] {
             let set = format!("{tag}_{band}");
             let folder = if matches!(band, "touch" | "near" | "far") { data } else { extra };
@@ -73,22 +73,22 @@ pub fn all(data: &Path, extra: &Path) -> Outcome<Vec<Cell>> {
     Ok(cells)
 }
 
-struct Pair {
+struct MeshPair {
     a: Rc<TriMesh>,
     b: Rc<TriMesh>,
     size: f64,
     tolerance: f64,
 }
 
-impl Pair {
+impl MeshPair {
     fn add(&self, set: &str, poses: Poses, cells: &mut Vec<Cell>) {
         let poses = Rc::new(poses);
-        let mut add = |lib: &str, query, ask| {
+        let mut add = |lib: &str, query, query_records| {
             let (lib, set, records) = (lib.to_owned(), set.to_owned(), poses.len());
-            cells.push(Cell { lib, set, query, records, size: self.size, tolerance: self.tolerance, ask });
+            cells.push(Cell { lib, set, query, records, size: self.size, tolerance: self.tolerance, query_records });
         };
         if !set.ends_with("_path") {
-            add(LIB, "collide", self.collide(&poses));
+            add(LIB, "collide", self.colliding_triangles(&poses));
             add(LIB, "tolerance", self.within(&poses));
         }
         add(LIB, "distance", self.distance(&poses));
@@ -97,42 +97,42 @@ impl Pair {
         }
     }
 
-    fn collide(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
-        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+    fn colliding_triangles(&self, poses: &Rc<Poses>) -> Box<dyn Query> {
+        let (a, b, poses, mut workspace) = (self.a.clone(), self.b.clone(), poses.clone(), Workspace::new());
         Box::new(move |i| {
             let p = poses.record(i);
-            f64::from(u8::from(collide(&a, &p[0], &b, &p[1], &mut scratch).is_some()))
+            f64::from(u8::from(colliding_triangles(&a, &p[0], &b, &p[1], &mut workspace).is_some()))
         })
     }
 
-    fn within(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
-        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+    fn within(&self, poses: &Rc<Poses>) -> Box<dyn Query> {
+        let (a, b, poses, mut workspace) = (self.a.clone(), self.b.clone(), poses.clone(), Workspace::new());
         let tolerance = self.tolerance;
         Box::new(move |i| {
             let p = poses.record(i);
-            f64::from(u8::from(within(&a, &p[0], &b, &p[1], tolerance, &mut scratch).is_some()))
+            f64::from(u8::from(triangles_within(&a, &p[0], &b, &p[1], tolerance, &mut workspace).is_some()))
         })
     }
 
-    fn distance(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
-        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
+    fn distance(&self, poses: &Rc<Poses>) -> Box<dyn Query> {
+        let (a, b, poses, mut workspace) = (self.a.clone(), self.b.clone(), poses.clone(), Workspace::new());
         Box::new(move |i| {
             let p = poses.record(i);
-            distance(&a, &p[0], &b, &p[1], &mut scratch).distance
+            mesh_separation(&a, &p[0], &b, &p[1], &mut workspace).distance
         })
     }
 
-    /// The hint of a step helps the next; a path begins without.
-    fn warm(&self, poses: &Rc<Poses>) -> Box<dyn Ask> {
-        let (a, b, poses, mut scratch) = (self.a.clone(), self.b.clone(), poses.clone(), Scratch::new());
-        let mut hint: Option<Hint> = None;
+    /// Every step warm-starts the next; a path begins with a cold start.
+    fn warm(&self, poses: &Rc<Poses>) -> Box<dyn Query> {
+        let (a, b, poses, mut workspace) = (self.a.clone(), self.b.clone(), poses.clone(), Workspace::new());
+        let mut warm_start = WarmStart::default();
         Box::new(move |i| {
             let p = poses.record(i);
             if i % STEPS == 0 {
-                hint = None;
+                warm_start = WarmStart::default();
             }
-            let near = distance_at(&a, &p[0], &b, &p[1], f64::INFINITY, hint, &mut scratch);
-            hint = near.map(|near| near.hint);
+            let settings = DistanceSettings { warm_start: Some(&mut warm_start), ..DistanceSettings::default() };
+            let near = mesh_separation_with(&a, &p[0], &b, &p[1], settings, &mut workspace);
             // Without a limit there is always an answer; a NaN would be counted as a disagreement.
             near.map_or(f64::NAN, |near| near.distance)
         })
@@ -156,9 +156,9 @@ fn add_arms(data: &Path, cells: &mut Vec<Cell>) -> Outcome<()> {
         if poses.bodies != 2 * LINKS {
             return Err(format!("{}: {} bodies a record, not {}", file.display(), poses.bodies, 2 * LINKS));
         }
-        let mut add = |query, ask| {
+        let mut add = |query, query_records| {
             let (lib, set, records) = (LIB.to_owned(), format!("robots_{name}"), poses.len());
-            cells.push(Cell { lib, set, query, records, size, tolerance: ROBOT_TOLERANCE, ask });
+            cells.push(Cell { lib, set, query, records, size, tolerance: ROBOT_TOLERANCE, query_records });
         };
         let (shared, p) = (arms.clone(), poses.clone());
         add("collide", Box::new(move |i| f64::from(u8::from(shared.borrow_mut().collides(p.record(i))))));

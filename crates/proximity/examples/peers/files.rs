@@ -11,8 +11,8 @@ use crate::surfaces::Surface;
 
 pub type Outcome<T> = Result<T, String>;
 
-/// Every problem is told with its file.
-fn told<T, E: std::fmt::Display>(path: &Path, result: Result<T, E>) -> Outcome<T> {
+/// Adds the file to an error.
+fn in_file<T, E: std::fmt::Display>(path: &Path, result: Result<T, E>) -> Outcome<T> {
     result.map_err(|e| format!("{}: {e}", path.display()))
 }
 
@@ -50,12 +50,12 @@ pub fn write_mesh(path: &Path, mesh: &TriMesh) -> Outcome<()> {
         bytes.extend(numbers.as_flattened().as_flattened());
         bytes.extend([0, 0]);
     }
-    told(path, fs::write(path, bytes))
+    in_file(path, fs::write(path, bytes))
 }
 
 /// Vertices of equal bits become one, as in every other runner.
 pub fn read_mesh(path: &Path) -> Outcome<TriMesh> {
-    let bytes = told(path, fs::read(path))?;
+    let bytes = in_file(path, fs::read(path))?;
     let records = bytes.get(84..).unwrap_or_default().chunks_exact(50);
     let (mut vertices, mut triangles, mut known) = (Vec::new(), Vec::with_capacity(records.len()), HashMap::new());
     for record in records {
@@ -71,7 +71,7 @@ pub fn read_mesh(path: &Path) -> Outcome<TriMesh> {
             })
         }));
     }
-    told(path, TriMesh::new(vertices, triangles))
+    in_file(path, TriMesh::new(vertices, triangles))
 }
 
 pub fn write_poses(path: &Path, bodies: usize, poses: &[Pose]) -> Outcome<()> {
@@ -83,11 +83,11 @@ pub fn write_poses(path: &Path, bodies: usize, poses: &[Pose]) -> Outcome<()> {
         let numbers = rows.as_flattened().iter().copied().chain(pose.translation.to_array());
         bytes.extend(numbers.flat_map(f64::to_le_bytes));
     }
-    told(path, fs::write(path, bytes))
+    in_file(path, fs::write(path, bytes))
 }
 
 pub fn read_poses(path: &Path) -> Outcome<Poses> {
-    let bytes = told(path, fs::read(path))?;
+    let bytes = in_file(path, fs::read(path))?;
     let word = |at: usize| bytes.get(at..at + 4).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let (records, bodies) = (word(4), word(8));
     let data = bytes.get(12..).unwrap_or_default();
@@ -106,11 +106,11 @@ pub fn read_poses(path: &Path) -> Outcome<Poses> {
 
 /// Size and tolerance of a pair of meshes, metres.
 pub fn write_meta(path: &Path, size: f64, tolerance: f64) -> Outcome<()> {
-    told(path, fs::write(path, format!("{size:?} {tolerance:?}\n")))
+    in_file(path, fs::write(path, format!("{size:?} {tolerance:?}\n")))
 }
 
 pub fn read_meta(path: &Path) -> Outcome<[f64; 2]> {
-    let text = told(path, fs::read_to_string(path))?;
+    let text = in_file(path, fs::read_to_string(path))?;
     let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     numbers.try_into().map_err(|_| format!("{}: not two numbers, size and tolerance", path.display()))
 }

@@ -1,8 +1,8 @@
-//! elbowroom's part in `cargo xtask peers`: makes the workload and answers it, question by question.
+//! The runner of elbowroom in `cargo xtask peers`: generates the workload and answers its queries.
 //!
 //! `generate DIR` writes the meshes and poses, `extend DIR EXTRA` the paths and random poses that go with them, `serve DIR EXTRA`
-//! answers `time` and `answers` on standard input. `xtask/peers/README.md` has the format and the conversation.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "the conversation with the one who asks")]
+//! answers `time` and `answers` on standard input. `xtask/peers/README.md` defines the format and the protocol.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "the protocol uses standard output")]
 
 mod arm;
 mod cells;

@@ -1,9 +1,9 @@
-//! What is added to any workload: paths of small steps, and many random poses to compare answers on.
+//! Additions to any workload: paths of small steps, and many random poses to compare answers on.
 
 use std::path::Path;
 
-use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Scratch, distance};
+use elbowroom_proximity::advanced::mesh_separation;
+use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::files::{Outcome, read_mesh, read_meta, read_poses, write_poses};
@@ -24,7 +24,7 @@ pub fn extend(data: &Path, extra: &Path) -> Outcome<()> {
         }
         let [size, _] = read_meta(&data.join(format!("{tag}.meta")))?;
         let (a, b) = (read_mesh(&data.join(format!("{tag}_A.stl")))?, read_mesh(&data.join(format!("{tag}_B.stl")))?);
-        let mut walk = Walk { a: &a, b: &b, size, random: Random(3), scratch: Scratch::new() };
+        let mut walk = RandomWalk { a: &a, b: &b, size, random: Random(3), workspace: Workspace::new() };
         for (band, gaps) in [("near", [0.005, 0.15]), ("far", [0.6, 1.4])] {
             let file = data.join(format!("{tag}_{band}.pose"));
             if !file.is_file() {
@@ -41,16 +41,16 @@ pub fn extend(data: &Path, extra: &Path) -> Outcome<()> {
     Ok(())
 }
 
-struct Walk<'a> {
+struct RandomWalk<'a> {
     a: &'a TriMesh,
     b: &'a TriMesh,
     size: f64,
     random: Random,
-    scratch: Scratch,
+    workspace: Workspace,
 }
 
-impl Walk<'_> {
-    /// Steps of 0.5 % of the size and of 1° in turn, on as straight a way as keeps the gap within `gaps` (metres).
+impl RandomWalk<'_> {
+    /// Alternating steps of 0.5 % of the size and of 1°, as straight as keeping the gap within `gaps` (metres) permits.
     fn path(&mut self, start: &[Pose], gaps: [f64; 2]) -> Vec<Pose> {
         let (a_in_world, mut b_in_world) = (start[0], start[1]);
         let (mut heading, mut axis) = (self.random.direction(), self.random.direction());
@@ -59,7 +59,7 @@ impl Walk<'_> {
             let mut next = b_in_world;
             for _ in 0..100 {
                 next = self.step(&b_in_world, step, heading, axis);
-                let gap = distance(self.a, &a_in_world, self.b, &next, &mut self.scratch).distance;
+                let gap = mesh_separation(self.a, &a_in_world, self.b, &next, &mut self.workspace).distance;
                 if (gaps[0]..gaps[1]).contains(&gap) {
                     break;
                 }
@@ -75,13 +75,13 @@ impl Walk<'_> {
         if step % 2 == 1 {
             return Pose::new(from.rotation, from.translation + heading * (0.005 * self.size));
         }
-        // About B's middle, as a body turns.
+        // About the centre of B.
         let middle = self.b.aabb().center();
         let rotation = Rotation::from_axis_angle(axis, 1_f64.to_radians()) * from.rotation;
         Pose::new(rotation, from.transform_point(middle) - rotation * middle)
     }
 
-    /// Middles up to 1.1 sizes apart: some touch, some are near, some are not.
+    /// Centres up to 1.1 sizes apart: some touch, some are near, some are far.
     fn anywhere(&mut self) -> [Pose; 2] {
         let a_in_world = Pose::new(self.random.rotation(), self.random.direction());
         let rotation = self.random.rotation();

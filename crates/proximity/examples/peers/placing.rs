@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::mesh::{Scratch, collide, distance};
+use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation};
+use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::files::{Outcome, rounded, write_mesh, write_meta, write_poses};
@@ -24,7 +24,7 @@ pub fn generate(folder: &Path) -> Outcome<()> {
         write_mesh(&folder.join(format!("{tag}_B.stl")), &b)?;
         let size = a.aabb().extent().max_element().max(b.aabb().extent().max_element());
         write_meta(&folder.join(format!("{tag}.meta")), size, 0.05 * size)?;
-        let mut placing = Placing { a: &a, b: &b, size, random, scratch: Scratch::new() };
+        let mut placing = Placing { a: &a, b: &b, size, random, workspace: Workspace::new() };
         for band in ["touch", "near", "far"] {
             let poses: Vec<Pose> = (0..RECORDS).flat_map(|_| placing.record(band)).collect();
             write_poses(&folder.join(format!("{tag}_{band}.pose")), 2, &poses)?;
@@ -50,11 +50,11 @@ struct Placing<'a> {
     b: &'a TriMesh,
     size: f64,
     random: Random,
-    scratch: Scratch,
+    workspace: Workspace,
 }
 
 impl Placing<'_> {
-    /// Poses of A and of B at the gap that the band asks for, in a random common frame.
+    /// Poses of A and of B with a gap of the band, in a random common frame.
     fn record(&mut self, band: &str) -> [Pose; 2] {
         let b_in_a = loop {
             let found = match band {
@@ -81,10 +81,11 @@ impl Placing<'_> {
         let (mut pose, away) = self.at_gap(0.0005 * self.size, 0.0005 * self.size)?;
         let push = self.size * (0.0015 + self.random.between_decades(0.001, 0.1));
         pose.translation -= away * push;
-        collide(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.scratch).map(|_| pose)
+        colliding_triangles(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.workspace).map(|_| pose)
     }
 
-    /// B moved in from afar, so that a vertex of its meets one of A's, until the gap is right; and where it came from.
+    /// B moved in from a distance, so that one of its vertices approaches one of A's, until the gap is right; and the direction
+    /// from which it came.
     fn at_gap(&mut self, gap: f64, allowed: f64) -> Option<(Pose, Vec3)> {
         let (rotation, away) = (self.random.rotation(), self.random.direction());
         let on_a = self.a.vertices()[self.random.below(self.a.vertices().len())];
@@ -92,11 +93,11 @@ impl Placing<'_> {
         let mut out = 3.0 * self.size + gap;
         for _ in 0..60 {
             let pose = Pose::new(rotation, on_a - on_b + away * out);
-            let left = distance(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.scratch).distance - gap;
+            let left = mesh_separation(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.workspace).distance - gap;
             if left < allowed {
                 return (left + gap > 0.0).then_some((pose, away));
             }
-            // No point of B can come nearer than the way moved.
+            // No point of B approaches by more than the step.
             out -= left;
             if out < -3.0 * self.size {
                 return None;

@@ -1,4 +1,4 @@
-//! Random numbers that are the same on every machine.
+//! Random numbers, the same on every machine.
 
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -18,7 +18,7 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// As many per decade everywhere in `low..high`.
+    /// Log-uniform in `low..high`.
     pub fn between_decades(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }

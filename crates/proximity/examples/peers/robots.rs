@@ -1,26 +1,28 @@
-//! Two arms against each other. One file, so that a faster way can take its place.
+//! Queries on two arms: broad phase by boxes and capsules, narrow phase by meshes.
 
-use elbowroom_proximity::mesh::{Hint, Landmarks, PlacedLandmarks, Scratch, collide, distance_at, farther, guess};
-use elbowroom_proximity::{Shape, TriMesh, fit, separation_within};
+use elbowroom_proximity::advanced::{
+    Landmarks, PlacedLandmarks, colliding_triangles, distance_upper_bound, is_farther_than, mesh_separation_with,
+};
+use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace, fit, separation_within};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-/// Pairs of links that are guessed at.
-const GUESSES: usize = 2;
+/// Pairs of links for which an upper bound is computed first.
+const FIRST_PAIRS: usize = 2;
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {
     links: Vec<TriMesh>,
-    /// Middle of each link and the farthest that it reaches from there, metres.
+    /// Centre and radius of the bounding sphere of each link, metres.
     balls: Vec<(Vec3, f64)>,
     landmarks: Vec<Landmarks>,
-    /// A capsule around each link, and where it is in the link.
+    /// A capsule around each link, and its pose in the link.
     capsules: Vec<Option<(Shape, Pose)>>,
-    scratch: Scratch,
+    workspace: Workspace,
     /// Boxes of all links in the world, first arm first.
     boxes: Vec<Aabb>,
     /// Landmarks of all links, likewise.
-    seen: Vec<PlacedLandmarks>,
-    /// How far apart at least, and the links.
+    placed_landmarks: Vec<PlacedLandmarks>,
+    /// Lower bound of the distance, and the links.
     order: Vec<(f64, usize, usize)>,
 }
 
@@ -36,9 +38,9 @@ impl Arms {
             balls,
             landmarks,
             capsules,
-            scratch: Scratch::new(),
+            workspace: Workspace::new(),
             boxes: Vec::new(),
-            seen: Vec::new(),
+            placed_landmarks: Vec::new(),
             order: Vec::new(),
         }
     }
@@ -48,17 +50,17 @@ impl Arms {
         self.links.iter().map(|link| link.aabb().extent().max_element()).fold(0.0, f64::max)
     }
 
-    /// Does any link of one arm touch one of the other?
+    /// True where a link of one arm touches one of the other.
     pub fn collides(&mut self, poses: &[Pose]) -> bool {
-        self.any(poses, 0.0, |links, a, b, poses, scratch| {
-            collide(&links[a], &poses[a], &links[b], &poses[links.len() + b], scratch).is_some()
+        self.any(poses, 0.0, |links, a, b, poses, workspace| {
+            colliding_triangles(&links[a], &poses[a], &links[b], &poses[links.len() + b], workspace).is_some()
         })
     }
 
-    /// Are any two within `tolerance` metres?
+    /// True where two links are within `tolerance` metres.
     pub fn within(&mut self, poses: &[Pose], tolerance: f64) -> bool {
-        self.any(poses, tolerance, |links, a, b, poses, scratch| {
-            !farther(&links[a], &poses[a], &links[b], &poses[links.len() + b], tolerance, scratch)
+        self.any(poses, tolerance, |links, a, b, poses, workspace| {
+            !is_farther_than(&links[a], &poses[a], &links[b], &poses[links.len() + b], tolerance, workspace)
         })
     }
 
@@ -66,9 +68,9 @@ impl Arms {
         &mut self,
         poses: &[Pose],
         margin: f64,
-        mut close: impl FnMut(&[TriMesh], usize, usize, &[Pose], &mut Scratch) -> bool,
+        mut close: impl FnMut(&[TriMesh], usize, usize, &[Pose], &mut Workspace) -> bool,
     ) -> bool {
-        // The box around each arm, out of balls around its links, spares the boxes of most states.
+        // The box around each arm, from the spheres around its links, excludes most states at once.
         let links = self.links.len();
         if !self.around(&poses[..links]).inflated(margin).overlaps(&self.around(&poses[links..])) {
             return false;
@@ -79,7 +81,7 @@ impl Arms {
             for b in 0..links {
                 if box_a.overlaps(&self.boxes[links + b])
                     && self.capsules_gap(poses, a, b, margin).is_some()
-                    && close(&self.links, a, b, poses, &mut self.scratch)
+                    && close(&self.links, a, b, poses, &mut self.workspace)
                 {
                     return true;
                 }
@@ -88,13 +90,13 @@ impl Arms {
         false
     }
 
-    /// Metres between the arms: guesses for the pairs whose landmarks are nearest limit all others, which come in the
-    /// order of their boxes.
+    /// Metres between the arms: upper bounds of the pairs whose landmarks are nearest limit all others, which follow in the
+    /// order of their capsules.
     pub fn distance(&mut self, poses: &[Pose]) -> f64 {
         self.place(poses);
         let links = self.links.len();
-        let (mut best, hint, (a, b)) = self.guess(poses);
-        best = self.pair(poses, a, b, best, Some(hint));
+        let (mut best, warm_start, (a, b)) = self.upper_bound(poses);
+        best = self.pair(poses, a, b, best, warm_start);
         self.order.clear();
         for x in 0..links {
             for y in (0..links).filter(|y| (x, *y) != (a, b)) {
@@ -112,49 +114,52 @@ impl Arms {
             if best <= 0.0 || gap >= best {
                 break;
             }
-            best = self.pair(poses, a, b, best, None);
+            best = self.pair(poses, a, b, best, WarmStart::default());
         }
         best
     }
 
-    /// How far apart two links are at least, by the capsules around them; `None` where that is more than `limit`.
+    /// Lower bound of the distance of two links, by the capsules around them; `None` where it exceeds `limit`.
     fn capsules_gap(&self, poses: &[Pose], a: usize, b: usize, limit: f64) -> Option<f64> {
         let (Some((x, x_in_a)), Some((y, y_in_b))) = (&self.capsules[a], &self.capsules[b]) else { return Some(0.0) };
         let (in_a, in_b) = (poses[a] * *x_in_a, poses[self.links.len() + b] * *y_in_b);
         separation_within(x, &in_a, y, &in_b, limit).map(|near| near.lower_bound)
     }
 
-    fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64, hint: Option<Hint>) -> f64 {
+    fn pair(&mut self, poses: &[Pose], a: usize, b: usize, limit: f64, mut warm_start: WarmStart) -> f64 {
         let (of_a, of_b) = (&poses[a], &poses[self.links.len() + b]);
-        let found = distance_at(&self.links[a], of_a, &self.links[b], of_b, limit, hint, &mut self.scratch);
+        let settings = DistanceSettings { limit, warm_start: Some(&mut warm_start), ..DistanceSettings::default() };
+        let found = mesh_separation_with(&self.links[a], of_a, &self.links[b], of_b, settings, &mut self.workspace);
         found.map_or(limit, |near| limit.min(near.distance))
     }
 
     /// An upper bound, and where it was found.
-    fn guess(&mut self, poses: &[Pose]) -> (f64, Hint, (usize, usize)) {
+    fn upper_bound(&mut self, poses: &[Pose]) -> (f64, WarmStart, (usize, usize)) {
         let links = self.links.len();
-        self.seen.clear();
-        self.seen.extend(self.landmarks.iter().cycle().zip(poses).map(|(marks, pose)| marks.placed(pose)));
-        let mut nearest = [(f32::INFINITY, (0, 0)); GUESSES];
+        self.placed_landmarks.clear();
+        self.placed_landmarks.extend(self.landmarks.iter().cycle().zip(poses).map(|(marks, pose)| marks.placed(pose)));
+        let mut nearest = [(f32::INFINITY, (0, 0)); FIRST_PAIRS];
         for a in 0..links {
             for b in 0..links {
-                if self.boxes[a].distance_squared(&self.boxes[links + b]) >= f64::from(nearest[GUESSES - 1].0) {
+                if self.boxes[a].distance_squared(&self.boxes[links + b]) >= f64::from(nearest[FIRST_PAIRS - 1].0) {
                     continue;
                 }
-                let square = self.seen[a].distance_squared(&self.seen[links + b]);
-                if square < nearest[GUESSES - 1].0 {
-                    nearest[GUESSES - 1] = (square, (a, b));
+                let square = self.placed_landmarks[a].distance_squared(&self.placed_landmarks[links + b]);
+                if square < nearest[FIRST_PAIRS - 1].0 {
+                    nearest[FIRST_PAIRS - 1] = (square, (a, b));
                     nearest.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
                 }
             }
         }
-        let mut best = (f64::INFINITY, Hint::default(), nearest[0].1);
+        let mut best = (f64::INFINITY, WarmStart::default(), nearest[0].1);
         for (square, (a, b)) in nearest {
             if square < f32::INFINITY {
                 let (of_a, of_b) = (&poses[a], &poses[links + b]);
-                let (metres, hint) = guess(&self.links[a], of_a, &self.links[b], of_b, None, &mut self.scratch);
+                let mut warm_start = WarmStart::default();
+                let (link_a, link_b) = (&self.links[a], &self.links[b]);
+                let metres = distance_upper_bound(link_a, of_a, link_b, of_b, &mut warm_start, &mut self.workspace);
                 if metres < best.0 {
-                    best = (metres, hint, (a, b));
+                    best = (metres, warm_start, (a, b));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! The conversation: lists the cells, then times them and gives answers as asked.
+//! The protocol: lists the cells, then times them and returns answers on request.
 
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -15,14 +15,14 @@ pub fn serve(data: &Path, extra: &Path) -> Outcome<()> {
     println!("ready");
     for line in std::io::stdin().lock().lines() {
         let line = line.map_err(|e| e.to_string())?;
-        let reply = obey(&line, &mut cells).ok_or_else(|| format!("cannot do `{line}`"))?;
+        let reply = execute(&line, &mut cells).ok_or_else(|| format!("cannot do `{line}`"))?;
         println!("{reply}");
         std::io::stdout().flush().map_err(|e| e.to_string())?;
     }
     Ok(())
 }
 
-fn obey(line: &str, cells: &mut [Cell]) -> Option<String> {
+fn execute(line: &str, cells: &mut [Cell]) -> Option<String> {
     let words: Vec<&str> = line.split(' ').collect();
     let number = |k: usize| words.get(k)?.parse::<usize>().ok();
     let cell = cells.get_mut(number(1)?)?;
@@ -31,7 +31,7 @@ fn obey(line: &str, cells: &mut [Cell]) -> Option<String> {
         "answers" => {
             let (from, count) = (number(2)?, number(3)?);
             let all = from..(from + count).min(cell.records);
-            let bytes: Vec<u8> = all.flat_map(|i| cell.ask.answer(i).to_le_bytes()).collect();
+            let bytes: Vec<u8> = all.flat_map(|i| cell.query_records.answer(i).to_le_bytes()).collect();
             std::fs::write(words.get(4)?, &bytes).ok()?;
             Some(format!("{}", bytes.len() / 8))
         }
@@ -44,13 +44,13 @@ fn time(cell: &mut Cell, records: usize, passes: usize) -> f64 {
     let start = processor_time();
     let mut sum = 0.0;
     for record in 0..records {
-        sum += cell.ask.answer(record);
+        sum += cell.query_records.answer(record);
         if since(start).as_micros() >= 1000 {
             break;
         }
     }
     let start = processor_time();
-    sum += cell.ask.pass(records, passes);
+    sum += cell.query_records.pass(records, passes);
     std::hint::black_box(sum);
     since(start).as_nanos() as f64 / (records * passes).max(1) as f64
 }

@@ -29,7 +29,7 @@ impl Ripples {
     }
 }
 
-/// What runs along the axis of a tube with round ends.
+/// A tube with round ends.
 pub struct Tube<'a> {
     /// The axis, for 0 to 1.
     pub axis: &'a dyn Fn(f64) -> Vec3,
@@ -53,7 +53,7 @@ impl Tube<'_> {
         for ring in 0..self.rings {
             let along = (ring as f64 + 0.5) / self.rings as f64;
             let (center, tangent) = ((self.axis)(along), self.tangent(along));
-            // The last ring's side, made perpendicular again: the rings do not twist.
+            // The side of the last ring, made perpendicular again: the rings do not twist.
             side = (side - tangent * side.dot(tangent)).try_normalize().unwrap_or(tangent.any_perpendicular());
             let radius = self.outline(along);
             let point = |around, height| ring_point(center, [side, tangent.cross(side)], around, height);

@@ -1,32 +1,33 @@
-//! Capsule around points.
+//! Bounding capsule.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::{GROWTH, ball, frame, scale};
+use super::margin::{MARGIN, scale};
+use super::{bounding_sphere, principal_axes};
 use crate::Capsule;
 
 pub(super) fn fit(points: &[Vec3]) -> Option<(Capsule, Pose)> {
-    let principal = frame::principal(points);
+    let principal = principal_axes::principal(points);
     let starts = [
         principal,
         principal * Rotation::from_axis_angle(Vec3::X, std::f64::consts::FRAC_PI_2),
         principal * Rotation::from_axis_angle(Vec3::Y, std::f64::consts::FRAC_PI_2),
     ];
-    let turned = starts.map(|s| frame::descend(s, &[Vec3::X, Vec3::Y], |r| along(points, r, 1.0).0.volume()));
-    let (_, rotation) = turned.into_iter().min_by(|x, y| x.0.total_cmp(&y.0))?;
+    let rotated = starts.map(|s| principal_axes::descend(s, &[Vec3::X, Vec3::Y], |r| along(points, r, 1.0).0.volume()));
+    let (_, rotation) = rotated.into_iter().min_by(|x, y| x.0.total_cmp(&y.0))?;
     let best = widened(points, rotation);
     Some(verified(points, best))
 }
 
-/// The capsule along the frame's z axis whose radius is `widening` times that of the points' shadow.
+/// The capsule along the frame's z axis whose radius is `widening` times that of the points projected along the axis.
 fn along(points: &[Vec3], rotation: Rotation, widening: f64) -> (Capsule, Pose) {
-    let turned: Vec<Vec3> = points.iter().map(|&p| rotation.inverse_rotate(p)).collect();
-    let shadow: Vec<Vec3> = turned.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
-    let (center, shadow_radius) = ball::smallest(&shadow);
-    let radius = shadow_radius * widening;
-    // Each point asks for the axis to reach far enough that a cap covers it.
+    let local: Vec<Vec3> = points.iter().map(|&p| rotation.inverse_rotate(p)).collect();
+    let projected: Vec<Vec3> = local.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
+    let (center, least_radius) = bounding_sphere::smallest(&projected);
+    let radius = least_radius * widening;
+    // The axis extends so far that a cap covers each point.
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (p, s) in turned.iter().zip(&shadow) {
+    for (p, s) in local.iter().zip(&projected) {
         let cover = (radius * radius - (*s - center).length_squared()).max(0.0).sqrt();
         low = low.min(p.z + cover);
         high = high.max(p.z - cover);
@@ -57,6 +58,6 @@ fn verified(points: &[Vec3], (mut capsule, pose): (Capsule, Pose)) -> (Capsule, 
         let q = pose.inverse_transform_point(p);
         r.max(q.distance(capsule.axis_point(q)))
     });
-    capsule.radius = reach + GROWTH * scale(points);
+    capsule.radius = reach + MARGIN * scale(points);
     (capsule, pose)
 }

@@ -1,8 +1,9 @@
-//! Box around points. A smallest box is flush with edges of the hull (O'Rourke, 1985); most are flush with a face.
+//! Bounding box of any orientation. A smallest box is flush with edges of the hull (O'Rourke, 1985); most are flush with a face.
 
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
-use super::{GROWTH, frame, scale};
+use super::margin::{MARGIN, scale};
+use super::principal_axes;
 use crate::{ConvexHull, Cuboid};
 
 /// Hull faces tried, the largest first.
@@ -13,18 +14,18 @@ pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid,
         let extent = bounds(points, r).extent();
         extent.x * extent.y * extent.z
     };
-    // A flat set has no volume whichever way it is turned: its area decides, then its length.
+    // The volume of a flat set can be 0 in many orientations: its area decides, then its length.
     let flat = hull.is_none();
     let cost = |r: Rotation| {
         let e = bounds(points, r).extent();
         if flat { e.x * e.y + e.y * e.z + e.z * e.x + 1e-3 * e.length_squared() } else { volume(r) }
     };
-    let mut starts = vec![Rotation::IDENTITY, frame::principal(points)];
+    let mut starts = vec![Rotation::IDENTITY, principal_axes::principal(points)];
     starts.extend(hull.map(flush).unwrap_or_default());
-    // Each cost is a pass over all points: once per start, not once per comparison.
+    // Each cost is a pass over all points: it is computed once per start, not once per comparison.
     let mut starts: Vec<(f64, Rotation)> = starts.into_iter().map(|s| (cost(s), s)).collect();
     starts.sort_by(|x, y| x.0.total_cmp(&y.0));
-    let tried = starts.into_iter().take(3).map(|(_, s)| frame::descend(s, &[Vec3::X, Vec3::Y, Vec3::Z], cost));
+    let tried = starts.into_iter().take(3).map(|(_, s)| principal_axes::descend(s, &[Vec3::X, Vec3::Y, Vec3::Z], cost));
     let (_, rotation) = tried.min_by(|x, y| x.0.total_cmp(&y.0))?;
     Some(verified(points, rotation))
 }
@@ -48,5 +49,5 @@ fn bounds(points: &[Vec3], rotation: Rotation) -> Aabb {
 fn verified(points: &[Vec3], rotation: Rotation) -> (Cuboid, Pose) {
     let pose = Pose::new(rotation, rotation * bounds(points, rotation).center());
     let reach = points.iter().fold(Vec3::ZERO, |h, &p| h.max(pose.inverse_transform_point(p).abs()));
-    (Cuboid { half_extents: reach + Vec3::splat(GROWTH * scale(points)) }, pose)
+    (Cuboid { half_extents: reach + Vec3::splat(MARGIN * scale(points)) }, pose)
 }

@@ -1,12 +1,12 @@
-//! All faces of a closed part turned outward.
+//! Consistent orientation: the faces of a closed surface point outward.
 
 use elbowroom_spatial::Vec3;
 
+use super::error::{RepairError, check};
 use super::shells::{Shell, Shells};
-use super::{RepairError, check};
 use crate::TriMesh;
 
-/// What [`orient`] made of the triangles.
+/// The result of [`orient`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Oriented {
     /// The same triangles in the same order, some with two corners swapped.
@@ -18,31 +18,31 @@ pub struct Oriented {
 /// Counts of what [`orient`] found and changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OrientReport {
-    /// Triangles turned over.
+    /// Triangles reversed.
     pub flipped: usize,
-    /// Surfaces that hang together over edges of two faces.
+    /// Surfaces connected over edges of two faces.
     pub shells: usize,
     /// Those that are closed.
     pub closed: usize,
-    /// Closed ones that face inward because they bound a hollow inside another.
+    /// Closed ones that face inward because they bound a cavity inside another.
     pub cavities: usize,
-    /// Those whose faces cannot all be turned the same way, as in a Möbius strip; left as they are.
+    /// Those that are not orientable, as a Möbius strip; left as they are.
     pub one_sided: usize,
 }
 
-/// Turns triangles so that neighbours agree and closed surfaces face outward. Corners of equal coordinates count as
-/// one; nothing is known across edges of more than two faces. Open surfaces keep the way of their first triangle.
+/// Reverses triangles so that neighbours agree and closed surfaces face outward. Corners of equal coordinates count as
+/// one; edges of more than two faces do not connect. Open surfaces keep the orientation of their first triangle.
 ///
-/// A closed surface inside another that was drawn the opposite way bounds a hollow and stays opposite.
+/// A closed surface inside another of the opposite orientation bounds a cavity and stays opposite.
 ///
 /// # Errors
-/// A triangle names a vertex that is not there.
+/// A triangle has an index beyond the vertex list.
 pub fn orient(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Oriented, RepairError> {
     check(vertices.len(), triangles)?;
-    let Shells { list, against } = Shells::of(vertices, triangles);
+    let Shells { list, reversed } = Shells::of(vertices, triangles);
     let outward = outward(&list, vertices, triangles);
     let mut report = OrientReport { shells: list.len(), ..OrientReport::default() };
-    let mut turned = triangles.to_vec();
+    let mut oriented = triangles.to_vec();
     for (shell, outward) in list.iter().zip(&outward) {
         report.closed += usize::from(shell.closed);
         report.one_sided += usize::from(!shell.orientable);
@@ -50,32 +50,33 @@ pub fn orient(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Oriented, Rep
         if !shell.orientable {
             continue;
         }
-        let over = shell.volume.is_some_and(|v| (v > 0.0) != *outward);
-        for &f in shell.faces.iter().filter(|&&f| against[f as usize] != over) {
-            turned[f as usize].swap(1, 2);
+        let inverted = shell.volume.is_some_and(|v| (v > 0.0) != *outward);
+        for &f in shell.faces.iter().filter(|&&f| reversed[f as usize] != inverted) {
+            oriented[f as usize].swap(1, 2);
             report.flipped += 1;
         }
     }
-    Ok(Oriented { triangles: turned, report })
+    Ok(Oriented { triangles: oriented, report })
 }
 
 /// Per shell: true unless it bounds a cavity.
 fn outward(list: &[Shell], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<bool> {
     let mut outward = vec![true; list.len()];
-    // Only what was drawn consistently says by its sign what it means.
-    let drawn: Vec<(usize, f64)> =
+    // The sign of the volume is meaningful only where the orientation is consistent.
+    let signed: Vec<(usize, f64)> =
         list.iter().enumerate().filter(|(_, s)| s.consistent).filter_map(|(i, s)| Some((i, s.volume?))).collect();
-    let mixed = drawn.iter().any(|d| d.1 > 0.0) && drawn.iter().any(|d| d.1 < 0.0);
+    let mixed = signed.iter().any(|d| d.1 > 0.0) && signed.iter().any(|d| d.1 < 0.0);
     if !mixed {
         return outward;
     }
-    let mut by_size = drawn;
+    let mut by_size = signed;
     by_size.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
     let mut solids: Vec<Option<TriMesh>> = vec![None; list.len()];
     for n in 0..by_size.len() {
         let (i, volume) = by_size[n];
-        let around = by_size[..n].iter().rev().find(|&&(e, _)| encloses(e, i, list, vertices, triangles, &mut solids));
-        if let Some(&(parent, parent_volume)) = around {
+        let enclosing =
+            by_size[..n].iter().rev().find(|&&(e, _)| encloses(e, i, list, vertices, triangles, &mut solids));
+        if let Some(&(parent, parent_volume)) = enclosing {
             outward[i] = !(outward[parent] && (volume > 0.0) != (parent_volume > 0.0));
         }
     }

@@ -1,4 +1,4 @@
-//! Faces that hang together over edges of two faces each, and which way they are turned.
+//! Shells: faces connected over edges of two faces each, and their orientation.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
@@ -7,26 +7,26 @@ use crate::shape::topology::{Edges, first_of_equal, is_proper};
 /// No shell, no neighbour.
 const NONE: u32 = u32::MAX;
 
-/// A surface that can be walked without crossing an edge of one, three or more faces.
+/// A surface connected over edges of exactly two faces.
 #[derive(Debug, Clone)]
 pub(crate) struct Shell {
-    /// Its faces, in the order in which the walk met them.
+    /// Its faces, in breadth-first order.
     pub faces: Vec<u32>,
-    /// All faces are turned the same way as they are drawn.
+    /// All faces have the same orientation as given.
     pub consistent: bool,
-    /// Faces can be turned the same way at all: not a Möbius strip.
+    /// The faces can be oriented consistently: not a Möbius strip.
     pub orientable: bool,
     /// Every edge of its faces has an even number of uses by this shell.
     pub closed: bool,
-    /// Signed volume, m³, once its faces are turned like its first one; `None` where open, or too small for a sign.
+    /// Signed volume, m³, with all faces oriented like the first; `None` where open, or too small for a sign.
     pub volume: Option<f64>,
     pub bounds: Aabb,
 }
 
-/// All shells, and per triangle whether it is turned against the first face of its shell.
+/// All shells, and per triangle whether its orientation is opposite to that of the first face of its shell.
 pub(crate) struct Shells {
     pub list: Vec<Shell>,
-    pub against: Vec<bool>,
+    pub reversed: Vec<bool>,
 }
 
 impl Shells {
@@ -35,25 +35,25 @@ impl Shells {
         let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| first[i as usize])).collect();
         let edges = Edges::new(vertices.len(), &faces, |triangle, _| triangle as u32);
         let neighbours = neighbours(&faces, &edges);
-        let mut walk =
-            Walk { faces: &faces, neighbours, shell_of: vec![NONE; faces.len()], against: vec![false; faces.len()] };
+        let (shell_of, reversed) = (vec![NONE; faces.len()], vec![false; faces.len()]);
+        let mut search = BreadthFirst { faces: &faces, neighbours, shell_of, reversed };
         let mut list = Vec::new();
         for start in 0..faces.len() {
-            if walk.shell_of[start] == NONE && is_proper(&faces[start]) {
-                list.push(walk.from(start as u32, list.len() as u32));
+            if search.shell_of[start] == NONE && is_proper(&faces[start]) {
+                list.push(search.shell_from(start as u32, list.len() as u32));
             }
         }
-        edges.for_each(|_, _, uses| open_odd(uses, &walk.shell_of, &mut list));
+        edges.for_each(|_, _, uses| open_odd(uses, &search.shell_of, &mut list));
         for shell in &mut list {
-            measure(shell, vertices, triangles, &walk.against);
+            measure(shell, vertices, triangles, &search.reversed);
         }
-        Self { list, against: walk.against }
+        Self { list, reversed: search.reversed }
     }
 }
 
-/// Per face and corner: the face over the edge from there to the next corner, where that edge has two faces.
+/// Per face and corner: the neighbour over the edge from there to the next corner, where that edge has two faces.
 fn neighbours(faces: &[[u32; 3]], edges: &Edges) -> Vec<[u32; 3]> {
-    let mut over = vec![[NONE; 3]; faces.len()];
+    let mut neighbour = vec![[NONE; 3]; faces.len()];
     edges.for_each(|low, high, uses| {
         let [s, t] = uses else { return };
         let (s, t) = (*s as u32, *t as u32);
@@ -61,55 +61,56 @@ fn neighbours(faces: &[[u32; 3]], edges: &Edges) -> Vec<[u32; 3]> {
             |f: [u32; 3]| (0..3).find(|&k| (f[k].min(f[(k + 1) % 3]), f[k].max(f[(k + 1) % 3])) == (low, high));
         for (from, to) in [(s, t), (t, s)] {
             if let Some(k) = corner(faces[from as usize]) {
-                over[from as usize][k] = to;
+                neighbour[from as usize][k] = to;
             }
         }
     });
-    over
+    neighbour
 }
 
-struct Walk<'a> {
+struct BreadthFirst<'a> {
     faces: &'a [[u32; 3]],
     neighbours: Vec<[u32; 3]>,
     shell_of: Vec<u32>,
-    against: Vec<bool>,
+    reversed: Vec<bool>,
 }
 
-impl Walk<'_> {
-    fn from(&mut self, start: u32, number: u32) -> Shell {
+impl BreadthFirst<'_> {
+    fn shell_from(&mut self, start: u32, number: u32) -> Shell {
         let (mut consistent, mut orientable) = (true, true);
-        let mut met = vec![start];
+        let mut visited = vec![start];
         self.shell_of[start as usize] = number;
         let mut next = 0;
-        while next < met.len() {
-            let f = met[next] as usize;
+        while next < visited.len() {
+            let f = visited[next] as usize;
             next += 1;
             for k in 0..3 {
                 let g = self.neighbours[f][k];
                 if g == NONE {
                     continue;
                 }
-                let same_way = !has_directed(self.faces[g as usize], self.faces[f][k], self.faces[f][(k + 1) % 3]);
-                let against = self.against[f] == same_way;
-                consistent &= same_way;
+                let agrees = !has_directed(self.faces[g as usize], self.faces[f][k], self.faces[f][(k + 1) % 3]);
+                let reversed = self.reversed[f] == agrees;
+                consistent &= agrees;
                 if self.shell_of[g as usize] == NONE {
                     self.shell_of[g as usize] = number;
-                    self.against[g as usize] = against;
-                    met.push(g);
+                    self.reversed[g as usize] = reversed;
+                    visited.push(g);
                 } else {
-                    orientable &= self.against[g as usize] == against;
+                    orientable &= self.reversed[g as usize] == reversed;
                 }
             }
         }
-        Shell { faces: met, consistent, orientable, closed: true, volume: None, bounds: Aabb::EMPTY }
+        Shell { faces: visited, consistent, orientable, closed: true, volume: None, bounds: Aabb::EMPTY }
     }
 }
 
-/// True where the face runs through the edge from `a` to `b` in that direction.
+/// True where the face has the directed edge from `a` to `b`.
 fn has_directed(f: [u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|k| f[k] == a && f[(k + 1) % 3] == b)
 }
 
+/// Marks shells open that use an edge an odd number of times.
 fn open_odd(uses: &[u64], shell_of: &[u32], list: &mut [Shell]) {
     let mut shells: Vec<u32> = uses.iter().map(|&u| shell_of[u as u32 as usize]).collect();
     shells.sort_unstable();
@@ -118,7 +119,7 @@ fn open_odd(uses: &[u64], shell_of: &[u32], list: &mut [Shell]) {
     }
 }
 
-fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], against: &[bool]) {
+fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], reversed: &[bool]) {
     let corners = |&f: &u32| triangles[f as usize].map(|i| vertices[i as usize]);
     shell.bounds = Aabb::from_points(shell.faces.iter().flat_map(corners));
     if !(shell.closed && shell.orientable) {
@@ -128,8 +129,8 @@ fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], against
     let (mut six_fold, mut size) = (0.0, 0.0);
     for f in &shell.faces {
         let [a, b, c] = corners(f).map(|p| p - origin);
-        let part = a.dot(b.cross(c));
-        six_fold += if against[*f as usize] { -part } else { part };
+        let product = a.dot(b.cross(c));
+        six_fold += if reversed[*f as usize] { -product } else { product };
         size += a.length() * b.length() * c.length();
     }
     let volume: f64 = six_fold / 6.0;
@@ -137,15 +138,15 @@ fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], against
 }
 
 impl Shells {
-    /// True where all closed shells are consistent and have the same sign: the solid is then their union, and each
-    /// looks the way its sign says.
+    /// True where all closed shells are consistent and have the same sign: the solid is then their union, and the sign gives
+    /// the orientation of each.
     pub fn agree(&self) -> bool {
         let mut signs = self.closed().map(|s| s.volume.filter(|_| s.consistent).map(f64::signum));
         let first = signs.next().flatten();
         first.is_some() && signs.all(|sign| sign == first)
     }
 
-    /// True where the bounds of no other closed shell overlap this one's: it is a solid by itself, and no hollow.
+    /// True where the bounds of no other closed shell overlap this one's: it is a separate solid, not a cavity.
     pub fn is_alone(&self, number: usize) -> bool {
         let bounds = &self.list[number].bounds;
         let mut others = self.list.iter().enumerate().filter(|&(n, s)| n != number && s.closed);

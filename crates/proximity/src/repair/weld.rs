@@ -1,11 +1,11 @@
-//! Corners that are meant to be one.
+//! Merging of vertices that are meant to be one.
 
 use elbowroom_spatial::Vec3;
 
-use super::{RepairError, check};
+use super::error::{RepairError, check};
 use crate::shape::topology::{Edges, first_of_equal, is_degenerate, is_proper, merge_near};
 
-/// What [`weld`] made of the triangles.
+/// The result of [`weld`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Welded {
     /// The vertices that are left, in the order given.
@@ -28,20 +28,20 @@ pub struct WeldReport {
     /// Triangles without area that stay, because without them a closed surface would open: three different corners on
     /// a line, as where a long edge meets two short ones.
     pub slivers_kept: usize,
-    /// Triangles left out because an earlier one has the same corners, turned the same way. Two that face each other
+    /// Triangles left out because an earlier one has the same corners in the same orientation. Two of opposite orientation
     /// are the wall between two solids and stay.
     pub duplicate: usize,
 }
 
-/// Merges vertices within `tolerance` metres, and drops what becomes of triangles that have no area or are there twice.
+/// Merges vertices within `tolerance` metres, and removes triangles that have lost their area or are duplicates.
 ///
-/// Vertices are taken in order: each goes to the nearest (of those, the first) kept vertex within the tolerance, or is
-/// kept itself. So no vertex moves by more than the tolerance, however long a chain of close neighbours is, no two kept
+/// Vertices are processed in order: each is merged into the nearest (of equally near, the first) kept vertex within the
+/// tolerance, or is kept itself. So no vertex moves by more than the tolerance, however long a chain of close neighbours is, no two kept
 /// vertices are within it, and the result depends on nothing but the input. Tolerance 0 merges equal coordinates.
 /// Vertices that are not finite stay as they are.
 ///
 /// # Errors
-/// The tolerance is not a finite number of metres, 0 or more; a triangle names a vertex that is not there.
+/// The tolerance is not a finite number of metres, 0 or more; a triangle has an index beyond the vertex list.
 pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result<Welded, RepairError> {
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(RepairError::Tolerance(tolerance));
@@ -61,7 +61,7 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
 }
 
 /// Leaves out triangles without area. One with three different corners toggles whether its edges are matched, so it
-/// goes only where one of them is unmatched anyway.
+/// is removed only where one of them is unmatched anyway.
 fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport) -> Vec<[u32; 3]> {
     let flat: Vec<bool> = faces.iter().map(|f| is_degenerate(f.map(|i| vertices[i as usize]))).collect();
     let mut beside_open = vec![false; faces.len()];
@@ -88,29 +88,29 @@ fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport
 }
 
 fn without_copies(faces: &[[u32; 3]], report: &mut WeldReport) -> Vec<[u32; 3]> {
-    // Turned until the smallest corner is first, triangles of the same corners and side are equal.
-    let turned = |f: &[u32; 3]| {
+    // Rotated until the smallest corner is first, triangles of the same corners and orientation are equal.
+    let rotated = |f: &[u32; 3]| {
         let least = (0..3).min_by_key(|&k| f[k]).unwrap_or(0);
         [f[least], f[(least + 1) % 3], f[(least + 2) % 3]]
     };
-    let mut order: Vec<([u32; 3], u32)> = faces.iter().enumerate().map(|(i, f)| (turned(f), i as u32)).collect();
+    let mut order: Vec<([u32; 3], u32)> = faces.iter().enumerate().map(|(i, f)| (rotated(f), i as u32)).collect();
     order.sort_unstable();
-    let mut again = vec![false; faces.len()];
+    let mut duplicate = vec![false; faces.len()];
     for pair in order.windows(2).filter(|p| p[0].0 == p[1].0) {
-        again[pair[1].1 as usize] = true;
+        duplicate[pair[1].1 as usize] = true;
     }
-    report.duplicate = again.iter().filter(|&&a| a).count();
-    faces.iter().zip(again).filter(|(_, again)| !again).map(|(f, _)| *f).collect()
+    report.duplicate = duplicate.iter().filter(|&&d| d).count();
+    faces.iter().zip(duplicate).filter(|(_, duplicate)| !duplicate).map(|(f, _)| *f).collect()
 }
 
-/// The vertices in use, in their order, and triangles that name them by their new places.
+/// The vertices in use, in their order, and triangles with the new indices.
 fn compact(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut place = vec![u32::MAX; vertices.len()];
-    triangles.iter().flatten().for_each(|&i| place[i as usize] = 0);
+    let mut index = vec![u32::MAX; vertices.len()];
+    triangles.iter().flatten().for_each(|&i| index[i as usize] = 0);
     let mut used = Vec::new();
-    for (p, v) in place.iter_mut().zip(vertices).filter(|(p, _)| **p == 0) {
+    for (p, v) in index.iter_mut().zip(vertices).filter(|(p, _)| **p == 0) {
         *p = used.len() as u32;
         used.push(*v);
     }
-    (used, triangles.iter().map(|t| t.map(|i| place[i as usize])).collect())
+    (used, triangles.iter().map(|t| t.map(|i| index[i as usize])).collect())
 }

@@ -1,11 +1,11 @@
-//! Shapes without their rounding: a sphere is a point with a radius, a capsule a segment with a radius.
+//! Convex cores: shapes without their rounding. A sphere is a point with a radius, a capsule a segment with a radius.
 
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::shape::hull::farthest;
 use crate::{ConvexHull, Cuboid, Cylinder, Shape};
 
-/// What is left of a convex shape when its rounding radius is taken off.
+/// A convex shape without its rounding radius.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Core<'a> {
     Point,
@@ -33,7 +33,7 @@ pub(crate) fn rounded(shape: &Shape) -> Option<(Core<'_>, f64)> {
 }
 
 impl Core<'_> {
-    /// The point farthest along `dir`, local frame.
+    /// The support point: the point farthest along `dir`, local frame.
     #[inline]
     pub fn support(&self, dir: Vec3) -> Vec3 {
         match self {
@@ -47,7 +47,7 @@ impl Core<'_> {
         }
     }
 
-    /// Some point of the core, near its middle where that is cheap, local frame.
+    /// A point near the centre of the core, local frame.
     #[inline]
     pub fn middle(&self) -> Vec3 {
         match self {
@@ -58,7 +58,7 @@ impl Core<'_> {
         }
     }
 
-    /// Largest coordinate that occurs in it, metres: the scale of its rounding errors.
+    /// Bound of its coordinates, metres: the scale of its rounding errors.
     #[inline]
     pub fn size(&self) -> f64 {
         match self {
@@ -72,55 +72,16 @@ impl Core<'_> {
         }
     }
 
-    /// Extent along a local direction: the largest `dir · p`.
+    /// The support function: the largest `dir · p`.
     #[inline]
     pub fn reach(&self, dir: Vec3) -> f64 {
         self.support(dir).dot(dir)
     }
-}
 
-/// Nearest points of two cores in the frame of the second, the distance, and a proven bound below it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Gap {
-    pub distance: f64,
-    /// Distance of the two points. Steady ones may be farther apart than the least distance, by what is as good as equal.
-    pub apart: f64,
-    pub lower: f64,
-    pub on_a: Vec3,
-    pub on_b: Vec3,
-}
-
-impl Gap {
-    /// From witness points of a method whose only error is rounding of numbers up to `scale`.
-    #[inline]
-    pub fn closed(on_a: Vec3, on_b: Vec3, scale: f64) -> Self {
-        let distance = (on_a - on_b).length();
-        Self { distance, apart: distance, lower: (distance - rounding(scale)).max(0.0), on_a, on_b }
+    /// Bounds in its own frame.
+    pub fn aabb(&self) -> Aabb {
+        let max = Vec3::new(self.reach(Vec3::X), self.reach(Vec3::Y), self.reach(Vec3::Z));
+        let min = -Vec3::new(self.reach(-Vec3::X), self.reach(-Vec3::Y), self.reach(-Vec3::Z));
+        Aabb { min, max }
     }
-
-    #[inline]
-    pub fn touching(on_a: Vec3, on_b: Vec3) -> Self {
-        Self { distance: 0.0, apart: 0.0, lower: 0.0, on_a, on_b }
-    }
-
-    /// True where cores are proven to be farther apart than their radii, together: shapes do not touch.
-    #[inline]
-    pub fn is_beyond(&self, radii: f64) -> bool {
-        self.lower - radii - rounding(radii) > 0.0
-    }
-
-    /// With a proof of another kind: what is proven apart does not touch, whatever rounding makes of the points.
-    #[inline]
-    pub fn at_least(self, proven: f64) -> Self {
-        let lower = self.lower.max(proven);
-        let raised = || (self.on_a - self.on_b).length().max(lower);
-        let distance = if self.distance < lower { raised() } else { self.distance };
-        Self { lower, distance, apart: self.apart.max(distance), ..self }
-    }
-}
-
-/// What the last places of a short computation on numbers up to `scale` may be worth.
-#[inline]
-pub(crate) fn rounding(scale: f64) -> f64 {
-    16.0 * f64::EPSILON * scale
 }

@@ -1,8 +1,8 @@
-//! A segment against a box (or another segment) and against a cylinder.
+//! A segment and a box (or another segment), a segment and a cylinder.
 //!
 //! Along the segment the squared distance to a convex solid is convex and once differentiable, so half its derivative
-//! `g(t)`, the dot product of the direction and the excess over the solid, is monotone: its root is bracketed by the
-//! places where it changes form, and found in closed form (box) or by Newton steps (cylinder) in between.
+//! `g(t)`, the dot product of the direction and the excess over the solid, is monotone: its root is bracketed by its
+//! breakpoints, and computed in closed form (box) or by Newton steps (cylinder) in between.
 
 use elbowroom_spatial::Vec3;
 
@@ -22,6 +22,15 @@ impl Segment {
         self.middle + self.direction * t
     }
 
+    /// Half the derivative of the squared distance to the solid whose nearest point is `nearest`.
+    #[inline]
+    fn half_derivative(&self, nearest: impl Fn(Vec3) -> Vec3 + Copy) -> impl Fn(f64) -> f64 + Copy {
+        move |t| {
+            let p = self.at(t);
+            (p - nearest(p)).dot(self.direction)
+        }
+    }
+
     /// True where a box around the frame's origin is farther than `reach` along one of its axes.
     #[inline]
     pub fn misses(&self, half_extents: Vec3, reach: f64) -> bool {
@@ -35,19 +44,19 @@ impl Segment {
     }
 }
 
-/// The bracket of the root of a monotone function.
+/// The bracket of the root of a monotone function `g`.
 struct Bracket {
     lo: f64,
     hi: f64,
 }
 
 impl Bracket {
-    /// The two ends, or the end that is the minimum.
+    /// The two ends, or the position of the minimum where the root is not between them.
     #[inline]
     fn start(half: f64, g: impl Fn(f64) -> f64) -> Result<Self, f64> {
         let (g_lo, g_hi) = (g(-half), g(half));
         if g_lo == 0.0 && g_hi == 0.0 {
-            return Err(0.0); // equally near everywhere: the middle is the steadiest choice
+            return Err(0.0); // equally near everywhere: the middle
         }
         if !(g_lo < 0.0) {
             return Err(-half);
@@ -56,6 +65,11 @@ impl Bracket {
             return Err(half);
         }
         Ok(Self { lo: -half, hi: half })
+    }
+
+    #[inline]
+    fn middle(&self) -> f64 {
+        0.5 * (self.lo + self.hi)
     }
 
     #[inline]
@@ -74,10 +88,7 @@ impl Bracket {
 #[inline]
 pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
     let (c, d, h) = (s.middle, s.direction, solid.half_extents);
-    let g = |t: f64| {
-        let p = s.at(t);
-        (p - solid.nearest(p)).dot(d)
-    };
+    let g = s.half_derivative(|p| solid.nearest(p));
     let mut bracket = match Bracket::start(s.half, g) {
         Ok(bracket) => bracket,
         Err(t) => return s.at(t),
@@ -88,8 +99,8 @@ pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
             bracket.tighten((-h[k] - c[k]) / d[k], g);
         }
     }
-    // Linear in between: which excesses act does not change. The middle of the piece tells which.
-    let mid = 0.5 * (bracket.lo + bracket.hi);
+    // Linear in between: the set of nonzero excesses is constant, and the middle of the piece shows it.
+    let mid = bracket.middle();
     let p = s.at(mid);
     let excess = p - solid.nearest(p);
     let square = |k: usize| if excess[k] == 0.0 { 0.0 } else { d[k] * d[k] };
@@ -104,19 +115,16 @@ pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
 pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
     let (c, d) = (s.middle, s.direction);
     let (r, h) = (solid.radius, solid.half_length);
-    let g = |t: f64| {
-        let p = s.at(t);
-        (p - solid.nearest(p)).dot(d)
-    };
+    let g = s.half_derivative(|p| solid.nearest(p));
     let mut bracket = match Bracket::start(s.half, g) {
         Ok(bracket) => bracket,
         Err(t) => return s.at(t),
     };
-    // Most often a few steps from the place nearest to the axis are enough.
+    // A few steps from the point nearest to the axis are mostly enough.
     let across2 = d.x * d.x + d.y * d.y;
     let crossing = if across2 > 0.0 { -(c.x * d.x + c.y * d.y) / across2 } else { 0.0 };
     let start = crossing.max(-0.9 * s.half).min(0.9 * s.half);
-    if let Ok(t) = newton(s, solid, &mut bracket, start, QUICK) {
+    if let Ok(t) = newton(s, solid, &mut bracket, start, QUICK_STEPS) {
         return s.at(t);
     }
     if d.z != 0.0 {
@@ -124,26 +132,27 @@ pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
         bracket.tighten((-h - c.z) / d.z, g);
     }
     if across2 > 0.0 {
-        // Nearest to the axis, and where the segment passes the lateral surface.
-        let t0 = crossing;
-        bracket.tighten(t0, g);
+        // The point nearest to the axis, and the intersections with the lateral surface.
+        bracket.tighten(crossing, g);
         let across = across2.sqrt();
         let off_axis = (c.x * d.y - c.y * d.x).abs() / across;
         if off_axis < r {
             let half_chord = ((r - off_axis) * (r + off_axis)).sqrt() / across;
-            bracket.tighten(t0 - half_chord, g);
-            bracket.tighten(t0 + half_chord, g);
+            bracket.tighten(crossing - half_chord, g);
+            bracket.tighten(crossing + half_chord, g);
         }
     }
-    let middle = 0.5 * (bracket.lo + bracket.hi);
-    let (Ok(t) | Err(t)) = newton(s, solid, &mut bracket, middle, 60);
+    let middle = bracket.middle();
+    let (Ok(t) | Err(t)) = newton(s, solid, &mut bracket, middle, MAX_STEPS);
     s.at(t)
 }
 
-/// Steps before the bracket is tightened by the places where `g` changes form.
-const QUICK: usize = 8;
+/// Newton steps before the bracket is tightened by the breakpoints of `g`.
+const QUICK_STEPS: usize = 8;
+/// Newton steps after that, at most.
+const MAX_STEPS: usize = 60;
 
-/// Newton steps on `g` inside the bracket, halving it where they leave; the last place as an error if not at its end.
+/// Newton steps on `g` inside the bracket, bisecting it where they leave; the last position as an error where not converged.
 #[inline]
 fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket, start: f64, steps: usize) -> Result<f64, f64> {
     let d = s.direction;

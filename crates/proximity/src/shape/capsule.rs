@@ -21,7 +21,7 @@ impl Capsule {
         std::f64::consts::PI * self.radius.powi(2) * (2.0 * self.half_length + 4.0 / 3.0 * self.radius)
     }
 
-    /// The point farthest along `dir`, local frame.
+    /// The support point: the point farthest along `dir`, local frame.
     pub fn support(&self, dir: Vec3) -> Vec3 {
         let end = Vec3::Z * self.half_length.copysign(dir.z);
         dir.try_normalize().map_or(end, |d| end + d * self.radius)

@@ -20,7 +20,7 @@ impl Cuboid {
         8.0 * self.half_extents.x * self.half_extents.y * self.half_extents.z
     }
 
-    /// The corner farthest along `dir`, local frame.
+    /// The support point: the corner farthest along `dir`, local frame.
     #[inline]
     pub fn support(&self, dir: Vec3) -> Vec3 {
         let h = self.half_extents;

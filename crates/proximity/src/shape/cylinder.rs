@@ -21,7 +21,7 @@ impl Cylinder {
         2.0 * std::f64::consts::PI * self.radius.powi(2) * self.half_length
     }
 
-    /// The point farthest along `dir`, local frame.
+    /// The support point: the point farthest along `dir`, local frame.
     #[inline]
     pub fn support(&self, dir: Vec3) -> Vec3 {
         let z = self.half_length.copysign(dir.z);
@@ -42,13 +42,5 @@ impl Cylinder {
         let rho = (p.x * p.x + p.y * p.y).sqrt();
         let k = if rho > self.radius { self.radius / rho } else { 1.0 };
         Vec3::new(p.x * k, p.y * k, p.z.max(-self.half_length).min(self.half_length))
-    }
-
-    /// Distance from `p` to the solid, 0 inside: hypot of the radial and the axial excess (S1's d1, d2, d3 in one).
-    #[inline]
-    pub fn distance_to(&self, p: Vec3) -> f64 {
-        let radial = ((p.x * p.x + p.y * p.y).sqrt() - self.radius).max(0.0);
-        let axial = (p.z.abs() - self.half_length).max(0.0);
-        (radial * radial + axial * axial).sqrt()
     }
 }

@@ -1,8 +1,9 @@
-//! Convex hulls: the finished solid. How it is found: `quickhull`.
+//! Convex hulls. Their construction: `quickhull`.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
-use super::quickhull;
+use super::hull_error::HullError;
+use super::quickhull::quickhull;
 use crate::triangle::nearest_on_triangle;
 
 /// A convex polyhedron with triangular faces.
@@ -26,39 +27,16 @@ pub struct ConvexHull {
     aabb: Aabb,
 }
 
-/// Why points have no convex hull with an inside.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum HullError {
-    /// Fewer than four points.
-    #[error("a convex hull needs at least 4 points, not {0}")]
-    TooFew(usize),
-    /// A coordinate is NaN or infinite.
-    #[error("point {0} has a coordinate that is not a finite number")]
-    NotFinite(usize),
-    /// All points are the same within rounding.
-    #[error("all points coincide: a convex hull needs an inside; use a sphere instead")]
-    Point,
-    /// All points lie on one line within rounding.
-    #[error("all points lie on one line: a convex hull needs an inside; use a capsule instead")]
-    Line,
-    /// All points lie in one plane within rounding.
-    #[error("all points lie in one plane: a convex hull needs an inside; use a thin box instead")]
-    Flat,
-    /// Rounding got in the way of a closed surface (points on a scale that f64 cannot separate).
-    #[error("the points are too close to degenerate for a closed hull; scale or thin them out")]
-    Numeric,
-}
-
 impl ConvexHull {
     /// The convex hull of a set of points (quickhull; Barber, Dobkin, Huhdanpaa, 1996).
     ///
-    /// Points within about 1e-13 of the extent of a face count as on it; every input point is inside the result to
-    /// within that tolerance.
+    /// Points within about 1e-13 of the extent of a face count as on it: every input point is inside the result up to
+    /// that tolerance.
     ///
     /// # Errors
     /// Fewer than four points, a coordinate that is not finite, or all points on one point, line or plane.
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        let (vertices, triangles) = quickhull::quickhull(points)?;
+        let (vertices, triangles) = quickhull(points)?;
         let planes = triangles.iter().map(|t| plane(&vertices, *t)).collect::<Option<Vec<_>>>();
         let planes = planes.ok_or(HullError::Numeric)?;
         let volume = enclosed_volume(&vertices, &triangles);
@@ -71,7 +49,7 @@ impl ConvexHull {
         &self.vertices
     }
 
-    /// Faces as indices into the vertices, counter-clockwise from outside.
+    /// Faces as indices into the vertices, counter-clockwise seen from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -96,14 +74,14 @@ impl ConvexHull {
         self.nearest_with_face(p).0
     }
 
-    /// The nearest point, and a face that it lies on where `p` is outside.
+    /// The nearest point, and a face that contains it where `p` is outside.
     pub(crate) fn nearest_with_face(&self, p: Vec3) -> (Vec3, Option<usize>) {
         let heights = || self.planes.iter().map(|(normal, offset)| normal.dot(p) - offset);
         if !heights().any(|height| height > 0.0) {
             return (p, None);
         }
-        // Every face counts, also those that rounding puts `p` just below: at a corner only a distant face may claim
-        // to see it.
+        // All faces are tested, also those that `p` is just below by rounding: at a corner, `p` may be above a distant face
+        // only.
         let mut best = (f64::INFINITY, p, None);
         for (i, height) in heights().enumerate() {
             if height * height < best.0 {
@@ -126,8 +104,8 @@ impl ConvexHull {
         self.planes.iter().map(|(normal, _)| *normal)
     }
 
-    /// The outward normal that points along `dir` most.
-    pub(crate) fn most_along(&self, dir: Vec3) -> Vec3 {
+    /// The outward normal with the largest component along `dir`.
+    pub(crate) fn most_aligned_normal(&self, dir: Vec3) -> Vec3 {
         self.normals().max_by(|m, n| m.dot(dir).total_cmp(&n.dot(dir))).unwrap_or(dir)
     }
 
@@ -148,7 +126,7 @@ pub(crate) fn farthest(points: &[Vec3], dir: Vec3) -> Vec3 {
     best.1
 }
 
-/// Signed volume enclosed by outward triangles (divergence theorem), about the first vertex for accuracy.
+/// Signed volume enclosed by outward triangles (divergence theorem), relative to the first vertex for accuracy.
 pub(crate) fn enclosed_volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let Some(&o) = vertices.first() else { return 0.0 };
     let six_fold: f64 =
@@ -159,7 +137,7 @@ pub(crate) fn enclosed_volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 
 fn plane(vertices: &[Vec3], t: [u32; 3]) -> Option<(Vec3, f64)> {
     let [a, b, c] = t.map(|i| vertices[i as usize]);
     let normal = (b - a).cross(c - a).try_normalize()?;
-    // The farthest of the three, so that rounding never cuts a vertex off.
+    // The largest of the three, so that rounding never leaves a vertex outside.
     let offset = normal.dot(a).max(normal.dot(b)).max(normal.dot(c));
     Some((normal, offset))
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use elbowroom_spatial::{Aabb, Vec3};
 
-use super::HullError;
+use super::hull_error::HullError;
 
 type Faces = (Vec<Vec3>, Vec<[u32; 3]>);
 
@@ -26,7 +26,7 @@ pub(super) fn quickhull(points: &[Vec3]) -> Result<Faces, HullError> {
         return Err(HullError::NotFinite(i));
     }
     let bounds = Aabb::from_points(points.iter().copied());
-    // Work about the middle and at unit size: tolerances are then plain numbers, and no product overflows.
+    // Centred and scaled to unit size: tolerances are then dimensionless, and no product overflows.
     let extent = bounds.extent().max_element();
     let magnitude = bounds.min.abs().max(bounds.max.abs()).max_element();
     if !(extent > magnitude * 1e-14) || extent < 1e-290 {
@@ -34,21 +34,21 @@ pub(super) fn quickhull(points: &[Vec3]) -> Result<Faces, HullError> {
     }
     let middle = bounds.min * 0.5 + bounds.max * 0.5;
     let unit: Vec<Vec3> = points.iter().map(|&p| (p - middle) / extent).collect();
-    // What f64 can tell apart at this distance from the origin, and at this size.
+    // The resolution of f64 at this distance from the origin, and at this size.
     let tolerance = (8.0 * f64::EPSILON * magnitude / extent).max(1e-13);
     let mut hull = Builder::start(&unit, tolerance)?;
     hull.grow()?;
     hull.finish(points)
 }
 
-/// Faces in sight of a point, and the directed edges around them.
+/// Faces visible from a point, and the directed edges around them.
 type Horizon = (Vec<u32>, Vec<(u32, u32)>);
 
 struct Builder<'a> {
     points: &'a [Vec3],
     tolerance: f64,
     faces: Vec<Face>,
-    /// Which face has the directed edge.
+    /// The face of each directed edge.
     edge: HashMap<(u32, u32), u32>,
 }
 
@@ -69,7 +69,7 @@ impl<'a> Builder<'a> {
         let normal = (b - a).cross(c - a).try_normalize()?;
         let id = self.faces.len() as u32;
         for k in 0..3 {
-            // An edge used twice in one direction is a surface folded by rounding.
+            // An edge used twice in one direction: rounding has folded the surface.
             if self.edge.insert((corners[k], corners[(k + 1) % 3]), id).is_some() {
                 return None;
             }
@@ -103,16 +103,16 @@ impl<'a> Builder<'a> {
             if !self.faces[face as usize].alive || self.faces[face as usize].outside.is_empty() {
                 continue;
             }
-            let eye = self.faces[face as usize].outside.iter().copied();
-            let eye = eye.max_by(|&p, &q| self.height(face, p).total_cmp(&self.height(face, q)));
-            self.raise(face, eye.unwrap_or_default())?;
+            let outside = self.faces[face as usize].outside.iter().copied();
+            let apex = outside.max_by(|&p, &q| self.height(face, p).total_cmp(&self.height(face, q)));
+            self.add_point(face, apex.unwrap_or_default())?;
         }
         Ok(())
     }
 
-    /// Replaces the faces that see `eye` by a cone from their border to it.
-    fn raise(&mut self, face: u32, eye: u32) -> Result<(), HullError> {
-        let (visible, horizon) = self.horizon(face, eye)?;
+    /// Replaces the faces visible from `apex` by a cone from their border to it.
+    fn add_point(&mut self, face: u32, apex: u32) -> Result<(), HullError> {
+        let (visible, horizon) = self.horizon(face, apex)?;
         let mut orphans = Vec::new();
         for f in visible {
             self.faces[f as usize].alive = false;
@@ -124,15 +124,15 @@ impl<'a> Builder<'a> {
         }
         let mut cone = Vec::with_capacity(horizon.len());
         for (a, b) in horizon {
-            cone.push(self.add([a, b, eye]).ok_or(HullError::Numeric)?);
+            cone.push(self.add([a, b, apex]).ok_or(HullError::Numeric)?);
         }
-        orphans.retain(|&p| p != eye);
+        orphans.retain(|&p| p != apex);
         self.distribute(orphans, &cone);
         Ok(())
     }
 
-    /// The connected faces that `eye` is above, and the directed edges around them.
-    fn horizon(&self, face: u32, eye: u32) -> Result<Horizon, HullError> {
+    /// The connected faces visible from `apex`, and the directed edges around them.
+    fn horizon(&self, face: u32, apex: u32) -> Result<Horizon, HullError> {
         let mut visible = vec![face];
         let mut seen = std::collections::HashSet::from([face]);
         let mut border = Vec::new();
@@ -146,7 +146,7 @@ impl<'a> Builder<'a> {
                 if seen.contains(&beyond) {
                     continue;
                 }
-                if self.sees(eye, beyond, a, b) {
+                if self.is_visible(apex, beyond, a, b) {
                     seen.insert(beyond);
                     visible.push(beyond);
                 } else {
@@ -158,13 +158,13 @@ impl<'a> Builder<'a> {
         Ok((visible, border.into_iter().map(|(a, b, _)| (a, b)).collect()))
     }
 
-    /// A face is replaced where the point is above it, or in its plane and beyond the shared edge's line, so that no
-    /// sliver is raised over an edge the point is in line with.
-    fn sees(&self, eye: u32, face: u32, a: u32, b: u32) -> bool {
-        if self.height(face, eye) > self.tolerance {
+    /// A face is replaced where the point is above it, or where the point is collinear with the shared edge, which would
+    /// otherwise become a sliver.
+    fn is_visible(&self, apex: u32, face: u32, a: u32, b: u32) -> bool {
+        if self.height(face, apex) > self.tolerance {
             return true;
         }
-        let [a, b, e] = [a, b, eye].map(|i| self.points[i as usize]);
+        let [a, b, e] = [a, b, apex].map(|i| self.points[i as usize]);
         let along = b - a;
         (e - a).cross(along).length() <= self.tolerance * along.length()
     }

@@ -19,7 +19,7 @@ impl Sphere {
         4.0 / 3.0 * std::f64::consts::PI * self.radius.powi(3)
     }
 
-    /// The point farthest along `dir`, local frame.
+    /// The support point: the point farthest along `dir`, local frame.
     pub fn support(&self, dir: Vec3) -> Vec3 {
         dir.try_normalize().map_or(Vec3::ZERO, |d| d * self.radius)
     }

@@ -1,114 +1,68 @@
-//! Questions about a state of a scene.
+//! Collision queries about a state of a scene.
 
-mod answer;
-mod approach;
-mod between;
-mod collision;
-mod first;
-mod list;
-pub(crate) mod narrow;
-mod near;
-mod nearest;
+mod approaching;
+mod broad_phase;
+mod collision_point;
+mod contact;
+pub(crate) mod core;
+mod distances_within;
+mod minimum_distance;
+mod options;
+mod pair_distance;
+pub(crate) mod pair_list;
+mod pair_query;
+mod result;
 
-pub use answer::{CollisionPoint, Contact, Distance};
-pub use between::Between;
+pub use options::CheckerOptions;
+pub use pair_query::PairQuery;
+pub use result::{ApproachingPair, CollisionPoint, PairContact, PairDistance};
 
 use elbowroom_proximity::contact::Detail;
-use elbowroom_spatial::Motion;
+use elbowroom_robot::{GeometryId, RobotId};
 
-use crate::sweep::Sweeper;
-use crate::{
-    Approach, Counts, Impact, Level, LevelOfDetail, Member, Move, Scene, SceneError, SceneMotion, SceneState,
-    Selection, SweepOptions,
-};
-pub(crate) use list::{Pair, PairList};
-use narrow::Narrow;
+use self::core::CheckerCore;
+use self::pair_list::PairList;
+use crate::sweep::{SweepHit, SweepMove, SweepOptions, Sweeper};
+use crate::{CheckerStats, Level, LevelOfDetail, Scene, SceneError, SceneMotion, SceneState, Selection};
 
-/// How questions are answered. None of these but [`Options::level`] changes an answer; at levels of enclosing volumes the
-/// matrix, which knows more than they do, makes it more exact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
-    /// How closely solids are looked at.
-    pub level: Level,
-    /// Where [`Level::Auto`] begins: [`Level::L1`], [`Level::L2`], or [`Level::L3`], which is to look at nothing but the
-    /// exact geometry.
-    pub start: Level,
-    /// Whether the likeliest pairs are looked at first, by kinematics and by what was found before. Without, the order
-    /// is that of the hierarchy: of several contacts, the one nearest to a base is told.
-    pub weights: bool,
-    /// Whether pairs that the matrix knows to be out of reach are passed over. Pairs that are none by rule (neighbours,
-    /// SRDF, by hand) never count.
-    pub matrix: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { level: Level::Auto, start: Level::L1, weights: true, matrix: true }
-    }
-}
-
-/// Answers questions about states of one scene; each thread has its own.
+/// Answers queries about states of one scene; each thread has its own.
 ///
-/// It remembers what it found (likely pairs, nearest triangles), which makes the next answer faster, never different.
-/// Questions do not allocate, except the first about a [selection](Checker::between) and the first after something
-/// was attached or detached.
+/// It keeps warm starts (likely pairs, nearest triangles), which make the next answer faster, never different. Queries do not
+/// allocate, except the first one about a [selection](Checker::between) and the first one after an object was attached or
+/// detached.
 ///
 /// ```
-/// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+/// use elbowroom_robot::RobotId;
+/// use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection, example};
 /// let scene = example::two_arms();
+/// let [left, right] = [RobotId(0), RobotId(1)].map(Selection::Robot);
 /// let mut state = SceneState::new(&scene);
-/// let mut checker = Checker::new(&scene, Options::default());
+/// let mut checker = Checker::new(&scene, CheckerOptions::default());
 /// assert!(checker.collides(&state).is_none());
 /// let nearest = checker.distance(&state).unwrap();
 /// assert!(nearest.lower_bound <= nearest.metres && checker.within(&state, nearest.metres + 1e-6).is_some());
-/// let upright = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
-/// state.set_q(&scene, 0, &[0.0, 0.7, 0.0])?; // leans over to the other arm
-/// let leaning = checker.between(Selection::Robot(0), Selection::Robot(1)).distance(&state).unwrap();
+/// let upright = checker.between(left, right).distance(&state).unwrap();
+/// state.set_q(&scene, RobotId(0), &[0.0, 0.7, 0.0])?; // leans towards the other arm
+/// let leaning = checker.between(left, right).distance(&state).unwrap();
 /// assert!(leaning.metres < upright.metres);
 /// # Ok::<(), elbowroom_scene::SceneError>(())
 /// ```
 #[derive(Debug)]
 pub struct Checker<'s> {
-    core: Core<'s>,
+    core: CheckerCore<'s>,
     lists: Vec<PairList>,
-    /// Made when first asked.
+    /// Made at the first sweep.
     sweeper: Option<Box<Sweeper>>,
 }
 
-/// All but the pair lists.
-#[derive(Debug)]
-pub(crate) struct Core<'s> {
-    pub scene: &'s Scene,
-    pub options: Options,
-    pub narrow: Narrow,
-    candidates: Vec<Candidate>,
-    /// Per model: how it moves, and a speed (m/s) that none of its points exceeds. Memory of one question.
-    moving: Vec<(Motion, f64)>,
-    /// The nearest pair is no farther, metres.
-    guessed: f64,
-    /// The finest level that the present answer has needed.
-    pub deepest: Level,
-}
-
-/// A pair that is still in question.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    /// What it is sorted by: small first.
-    key: f64,
-    rank: u32,
-    index: u32,
-}
-
 impl<'s> Checker<'s> {
-    /// For a scene, ready for questions about everything.
-    pub fn new(scene: &'s Scene, options: Options) -> Self {
-        let narrow = Narrow::new(scene);
-        // Models that are made when first asked for are asked for now.
+    /// A checker of a scene, ready for queries about all pairs.
+    pub fn new(scene: &'s Scene, options: CheckerOptions) -> Self {
+        let core = CheckerCore::new(scene, options);
+        // Models that are built at first use are built now.
         scene.models.iter().for_each(|m| _ = m.at(options.level));
-        let (candidates, moving) = (Vec::new(), Vec::with_capacity(scene.models.len()));
-        let core = Core { scene, options, narrow, candidates, moving, guessed: f64::INFINITY, deepest: Level::L1 };
         let mut checker = Self { core, lists: Vec::new(), sweeper: None };
-        checker.between(Selection::All, Selection::All).fresh(&SceneState::new(scene));
+        checker.all().update(&SceneState::new(scene));
         checker
     }
 
@@ -117,146 +71,155 @@ impl<'s> Checker<'s> {
         self.core.scene
     }
 
-    /// How it answers.
-    pub fn options(&self) -> Options {
+    /// Its settings.
+    pub fn options(&self) -> CheckerOptions {
         self.core.options
     }
 
-    /// What it has done so far.
-    pub fn counts(&self) -> Counts {
-        self.core.narrow.counts
+    /// Statistics of its queries so far.
+    pub fn stats(&self) -> CheckerStats {
+        self.core.narrow.stats
     }
 
-    /// Counts from zero again.
-    pub fn reset_counts(&mut self) {
-        self.core.narrow.counts = Counts::default();
+    /// Sets the statistics to zero.
+    pub fn reset_stats(&mut self) {
+        self.core.narrow.stats = CheckerStats::default();
     }
 
-    /// The finest level that the last answer needed.
+    /// The finest level that the last query needed.
     pub fn last_level(&self) -> Level {
-        self.core.deepest
+        self.core.finest
     }
 
-    /// Questions about pairs with one member in each selection. Equal selections: the pairs within, as a robot's
-    /// self-collision. Pairs that are none by rule stay none, even where both are named; two objects, which are no pair
-    /// otherwise, are one where nothing but objects is named.
+    /// Queries about pairs with one geometry in each selection. Equal selections: the pairs within, as the self-collision of a
+    /// robot. Pairs excluded by rule stay excluded, even where both are named; two objects, which are no pair otherwise, are
+    /// one where only objects are named.
     ///
     /// ```
     /// use elbowroom_kinematics::LinkId;
-    /// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+    /// use elbowroom_robot::{ObjectId, RobotId};
+    /// use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection, example};
     /// let scene = example::two_arms();
     /// let state = SceneState::new(&scene);
-    /// let mut checker = Checker::new(&scene, Options::default());
-    /// let hand = Selection::Link { robot: 0, link: LinkId(3) };
-    /// assert!(checker.between(hand, Selection::Objects).distance(&state).unwrap().metres > 0.0);
-    /// assert!(checker.between(Selection::Robot(0), Selection::Robot(0)).collides(&state).is_none());
-    /// let (part, table) = (Selection::Object(0), Selection::Object(1));
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
+    /// let robot = RobotId(0);
+    /// let forearm = Selection::Link { robot, link: LinkId(3) };
+    /// assert!(checker.between(forearm, Selection::Objects).distance(&state).unwrap().metres > 0.0);
+    /// assert!(checker.between(Selection::Robot(robot), Selection::Robot(robot)).collides(&state).is_none());
+    /// let [part, table] = [ObjectId(0), ObjectId(1)].map(Selection::Object);
     /// assert!(checker.between(part, table).within(&state, 0.01).is_some());
     /// ```
-    pub fn between(&mut self, one: Selection, other: Selection) -> Between<'_, 's> {
+    pub fn between(&mut self, one: Selection, other: Selection) -> PairQuery<'_, 's> {
         let key = (one, other);
-        let list = self.lists.iter().position(|l| l.key == key).unwrap_or_else(|| {
+        let at = self.lists.iter().position(|l| l.key == key).unwrap_or_else(|| {
             self.lists.push(PairList::new(key));
             self.lists.len() - 1
         });
-        Between { checker: self, list }
+        PairQuery { core: &mut self.core, list: &mut self.lists[at], sweeper: &mut self.sweeper }
     }
 
-    /// A pair that is in contact (not farther apart than its margin), or `None` where there is none.
-    pub fn collides(&mut self, state: &SceneState) -> Option<Contact> {
-        self.between(Selection::All, Selection::All).collides(state)
+    /// Queries about all pairs.
+    fn all(&mut self) -> PairQuery<'_, 's> {
+        self.between(Selection::All, Selection::All)
     }
 
-    /// Tells every pair in contact, in the order of the hierarchy.
-    pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(Contact)) {
-        self.between(Selection::All, Selection::All).contacts(state, found);
+    /// A pair in contact (not farther apart than its margin), or `None` where there is none.
+    pub fn collides(&mut self, state: &SceneState) -> Option<PairContact> {
+        self.all().collides(state)
     }
 
-    /// A pair that is not farther apart than `tolerance_m` beyond its margin. Less than 0 counts as 0, NaN as infinite.
-    pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<Contact> {
-        self.between(Selection::All, Selection::All).within(state, tolerance_m)
+    /// Every pair in contact, in the order of the hierarchy.
+    pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(PairContact)) {
+        self.all().contacts(state, found);
     }
 
-    /// The nearest pair; `None` where there is no pair at all.
-    pub fn distance(&mut self, state: &SceneState) -> Option<Distance> {
-        self.between(Selection::All, Selection::All).distance(state)
+    /// A pair not farther apart than `tolerance_m` beyond its margin. Values below 0 count as 0, NaN as infinite.
+    pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<PairContact> {
+        self.all().within(state, tolerance_m)
     }
 
-    /// Where the robot collides: the point, the link, the body and its triangle, and the normals (S4). Of several
-    /// collisions it is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` where
-    /// nothing collides, margins included.
+    /// The nearest pair with its distance and witness points; `None` where there is no pair at all.
+    pub fn distance(&mut self, state: &SceneState) -> Option<PairDistance> {
+        self.all().distance(state)
+    }
+
+    /// The collision point: the point, the link, the collider and its triangle, and the normals (S4). Of several collisions it
+    /// is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` where nothing collides,
+    /// margins included.
     ///
-    /// [`Detail::Boxes`] stops at a depth of the meshes' trees of boxes: "nothing collides" is certain then, a
-    /// collision may be none, and the point is a point of the surface in the box. [`Detail::Exact`] goes on to the triangles;
-    /// which of those that touch is told is laid down in [`contact`](elbowroom_proximity::contact), alike on every
-    /// instruction set. Solids are looked at, whatever [`Options::level`] says. Allocates only for hulls.
+    /// [`Detail::Boxes`] stops at a depth of the box trees of the meshes: "nothing collides" is certain then, a collision may be
+    /// none, and the point is a point of the surface in the box. [`Detail::Exact`] goes on to the triangles; which of several
+    /// touching triangles is reported is specified in [`contact`](elbowroom_proximity::contact), the same on every instruction
+    /// set. Compares the exact models, whatever [`CheckerOptions::level`] is. Allocates only for hulls.
     ///
     /// ```
-    /// use elbowroom_proximity::contact::Detail;
-    /// use elbowroom_scene::{Checker, Options, SceneState, example};
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{Checker, CheckerOptions, Detail, SceneState, example};
     /// let scene = example::two_arms();
     /// let mut state = SceneState::new(&scene);
-    /// let mut checker = Checker::new(&scene, Options::default());
-    /// assert!(checker.collision(&state, Detail::Exact).is_none());
-    /// state.set_q(&scene, 0, &[0.0, 1.57, 0.0])?;
-    /// let met = checker.collision(&state, Detail::Exact).expect("the arm lies in the part and the table");
-    /// assert_eq!([met.link, met.other].map(|m| scene.name(m)), ["left/forearm", "part"]);
-    /// assert!(met.touching && met.on_link.distance(met.on_other) < 0.1);
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
+    /// assert!(checker.collision_point(&state, Detail::Exact).is_none());
+    /// state.set_q(&scene, RobotId(0), &[0.0, 1.57, 0.0])?;
+    /// let hit = checker.collision_point(&state, Detail::Exact).expect("the arm overlaps the part and the table");
+    /// assert_eq!([hit.link, hit.other].map(|id| scene.name(id)), ["left/forearm", "part"]);
+    /// assert!(hit.touching && hit.on_link.distance(hit.on_other) < 0.1);
     /// # Ok::<(), elbowroom_scene::SceneError>(())
     /// ```
-    pub fn collision(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
-        self.between(Selection::All, Selection::All).collision(state, detail)
+    pub fn collision_point(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
+        self.all().collision_point(state, detail)
     }
 
-    /// Tells every pair that is not certainly farther apart than `margin_m` beyond its own margin: distance, proven lower
-    /// bound, nearest points; in the order of the hierarchy (nearest to a base first). What is in contact has distance 0
-    /// and a point in or near both. Work ends where a pair is proven to be farther. A pair is told exactly where
-    /// [`Checker::within`] would tell one; less than 0 counts as 0, NaN as infinite. [`Level::L1`] is answered at
-    /// [`Level::L2`].
+    /// Every pair that is not certainly farther apart than `margin_m` beyond its own margin, with distance, proven lower bound
+    /// and witness points, in the order of the hierarchy (nearest to a base first). A pair in contact has distance 0 and a point
+    /// in or near both. Reports a pair exactly where [`Checker::within`] would find one; values below 0 count as 0, NaN
+    /// as infinite. [`Level::L1`] is answered at [`Level::L2`].
     ///
     /// ```
-    /// use elbowroom_scene::{Checker, Options, SceneState, Selection, example};
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection, example};
     /// let scene = example::two_arms();
     /// let mut state = SceneState::new(&scene);
-    /// state.set_q(&scene, 0, &[0.0, 1.2, 0.3])?;
-    /// let mut checker = Checker::new(&scene, Options::default());
+    /// state.set_q(&scene, RobotId(0), &[0.0, 1.2, 0.3])?;
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
     /// let mut near = Vec::new();
-    /// checker.between(Selection::Robots, Selection::Objects).near(&state, 0.15, |pair| near.push(pair));
+    /// let mut query = checker.between(Selection::Robots, Selection::Objects);
+    /// query.distances_within(&state, 0.15, |pair| near.push(pair));
     /// let names: Vec<_> = near.iter().map(|d| [scene.name(d.a), scene.name(d.b)].join(" - ")).collect();
     /// assert_eq!(names, ["left/upper_arm - part", "left/upper_arm - table", "left/forearm - part"]);
     /// assert!(near.iter().all(|d| d.lower_bound <= d.metres && d.metres <= 0.15));
     /// # Ok::<(), elbowroom_scene::SceneError>(())
     /// ```
-    pub fn near(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(Distance)) {
-        self.between(Selection::All, Selection::All).near(state, margin_m, found);
+    pub fn distances_within(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(PairDistance)) {
+        self.all().distances_within(state, margin_m, found);
     }
 
-    /// Tells the pairs that are near or that may soon meet as everything moves now, each with its time to collision, in
-    /// the order of the hierarchy: progressive level of detail (S4). Far pairs are looked at by one box each, approaching ones
-    /// deeper in the trees of boxes of their meshes, near and fast ones exactly; `policy` says which. `horizon_s` is how
-    /// far ahead [`Approach::earliest_s`] is proven.
+    /// The pairs that are near or may soon meet at the present velocities, each with its time to collision, in the order of the
+    /// hierarchy: progressive level of detail (S4). Distant pairs are compared by one box each, approaching ones deeper in the
+    /// box trees of their meshes, near and fast ones exactly, as `policy` says. `horizon_s` limits
+    /// [`ApproachingPair::earliest_s`].
     ///
-    /// Guaranteed, whatever the policy: what is nearer than `exact_m`, or is not proven to be apart for `exact_s`, is
-    /// measured exactly, contact included; what is told coarsely is farther, and a pair that is not told is farther than
-    /// `within_m` and does not meet within `exact_s`. A speed or a distance that is not a number is near and soon. Solids
-    /// are looked at, whatever [`Options::level`] says.
+    /// Guaranteed for every policy: a pair nearer than `exact_m`, or not proven to be apart for `exact_s`, is measured
+    /// exactly, contact included; a pair reported coarsely is farther; and a pair that is not reported is farther than
+    /// `within_m` and does not meet within `exact_s`. NaN speeds and distances count as near and soon. Compares the exact
+    /// models, whatever [`CheckerOptions::level`] is.
     ///
     /// ```
-    /// use elbowroom_scene::{Approach, Checker, LevelOfDetail, Options, SceneMotion, SceneState, example};
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{ApproachingPair, Checker, CheckerOptions, LevelOfDetail, SceneMotion, SceneState, example};
     /// let scene = example::two_arms();
     /// let mut state = SceneState::new(&scene);
-    /// state.set_q(&scene, 0, &[0.0, 0.9, 0.3])?;
+    /// state.set_q(&scene, RobotId(0), &[0.0, 0.9, 0.3])?;
     /// let mut motion = SceneMotion::new(&scene);
-    /// motion.set_qd(&scene, &state, 0, &[0.0, 0.5, 0.0])?; // goes down to the part
-    /// let mut checker = Checker::new(&scene, Options::default());
+    /// motion.set_qd(&scene, &state, RobotId(0), &[0.0, 0.5, 0.0])?; // down towards the part
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
     /// let mut soonest = None;
     /// checker.approaching(&state, &motion, &LevelOfDetail::default(), 2.0, |p| {
-    ///     if soonest.is_none_or(|s: Approach| p.estimate_s < s.estimate_s) {
+    ///     if soonest.is_none_or(|s: ApproachingPair| p.estimate_s < s.estimate_s) {
     ///         soonest = Some(p);
     ///     }
     /// });
-    /// let soonest = soonest.expect("it comes near the part");
-    /// assert_eq!([soonest.a, soonest.b].map(|m| scene.name(m)), ["left/forearm", "part"]);
+    /// let soonest = soonest.expect("it approaches the part");
+    /// assert_eq!([soonest.a, soonest.b].map(|id| scene.name(id)), ["left/forearm", "part"]);
     /// assert!(soonest.earliest_s > 0.0 && soonest.earliest_s <= soonest.estimate_s);
     /// # Ok::<(), elbowroom_scene::SceneError>(())
     /// ```
@@ -266,83 +229,86 @@ impl<'s> Checker<'s> {
         motion: &SceneMotion,
         policy: &LevelOfDetail,
         horizon_s: f64,
-        found: impl FnMut(Approach),
+        found: impl FnMut(ApproachingPair),
     ) {
-        self.between(Selection::All, Selection::All).approaching(state, motion, policy, horizon_s, found);
+        self.all().approaching(state, motion, policy, horizon_s, found);
     }
 
-    /// The first time that a pair is nearer than its margin while things move, or `None` where nothing is during all of
-    /// the motion: proven, not sampled, so that no thin plate is jumped over. What is not in `moves` stands where `start`
-    /// has it. Pairs that are none by rule (neighbours, SRDF, by hand) never count; a link that no joint moves counts
-    /// against an object that moves by itself, objects among themselves only where nothing but objects is
+    /// Continuous collision detection: the first time at which a pair is nearer than its margin during a motion, or `None`
+    /// where no pair is during all of it. Proven, not sampled, so that nothing thin is passed through. What is not in `moves`
+    /// keeps its pose of `start`. Pairs excluded by rule (adjacent links, SRDF, by hand) never count; a link that no joint moves
+    /// counts against an object on a path of its own, objects among themselves only where only objects are
     /// [named](Checker::between).
     ///
-    /// The first sweep takes memory, and later ones where they are longer than any before. [`Level::L1`] is answered at
+    /// The first sweep allocates, and later ones where they are longer than any before. [`Level::L1`] is answered at
     /// [`Level::L2`].
     ///
     /// ```
-    /// use elbowroom_proximity::impact::Steady;
-    /// use elbowroom_scene::{Checker, Move, Options, SceneState, SweepOptions, example};
+    /// use elbowroom_proximity::ccd::ConstantTwist;
+    /// use elbowroom_robot::{ObjectId, RobotId};
+    /// use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepMove, SweepOptions, example};
     /// use elbowroom_spatial::Vec3;
     /// let scene = example::two_arms();
     /// let mut start = SceneState::new(&scene);
-    /// start.set_q(&scene, 0, &[-0.9, 1.3, 0.6])?;
-    /// let mut checker = Checker::new(&scene, Options::default());
-    /// // Across the part on the table: both ends are free, the way is not.
-    /// let across = [Move::Robot { robot: 0, to: &[0.9, 1.3, 0.6] }];
-    /// let hit = checker.sweep(&start, &across, &SweepOptions::default())?.expect("in the way");
+    /// start.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6])?;
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
+    /// // Across the part on the table: both ends are free, the segment between them is not.
+    /// let across = [SweepMove::Robot { robot: RobotId(0), to: &[0.9, 1.3, 0.6] }];
+    /// let hit = checker.sweep(&start, &across, &SweepOptions::default())?.expect("the part is hit");
     /// assert_eq!((scene.name(hit.a), scene.name(hit.b)), ("left/forearm".into(), "part".into()));
     /// assert!(hit.certain && hit.metres <= 1e-4);
-    /// // The part comes along by itself.
+    /// // The part moves on a path of its own.
     /// let part = scene.objects()[0].in_world;
-    /// let path = Steady::linear(part, Vec3::X * -0.6);
-    /// let hit = checker.sweep(&start, &[Move::Object { object: 0, path: &path }], &SweepOptions::default())?;
+    /// let path = ConstantTwist::linear(part, Vec3::X * -0.6);
+    /// let moves = [SweepMove::Object { object: ObjectId(0), path: &path }];
+    /// let hit = checker.sweep(&start, &moves, &SweepOptions::default())?;
     /// assert!(hit.is_some_and(|h| h.time > 0.3));
     /// # Ok::<(), elbowroom_scene::SceneError>(())
     /// ```
     ///
     /// # Errors
-    /// As [`SceneState::set_q`] and [`SceneState::place`], for the end of the motion; something that moves twice.
+    /// As [`SceneState::set_q`] and [`SceneState::place`], for the end of the motion; a robot or object that moves twice.
     pub fn sweep(
         &mut self,
         start: &SceneState,
-        moves: &[Move],
+        moves: &[SweepMove],
         options: &SweepOptions,
-    ) -> Result<Option<Impact>, SceneError> {
-        self.between(Selection::All, Selection::All).sweep(start, moves, options)
+    ) -> Result<Option<SweepHit>, SceneError> {
+        self.all().sweep(start, moves, options)
     }
 
-    /// [`Checker::sweep`] of one robot through waypoints (joint values, rad or m), straight in joint space from each to
-    /// the next; the first is where `start` has the robot already or the end of the first segment. With the impact
-    /// comes the index of the waypoint that was being gone to; its time is that of the segment.
+    /// [`Checker::sweep`] of one robot through waypoints (joint values, rad or m), straight in joint space from each to the
+    /// next. The first waypoint is either the configuration in `start` or the end of the first segment. Returns the hit with the
+    /// index of the waypoint at the end of its segment; its time is that of the segment.
     ///
     /// ```
-    /// use elbowroom_scene::{Checker, Options, SceneState, SweepOptions, example};
-    /// let scene = example::two_arms();
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepOptions, example};
+    /// let (scene, robot) = (example::two_arms(), RobotId(0));
     /// let mut start = SceneState::new(&scene);
-    /// start.set_q(&scene, 0, &[-0.9, 1.3, 0.6])?;
-    /// let mut checker = Checker::new(&scene, Options::default());
+    /// start.set_q(&scene, robot, &[-0.9, 1.3, 0.6])?;
+    /// let mut checker = Checker::new(&scene, CheckerOptions::default());
     /// let over = [[-0.9, 0.2, 0.6], [0.9, 0.2, 0.6], [0.9, 1.3, 0.6]];
-    /// assert_eq!(checker.sweep_path(&start, 0, &over, &SweepOptions::default())?, None);
+    /// assert_eq!(checker.sweep_path(&start, robot, &over, &SweepOptions::default())?, None);
     /// # Ok::<(), elbowroom_scene::SceneError>(())
     /// ```
     ///
     /// # Errors
-    /// As [`Checker::sweep`], for any of the waypoints, before anything is looked at.
+    /// As [`Checker::sweep`], for any of the waypoints, before anything is tested.
     pub fn sweep_path<Q: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,
-        robot: usize,
+        robot: RobotId,
         waypoints: &[Q],
         options: &SweepOptions,
-    ) -> Result<Option<(usize, Impact)>, SceneError> {
-        self.between(Selection::All, Selection::All).sweep_path(start, robot, waypoints, options)
+    ) -> Result<Option<(usize, SweepHit)>, SceneError> {
+        self.all().sweep_path(start, robot, waypoints, options)
     }
 
-    /// The weights as they are now, of the pairs of everything: (a, b, weight), in the order of the hierarchy.
-    pub fn weights(&self) -> impl Iterator<Item = (Member, Member, f64)> + '_ {
+    /// The present weights of all pairs: (a, b, weight), in the order of the hierarchy.
+    pub fn weights(&self) -> impl Iterator<Item = (GeometryId, GeometryId, f64)> + '_ {
         let models = &self.core.scene.models;
         let all = self.lists.first().map_or(&[][..], |l| &l.pairs);
-        all.iter().map(|p| (models[p.a as usize].member, models[p.b as usize].member, p.weight))
+        all.iter().map(|p| (models[p.a as usize].id, models[p.b as usize].id, p.weight))
     }
 }

@@ -1,4 +1,4 @@
-//! Random scenes, and the plain way to answer questions about them.
+//! Random scenes, and direct answers to queries about them.
 #![allow(dead_code)]
 
 use std::sync::Arc;
@@ -7,8 +7,9 @@ use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::{
     Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, separation, tessellate,
 };
-use elbowroom_scene::pairs::pairs;
-use elbowroom_scene::{Body, Member, Object, Robot, Scene, SceneBuilder, SceneState, example};
+use elbowroom_robot::{Collider, GeometryId, Robot, RobotId, collision_pairs};
+
+use elbowroom_scene::{Object, Scene, SceneBuilder, SceneState};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 pub struct Random(pub u64);
@@ -37,7 +38,7 @@ impl Random {
         [self.between(-3.0, 3.0), self.between(-2.2, 2.2), self.between(-2.5, 2.5)]
     }
 
-    pub fn solid(&mut self, kind: usize, size: f64) -> Shape {
+    pub fn shape(&mut self, kind: usize, size: f64) -> Shape {
         let mut h = || self.between(0.3 * size, size);
         let (x, y, z) = (h(), h(), h());
         match kind {
@@ -47,12 +48,12 @@ impl Random {
             3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) }),
             4 => Shape::Hull(Arc::new(ConvexHull::from_points(&self.points(size)).unwrap())),
             _ => {
-                // Two lumps side by side: not convex.
+                // Two convex parts side by side: not convex.
                 let hull = ConvexHull::from_points(&self.points(0.5 * size)).unwrap();
-                let lump = |shift: f64| hull.vertices().iter().map(move |&v| v + Vec3::X * shift);
+                let part = |shift: f64| hull.vertices().iter().map(move |&v| v + Vec3::X * shift);
                 let count = hull.vertices().len() as u32;
                 let triangles = hull.triangles().iter().flat_map(|&t| [t, t.map(|i| i + count)]).collect();
-                let vertices = lump(-0.7 * size).chain(lump(0.7 * size)).collect();
+                let vertices = part(-0.7 * size).chain(part(0.7 * size)).collect();
                 Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()))
             }
         }
@@ -65,23 +66,23 @@ impl Random {
 
 /// The example arm with meshes in place of its capsules.
 pub fn mesh_arm() -> Robot {
-    let mut robot = example::arm().unwrap();
-    for body in robot.bodies.iter_mut().flatten() {
-        let (vertices, triangles) = tessellate::tessellate(&body.shape, 0.004);
-        body.shape = Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()));
+    let mut robot = elbowroom_robot::example::arm().unwrap();
+    for collider in robot.colliders.iter_mut().flatten() {
+        let (vertices, triangles) = tessellate::tessellate(&collider.shape, 0.004);
+        collider.shape = Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()));
     }
     robot
 }
 
-/// The example arm with several solids of all kinds per link.
+/// The example arm with several colliders of all kinds per link.
 pub fn mixed_arm(r: &mut Random) -> Robot {
-    let mut robot = example::arm().unwrap();
-    for (link, bodies) in robot.bodies.iter_mut().enumerate() {
+    let mut robot = elbowroom_robot::example::arm().unwrap();
+    for (link, colliders) in robot.colliders.iter_mut().enumerate() {
         let along = if link == 0 { 0.05 } else { 0.2 };
         for k in 0..3 {
             let mut in_link = r.pose(0.05);
             in_link.translation += Vec3::Z * along;
-            bodies.push(Body { name: format!("{k}"), shape: r.solid((link + 2 * k) % 6, 0.06), in_link });
+            colliders.push(Collider { name: format!("{k}"), shape: r.shape((link + 2 * k) % 6, 0.06), in_link });
         }
     }
     robot
@@ -94,7 +95,7 @@ pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
     builder.robot("meshes", mesh_arm(), Pose::IDENTITY);
     builder.robot("mixed", mixed_arm(&mut r), Pose::from_translation(Vec3::X * 0.75));
     for kind in 0..6 {
-        let shape = r.solid(kind, 0.12);
+        let shape = r.shape(kind, 0.12);
         let mut in_world = r.pose(0.3);
         in_world.translation += Vec3::new(0.4, if kind % 2 == 0 { 0.5 } else { -0.5 }, 0.6);
         builder.object(Object { name: format!("thing {kind}"), shape, in_world });
@@ -105,31 +106,36 @@ pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
     builder.build().unwrap()
 }
 
-/// All solids of a member as they are placed now.
-pub fn solids(scene: &Scene, state: &SceneState, member: Member) -> Vec<(Shape, Pose)> {
-    let in_world = state.pose(scene, member).unwrap();
-    match member {
-        Member::Object(o) => vec![(scene.objects()[o].shape.clone(), in_world)],
-        Member::Link { robot, link } => {
-            scene.robots()[robot].robot.bodies[link.0].iter().map(|b| (b.shape.clone(), in_world * b.in_link)).collect()
-        }
+/// All shapes of a link or object with their present poses.
+pub fn shapes(scene: &Scene, state: &SceneState, id: GeometryId) -> Vec<(Shape, Pose)> {
+    let in_world = state.pose(scene, id).unwrap();
+    match id {
+        GeometryId::Object(o) => vec![(scene.objects()[o.0].shape.clone(), in_world)],
+        GeometryId::Link { robot, link } => scene.robots()[robot.0].robot.colliders[link.0]
+            .iter()
+            .map(|b| (b.shape.clone(), in_world * b.in_link))
+            .collect(),
     }
 }
 
-/// Distance of two members by asking every pair of solids.
-pub fn apart(scene: &Scene, state: &SceneState, a: Member, b: Member) -> f64 {
-    let (of_a, of_b) = (solids(scene, state, a), solids(scene, state, b));
+/// Distance of two links or objects by measuring every pair of shapes.
+pub fn apart(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId) -> f64 {
+    let (of_a, of_b) = (shapes(scene, state, a), shapes(scene, state, b));
     let all = of_a.iter().flat_map(|(s, p)| of_b.iter().map(move |(t, q)| separation(s, p, t, q).distance));
     all.fold(f64::INFINITY, f64::min)
 }
 
-/// Every pair by rule with its distance less its padding, the plain way.
-pub fn plain(scene: &Scene, state: &SceneState, padding: impl Fn(Member) -> f64) -> Vec<(Member, Member, f64)> {
+/// Every pair by rule with its distance less its padding, measured directly.
+pub fn all_distances(
+    scene: &Scene,
+    state: &SceneState,
+    padding: impl Fn(GeometryId) -> f64,
+) -> Vec<(GeometryId, GeometryId, f64)> {
     let robots: Vec<&Robot> = scene.robots().iter().map(|r| &r.robot).collect();
-    let list = pairs(&robots, scene.objects().len());
+    let list = collision_pairs(&robots, scene.objects().len());
     list.into_iter().map(|(a, b)| (a, b, (apart(scene, state, a, b) - padding(a) - padding(b)).max(0.0))).collect()
 }
 
-pub fn link(robot: usize, link: usize) -> Member {
-    Member::Link { robot, link: LinkId(link) }
+pub fn link(robot: usize, link: usize) -> GeometryId {
+    GeometryId::Link { robot: RobotId(robot), link: LinkId(link) }
 }

@@ -1,11 +1,12 @@
-//! Our own RX60B from the examples, read without the formats' room, which stands above this one.
+//! The RX60B of the examples, read without the `formats` crate, which depends on this one.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, TriMesh};
-use elbowroom_scene::{Body, Robot};
+use elbowroom_robot::{Collider, Robot};
+
 use elbowroom_spatial::{Pose, Vec3};
 
 /// Origin (m), axis, lower and upper limit (rad), as in its URDF.
@@ -37,9 +38,9 @@ pub fn robot() -> Robot {
     let mut robot =
         Robot::new(Chain::new("rx60b", names.clone(), JOINTS.into_iter().enumerate().map(joint).collect()).unwrap());
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/models/rx60b/meshes");
-    for (bodies, name) in robot.bodies.iter_mut().zip(names) {
+    for (colliders, name) in robot.colliders.iter_mut().zip(names) {
         let shape = Shape::Mesh(Arc::new(stl(&folder.join(format!("{name}.stl")))));
-        bodies.push(Body { name, shape, in_link: Pose::IDENTITY });
+        colliders.push(Collider { name, shape, in_link: Pose::IDENTITY });
     }
     robot
 }

@@ -1,16 +1,16 @@
-//! Cubes that touch to clusters: union-find over the 26 neighbours.
+//! Clustering of voxels: union-find over the 26 neighbours.
 
-use super::voxels::Voxels;
-use crate::sets::Sets;
+use super::voxel_grid::VoxelGrid;
+use crate::disjoint_sets::DisjointSets;
 
-/// Clusters of cubes; memory is reused.
+/// Clusters of voxels; memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
-    sets: Sets,
-    /// Cubes, cluster by cluster.
+    sets: DisjointSets,
+    /// Voxels, cluster by cluster.
     pub(super) members: Vec<u32>,
     /// Where each cluster ends in `members`.
-    pub(super) ends: Vec<u32>,
+    ends: Vec<u32>,
     cluster_of: Vec<u32>,
     sizes: Vec<u32>,
 }
@@ -18,26 +18,26 @@ pub(super) struct Clusters {
 const NONE: u32 = u32::MAX;
 
 impl Clusters {
-    /// Clusters cubes with at least `least_points` points; clusters of fewer than `least_voxels` cubes are left out. In
-    /// the order in which their first cubes were met.
-    pub(super) fn find(&mut self, voxels: &Voxels, least_points: u32, least_voxels: u32) {
+    /// Clusters voxels with at least `min_points` points; clusters of fewer than `min_voxels` voxels are dropped. The
+    /// order is that of their first voxels.
+    pub(super) fn find(&mut self, voxels: &VoxelGrid, min_points: u32, min_voxels: u32) {
         self.sets.parent.clear();
-        let counts = |place: usize| voxels.list[place].points >= least_points;
-        self.sets.parent.extend((0..voxels.list.len()).map(|i| if counts(i) { i as u32 } else { NONE }));
-        for place in 0..voxels.list.len() {
-            if counts(place) {
-                voxels.neighbours(place, |other| {
-                    if counts(other) {
-                        self.sets.unite(place as u32, other as u32);
+        let is_occupied = |voxel: usize| voxels.list[voxel].points >= min_points;
+        self.sets.parent.extend((0..voxels.list.len()).map(|i| if is_occupied(i) { i as u32 } else { NONE }));
+        for voxel in 0..voxels.list.len() {
+            if is_occupied(voxel) {
+                voxels.neighbours(voxel, |other| {
+                    if is_occupied(other) {
+                        self.sets.union(voxel as u32, other as u32);
                     }
                 });
             }
         }
-        self.list(least_voxels);
+        self.list(min_voxels);
     }
 
-    /// Counts, keeps the large ones, and lists their cubes (counting sort).
-    fn list(&mut self, least_voxels: u32) {
+    /// Counts the voxels of each cluster, keeps the large clusters, and lists their voxels (counting sort).
+    fn list(&mut self, min_voxels: u32) {
         let n = self.sets.parent.len();
         self.sizes.clear();
         self.sizes.resize(n, 0);
@@ -45,14 +45,14 @@ impl Clusters {
         self.cluster_of.resize(n, NONE);
         for i in 0..n as u32 {
             if self.sets.parent[i as usize] != NONE {
-                let root = self.sets.root(i);
+                let root = self.sets.find(i);
                 self.sizes[root as usize] += 1;
             }
         }
         self.ends.clear();
         let mut start = 0;
         for i in 0..n {
-            if self.sizes[i] >= least_voxels.max(1) {
+            if self.sizes[i] >= min_voxels.max(1) {
                 self.cluster_of[i] = self.ends.len() as u32;
                 self.ends.push(start);
                 start += self.sizes[i];
@@ -62,7 +62,7 @@ impl Clusters {
         self.members.resize(start as usize, 0);
         for i in 0..n as u32 {
             if self.sets.parent[i as usize] != NONE {
-                let root = self.sets.root(i) as usize;
+                let root = self.sets.find(i) as usize;
                 if self.cluster_of[root] != NONE {
                     let end = &mut self.ends[self.cluster_of[root] as usize];
                     self.members[*end as usize] = i;
@@ -72,7 +72,7 @@ impl Clusters {
         }
     }
 
-    /// The cubes of each cluster.
+    /// The voxels of each cluster.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         (0..self.ends.len()).map(|c| {
             let from = if c == 0 { 0 } else { self.ends[c - 1] };

@@ -1,88 +1,13 @@
-//! Points in space as a second source of obstacles: PCD and PLY files, depth pictures.
+//! Point clouds as a second source of obstacles: PCD and PLY files, depth images.
 
-mod arm;
+mod arm_filter;
+mod cloud_tracker;
 mod clusters;
 mod depth;
-mod lzf;
-mod pcd;
+mod point_cloud;
 mod settings;
-mod voxels;
-mod watcher;
+mod voxel_grid;
 
-use std::path::Path;
-
-use elbowroom_formats::{FormatError, ply};
-use elbowroom_spatial::Vec3;
-
-use crate::VisionError;
-use crate::decode::read_bytes;
-pub use settings::CloudSettings;
-pub use watcher::{CloudReport, CloudSight, CloudTimings, CloudVision};
-
-/// What a sensor measured at one time, in the sensor's frame, metres.
-///
-/// ```
-/// use elbowroom_vision::cloud::Cloud;
-/// use std::path::Path;
-/// let text = b"VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\nnan 0 0\n";
-/// let mut cloud = Cloud::default();
-/// cloud.decode(text, Path::new("two.pcd"))?;
-/// assert_eq!((cloud.points.len(), cloud.dropped), (1, 1));
-/// # Ok::<(), elbowroom_vision::VisionError>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Cloud {
-    /// What messages call it.
-    pub name: String,
-    /// When it was measured, seconds.
-    pub stamp_s: f64,
-    /// Finite points, sensor's frame, metres.
-    pub points: Vec<Vec3>,
-    /// Points that were none: NaN, infinite, or without a depth. There nothing was measured, which is not free.
-    pub dropped: usize,
-}
-
-impl Cloud {
-    /// Takes points, sensor's frame, metres; those that are not finite are dropped and counted.
-    pub fn fill(&mut self, points: impl IntoIterator<Item = Vec3>) {
-        self.points.clear();
-        self.dropped = 0;
-        for p in points {
-            if p.is_finite() {
-                self.points.push(p);
-            } else {
-                self.dropped += 1;
-            }
-        }
-    }
-
-    /// Reads a `.pcd` (ASCII, binary, compressed) or `.ply` file; name becomes the path.
-    ///
-    /// # Errors
-    /// Files that are missing, cut off or of another kind: the file, the line, what is wrong, what to write instead. The
-    /// cloud is then empty.
-    pub fn read(&mut self, path: &Path) -> Result<(), VisionError> {
-        self.fill([]);
-        let bytes = read_bytes(path)?;
-        self.decode(&bytes, path)
-    }
-
-    /// As [`Cloud::read`], from bytes.
-    ///
-    /// # Errors
-    /// As [`Cloud::read`].
-    pub fn decode(&mut self, bytes: &[u8], file: &Path) -> Result<(), VisionError> {
-        self.fill([]);
-        self.name = file.to_string_lossy().into_owned();
-        if bytes.starts_with(b"ply") {
-            self.fill(ply::parse_points(bytes, file)?);
-            return Ok(());
-        }
-        let is_pcd = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("pcd"));
-        if is_pcd || bytes.starts_with(b"# .PCD") || bytes.starts_with(b"VERSION") {
-            self.fill(pcd::parse(bytes, file)?);
-            return Ok(());
-        }
-        Err(FormatError::new(file, None, "is no point cloud that can be read").hint("a .pcd or a .ply file").into())
-    }
-}
+pub use cloud_tracker::{CloudReport, CloudStatus, CloudTimings, CloudTracker};
+pub use point_cloud::PointCloud;
+pub use settings::CloudTrackerSettings;

@@ -1,28 +1,29 @@
-//! All states that can be reached, and what follows from the graph of them.
+//! Exploration of all reachable states, and properties of their graph.
 
 use std::collections::HashMap;
 
-use super::world::{State, Step, World};
+use super::model::{ModelState, ProtocolModel, Step};
 
-pub(super) struct Graph {
-    pub(super) states: Vec<State>,
-    /// Per state the steps that lead on: who takes them, and where they lead.
+/// The graph of the reachable states.
+pub(super) struct StateGraph {
+    pub(super) states: Vec<ModelState>,
+    /// Per state the steps from it and the states after them.
     next: Vec<Vec<(Step, u32)>>,
 }
 
-/// Breadth first from the start.
+/// Explores the states breadth first.
 ///
 /// # Errors
-/// The first property that some state breaks, in words.
-pub(super) fn explore(world: &World) -> Result<Graph, String> {
-    let start = world.start();
+/// Describes the first property that does not hold.
+pub(super) fn explore(model: &ProtocolModel) -> Result<StateGraph, String> {
+    let start = model.start();
     let mut known = HashMap::from([(start.clone(), 0_u32)]);
-    let mut graph = Graph { states: vec![start], next: Vec::new() };
+    let mut graph = StateGraph { states: vec![start], next: Vec::new() };
     while graph.next.len() < graph.states.len() {
         let state = graph.states[graph.next.len()].clone();
         let mut steps = Vec::new();
-        for step in world.steps(&state) {
-            let next = world.next(&state, step)?;
+        for step in model.steps(&state) {
+            let next = model.next(&state, step)?;
             let fresh = graph.states.len() as u32;
             let index = *known.entry(next.clone()).or_insert(fresh);
             if index == fresh {
@@ -35,20 +36,20 @@ pub(super) fn explore(world: &World) -> Result<Graph, String> {
     Ok(graph)
 }
 
-impl Graph {
+impl StateGraph {
     pub(super) fn steps(&self) -> usize {
         self.next.iter().map(Vec::len).sum()
     }
 
     /// Per state whether all robots can still finish.
-    fn can_finish(&self, world: &World) -> Vec<bool> {
+    fn can_finish(&self, model: &ProtocolModel) -> Vec<bool> {
         let mut before: Vec<Vec<u32>> = vec![Vec::new(); self.states.len()];
         for (from, steps) in self.next.iter().enumerate() {
             for (_, to) in steps {
                 before[*to as usize].push(from as u32);
             }
         }
-        let mut can: Vec<bool> = self.states.iter().map(|s| world.finished(s)).collect();
+        let mut can: Vec<bool> = self.states.iter().map(|s| model.finished(s)).collect();
         let mut open: Vec<u32> = (0..self.states.len() as u32).filter(|i| can[*i as usize]).collect();
         while let Some(state) = open.pop() {
             for from in &before[state as usize] {
@@ -60,34 +61,34 @@ impl Graph {
         can
     }
 
-    /// States from which not all robots can finish any more, and the first of them in words.
-    pub(super) fn stuck_states(&self, world: &World) -> (usize, String) {
-        let can = self.can_finish(world);
-        let first = can.iter().position(|can| !can).map(|i| world.show(&self.states[i]));
+    /// Number of states from which not all robots can finish, and a description of the first.
+    pub(super) fn stuck_states(&self, model: &ProtocolModel) -> (usize, String) {
+        let can = self.can_finish(model);
+        let first = can.iter().position(|can| !can).map(|i| model.describe(&self.states[i]));
         (can.iter().filter(|can| !**can).count(), first.unwrap_or_default())
     }
 
-    /// States in which not all robots can finish any more and nobody can move: how many, and in how many of them the
-    /// board tells of no circle though everybody has asked.
-    pub(super) fn deadlocks(&self, world: &World) -> (usize, usize) {
-        let can = self.can_finish(world);
+    /// Number of states in which not all robots can finish and none can move, and the number of those in which the arbiter
+    /// reports no cycle although all robots have requested their slots.
+    pub(super) fn deadlocks(&self, model: &ProtocolModel) -> (usize, usize) {
+        let can = self.can_finish(model);
         let place = |i: usize| self.states[i].robots.iter().map(|b| b.at).collect::<Vec<_>>();
-        let stands = |i: &usize| !can[*i] && self.next[*i].iter().all(|(_, to)| place(*to as usize) == place(*i));
-        // Two rounds of ticks, in any order, so that everybody has asked.
+        let is_at_rest = |i: &usize| !can[*i] && self.next[*i].iter().all(|(_, to)| place(*to as usize) == place(*i));
+        // No step changes the state: all robots have requested their slots.
         let settled = |i: &usize| self.next[*i].iter().all(|(_, to)| *to as usize == *i);
-        let dead: Vec<usize> = (0..self.states.len()).filter(stands).filter(settled).collect();
-        let silent = dead.iter().filter(|i| !world.tells_circle(&self.states[**i])).count();
-        // Somebody must come to rest in every part of the graph that cannot finish.
-        let lost = (0..self.states.len()).filter(|i| !can[*i]).count();
-        assert!(lost == 0 || !dead.is_empty(), "robots go on for ever without finishing");
+        let dead: Vec<usize> = (0..self.states.len()).filter(is_at_rest).filter(settled).collect();
+        let silent = dead.iter().filter(|i| !model.reports_cycle(&self.states[**i])).count();
+        // Every part of the graph that cannot finish must contain a deadlock.
+        let unfinished = (0..self.states.len()).filter(|i| !can[*i]).count();
+        assert!(unfinished == 0 || !dead.is_empty(), "robots move for ever without finishing");
         (dead.len(), silent)
     }
 
-    /// A robot that can stay where it is for ever though every robot ticks again and again.
-    pub(super) fn starving(&self, world: &World) -> Option<(usize, usize)> {
+    /// A robot that can stay at its place for ever although every robot ticks again and again.
+    pub(super) fn starving(&self, model: &ProtocolModel) -> Option<(usize, usize)> {
         let component = self.components();
         let count = component.iter().max().map_or(0, |m| *m as usize + 1);
-        let robots = world.robots();
+        let robots = model.robots();
         let mut ticks = vec![vec![false; robots]; count];
         let mut first: Vec<Option<usize>> = vec![None; count];
         let mut moves = vec![vec![false; robots]; count];

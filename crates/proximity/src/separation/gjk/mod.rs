@@ -1,14 +1,14 @@
-//! Distance between any two convex cores. The method and its error: `README.md` beside this file.
+//! The GJK algorithm: distance of any two convex cores. The method and its error: README.md in this folder.
 
 mod simplex;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::core::{Core, Gap, rounding};
-use super::projections::WANTED;
+use super::core::Core;
+use super::gap::{CONVERGED, Gap, rounding};
 use simplex::{Simplex, Vertex};
 
-/// More than any pair needs; reaching it ends with the bounds found so far.
+/// More than any pair needs; at this number the bounds found so far are returned.
 const MAX_ITERATIONS: usize = 100;
 
 /// Distance of `a` and `b` in the frame of `b`, starting along `start`, a direction from `b` to `a`.
@@ -16,7 +16,7 @@ const MAX_ITERATIONS: usize = 100;
 pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f64) -> Option<Gap> {
     let t = a_in_b.translation.abs();
     let scale = t.x + t.y + t.z + a.size() + b.size();
-    let slack = rounding(scale);
+    let rounding = rounding(scale);
     let support = |d: Vec3| {
         let on_a = a_in_b.transform_point(a.support(-a_in_b.inverse_transform_vector(d)));
         let on_b = b.support(d);
@@ -24,14 +24,14 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
     };
     let first = start.try_normalize().unwrap_or(Vec3::X);
     let mut simplex = Simplex::new(support(first));
-    let mut lower = simplex.vertices[0].w.dot(first) - slack;
+    let mut lower = simplex.vertices[0].w.dot(first) - rounding;
     if lower > limit {
         return None;
     }
     let mut v = simplex.vertices[0].w;
     let mut upper = v.length();
     for _ in 0..MAX_ITERATIONS {
-        if upper <= slack {
+        if upper <= rounding {
             if lower > 0.0 {
                 break;
             }
@@ -39,14 +39,14 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
         }
         let direction = v / upper;
         let next = support(direction);
-        lower = lower.max(next.w.dot(direction) - slack);
+        lower = lower.max(next.w.dot(direction) - rounding);
         if lower > limit {
             return None;
         }
-        if upper - lower <= WANTED * scale || simplex.holds(next.w) {
+        if upper - lower <= CONVERGED * scale || simplex.contains(next.w) {
             break;
         }
-        let Some((grown, nearer, length)) = grow(&simplex, next, upper, lower > 0.0, WANTED * scale) else {
+        let Some((grown, nearer, length)) = add_vertex(&simplex, next, upper, lower > 0.0, CONVERGED * scale) else {
             break;
         };
         if grown.len == 4 {
@@ -58,14 +58,20 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
     Some(Gap { distance: upper, apart: upper, lower: 0.0, on_a, on_b }.at_least(lower))
 }
 
-/// The simplex with one vertex more, reduced to what holds its nearest point; `None` where that brings nothing nearer.
+/// The simplex with one more vertex, reduced to the face that contains its nearest point; `None` without progress.
 ///
-/// Where the vertices have come so close together that rounding decides, the simplex is folded into its nearest point,
-/// which is a point of `A - B` like any other, and the search goes on from there.
-fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool, wanted: f64) -> Option<(Simplex, Vec3, f64)> {
+/// Where the vertices are so close together that rounding decides, the simplex is replaced by its nearest point,
+/// which is a point of `A - B` like any other, and the search continues from there.
+fn add_vertex(
+    simplex: &Simplex,
+    next: Vertex,
+    upper: f64,
+    apart: bool,
+    tolerance: f64,
+) -> Option<(Simplex, Vec3, f64)> {
     let mut grown = *simplex;
     grown.push(next);
-    if !grown.reduce(apart) && shares_a_point(&mut grown, wanted) {
+    if !grown.reduce(apart) && shares_a_point(&mut grown, tolerance) {
         return Some((grown, Vec3::ZERO, 0.0));
     }
     let folded = Vertex { w: simplex.blend(|x| x.w), on_a: simplex.blend(|x| x.on_a), on_b: simplex.blend(|x| x.on_b) };
@@ -75,17 +81,17 @@ fn grow(simplex: &Simplex, next: Vertex, upper: f64, apart: bool, wanted: f64) -
     [grown, segment].into_iter().filter(|s| s.len < 4).find_map(|s| {
         let nearer = s.blend(|x| x.w);
         let length = nearer.length();
-        // Equal to the last place is progress too: a gap of g over an edge of length 1 shortens by g² only.
+        // Equality to the last place counts as progress: a gap of g over an edge of length 1 shortens by g² only.
         (length <= upper * (1.0 + 2.0 * f64::EPSILON)).then_some((s, nearer, length))
     })
 }
 
-/// Whether the tetrahedron really holds the origin: signs alone may be wrong where it is flat, a point in common is proof.
-/// Otherwise it is reduced to its nearest face.
+/// Whether the tetrahedron contains the origin: signs may be wrong where it is flat, a common point is proof. Otherwise it is
+/// reduced to its nearest face.
 #[cold]
 #[inline(never)]
-fn shares_a_point(tetrahedron: &mut Simplex, wanted: f64) -> bool {
-    let shared = tetrahedron.enclose() && tetrahedron.blend(|x| x.w).length() <= wanted;
+fn shares_a_point(tetrahedron: &mut Simplex, tolerance: f64) -> bool {
+    let shared = tetrahedron.set_weights_of_origin() && tetrahedron.blend(|x| x.w).length() <= tolerance;
     if !shared {
         tetrahedron.reduce(true);
     }

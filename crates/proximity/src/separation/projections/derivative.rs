@@ -1,4 +1,4 @@
-//! The nearest point of a core, and how it moves with the point that is projected.
+//! Projection onto a core and its derivative.
 
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -27,7 +27,7 @@ fn free(inside: bool) -> f64 {
 impl Core<'_> {
     /// True where [`Core::project`] is a closed form.
     #[inline]
-    pub fn projects_fast(&self) -> bool {
+    pub fn has_closed_projection(&self) -> bool {
         !matches!(self, Self::Points(_) | Self::Hull(_))
     }
 
@@ -48,7 +48,7 @@ impl Core<'_> {
                 if rho2 <= c.radius * c.radius {
                     return Projection::diagonal(point, 1.0, 1.0, along);
                 }
-                // On the rim only the turn about the axis is left.
+                // On the rim only the rotation about the axis remains.
                 let k = c.radius / rho2.sqrt() / rho2;
                 let xy = -p.x * p.y * k;
                 let derivative =
@@ -65,7 +65,7 @@ impl Core<'_> {
     }
 }
 
-/// The derivative of the projection onto the corner, edge or face that `q` lies on.
+/// The derivative of the projection onto the corner, edge or face that contains `q`.
 fn on_triangle(q: Vec3, [a, b, c]: [Vec3; 3]) -> Projection {
     let n = (b - a).cross(c - a);
     let area = n.length_squared();
@@ -89,8 +89,8 @@ fn on_triangle(q: Vec3, [a, b, c]: [Vec3; 3]) -> Projection {
     Projection { point: q, derivative }
 }
 
-/// The step to where the projection to and fro would stay in place, if it went on as its derivative says.
-/// `moved` is what one projection to and fro adds; `onto_a` has its derivative in the frame of a.
+/// The Newton step to the fixed point of the alternating projection. `moved` is the step of one alternating projection; the
+/// derivative of `onto_a` is in the frame of a.
 #[inline]
 pub(super) fn newton_step(a_in_b: Rotation, onto_a: &Projection, onto_b: &Projection, moved: Vec3, trust: f64) -> Vec3 {
     let through_a = |v: Vec3| {

@@ -1,133 +1,88 @@
-//! Distance of two convex cores by Newton's method on alternating projections. Why it works: `README.md` beside this
-//! file.
+//! Distance of two convex cores by Newton's method on alternating projections. The method: README.md in this folder.
 
-mod around;
+mod core_pair;
 pub(crate) mod derivative;
-mod features;
+mod feature_search;
+mod local_features;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::core::{Core, Gap, rounding};
+use super::core::Core;
+use super::gap::Gap;
 use super::gjk;
-use derivative::{Projection, newton_step};
+use core_pair::CorePair;
+use derivative::newton_step;
 
-/// Wanted difference of the bounds, as a fraction of the coordinates.
-pub(super) const WANTED: f64 = 1e-13;
+/// Iterations before GJK takes over.
+const ITERATIONS: usize = 12;
 
-/// Rounds before the question goes to GJK.
-const ROUNDS: usize = 12;
+/// Bounds closer than this fraction of the distance have not converged only because of an inaccurate direction.
+const NEARLY_CONVERGED: f64 = 1e-6;
 
-/// Bounds closer than this fraction of the distance are likely apart for a wrong direction only.
-const NEARLY: f64 = 1e-6;
+/// Iterations after GJK.
+const ITERATIONS_AFTER_GJK: usize = 40;
 
-/// Witnesses closer than this fraction of the coordinates give a direction with too few digits for a proof.
-pub(super) const CLOSE: f64 = 1e-6;
+/// Factors on the derivative: nearly all of it, and less after a step that increased the distance.
+const DAMPING: [f64; 4] = [1.0 - 1e-9, 1.0 - 1e-3, 0.9, 0.0];
 
-/// Rounds after it.
-const ROUNDS_AFTER: usize = 40;
-
-/// How much of the derivative is trusted: all but the last digits, and less after a step that led astray.
-const TRUST: [f64; 4] = [1.0 - 1e-9, 1.0 - 1e-3, 0.9, 0.0];
-
-/// What a search came to.
+/// The result of a search.
 enum Outcome {
     /// Proven farther apart than the limit.
     Farther,
-    /// The bounds have met.
-    Closed(Gap),
+    /// The bounds have converged.
+    Converged(Gap),
     /// They have not; the best so far.
     Open(Gap),
 }
 
-/// Two cores, the second in its own frame, and the scale of their rounding.
-pub(super) struct Cores<'a> {
-    pub a: &'a Core<'a>,
-    pub b: &'a Core<'a>,
-    pub a_in_b: &'a Pose,
-    /// What rounding may take from a bound, metres.
-    pub slack: f64,
-    /// Bounds this close have met, metres.
-    pub wanted: f64,
-    /// Witnesses this close give a rough direction, metres.
-    pub close: f64,
-}
-
-impl<'a> Cores<'a> {
-    #[inline]
-    pub fn new(a: &'a Core<'a>, b: &'a Core<'a>, a_in_b: &'a Pose) -> Self {
-        let t = a_in_b.translation.abs();
-        let scale = t.x + t.y + t.z + a.size() + b.size();
-        Self { a, b, a_in_b, slack: rounding(scale), wanted: WANTED * scale, close: CLOSE * scale }
-    }
-
-    /// The point of `a` farthest along `-direction`, in the frame of `b`.
-    #[inline]
-    pub fn low_of_a(&self, direction: Vec3) -> Vec3 {
-        self.a_in_b.transform_point(self.a.support(-self.a_in_b.inverse_transform_vector(direction)))
-    }
-
-    /// Distance of the two support planes perpendicular to the unit vector: never above the exact distance.
-    #[inline]
-    pub fn plane_gap(&self, direction: Vec3) -> f64 {
-        (self.low_of_a(direction) - self.b.support(direction)).dot(direction) - self.slack
-    }
-
-    /// The point of `a` nearest to `q`, in the frame of `b`, and the derivative in the frame of `a`.
-    #[inline]
-    fn onto_a(&self, q: Vec3) -> Projection {
-        let local = self.a.project(self.a_in_b.inverse_transform_point(q));
-        Projection { point: self.a_in_b.transform_point(local.point), ..local }
-    }
-}
-
 /// Distance of two cores in the frame of the second; `None` where proven above `limit`.
 pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<Gap> {
-    let cores = Cores::new(a, b, a_in_b);
+    let cores = CorePair::new(a, b, a_in_b);
     let start = a_in_b.transform_point(a.middle());
     let mut before = None;
-    if a.projects_fast() && b.projects_fast() {
-        match search(&cores, start, limit, ROUNDS) {
+    if a.has_closed_projection() && b.has_closed_projection() {
+        match search(&cores, start, limit, ITERATIONS) {
             Outcome::Farther => return None,
-            Outcome::Closed(gap) => return Some(gap),
+            Outcome::Converged(gap) => return Some(gap),
             Outcome::Open(gap) => before = Some(gap),
         }
     }
     finish(&cores, before, start, limit)
 }
 
-/// GJK from where the projections have stopped, then projections from where GJK has stopped.
+/// GJK from the best points of the projections, then projections from those of GJK.
 ///
-/// What is proven apart stays so: a limit ends the search earlier, and changes nothing else.
+/// What is proven to be apart stays so: a limit may end the search earlier, and changes nothing else.
 #[cold]
-fn finish(cores: &Cores, before: Option<Gap>, start: Vec3, limit: f64) -> Option<Gap> {
+fn finish(cores: &CorePair, before: Option<Gap>, start: Vec3, limit: f64) -> Option<Gap> {
     let mut best = before;
     if let Some(gap) = &mut best
-        && (gap.distance - gap.lower <= NEARLY * gap.distance || gap.distance <= cores.close)
+        && (gap.distance - gap.lower <= NEARLY_CONVERGED * gap.distance || gap.distance <= cores.close)
     {
-        *gap = gap.at_least(features::lower_bound(cores, gap));
-        if gap.distance - gap.lower <= cores.wanted {
+        *gap = gap.at_least(feature_search::lower_bound(cores, gap));
+        if gap.distance - gap.lower <= cores.converged {
             return (!(gap.lower > limit)).then_some(*gap);
         }
     }
     let direction = best.map_or(start - cores.b.middle(), |g| g.on_a - g.on_b);
     let found = gjk::distance(cores.a, cores.b, cores.a_in_b, direction, limit)?;
     let mut gap = best.map_or(found, |best| nearer(best, found));
-    if decided(cores, &gap) {
+    if is_decided(cores, &gap) {
         return (!(gap.lower > limit)).then_some(gap);
     }
-    match search(cores, gap.on_a, limit, ROUNDS_AFTER) {
+    match search(cores, gap.on_a, limit, ITERATIONS_AFTER_GJK) {
         Outcome::Farther => return None,
-        Outcome::Closed(closed) | Outcome::Open(closed) => gap = nearer(gap, closed),
+        Outcome::Converged(found) | Outcome::Open(found) => gap = nearer(gap, found),
     }
-    if !decided(cores, &gap) {
-        gap = features::improve(cores, gap);
+    if !is_decided(cores, &gap) {
+        gap = feature_search::improve(cores, gap);
     }
     (!(gap.lower > limit)).then_some(gap)
 }
 
-/// In contact, or apart with bounds that have met.
-fn decided(cores: &Cores, gap: &Gap) -> bool {
-    !(gap.distance > 0.0) || (gap.lower > 0.0 && gap.distance - gap.lower <= cores.wanted)
+/// In contact, or apart with bounds that have converged.
+fn is_decided(cores: &CorePair, gap: &Gap) -> bool {
+    !(gap.distance > 0.0) || (gap.lower > 0.0 && gap.distance - gap.lower <= cores.converged)
 }
 
 /// The nearer witness points and the higher bound.
@@ -135,21 +90,21 @@ fn nearer(a: Gap, b: Gap) -> Gap {
     if b.distance < a.distance { b.at_least(a.lower) } else { a.at_least(b.lower) }
 }
 
-/// Projects to and fro, with Newton steps in between.
+/// Alternating projections, with Newton steps in between.
 #[inline]
-fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
+fn search(cores: &CorePair, start: Vec3, limit: f64, iterations: usize) -> Outcome {
     let mut best = Gap { distance: f64::INFINITY, apart: f64::INFINITY, lower: 0.0, on_a: start, on_b: start };
-    // The start is anywhere, so its step is not judged, and is a plain one.
-    let (mut p, mut doubts, mut judged) = (start, TRUST.len() - 1, false);
-    for _ in 0..rounds {
+    // The start is arbitrary: its step is a plain projection, and is not compared with the one before.
+    let (mut p, mut damping, mut compared) = (start, DAMPING.len() - 1, false);
+    for _ in 0..iterations {
         let onto_b = cores.b.project(p);
         let q = onto_b.point;
         let onto_a = cores.onto_a(q);
         let v = onto_a.point - q;
         let length = v.length();
-        if !(length > cores.slack) {
+        if !(length > cores.rounding) {
             let touching = Gap::touching(onto_a.point, q);
-            return Outcome::Closed(touching.at_least(best.lower));
+            return Outcome::Converged(touching.at_least(best.lower));
         }
         let lower = cores.plane_gap(v / length);
         best.lower = best.lower.max(lower);
@@ -160,19 +115,19 @@ fn search(cores: &Cores, start: Vec3, limit: f64, rounds: usize) -> Outcome {
         if better {
             best = Gap { distance: length, apart: length, on_a: onto_a.point, on_b: q, ..best };
         }
-        if best.distance - best.lower <= cores.wanted {
+        if best.distance - best.lower <= cores.converged {
             best.lower = best.lower.min(best.distance);
-            return Outcome::Closed(best);
+            return Outcome::Converged(best);
         }
         if better {
-            doubts = if judged { 0 } else { doubts };
+            damping = if compared { 0 } else { damping };
             let moved = onto_a.point - p;
-            let step = newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, moved, TRUST[doubts]);
-            // Long steps along nearly parallel faces end at the rim.
+            let step = newton_step(cores.a_in_b.rotation, &onto_a, &onto_b, moved, DAMPING[damping]);
+            // Long steps along nearly parallel faces end at the border of the face.
             p = cores.onto_a(p + step).point;
-            (doubts, judged) = (if doubts == TRUST.len() - 1 { 0 } else { doubts }, true);
-        } else if judged && doubts + 1 < TRUST.len() {
-            (p, doubts, judged) = (best.on_a, doubts + 1, false);
+            (damping, compared) = (if damping == DAMPING.len() - 1 { 0 } else { damping }, true);
+        } else if compared && damping + 1 < DAMPING.len() {
+            (p, damping, compared) = (best.on_a, damping + 1, false);
         } else {
             break;
         }

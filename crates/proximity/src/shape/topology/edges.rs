@@ -1,6 +1,6 @@
-//! The edges of a surface, brought together by counting instead of hashing.
+//! The edges of a surface, grouped by a counting sort instead of hashing.
 
-/// Uses of every edge, in buckets by the edge's smaller vertex; degenerate faces of fewer than three corners have none.
+/// Uses of every edge, in buckets by the edge's smaller vertex; faces of fewer than three different corners have none.
 pub(crate) struct Edges {
     /// Where the bucket of each vertex begins in `uses`.
     starts: Vec<usize>,
@@ -9,21 +9,21 @@ pub(crate) struct Edges {
 }
 
 impl Edges {
-    /// `label` of triangle and corner: what to remember of the use of the edge from that corner to the next.
+    /// `label` of triangle and corner is stored with the use of the edge from that corner to the next.
     pub fn new(vertices: usize, faces: &[[u32; 3]], label: impl Fn(usize, usize) -> u32) -> Self {
         let mut starts = vec![0; vertices + 1];
-        each(faces, |_, _, low, _| starts[low as usize] += 1);
+        for_each_edge(faces, |_, _, low, _| starts[low as usize] += 1);
         let mut total = 0;
         for s in &mut starts {
             total += std::mem::replace(s, total);
         }
         let mut uses = vec![0_u64; total];
-        each(faces, |triangle, corner, low, high| {
+        for_each_edge(faces, |triangle, corner, low, high| {
             let at = &mut starts[low as usize];
             uses[*at] = u64::from(high) << 32 | u64::from(label(triangle, corner));
             *at += 1;
         });
-        // Each start has moved to its bucket's end, which is the next one's start.
+        // Each start has moved to the end of its bucket, the start of the next.
         starts.rotate_right(1);
         starts[0] = 0;
         let mut edges = Self { starts, uses };
@@ -47,8 +47,8 @@ impl Edges {
     }
 }
 
-/// Triangle, corner, smaller and larger vertex of every edge of the faces with three corners.
-fn each(faces: &[[u32; 3]], mut edge: impl FnMut(usize, usize, u32, u32)) {
+/// Triangle, corner, smaller and larger vertex of every edge of the faces with three different corners.
+fn for_each_edge(faces: &[[u32; 3]], mut edge: impl FnMut(usize, usize, u32, u32)) {
     for (triangle, f) in faces.iter().enumerate().filter(|(_, f)| is_proper(f)) {
         for corner in 0..3 {
             let (a, b) = (f[corner], f[(corner + 1) % 3]);

@@ -1,54 +1,55 @@
-//! Seams that are open by a hair: corners that are one in the drawing and differ in the last digits of a file.
+//! Hairline seams: vertices that are one in the model and differ in the last digits of a file.
 //!
-//! Moving corners together never opens what is closed: an edge with an even number of uses keeps it, and a triangle that
-//! loses a corner takes its uses away in pairs. So only corners on rims are looked at.
+//! Merging vertices never opens a closed surface: an edge with an even number of uses keeps it, and a triangle that
+//! degenerates removes its uses in pairs. So only vertices on boundaries are considered.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
-use super::near::merge_near;
+use super::merge_near::merge_near;
 use super::{Edges, is_proper};
 
-/// Corners on rims within this share of the mesh's largest extent are one. Single precision, in which most files are
+/// Boundary vertices within this share of the mesh's largest extent are merged. Single precision, in which most files are
 /// written, keeps 6e-8 of a coordinate.
 pub(super) const TOLERANCE: f64 = 1e-6;
 
-/// Corners brought together.
+/// Vertices merged across seams.
 pub(super) struct Seams {
-    /// For each vertex the one that stands for it.
-    pub joined: Vec<u32>,
-    /// Corners of different coordinates that another one stands for now.
+    /// The representative of each vertex.
+    pub welded_vertices: Vec<u32>,
+    /// Vertices represented by one of different coordinates.
     pub welded: usize,
     /// Metres.
     pub tolerance: f64,
 }
 
-/// Joins corners on rims; `None` where no rim gets shorter. `first` is the first of equal coordinates.
+/// Merges boundary vertices; `None` where that shortens no boundary. `first` is the first of equal coordinates.
 pub(super) fn close(vertices: &[Vec3], triangles: &[[u32; 3]], first: &[u32]) -> Option<Seams> {
-    let (rim, open) = rim(vertices.len(), &faces(triangles, first));
+    let (on_boundary, open) = boundary(vertices.len(), &faces(triangles, first));
     let extent = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize])).extent();
     let tolerance = TOLERANCE * extent.max_element();
-    let mut joined = first.to_vec();
-    merge_near(vertices, &mut joined, tolerance, |i| rim[i]);
-    let welded = joined.iter().zip(first).enumerate().filter(|(i, (j, f))| **f as usize == *i && j != f).count();
-    let closer = welded > 0 && self::rim(vertices.len(), &faces(triangles, &joined)).1 < open;
-    closer.then_some(Seams { joined, welded, tolerance })
+    let mut welded_vertices = first.to_vec();
+    merge_near(vertices, &mut welded_vertices, tolerance, |i| on_boundary[i]);
+    let welded =
+        welded_vertices.iter().zip(first).enumerate().filter(|(i, (j, f))| **f as usize == *i && j != f).count();
+    let shorter = welded > 0 && boundary(vertices.len(), &faces(triangles, &welded_vertices)).1 < open;
+    shorter.then_some(Seams { welded_vertices, welded, tolerance })
 }
 
-/// Triangles by the vertices that stand for their corners.
-pub(super) fn faces(triangles: &[[u32; 3]], joined: &[u32]) -> Vec<[u32; 3]> {
-    triangles.iter().map(|t| t.map(|i| joined[i as usize])).collect()
+/// Triangles by the representatives of their vertices.
+pub(super) fn faces(triangles: &[[u32; 3]], representative: &[u32]) -> Vec<[u32; 3]> {
+    triangles.iter().map(|t| t.map(|i| representative[i as usize])).collect()
 }
 
-/// Vertices on edges of an odd number of uses, or of triangles that have no three corners; and how many such edges.
-fn rim(vertices: usize, faces: &[[u32; 3]]) -> (Vec<bool>, usize) {
-    let (mut on_rim, mut open) = (vec![false; vertices], 0);
+/// Vertices on edges of an odd number of uses, or of triangles without three different corners; and the number of such edges.
+fn boundary(vertices: usize, faces: &[[u32; 3]]) -> (Vec<bool>, usize) {
+    let (mut on_boundary, mut open) = (vec![false; vertices], 0);
     Edges::new(vertices, faces, |_, _| 0).for_each(|low, high, uses| {
         if uses.len() % 2 == 1 {
-            (on_rim[low as usize], on_rim[high as usize], open) = (true, true, open + 1);
+            (on_boundary[low as usize], on_boundary[high as usize], open) = (true, true, open + 1);
         }
     });
     for &v in faces.iter().filter(|f| !is_proper(f)).flatten() {
-        on_rim[v as usize] = true;
+        on_boundary[v as usize] = true;
     }
-    (on_rim, open)
+    (on_boundary, open)
 }

@@ -1,4 +1,4 @@
-//! The counting of edges beside the plain way with maps.
+//! The counting of edges compared with a simple implementation with maps.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,24 +7,24 @@ use proptest::prelude::*;
 
 use super::*;
 
-struct Plain {
+struct Simple {
     open: Vec<bool>,
     all_twice: bool,
     duplicates: usize,
 }
 
-fn plain(faces: &[[u32; 3]], part_of: &[u32]) -> Plain {
+fn simple(faces: &[[u32; 3]], component_of: &[u32]) -> Simple {
     let mut uses: HashMap<(u32, u32), usize> = HashMap::new();
-    let mut open = vec![true; part_of.len()];
+    let mut open = vec![true; component_of.len()];
     for f in faces.iter().filter(|f| is_proper(f)) {
-        open[part_of[f[0] as usize] as usize] = false;
+        open[component_of[f[0] as usize] as usize] = false;
         for k in 0..3 {
             let (a, b) = (f[k], f[(k + 1) % 3]);
             *uses.entry((a.min(b), a.max(b))).or_default() += 1;
         }
     }
     for ((a, _), _) in uses.iter().filter(|(_, n)| **n % 2 == 1) {
-        open[part_of[*a as usize] as usize] = true;
+        open[component_of[*a as usize] as usize] = true;
     }
     let mut seen = HashSet::new();
     let duplicates = faces.iter().filter(|f| {
@@ -32,11 +32,11 @@ fn plain(faces: &[[u32; 3]], part_of: &[u32]) -> Plain {
         sorted.sort_unstable();
         !seen.insert(sorted)
     });
-    Plain { open, all_twice: uses.values().all(|n| *n == 2), duplicates: duplicates.count() }
+    Simple { open, all_twice: uses.values().all(|n| *n == 2), duplicates: duplicates.count() }
 }
 
-/// Parts by spreading the least number until nothing changes.
-fn plain_parts(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
+/// Components by propagating the least index until nothing changes.
+fn simple_components(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
     let mut of: Vec<u32> = (0..count as u32).collect();
     loop {
         let before = of.clone();
@@ -56,19 +56,19 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn edges_duplicates_and_parts_are_those_of_the_plain_way(
+    fn edges_duplicates_and_components_match_the_simple_implementation(
         faces in prop::collection::vec(prop::array::uniform3(0_u32..9), 1..30),
     ) {
-        let part_of = parts(9, &faces);
-        prop_assert_eq!(&part_of, &plain_parts(9, &faces));
-        let (found, expected) = (examine_edges(9, &faces, &part_of), plain(&faces, &part_of));
+        let component_of = components(9, &faces);
+        prop_assert_eq!(&component_of, &simple_components(9, &faces));
+        let (found, expected) = (examine_edges(9, &faces, &component_of), simple(&faces, &component_of));
         prop_assert_eq!(found.open, expected.open);
         prop_assert_eq!(found.all_twice, expected.all_twice);
-        prop_assert_eq!(found.duplicates + repeated(&faces), expected.duplicates);
+        prop_assert_eq!(found.duplicates + degenerate_duplicates(&faces), expected.duplicates);
     }
 
     #[test]
-    fn equal_vertices_lead_to_the_first(
+    fn equal_vertices_map_to_the_first(
         cells in prop::collection::vec(prop::array::uniform3(-2_i8..3), 0..200), negative_zero in any::<bool>(),
     ) {
         let zero = if negative_zero { -0.0 } else { 0.0 };
@@ -83,11 +83,11 @@ proptest! {
 }
 
 #[test]
-fn a_fan_around_one_vertex_is_no_trap() {
+fn a_fan_around_one_vertex_is_not_quadratic() {
     let n = 100_000;
     let faces: Vec<[u32; 3]> = (1..n).map(|i| [0, i, i % (n - 1) + 1]).collect();
-    let part_of = parts(n as usize, &faces);
-    let report = examine_edges(n as usize, &faces, &part_of);
+    let component_of = components(n as usize, &faces);
+    let report = examine_edges(n as usize, &faces, &component_of);
     assert!(report.open[0] && !report.all_twice && report.duplicates == 0);
 }
 
@@ -107,19 +107,22 @@ fn a_million_triangles_take_well_under_a_second() {
     let triangles: Vec<[u32; 3]> = (0..rings * around).flat_map(|k| quad(k / around, k % around)).collect();
     let soup: Vec<Vec3> = triangles.iter().flatten().map(|&v| vertices[v as usize]).collect();
     let own: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    // The worst order for memory: vertices and triangles dealt like cards.
-    let deal = |k: u32, n: u32| (u64::from(k) * 618_033 % u64::from(n)) as u32;
+    // The worst order for the cache: vertices and triangles shuffled.
+    let shuffle = |k: u32, n: u32| (u64::from(k) * 618_033 % u64::from(n)) as u32;
     let n = vertices.len() as u32;
     let mut shuffled = vec![Vec3::ZERO; vertices.len()];
-    (0..n).for_each(|k| shuffled[deal(k, n) as usize] = vertices[k as usize]);
+    (0..n).for_each(|k| shuffled[shuffle(k, n) as usize] = vertices[k as usize]);
     let m = triangles.len() as u32;
-    let dealt: Vec<[u32; 3]> = (0..m).map(|k| triangles[deal(k, m) as usize].map(|v| deal(v, n))).collect();
-    for (name, v, t) in [("indexed", &vertices, &triangles), ("soup", &soup, &own), ("shuffled", &shuffled, &dealt)] {
+    let shuffled_triangles: Vec<[u32; 3]> =
+        (0..m).map(|k| triangles[shuffle(k, m) as usize].map(|v| shuffle(v, n))).collect();
+    for (name, v, t) in
+        [("indexed", &vertices, &triangles), ("soup", &soup, &own), ("shuffled", &shuffled, &shuffled_triangles)]
+    {
         let start = std::time::Instant::now();
         let found = examine(v, t);
         let took = start.elapsed();
         println!("{name}: {} triangles, {took:?}", t.len());
-        assert!(found.report.closed && found.parts.len() == 1 && found.report.duplicate == 0, "{name}");
+        assert!(found.report.closed && found.component_vertices.len() == 1 && found.report.duplicate == 0, "{name}");
         assert!(took.as_secs_f64() < 1.0, "{name}: {took:?}");
     }
 }

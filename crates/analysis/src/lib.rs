@@ -1,0 +1,33 @@
+//! Analysis of a cell without a run: `query`, `map` and `plan`.
+//!
+//! [`query`] evaluates collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
+//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
+//!
+//! ```
+//! use elbowroom_analysis::query::{JointStates, Level, QueryKind, evaluate};
+//! use elbowroom_cell::{Cell, QueryModel};
+//! let cell = Cell::parse("c.toml", r#"
+//! version = 1
+//! units = { length = "m", angle = "rad" }
+//! [robot.arm]
+//! dh = [{ a = 1, min = -3, max = 3, speed = 1 }]
+//! links = [{ capsule = { from = [-1, 0, 0], to = [0, 0, 0], radius = 0.1 } }]
+//! [object.ball]
+//! shape = "sphere"
+//! at = [1, 0, 0]
+//! radius = 0.5
+//! "#)?;
+//! let model = QueryModel::of_cell(&cell);
+//! let states = JointStates::parse("s.csv".as_ref(), "joint_1\n0\n1.5\n", &model)?;
+//! let mut hits = Vec::new();
+//! evaluate(&model.scene(false)?, &states, QueryKind::Collision, Level::Auto, &mut |rows| {
+//!     hits.extend(rows.iter().map(|row| row.collides));
+//!     true
+//! })?;
+//! assert_eq!(hits, [true, false]);
+//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! ```
+
+pub mod map;
+pub mod plan;
+pub mod query;

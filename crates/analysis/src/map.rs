@@ -1,0 +1,194 @@
+//! The joint-space map of a robot of a cell (`elbowroom map`).
+//!
+//! Every object is an obstacle, moving ones at their initial poses. Self-collisions, other robots, and links that none
+//! of the map's joints moves are left out.
+
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::{Cell, CellRobot, MapSpec};
+use elbowroom_cspace::{
+    BoxTree, GridAxis, GridAxisError, ObstacleModel, OccupancyArray, RemainingJoints, RobotMapBuilder, RobotMapError,
+};
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::JointKind;
+
+use crate::plan::subject;
+
+/// A request.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MapRequest {
+    /// Name of the robot; optional where there is only one, or only one map.
+    pub robot: Option<String>,
+    /// Obstacle model of the objects.
+    pub model: ObstacleModel,
+}
+
+/// The map of a robot, and the cells that each object blocks.
+#[derive(Debug, Clone)]
+pub struct CellMap {
+    /// Name of the robot.
+    pub robot: String,
+    /// The joint axes, divided into cells.
+    pub axes: Vec<GridAxis>,
+    /// Per axis: true for an angle.
+    pub turns: Vec<bool>,
+    /// Per object of the cell, in its order.
+    pub obstacles: Vec<MapObstacle>,
+    /// Number of cells that any object blocks.
+    pub blocked: u64,
+    /// Number of cells blocked by fixed objects.
+    pub static_blocked: u64,
+    /// The union of all obstacles, cell by cell; `None` where there are too many cells.
+    pub dense: Option<OccupancyArray>,
+    /// Warnings.
+    pub warnings: Vec<Warning>,
+}
+
+/// The cells blocked by one object.
+#[derive(Debug, Clone)]
+pub struct MapObstacle {
+    /// Its name.
+    pub name: String,
+    /// Its obstacle model.
+    pub model: ObstacleModel,
+    /// The blocked cells.
+    pub blocks: BoxTree,
+    /// Time of the computation.
+    pub time: Duration,
+}
+
+/// Computes the map of a robot.
+///
+/// ```
+/// use elbowroom_cell::Cell;
+/// use elbowroom_analysis::map::{MapRequest, map};
+/// let cell = Cell::parse("c.toml", r#"
+/// version = 1
+/// units = { length = "mm", angle = "deg" }
+/// [robot.arm]
+/// dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
+/// links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
+/// [object.ball]
+/// shape = "sphere"
+/// at = [600, 0, 0]
+/// radius = 100
+/// [map.arm]
+/// step = 2
+/// "#)?;
+/// let map = map(&cell, &MapRequest::default())?;
+/// assert_eq!(map.axes.iter().map(|a| a.count()).collect::<Vec<_>>(), [170, 170]);
+/// assert!(map.obstacles[0].blocks.is_blocked(&[0.0, 0.0]) && map.blocked < 170 * 170 / 2);
+/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// ```
+///
+/// # Errors
+/// An unknown or ambiguous robot, a joint without limits, too many cells for the memory.
+pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
+    let (robot, spec) = chosen(cell, request.robot.as_deref())?;
+    let wrong = |what: String, hint: &str| FormatError::new(&cell.file, spec.line, what).hint(hint);
+    let mut warnings = Vec::new();
+    let (axes, turns) = axes(cell, robot, &spec, &mut warnings)?;
+    let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
+    let refuse = |e: RobotMapError| {
+        let hint = match e {
+            RobotMapError::Memory { .. } => "step = 5   (a larger step, or fewer joints)",
+            RobotMapError::Count(_) | RobotMapError::Joint { .. } => "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]",
+            _ => "finite poses and sizes",
+        };
+        wrong(format!("robot \"{}\": {e}", robot.name), hint)
+    };
+    let builder =
+        RobotMapBuilder::new(&robot.robot, robot.base_in_world, &axes, &spec.joints, others).map_err(refuse)?;
+    let base = builder.base_in_world();
+    let solids = |o: &elbowroom_scene::Object| request.model.solids(&o.shape, &o.in_world, &base);
+    let mut obstacles = Vec::with_capacity(cell.objects.len());
+    for object in &cell.objects {
+        let begin = Instant::now();
+        let blocks = builder.build(&solids(object)).map_err(refuse)?;
+        let (name, model) = (object.name.clone(), request.model);
+        obstacles.push(MapObstacle { name, model, blocks, time: begin.elapsed() });
+    }
+    let moves = |o: usize| cell.moving_objects.iter().any(|m| m.object == o);
+    let count = |dense: Option<&OccupancyArray>, which: &dyn Fn(usize) -> bool| {
+        if let Some(dense) = dense {
+            return Ok(dense.blocked());
+        }
+        let all: Vec<_> = cell.objects.iter().enumerate().filter(|o| which(o.0)).flat_map(|o| solids(o.1)).collect();
+        builder.build(&all).map(|b| b.blocked()).map_err(refuse)
+    };
+    let dense = OccupancyArray::new(&axes, obstacles.iter().map(|o| &o.blocks));
+    let blocked = count(dense.as_ref(), &|_| true)?;
+    let static_blocked = if cell.moving_objects.is_empty() {
+        blocked
+    } else {
+        let fixed = obstacles.iter().enumerate().filter(|o| !moves(o.0)).map(|o| &o.1.blocks);
+        count(OccupancyArray::new(&axes, fixed).as_ref(), &|o| !moves(o))?
+    };
+    for m in &cell.moving_objects {
+        let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object].name);
+        warnings.push(Warning::new(&cell.file, spec.line, what));
+    }
+    if cell.robots.len() > 1 {
+        let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
+        warnings.push(Warning::new(&cell.file, spec.line, what));
+    }
+    Ok(CellMap { robot: robot.name.clone(), axes, turns, obstacles, blocked, static_blocked, dense, warnings })
+}
+
+impl CellMap {
+    /// Number of cells.
+    pub fn cells(&self) -> u64 {
+        self.axes.iter().map(|a| a.count() as u64).fold(1, u64::saturating_mul)
+    }
+
+    /// Memory of the box trees, bytes.
+    pub fn bytes(&self) -> usize {
+        self.obstacles.iter().map(|o| o.blocks.bytes()).sum()
+    }
+}
+
+/// The requested robot, the only one with a map, or the only one.
+fn chosen<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
+    let robot = match (name, &cell.maps[..]) {
+        (None, [only]) => only.robot,
+        _ => subject::robot(cell, name)?.0,
+    };
+    let spec = cell.maps.iter().find(|m| m.robot == robot).cloned();
+    let spec = spec.unwrap_or_else(|| MapSpec::of(robot, &cell.robots[robot]));
+    Ok((&cell.robots[robot], spec))
+}
+
+/// The joint axes. Continuous joints have a range of one turn.
+fn axes(
+    cell: &Cell,
+    robot: &CellRobot,
+    spec: &MapSpec,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Vec<GridAxis>, Vec<bool>), FormatError> {
+    let chain = &robot.robot.chain;
+    let mut axes = Vec::new();
+    let mut turns = Vec::new();
+    for (&index, &step) in spec.joints.iter().zip(&spec.step) {
+        let joint = &chain.joints()[chain.active_joints()[index].0];
+        let limits = match joint.kind {
+            JointKind::Continuous => {
+                let what = format!("joint \"{}\" is continuous: the map covers -180 to 180 degrees", joint.name);
+                warnings.push(Warning::new(&cell.file, spec.line, what));
+                [-std::f64::consts::PI, std::f64::consts::PI]
+            }
+            _ => [joint.limits.lower, joint.limits.upper],
+        };
+        let axis = GridAxis::new(&joint.name, limits[0], limits[1], step).map_err(|e| {
+            let hint = match e {
+                GridAxisError::TooMany { .. } | GridAxisError::Step { .. } => {
+                    "step = 2   (larger, in the cell's units)"
+                }
+                _ => "lower and upper limits for the joint in the robot's model, or joints = [...] without it",
+            };
+            FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {e}", robot.name)).hint(hint)
+        })?;
+        axes.push(axis);
+        turns.push(joint.kind.turns());
+    }
+    Ok((axes, turns))
+}

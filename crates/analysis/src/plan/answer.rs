@@ -1,0 +1,136 @@
+//! The output of `elbowroom plan`.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use elbowroom_cell::CellRobot;
+use elbowroom_planner::{PlannedPath, Trajectory};
+use serde::{Serialize, Serializer};
+
+/// The result. Serialized as one flat document in SI units, without the rows; without a path `waypoints` is empty, and
+/// the other properties of a path are null.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathAnswer {
+    /// True where a path was found.
+    pub found: bool,
+    /// Name of the robot.
+    pub robot: String,
+    /// Names of its joints, in the order of the values.
+    pub joints: Vec<String>,
+    /// Names of the regions that the path avoids.
+    pub regions: Vec<String>,
+    /// Why no path was found.
+    pub reason: Option<String>,
+    /// Time of the search, µs.
+    pub planning_us: u64,
+    /// Time of shortcutting, µs.
+    pub simplify_us: u64,
+    /// The path.
+    pub motion: Option<TimedPath>,
+}
+
+/// A time-parametrized path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedPath {
+    /// Waypoints, straight in joint space in between, rad or m.
+    pub waypoints: Vec<Vec<f64>>,
+    /// Euclidean length in joint space, rad (and m).
+    pub cost_rad: f64,
+    /// Duration, s.
+    pub duration_s: f64,
+    /// Number of corners with a stop.
+    pub stops: usize,
+    /// Samples, linear in between.
+    pub rows: Vec<(f64, Vec<f64>)>,
+}
+
+impl PathAnswer {
+    pub(super) fn none(robot: &CellRobot, took: Duration, reason: String) -> Self {
+        Self {
+            found: false,
+            robot: robot.name.clone(),
+            joints: robot.joint_names(),
+            regions: Vec::new(),
+            reason: Some(reason),
+            planning_us: micros(took),
+            simplify_us: 0,
+            motion: None,
+        }
+    }
+
+    pub(super) fn found(
+        robot: &CellRobot,
+        route: PlannedPath,
+        motion: &Trajectory,
+        rows: Vec<(f64, Vec<f64>)>,
+    ) -> Self {
+        let (duration_s, stops) = (motion.seconds(), motion.stops());
+        Self {
+            found: true,
+            robot: robot.name.clone(),
+            joints: robot.joint_names(),
+            regions: Vec::new(),
+            reason: None,
+            planning_us: micros(route.planning_time),
+            simplify_us: micros(route.simplification_time),
+            motion: Some(TimedPath { waypoints: route.waypoints, cost_rad: route.length_rad, duration_s, stops, rows }),
+        }
+    }
+}
+
+impl Serialize for PathAnswer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Document<'a> {
+            found: bool,
+            reason: Option<&'a str>,
+            robot: &'a str,
+            joints: &'a [String],
+            regions: &'a [String],
+            waypoints: &'a [Vec<f64>],
+            cost_rad: Option<f64>,
+            duration_s: Option<f64>,
+            stops: Option<usize>,
+            planning_us: u64,
+            simplify_us: u64,
+        }
+        let motion = self.motion.as_ref();
+        let document = Document {
+            found: self.found,
+            reason: self.reason.as_deref(),
+            robot: &self.robot,
+            joints: &self.joints,
+            regions: &self.regions,
+            waypoints: motion.map_or(&[], |m| &m.waypoints),
+            cost_rad: motion.map(|m| m.cost_rad),
+            duration_s: motion.map(|m| m.duration_s),
+            stops: motion.map(|m| m.stops),
+            planning_us: self.planning_us,
+            simplify_us: self.simplify_us,
+        };
+        document.serialize(serializer)
+    }
+}
+
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}
+
+impl TimedPath {
+    /// Writes `t_s` and a column per joint. The numbers read back to the same bits; the `trajectory` of a cell accepts
+    /// the file.
+    ///
+    /// # Errors
+    /// Errors of the writer.
+    pub fn write_csv(&self, joints: &[String], mut out: impl Write) -> io::Result<()> {
+        writeln!(out, "t_s,{}", joints.join(","))?;
+        for (t, q) in &self.rows {
+            write!(out, "{t}")?;
+            for v in q {
+                write!(out, ",{v}")?;
+            }
+            writeln!(out)?;
+        }
+        out.flush()
+    }
+}

@@ -1,0 +1,102 @@
+//! Planning of a timed path for one robot of a cell (`elbowroom plan`).
+//!
+//! The scene is that of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and load,
+//! the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded volumes.
+
+mod answer;
+pub(crate) mod subject;
+
+use std::time::Instant;
+
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_cell::{Cell, CellRobot, region_constraint};
+use elbowroom_formats::FormatError;
+use elbowroom_planner::{RrtConnect, RrtConnectError, RrtConnectSettings};
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Scene, SceneState};
+
+pub use answer::{PathAnswer, TimedPath};
+
+/// A request.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PathRequest {
+    /// Name of the robot; optional where there is only one.
+    pub robot: Option<String>,
+    /// Values of all joints in the order of the chain, rad or m; `None`: the robot's `start`.
+    pub from: Option<Vec<f64>>,
+    /// The goal, likewise.
+    pub to: Vec<f64>,
+    /// Time limit, clearance and seed.
+    pub options: RrtConnectSettings,
+    /// Period of the samples, s; `None`: the cell's tick.
+    pub period_s: Option<f64>,
+}
+
+/// Plans a collision-free path and times it.
+///
+/// ```
+/// use elbowroom_cell::Cell;
+/// use elbowroom_analysis::plan::{PathRequest, plan};
+/// let cell = Cell::parse("c.toml", r#"
+/// version = 1
+/// units = { length = "mm", angle = "deg" }
+/// [robot.arm]
+/// dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
+/// links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
+/// [object.ball]
+/// shape = "sphere"
+/// at = [600, 0, 0]
+/// radius = 100
+/// "#)?;
+/// let request = PathRequest { from: Some(vec![-1.0, 0.0]), to: vec![1.0, 0.0], ..PathRequest::default() };
+/// let answer = plan(&cell, &request)?;
+/// let motion = answer.motion.expect("the elbow can bend");
+/// assert!(motion.waypoints.len() > 2 && motion.rows.last().unwrap().1 == [1.0, 0.0]);
+/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// ```
+///
+/// # Errors
+/// An unknown robot, one without speed limits, an invalid start or goal: beyond limits, in collision, wrong number of
+/// values; a goal in a region, or a start in one that no straight path leaves.
+pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
+    let (index, robot) = subject::robot(cell, request.robot.as_deref())?;
+    let limits = subject::limits(cell, robot)?;
+    let from = request.from.as_ref().unwrap_or(&robot.start);
+    for (end, q) in [("start", from), ("goal", &request.to)] {
+        subject::count(cell, robot, end, q)?;
+    }
+    let scene = elbowroom_cell::QueryModel::of_cell(cell).scene(false)?;
+    let refused = |e: RrtConnectError| subject::refused(cell, robot, &e);
+    let state = start_state(cell, &scene, index, from).map_err(|e| refused(e.into()))?;
+    let least_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
+    region_constraint::at_start(cell, index, from, least_m, |constraint| {
+        let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
+        let mut connect = RrtConnect::new(&scene, RobotId(index)).map_err(|e| refused(e.into()))?;
+        if let Some(constraint) = constraint {
+            connect = connect.with_constraint(constraint);
+        }
+        let begin = Instant::now();
+        let route = match connect.plan(&state, &request.to, &request.options) {
+            Ok(route) => route,
+            Err(e @ RrtConnectError::NotFound { .. }) => {
+                let answer = PathAnswer::none(robot, begin.elapsed(), e.to_string());
+                return Ok(PathAnswer { regions, ..answer });
+            }
+            Err(e) => return Err(refused(e)),
+        };
+        let period = request.period_s.unwrap_or(cell.tick_s);
+        let motion = connect.time_parametrize(&state, &route, &limits, period, &request.options).map_err(refused)?;
+        let rows = motion.samples(period).map_err(|e| refused(e.into()))?;
+        Ok(PathAnswer { regions, ..PathAnswer::found(robot, route, &motion, rows) })
+    })
+}
+
+/// The state with all robots at their start, except one.
+fn start_state(cell: &Cell, scene: &Scene, robot: usize, q: &[f64]) -> Result<SceneState, elbowroom_scene::SceneError> {
+    let mut state = SceneState::new(scene);
+    for (i, r) in cell.robots.iter().enumerate() {
+        let r: &CellRobot = r;
+        state.set_q(scene, RobotId(i), if i == robot { q } else { &r.start })?;
+    }
+    Ok(state)
+}

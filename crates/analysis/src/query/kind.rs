@@ -1,0 +1,71 @@
+//! The kinds of queries.
+
+use std::str::FromStr;
+
+/// A query about one state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum QueryKind {
+    /// Collision or not.
+    Collision,
+    /// Distance of the nearest pair.
+    Distance,
+    /// Whether the distance of any pair is at most this, m.
+    Tolerance(f64),
+}
+
+/// A text that is not a query kind.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownQueryKind(String);
+
+impl std::fmt::Display for UnknownQueryKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}; write collision, distance, or tolerance=0.02 (metres)", self.0)
+    }
+}
+
+impl std::error::Error for UnknownQueryKind {}
+
+impl FromStr for QueryKind {
+    type Err = UnknownQueryKind;
+
+    /// `collision`, `distance` or `tolerance=METRES`.
+    ///
+    /// ```
+    /// use elbowroom_analysis::query::QueryKind;
+    /// assert_eq!("tolerance=0.02".parse(), Ok(QueryKind::Tolerance(0.02)));
+    /// assert!("tolerance".parse::<QueryKind>().is_err());
+    /// ```
+    fn from_str(word: &str) -> Result<Self, UnknownQueryKind> {
+        match word {
+            "collision" => return Ok(Self::Collision),
+            "distance" => return Ok(Self::Distance),
+            _ => {}
+        }
+        let Some(number) = word.strip_prefix("tolerance") else {
+            return Err(UnknownQueryKind(format!("`{word}` is not a query kind")));
+        };
+        let Some(number) = number.strip_prefix('=') else {
+            return Err(UnknownQueryKind("a tolerance needs a number".into()));
+        };
+        match number.trim().parse::<f64>() {
+            Ok(t) if t >= 0.0 && t.is_finite() => Ok(Self::Tolerance(t)),
+            _ => Err(UnknownQueryKind(format!("`{number}` is not a tolerance: a finite number of metres, 0 or more"))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_query_kinds_are_errors_with_a_hint() {
+        for word in
+            ["", "touch", "tolerance", "tolerance=", "tolerance=-1", "tolerance=nan", "tolerance=inf", "tolerance:1"]
+        {
+            let message = word.parse::<QueryKind>().unwrap_err().to_string();
+            assert!(message.contains("tolerance=0.02"), "{word}: {message}");
+        }
+        assert_eq!("tolerance=1e-3".parse(), Ok(QueryKind::Tolerance(0.001)));
+    }
+}

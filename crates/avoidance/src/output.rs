@@ -1,0 +1,48 @@
+//! The output of a tick besides the joint command.
+
+use std::time::Duration;
+
+use crate::Reaction;
+use crate::state::State;
+
+/// Durations of the stages of a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StageTimes {
+    /// Updating the scene and finding proximity pairs.
+    pub sense: Duration,
+    /// Rules and least squares.
+    pub correct: Duration,
+    /// Sweep between this command and the next.
+    pub check: Duration,
+}
+
+impl StageTimes {
+    /// The sum of all stages.
+    pub fn total(&self) -> Duration {
+        self.sense + self.correct + self.check
+    }
+}
+
+/// The output of a tick besides the joint command.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AvoiderOutput {
+    /// Rate at which the path may advance, as a fraction of its full rate, 0 to 1.
+    pub rate: f64,
+    /// The reported state.
+    pub state: State,
+    /// The reaction of the reactive controller.
+    pub reaction: Reaction,
+    /// Distance to the nearest dynamic obstacle, m; infinite where none is near.
+    pub nearest_m: f64,
+    /// The key of the dynamic obstacle that requested the largest correction.
+    pub governed_by: Option<usize>,
+    /// Deviation from the path, in seconds of joint motion at full speed.
+    pub path_deviation_s: f64,
+    /// The sweep found that the command, or a stop after it, would collide; the command was replaced by braking.
+    pub braked: bool,
+    /// A detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no dynamic obstacle
+    /// near, or stalled for the stall timeout by stationary obstacles.
+    pub requests_detour: bool,
+    /// Durations of the stages.
+    pub times: StageTimes,
+}

@@ -1,0 +1,60 @@
+//! The rate at which the path advances.
+
+use elbowroom_kinematics::{Chain, ChainState};
+
+use crate::detour::SAME_CONFIGURATION_S;
+use crate::joint_limit::JointLimit;
+use crate::{PathKind, ProximityPair, ReactiveSettings, Reference};
+
+/// The robot with respect to its path.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PathState<'a> {
+    /// Commanded joint values.
+    pub(crate) q: &'a [f64],
+    pub(crate) limits: &'a [JointLimit],
+    pub(crate) deviation_s: f64,
+    /// Deviation at which a path that may be left stops, s.
+    pub(crate) max_deviation_s: f64,
+}
+
+/// The rate of the path, 0 to 1. `approach_rate` is the rate of a path that is kept near obstacles.
+pub(crate) fn path_rate(reference: &Reference<'_>, state: &PathState<'_>, approach_rate: impl FnOnce() -> f64) -> f64 {
+    let deviation_s = state.deviation_s;
+    match reference.path {
+        PathKind::Continuous if deviation_s > SAME_CONFIGURATION_S => 0.0,
+        PathKind::Continuous => approach_rate(),
+        // The robot is ahead of its path: the nearest point of the path lies farther on.
+        PathKind::PointToPoint if deviation_s > SAME_CONFIGURATION_S && lead(reference, state) > 0.0 => 1.0,
+        PathKind::PointToPoint => (1.0 - deviation_s / state.max_deviation_s).max(0.0),
+    }
+}
+
+/// Positive where the robot is ahead of the reference, in the norm of the joints' speeds.
+fn lead(reference: &Reference<'_>, state: &PathState<'_>) -> f64 {
+    let joints = reference.qd.iter().zip(reference.q.iter().zip(state.q)).zip(state.limits);
+    joints.map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed)).sum()
+}
+
+/// The rate at which the distances of dynamic obstacles decrease half as fast as they may.
+pub(crate) fn approach_rate<'a>(
+    chain: &Chain,
+    state: &ChainState,
+    pairs: impl Iterator<Item = &'a ProximityPair>,
+    settings: &ReactiveSettings,
+    qd: &[f64],
+    columns: &mut [[f64; 6]],
+) -> f64 {
+    let mut rate: f64 = 1.0;
+    for pair in pairs.filter(|p| p.obstacle.is_dynamic()) {
+        let in_link = state.link_in_root(pair.link).inverse().transform_point(pair.on_link);
+        chain.jacobian(state, pair.link, in_link, columns);
+        let along = |c: &[f64; 6]| c[0] * pair.away.x + c[1] * pair.away.y + c[2] * pair.away.z;
+        let closing: f64 = -columns.iter().zip(qd).map(|(c, v)| along(c) * v).sum::<f64>();
+        if closing > 0.0 {
+            let allowed = 0.5 * (pair.distance_m - settings.clearance_m) / settings.closing_s
+                - pair.away.dot(pair.obstacle_velocity()).max(0.0);
+            rate = rate.min((allowed / closing).max(0.0));
+        }
+    }
+    rate
+}

@@ -1,0 +1,21 @@
+//! The reference motion of a tick.
+
+/// The point of the path at the end of the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference<'a> {
+    /// Joint values, rad or m.
+    pub q: &'a [f64],
+    /// Joint velocities at the full rate of the path (override 1), rad/s or m/s.
+    pub qd: &'a [f64],
+    /// The purpose of the path.
+    pub path: PathKind,
+}
+
+/// The purpose of a path (S4.11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathKind {
+    /// Every point counts (a seam, a line): the robot slows down rather than leaves it, and resumes it where it was left.
+    Continuous,
+    /// Only the end counts: the robot may leave it and join it again farther on.
+    PointToPoint,
+}

@@ -1,0 +1,64 @@
+//! A parsed cell file, not yet resolved.
+
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+
+use super::node;
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// Largest cell file, bytes.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// A parsed cell file, not yet resolved: every key and value with its line.
+#[derive(Debug, Clone)]
+pub struct CellFile {
+    pub(crate) file: std::path::PathBuf,
+    pub(crate) entries: Vec<node::Entry>,
+    /// True where it was read from disk; then its seal is verified.
+    pub(super) on_disk: bool,
+}
+
+impl CellFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it cannot be read or is not TOML.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let unreadable = |e: std::io::Error| {
+            FormatError::new(path, None, format!("cannot be read: {e}"))
+                .hint("the path of a cell file (see docs/cell-file.md)")
+        };
+        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
+            return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
+        }
+        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
+            FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
+        })?;
+        Ok(Self { on_disk: true, ..Self::parse(path, &text)? })
+    }
+
+    /// Parses text as the file `path`; files it names are relative to that. The seal covers the file on disk, not this
+    /// text, so no seal is verified.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it is not TOML.
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
+        let file = path.as_ref().to_owned();
+        let entries = node::parse(&file, text)?;
+        Ok(Self { file, entries, on_disk: false })
+    }
+
+    /// Names of the regions, in file order.
+    pub(crate) fn region_names(&self) -> Vec<String> {
+        let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {
+            node::Data::Table(tables) => Some(tables),
+            _ => None,
+        });
+        tables.flatten().map(|e| e.key.clone()).collect()
+    }
+}

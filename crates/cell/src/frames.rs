@@ -1,0 +1,82 @@
+//! Poses and velocities of the sources that regions follow.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::SourceState;
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+
+use crate::{Cell, Follow};
+
+/// Frames of robots, encoders, objects and pose files.
+#[derive(Debug)]
+pub struct Frames<'a> {
+    cell: &'a Cell,
+}
+
+impl<'a> Frames<'a> {
+    /// The frames of a cell.
+    pub fn new(cell: &'a Cell) -> Self {
+        Self { cell }
+    }
+
+    /// The [`Self::source`] of each followed frame, in order.
+    pub fn sources(&self, follows: &[Follow], states: &[ChainState], t_s: f64) -> Vec<SourceState> {
+        follows.iter().map(|f| self.source(f, states, t_s)).collect()
+    }
+
+    /// Pose and velocity of a followed frame in the world.
+    pub fn source(&self, follow: &Follow, states: &[ChainState], t_s: f64) -> SourceState {
+        match follow {
+            Follow::Encoder(e) => {
+                let (travel, speed) = self.cell.encoders[*e].at(t_s);
+                let direction = self.cell.encoders[*e].direction;
+                let motion = FrameMotion { velocity: direction * speed, ..FrameMotion::REST };
+                SourceState { pose: Pose::from_translation(direction * travel), motion, stamp_s: t_s }
+            }
+            Follow::Object(o) => match self.cell.moving_objects.iter().find(|m| m.object == *o) {
+                Some(moving_object) => {
+                    SourceState { pose: moving_object.pose(t_s), motion: moving_object.motion(t_s), stamp_s: t_s }
+                }
+                None => SourceState { pose: self.cell.objects[*o].in_world, motion: FrameMotion::REST, stamp_s: t_s },
+            },
+            Follow::Poses(p) => {
+                let track = &self.cell.pose_tracks[*p];
+                SourceState { pose: track.pose(t_s), motion: track.motion(t_s), stamp_s: t_s }
+            }
+            Follow::Robot { robot, link, in_link } => {
+                let base = self.cell.robots[*robot].base_in_world;
+                let link_in_root = states[*robot].link_in_root(*link);
+                let offset = link_in_root.transform_vector(in_link.translation);
+                let m = states[*robot].link_motion(*link).shifted(offset);
+                let turn = |v: Vec3| base.transform_vector(v);
+                let motion = FrameMotion {
+                    velocity: turn(m.velocity),
+                    angular_velocity: turn(m.angular_velocity),
+                    acceleration: turn(m.acceleration),
+                    angular_acceleration: turn(m.angular_acceleration),
+                };
+                SourceState { pose: base * link_in_root * *in_link, motion, stamp_s: t_s }
+            }
+        }
+    }
+
+    /// Tool centre point in the world (m) and its speed (m/s).
+    pub fn tcp(&self, robot: usize, state: &ChainState) -> (Vec3, f64) {
+        let r = &self.cell.robots[robot];
+        let flange_in_root = state.link_in_root(r.flange);
+        let offset = flange_in_root.transform_vector(r.tcp_in_flange.translation);
+        let tcp_in_root = flange_in_root * r.tcp_in_flange;
+        let speed = state.link_motion(r.flange).velocity_at(offset).length();
+        ((r.base_in_world * tcp_in_root).translation, speed)
+    }
+
+    /// True where an encoder or a pose file that a region follows moves, or an object moves.
+    pub fn is_any_moving(&self, t_s: f64) -> bool {
+        let travels = |f: &Option<Follow>| match f {
+            Some(Follow::Encoder(e)) => self.cell.encoders[*e].at(t_s).1 != 0.0,
+            Some(Follow::Poses(p)) => self.cell.pose_tracks[*p].motion(t_s) != FrameMotion::REST,
+            Some(Follow::Robot { .. } | Follow::Object(_)) | None => false,
+        };
+        self.cell.regions.iter().any(|r| travels(&r.follow))
+            || self.cell.moving_objects.iter().any(|m| m.is_moving(t_s))
+    }
+}

@@ -1,0 +1,104 @@
+//! Interference regions as constraints of path planning, not only as a limit of the monitor.
+
+use elbowroom_formats::FormatError;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{Monitor, RegionDistance, SourceState};
+use elbowroom_planner::PathConstraint;
+
+use crate::frames::Frames;
+use crate::{Cell, configure};
+
+/// Smallest distance (m) that paths keep from the border of a region: at the border the override is 0 and the robot
+/// would stop there. At 5 mm the override is 5 % where the warning zone is 100 mm thick.
+const BORDER_M: f64 = 0.005;
+
+/// A region, and the distance that paths keep from it.
+#[derive(Debug)]
+struct ClosedRegion<'m> {
+    name: &'m str,
+    clearance_m: f64,
+}
+
+/// The regions closed to one robot, at their poses of one instant.
+#[derive(Debug)]
+pub struct RegionConstraint<'m> {
+    region_distance: RegionDistance<'m>,
+    /// Per region of the configuration.
+    regions: Vec<ClosedRegion<'m>>,
+    /// Largest clearance, m.
+    max_clearance_m: f64,
+}
+
+impl<'m> RegionConstraint<'m> {
+    /// The regions that the monitor closes to its robot; `None` where there is none. Paths keep the share `share` of
+    /// each warning zone, which bounds the override from below, at least `least_m`, and never less than 5 mm.
+    pub fn new(monitor: &'m Monitor, sources: &[SourceState], share: f64, least_m: f64) -> Option<Self> {
+        let region_distance = monitor.region_distance(sources);
+        let closed = |r: &'m elbowroom_monitor::Region| ClosedRegion {
+            name: &r.name,
+            clearance_m: (share * r.warning_m).max(least_m).max(BORDER_M),
+        };
+        let regions: Vec<_> = monitor.configuration().regions().iter().map(closed).collect();
+        let clearances = region_distance.regions().iter().map(|r| regions[r.0].clearance_m);
+        let max_clearance_m = clearances.fold(0.0, f64::max);
+        (!region_distance.regions().is_empty()).then_some(Self { region_distance, regions, max_clearance_m })
+    }
+
+    /// Names of the regions.
+    pub fn names(&self) -> Vec<String> {
+        self.region_distance.regions().iter().map(|r| self.regions[r.0].name.to_owned()).collect()
+    }
+}
+
+impl PathConstraint for RegionConstraint<'_> {
+    fn distance_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        self.region_distance.set_q(q);
+        self.region_distance.distances(limit_m).map(|(_, metres)| metres).fold(f64::INFINITY, least)
+    }
+
+    fn margin_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        self.region_distance.set_q(q);
+        let near = self.region_distance.distances(limit_m + self.max_clearance_m);
+        near.map(|(region, metres)| metres - self.regions[region.0].clearance_m).fold(f64::INFINITY, least)
+    }
+
+    fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64 {
+        self.region_distance.motion_bound(from, to)
+    }
+
+    fn describe_nearest(&mut self, q: &[f64]) -> String {
+        self.region_distance.set_q(q);
+        let nearest = self.region_distance.distances(f64::INFINITY).min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.map_or_else(String::new, |(region, _)| format!("region `{}`", self.regions[region.0].name))
+    }
+}
+
+/// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions. All robots are at their
+/// start, this one at `q`.
+///
+/// # Errors
+/// Errors of the monitors' configurations, and those of `plan`.
+pub fn at_start<T>(
+    cell: &Cell,
+    robot: usize,
+    q: &[f64],
+    least_m: f64,
+    plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
+) -> Result<T, FormatError> {
+    let setups = configure::setups(cell)?;
+    let monitors = configure::monitors(cell, &setups)?;
+    let state = |(i, r): (usize, &crate::CellRobot)| {
+        let mut state = ChainState::new(&r.robot.chain);
+        state.q.copy_from_slice(if i == robot { q } else { &r.start });
+        r.robot.chain.forward_motion(&mut state);
+        state
+    };
+    let states: Vec<_> = cell.robots.iter().enumerate().map(state).collect();
+    let sources = Frames::new(cell).sources(&setups[robot].sources, &states, 0.0);
+    plan(RegionConstraint::new(&monitors[robot], &sources, 0.0, least_m))
+}
+
+/// The smaller value; NaN counts as smaller than any.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}

@@ -1,0 +1,67 @@
+//! Rows of cells as bits of 64-bit words.
+
+/// Sets bits `first..=last` of a row.
+#[inline]
+pub(crate) fn set_range(words: &mut [u64], first: u16, last: u16) {
+    if first > last {
+        return;
+    }
+    let (from, to) = (usize::from(first / 64), usize::from(last / 64));
+    let (head, tail) = (!0 << (first % 64), !0 >> (63 - last % 64));
+    if from == to {
+        words[from] |= head & tail;
+        return;
+    }
+    words[from] |= head;
+    words[from + 1..to].fill(!0);
+    words[to] |= tail;
+}
+
+/// Positions of the bits that are set, ascending.
+pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
+        word &= word - 1;
+        Some(bit)
+    })
+}
+
+/// Calls `found(first, last)` for every run of bits that are set.
+pub(crate) fn for_each_run(words: &[u64], mut found: impl FnMut(u16, u16)) {
+    let bit = |k: usize| words.get(k / 64).is_some_and(|w| w >> (k % 64) & 1 == 1);
+    let mut k = 0;
+    while k < words.len() * 64 {
+        if words[k / 64] >> (k % 64) == 0 {
+            k = (k / 64 + 1) * 64;
+        } else if bit(k) {
+            let first = k;
+            while bit(k) {
+                k += 1;
+            }
+            found(first as u16, (k - 1) as u16);
+        } else {
+            k += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_range_of_a_row_is_set_as_bit_by_bit() {
+        for first in 0..150u16 {
+            for last in 0..150u16 {
+                let mut words = [0u64; 3];
+                set_range(&mut words, first, last);
+                for k in 0..192 {
+                    assert_eq!(
+                        words[k / 64] >> (k % 64) & 1 == 1,
+                        (usize::from(first)..=usize::from(last)).contains(&k)
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The joint-space obstacle map of a planar arm.
+
+use crate::{
+    CellChanges, ConvexObstacle, Grid, Layer, LayerMap, MapReader, ObstacleMapBuilder, ObstacleMapError,
+    OccupancyBitmap, PlanarArm,
+};
+
+/// Obstacles of a planar arm as blocked cells of joint space, each in a layer of its own.
+///
+/// One thread owns the map and changes it; any number of threads read it through a [`MapReader`].
+///
+/// ```
+/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, JointMap, PlanarArm};
+/// use elbowroom_spatial::Vec3;
+/// let axis = |name: &str, min, max| GridAxis::from_degrees(name, min, max, 2.0);
+/// let grid = Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?;
+/// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
+/// let mut reader = map.reader();
+/// let entered = map.set("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
+/// assert!(entered.blocked() > 50_000 && entered.freed() == 0);
+/// let moved = map.set("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.41, 0.9), 0.25)?);
+/// assert!(moved.blocked() < 4_000 && moved.freed() < 4_000);
+/// assert_eq!(reader.latest().blocked(), 0); // not published yet
+/// map.publish();
+/// assert_eq!(reader.latest().blocked(), map.occupancy().blocked());
+/// assert!(map.remove("head").is_some());
+/// assert_eq!(map.occupancy().blocked(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct JointMap {
+    builder: ObstacleMapBuilder,
+    map: LayerMap,
+}
+
+impl JointMap {
+    /// A map without obstacles.
+    ///
+    /// # Errors
+    /// As [`ObstacleMapBuilder::new`].
+    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, ObstacleMapError> {
+        Ok(Self { builder: ObstacleMapBuilder::new(arm, grid)?, map: LayerMap::new(grid) })
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        self.map.grid()
+    }
+
+    /// The occupancy of all layers together.
+    pub fn occupancy(&self) -> &OccupancyBitmap {
+        self.map.occupancy()
+    }
+
+    /// Names and layers of the obstacles, in the order in which they were added.
+    pub fn layers(&self) -> impl Iterator<Item = (&str, &Layer)> {
+        self.map.layers()
+    }
+
+    /// True where a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
+    pub fn is_blocked(&self, q: [f64; 3]) -> bool {
+        self.map.is_blocked(q)
+    }
+
+    /// Adds an obstacle, or replaces the one of this name; returns the cells that changed.
+    pub fn set(&mut self, name: &str, obstacle: &ConvexObstacle) -> &CellChanges {
+        let mut layer = std::mem::take(&mut self.map.spare);
+        self.builder.build_layer(obstacle, &mut layer);
+        self.map.set_layer(name, layer)
+    }
+
+    /// The same with a layer that was built elsewhere, for the same grid.
+    pub fn set_layer(&mut self, name: &str, layer: Layer) -> &CellChanges {
+        self.map.set_layer(name, layer)
+    }
+
+    /// Removes an obstacle; `None` where there is none of this name.
+    pub fn remove(&mut self, name: &str) -> Option<&CellChanges> {
+        self.map.remove(name)
+    }
+
+    /// Replaces the static obstacles, such as fixtures, walls and floor; returns the cells that changed.
+    pub fn set_fixed(&mut self, obstacles: &[ConvexObstacle]) -> CellChanges {
+        let build = |obstacle: &ConvexObstacle| {
+            let mut layer = Layer::new();
+            self.builder.build_layer(obstacle, &mut layer);
+            layer
+        };
+        let layers: Vec<Layer> = obstacles.iter().map(build).collect();
+        self.map.set_fixed(&layers)
+    }
+
+    /// Publishes the current occupancy to readers.
+    pub fn publish(&mut self) {
+        self.map.publish();
+    }
+
+    /// A reader of the published occupancy, for another thread.
+    pub fn reader(&self) -> MapReader {
+        self.map.reader()
+    }
+}

@@ -1,0 +1,9 @@
+//! The obstacle models of S2: conservative simplifications of an obstacle.
+
+mod model;
+mod model_layer;
+mod planar_slice;
+mod sphere_set;
+
+pub use model::{ObstacleModel, UnknownObstacleModel};
+pub use sphere_set::spheres_until;

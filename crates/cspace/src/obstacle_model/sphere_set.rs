@@ -1,0 +1,103 @@
+//! Sets of spheres, refined until a deadline.
+
+use std::time::Instant;
+
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::model::MAX_SPHERES;
+use crate::convex_obstacle::ConvexShape;
+use crate::cuboid::Bisection;
+use crate::{ConvexObstacle, Layer, ObstacleMapBuilder};
+
+/// Replaces a layer by the cells that spheres around parts of an obstacle block: one sphere first, then 2, 4, 8 … while the
+/// deadline has not passed and there are fewer than `max_spheres`. Returns the number of spheres of the layer.
+///
+/// The first sphere is always completed. Each refinement only frees cells: its cells are intersected with those of fewer
+/// spheres, and both contain all cells that the obstacle blocks. A refinement that the deadline interrupts is discarded.
+///
+/// ```
+/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, PlanarArm, spheres_until};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// use std::time::{Duration, Instant};
+/// # let axis = |name: &str| GridAxis::from_degrees(name, -90.0, 90.0, 5.0);
+/// # let grid = Grid::new([axis("base")?, axis("shoulder")?, axis("elbow")?])?;
+/// let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
+/// let beam = ConvexObstacle::cuboid(Pose::from_xyz_rpy([1.2, 0.0, 0.8], [0.0; 3]), Vec3::new(0.1, 0.8, 0.1))?;
+/// let mut layer = Layer::new();
+/// let deadline = Instant::now() + Duration::from_millis(5);
+/// let spheres = spheres_until(&mut builder, &beam, 64, Some(deadline), &mut layer);
+/// assert!(spheres >= 1 && spheres <= 64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn spheres_until(
+    builder: &mut ObstacleMapBuilder,
+    obstacle: &ConvexObstacle,
+    max_spheres: u32,
+    deadline: Option<Instant>,
+    layer: &mut Layer,
+) -> u32 {
+    let mut parts = vec![BoxPart::new(obstacle)];
+    let (center, radius) = obstacle.enclosing_sphere();
+    builder.build_layer(&ConvexObstacle { solid: ConvexShape::Sphere { center, radius } }, layer);
+    if matches!(obstacle.solid, ConvexShape::Sphere { .. }) {
+        return 1;
+    }
+    let cells = builder.grid().shape()[2];
+    let mut count = 1;
+    while count < max_spheres.min(MAX_SPHERES) {
+        parts = parts.iter().flat_map(BoxPart::halves).collect();
+        let Some(finer) = union_of_spheres(builder, &parts, deadline) else { break };
+        layer.intersect(&finer, cells);
+        count *= 2;
+    }
+    count
+}
+
+/// The cells that all spheres block; `None` where the deadline passes.
+fn union_of_spheres(builder: &mut ObstacleMapBuilder, parts: &[BoxPart], deadline: Option<Instant>) -> Option<Layer> {
+    let (mut whole, mut one) = (Layer::new(), Layer::new());
+    for part in parts {
+        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            return None;
+        }
+        builder.build_layer(&part.sphere(), &mut one);
+        whole.spans.extend_from_slice(&one.spans);
+    }
+    whole.spans.sort_unstable();
+    Some(whole)
+}
+
+/// A part of the obstacle's bounding box.
+#[derive(Clone, Copy)]
+struct BoxPart {
+    in_base: Pose,
+    half: Vec3,
+}
+
+impl BoxPart {
+    fn new(obstacle: &ConvexObstacle) -> Self {
+        match &obstacle.solid {
+            ConvexShape::Sphere { center, radius } => {
+                Self { in_base: Pose::from_translation(*center), half: Vec3::splat(*radius) }
+            }
+            ConvexShape::Cuboid { in_base, half_extents } => Self { in_base: *in_base, half: *half_extents },
+            ConvexShape::Hull { in_base, hull } => {
+                let (min, max) = (hull.aabb().min, hull.aabb().max);
+                let middle = in_base.transform_point((min + max) * 0.5);
+                Self { in_base: Pose::new(in_base.rotation, middle), half: (max - min) * 0.5 }
+            }
+        }
+    }
+
+    fn halves(&self) -> [Self; 2] {
+        let Bisection { offset, half } = Bisection::new(self.half);
+        [1.0, -1.0].map(|side| {
+            let center = self.in_base.transform_point(offset * side);
+            Self { in_base: Pose::new(self.in_base.rotation, center), half }
+        })
+    }
+
+    fn sphere(&self) -> ConvexObstacle {
+        ConvexObstacle { solid: ConvexShape::Sphere { center: self.in_base.translation, radius: self.half.length() } }
+    }
+}

@@ -1,0 +1,144 @@
+//! Obstacle maps of a planar arm.
+
+use std::ops::Range;
+
+use super::arm_grid::ArmGrid;
+use super::plane_solid::{PlaneBox, PlaneHull};
+use super::simd_math::WIDTH;
+use super::sphere::SphereObstacle;
+use super::{convex, sphere};
+use crate::convex_obstacle::ConvexShape;
+use crate::{ArmError, ConvexObstacle, Grid, Layer, PlanarArm};
+
+/// Computes which cells of a grid an obstacle blocks for one planar arm.
+///
+/// ```
+/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm};
+/// use elbowroom_spatial::Vec3;
+/// let axes = [("base", 170.0, -170.0), ("shoulder", 90.0, -90.0), ("elbow", 150.0, -120.0)];
+/// let [a, b, c] = axes.map(|(name, max, min)| GridAxis::from_degrees(name, min, max, 2.0).unwrap());
+/// let grid = Grid::new([a, b, c])?;
+/// let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
+/// let mut layer = Layer::new();
+/// builder.build_layer(&ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?, &mut layer);
+/// let mut occupancy = OccupancyBitmap::new(grid.shape());
+/// occupancy.add(&layer);
+/// assert!(occupancy.is_blocked(grid.cell([0.3, 0.7, 0.5]).unwrap())); // the wrist is in the sphere
+/// assert!(!occupancy.is_blocked(grid.cell([2.0, 0.7, 0.5]).unwrap()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ObstacleMapBuilder {
+    arm_grid: ArmGrid,
+    /// Workspace: one bit per row of a plane, set where the upper arm blocks the whole row.
+    full_rows: Vec<u16>,
+}
+
+/// Why there is no fast map for an arm and a grid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ObstacleMapError {
+    /// A dimension of the arm is invalid.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+    /// A step is too coarse for the bounds.
+    #[error("joint `{joint}`: a step of {degrees:.1} degrees is too coarse: at most {MAX_STEP_DEGREES} degrees")]
+    Coarse {
+        /// Name of the joint.
+        joint: String,
+        /// Its step, degrees.
+        degrees: f64,
+    },
+}
+
+/// Largest step. Larger cells say little, and the number of lines of an outline stays bounded.
+const MAX_STEP_DEGREES: f64 = 15.0;
+
+impl ObstacleMapBuilder {
+    /// For an arm and a grid.
+    ///
+    /// # Errors
+    /// An invalid dimension of the arm, or a step above 15 degrees.
+    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, ObstacleMapError> {
+        arm.validate()?;
+        for axis in grid.axes() {
+            let degrees = axis.step().to_degrees();
+            if degrees > MAX_STEP_DEGREES {
+                return Err(ObstacleMapError::Coarse { joint: axis.joint().to_owned(), degrees });
+            }
+        }
+        let full_rows = vec![0; grid.axes()[1].count().div_ceil(WIDTH)];
+        Ok(Self { arm_grid: ArmGrid::new(arm, grid), full_rows })
+    }
+
+    /// The arm.
+    pub fn arm(&self) -> &PlanarArm {
+        &self.arm_grid.arm
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.arm_grid.grid
+    }
+
+    /// Replaces a layer by the cells that an obstacle blocks: every cell in whose box any configuration touches it.
+    pub fn build_layer(&mut self, obstacle: &ConvexObstacle, layer: &mut Layer) {
+        self.build_planes(obstacle, 0..self.arm_grid.planes.len(), layer);
+    }
+
+    /// The same for a range of cells of θ1; the others stay free.
+    pub(crate) fn build_planes(&mut self, obstacle: &ConvexObstacle, planes: Range<usize>, layer: &mut Layer) {
+        layer.spans.clear();
+        let Self { arm_grid, full_rows } = self;
+        let shoulder = [arm_grid.arm.offset_m, arm_grid.arm.height_m];
+        let enclosing = obstacle.enclosing_sphere();
+        match &obstacle.solid {
+            ConvexShape::Sphere { center, radius } => {
+                let sphere = SphereObstacle { center: *center, radius: *radius };
+                sphere::build(arm_grid, &sphere, planes, full_rows, layer);
+            }
+            ConvexShape::Cuboid { in_base, half_extents } => {
+                let mut solid = PlaneBox::new(in_base, *half_extents, shoulder);
+                convex::build(arm_grid, &mut solid, enclosing, planes, full_rows, layer);
+            }
+            ConvexShape::Hull { in_base, hull } => {
+                let mut solid = PlaneHull::new(in_base, hull, shoulder);
+                convex::build(arm_grid, &mut solid, enclosing, planes, full_rows, layer);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use elbowroom_proximity::ConvexHull;
+    use elbowroom_spatial::{Pose, Vec3};
+    use fearless_simd::Level;
+
+    use super::*;
+    use crate::GridAxis;
+
+    #[test]
+    fn every_instruction_set_blocks_the_same_cells() {
+        let axis = |name: &str, half: f64| GridAxis::from_degrees(name, -half, half, 3.0).unwrap();
+        let grid = Grid::new([axis("a", 170.0), axis("b", 100.0), axis("c", 140.0)]).unwrap();
+        let tilted = Pose::from_xyz_rpy([0.9, 0.3, 1.2], [0.3, 0.5, 0.7]);
+        let corners = [Vec3::ZERO, Vec3::X * 0.6, Vec3::Y * 0.5, Vec3::Z * 0.7, Vec3::new(0.3, 0.4, 0.3)];
+        let hull = Arc::new(ConvexHull::from_points(&corners).unwrap());
+        let obstacles = [
+            ConvexObstacle::sphere(Vec3::new(0.2, -1.1, 0.8), 0.3).unwrap(),
+            ConvexObstacle::cuboid(tilted, Vec3::new(0.4, 0.2, 0.6)).unwrap(),
+            ConvexObstacle::hull(tilted, hull).unwrap(),
+        ];
+        for obstacle in &obstacles {
+            let (mut best, mut baseline) = (Layer::new(), Layer::new());
+            let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid).unwrap();
+            builder.build_layer(obstacle, &mut best);
+            builder.arm_grid.level = Level::baseline();
+            builder.build_layer(obstacle, &mut baseline);
+            assert_eq!(best, baseline);
+            assert!(!best.spans().is_empty());
+        }
+    }
+}

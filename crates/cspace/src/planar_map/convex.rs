@@ -1,0 +1,166 @@
+//! Boxes and convex polyhedra: outlines plane by plane, intervals row by row.
+
+use std::ops::Range;
+
+use elbowroom_spatial::Vec3;
+
+use super::arm_grid::ArmGrid;
+use super::context::{ConvexContext, Outlines, PlaneRows};
+use super::line_distances::{line_distances, reaching_radius};
+use super::normals::OutlineNormals;
+use super::plane_solid::PlaneSolid;
+use super::rows::write_plane;
+use super::simd_math::ANGLE_ERROR;
+use super::upper_arm;
+use crate::Layer;
+
+/// Margin for angles seen from the shoulder in single precision, radians.
+const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
+
+/// Adds the spans of some planes. `enclosing` is a sphere around the solid; `full_rows` is workspace.
+pub(super) fn build<B: PlaneSolid>(
+    arm_grid: &ArmGrid,
+    solid: &mut B,
+    enclosing: (Vec3, f64),
+    planes: Range<usize>,
+    full_rows: &mut [u16],
+    layer: &mut Layer,
+) {
+    let context = ConvexContext::new(arm_grid, enclosing);
+    let mut outlines = Outlines::new(&context);
+    let shoulder = &arm_grid.grid.axes()[1];
+    for (i, &plane) in arm_grid.planes.iter().enumerate().take(planes.end).skip(planes.start) {
+        let before = layer.spans.len();
+        let mut ordered = true;
+        for side in [1.0, -1.0] {
+            if !context.may_reach(plane, side) {
+                continue;
+            }
+            solid.rotate_to_plane(plane);
+            if !outlines.set_whole(&context, solid, side) {
+                continue;
+            }
+            full_rows.fill(0);
+            if outlines.upper.exists {
+                let range = outlines.upper.reachable_directions(context.level, &outlines.normals, context.upper_reach);
+                if let Some((lo, hi)) = range {
+                    upper_arm::mark_rows(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, full_rows);
+                }
+            }
+            let rows = PlaneRows {
+                first: i * shoulder.count(),
+                count: shoulder.count(),
+                full: full_rows,
+                middles: &arm_grid.middles,
+                borders: &arm_grid.borders,
+            };
+            ordered &= before == layer.spans.len();
+            ordered &= outlines.write_rows(&context, solid, side, &rows, layer);
+        }
+        if !ordered {
+            layer.spans[before..].sort_unstable();
+        }
+    }
+}
+
+impl Outlines {
+    /// The whole outlines of one plane; false where no link reaches the solid.
+    fn set_whole<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> bool {
+        let lean = (context.tangent * side) as f32;
+        let gap = reaching_radius(context, solid, lean, side as f32) - context.margin;
+        let arm = &context.arm;
+        let [upper, fore, wrist] = [arm.upper_radius_m, arm.fore_radius_m, arm.wrist_radius_m].map(|r| r as f32);
+        (self.upper.exists, self.fore.exists, self.wrist.exists) = (upper >= gap, fore >= gap, wrist >= gap);
+        if !(self.upper.exists || self.fore.exists || self.wrist.exists) {
+            return false;
+        }
+        // y is down in the shoulder's frame, z up in the solid's.
+        let own = solid.own_directions(lean).map(|[x, z]| [x, -z]);
+        self.normals = OutlineNormals::new(own, context.spacing_cosine);
+        if self.upper.exists {
+            line_distances(context, solid, &self.normals, lean, upper, &mut self.upper.far);
+            self.upper.complete(context.level, &self.normals);
+        }
+        true
+    }
+
+    /// Adds the spans of one plane; false where their rows do not ascend.
+    ///
+    /// Rotating a solid about the shoulder and taking the convex hull adds little to a solid that is seen within a narrow
+    /// angle, and much to one around the shoulder: such a solid is cut into sectors.
+    fn write_rows<B: PlaneSolid>(
+        &mut self,
+        context: &ConvexContext,
+        solid: &B,
+        side: f64,
+        rows: &PlaneRows,
+        layer: &mut Layer,
+    ) -> bool {
+        let lean = (context.tangent * side) as f32;
+        if !(self.fore.exists || self.wrist.exists) {
+            return write_plane(context, self, rows, true, layer);
+        }
+        let range = self.set_rotated(context, solid, lean, None);
+        let (lo, hi) = range.unwrap_or((0.0, std::f64::consts::TAU));
+        if hi - lo < context.sectors.whole_rad {
+            return write_plane(context, self, rows, true, layer);
+        }
+        let sectors = ((hi - lo) / context.sectors.width_rad).ceil();
+        let exist = (self.fore.exists, self.wrist.exists);
+        for k in 0..sectors as u32 {
+            let border = |k: u32| (lo + (hi - lo) * f64::from(k) / sectors).sin_cos();
+            let ((sin, cos), (next_sin, next_cos)) = (border(k), border(k + 1));
+            let sides = [[sin as f32, -cos as f32], [-next_sin as f32, next_cos as f32]];
+            let own = solid.own_directions(lean).map(|[x, z]| [x, -z]);
+            self.normals = OutlineNormals::new(sides.into_iter().chain(own), context.spacing_cosine);
+            (self.fore.exists, self.wrist.exists) = exist;
+            self.set_rotated(context, solid, lean, Some(sides));
+            write_plane(context, self, rows, k == 0, layer);
+        }
+        false
+    }
+
+    /// Sets the outlines of forearm and wrist, or their parts in a sector of these two normals, rotated by half a step of
+    /// θ2. Returns the directions from the shoulder in which the larger one lies before it is rotated.
+    fn set_rotated<B: PlaneSolid>(
+        &mut self,
+        context: &ConvexContext,
+        solid: &B,
+        lean: f32,
+        sector: Option<[[f32; 2]; 2]>,
+    ) -> Option<(f64, f64)> {
+        let Self { normals, raw, fore, wrist, .. } = self;
+        let mut range: Option<Option<(f64, f64)>> = None;
+        for (link, radius) in [(wrist, context.arm.wrist_radius_m), (fore, context.arm.fore_radius_m)] {
+            if !link.exists {
+                continue;
+            }
+            line_distances(context, solid, normals, lean, radius as f32, &mut raw.far);
+            for [x, y] in sector.into_iter().flatten() {
+                // The nearest normal is this one: sides are inserted first.
+                let along = |k: &usize| normals.x[*k] * x + normals.y[*k] * y;
+                if let Some(k) = (0..normals.count).max_by(|a, b| along(a).total_cmp(&along(b))) {
+                    raw.far[k] = raw.far[k].min(context.margin);
+                }
+            }
+            raw.complete(context.level, normals);
+            if !raw.exists {
+                link.exists = false;
+                continue;
+            }
+            let directions = raw.directions_from_shoulder(context.level, normals);
+            range = Some(match (range, directions) {
+                (None, directions) => directions,
+                (Some(Some(a)), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
+                _ => None,
+            });
+            raw.rotate_both_ways(context.level, normals, context.turn, link);
+        }
+        // Where the wrist's outline vanishes by rounding, the forearm's is used for the end of the forearm.
+        if self.fore.exists && !self.wrist.exists {
+            self.wrist.clone_from(&self.fore);
+        }
+        self.set_reach_limits(context);
+        range.flatten()
+    }
+}

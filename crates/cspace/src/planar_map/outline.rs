@@ -1,0 +1,234 @@
+//! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
+
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16};
+
+use super::half_planes;
+use super::normals::{OutlineNormals, PADDED_NORMALS};
+use super::simd_math::{Lanes, WIDTH, atan2, load, mad, splat};
+
+/// Lines whose neighbours meet in front of them by more than this are moved inward, metres.
+const SLACK_LINE_M: f32 = 2e-4;
+
+/// A convex outline in the shoulder's frame (x outward, y down): points with `normal·p ≤ far` for all [`OutlineNormals`].
+///
+/// Line `k` bounds the outline from `from` to `to` along its tangent (the normal rotated by +90°), counted from the foot of
+/// the perpendicular from the shoulder. A line that does not touch the outline has `from > to`; its neighbours then extend a
+/// little too far.
+#[derive(Debug, Clone)]
+pub(super) struct Outline {
+    pub far: [f32; PADDED_NORMALS],
+    pub from: [f32; PADDED_NORMALS],
+    pub to: [f32; PADDED_NORMALS],
+    /// Corner `k`, between lines `k − 1` and `k`.
+    pub corner_x: [f32; PADDED_NORMALS],
+    pub corner_y: [f32; PADDED_NORMALS],
+    /// False where the outline is empty.
+    pub exists: bool,
+}
+
+impl Outline {
+    pub const EMPTY: Self = Self {
+        far: [0.0; PADDED_NORMALS],
+        from: [0.0; PADDED_NORMALS],
+        to: [0.0; PADDED_NORMALS],
+        corner_x: [0.0; PADDED_NORMALS],
+        corner_y: [0.0; PADDED_NORMALS],
+        exists: false,
+    };
+
+    /// Computes corners and stretches from the lines' distances, after moving lines inward that do not touch; sets `exists`.
+    pub fn complete(&mut self, level: Level, normals: &OutlineNormals) {
+        self.exists = dispatch!(level, simd => self.complete_lanes(simd, normals));
+    }
+
+    #[inline(always)]
+    fn complete_lanes<S: Simd>(&mut self, simd: S, normals: &OutlineNormals) -> bool {
+        let mut is_tight = false;
+        loop {
+            self.set_corners(simd, normals);
+            if is_tight || !self.is_slack(simd, normals) {
+                return true;
+            }
+            if !half_planes::tighten(normals, &mut self.far) {
+                return false;
+            }
+            is_tight = true;
+        }
+    }
+
+    /// True where some line does not touch the outline.
+    #[inline(always)]
+    fn is_slack<S: Simd>(&self, simd: S, normals: &OutlineNormals) -> bool {
+        let mut slack = false;
+        for at in (0..normals.count).step_by(WIDTH) {
+            let by = load(simd, &self.from[at..]) - load(simd, &self.to[at..]);
+            slack |= by.simd_gt(splat(simd, SLACK_LINE_M)).any_true();
+        }
+        slack
+    }
+
+    #[inline(always)]
+    fn set_corners<S: Simd>(&mut self, simd: S, normals: &OutlineNormals) {
+        let first = self.far[0];
+        self.far[normals.count..].fill(first);
+        for at in (0..normals.count).step_by(WIDTH) {
+            let [x, y, far] = [load(simd, &normals.x[at..]), load(simd, &normals.y[at..]), load(simd, &self.far[at..])];
+            let [next_x, next_y, next_far] =
+                [load(simd, &normals.x[at + 1..]), load(simd, &normals.y[at + 1..]), load(simd, &self.far[at + 1..])];
+            let over = splat(simd, 1.0) / (x * next_y - y * next_x);
+            let corner_x = (far * next_y - next_far * y) * over;
+            let corner_y = (next_far * x - far * next_x) * over;
+            corner_x.store_slice(&mut self.corner_x[at + 1..][..WIDTH]);
+            corner_y.store_slice(&mut self.corner_y[at + 1..][..WIDTH]);
+        }
+        self.corner_x[0] = self.corner_x[normals.count];
+        self.corner_y[0] = self.corner_y[normals.count];
+        for at in (0..normals.count).step_by(WIDTH) {
+            let [x, y] = [load(simd, &normals.x[at..]), load(simd, &normals.y[at..])];
+            let along = |corner_x: Lanes<S>, corner_y: Lanes<S>| corner_y * x - corner_x * y;
+            let before = along(load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..]));
+            let after = along(load(simd, &self.corner_x[at + 1..]), load(simd, &self.corner_y[at + 1..]));
+            before.store_slice(&mut self.from[at..][..WIDTH]);
+            after.store_slice(&mut self.to[at..][..WIDTH]);
+        }
+    }
+
+    /// Writes an outline that contains this one rotated about the shoulder by any angle up to the one of this sine and cosine,
+    /// to either side.
+    pub fn rotate_both_ways(&self, level: Level, normals: &OutlineNormals, sin_cos: [f32; 2], out: &mut Self) {
+        dispatch!(level, simd => self.rotate_lanes(simd, normals, sin_cos, out));
+        out.exists = self.exists;
+    }
+
+    #[inline(always)]
+    fn rotate_lanes<S: Simd>(&self, simd: S, normals: &OutlineNormals, [sine, cosine]: [f32; 2], out: &mut Self) {
+        let (sine, cosine) = (splat(simd, sine), splat(simd, cosine));
+        for at in (0..normals.count).step_by(WIDTH) {
+            let [x, y] = [load(simd, &normals.x[at..]), load(simd, &normals.y[at..])];
+            let mut most = splat(simd, f32::NEG_INFINITY);
+            for k in 0..normals.count {
+                let (corner_x, corner_y) = (splat(simd, self.corner_x[k]), splat(simd, self.corner_y[k]));
+                let along = mad(corner_x, x, corner_y * y);
+                let across = (corner_y * x - corner_x * y).abs();
+                most = most.max(mad(across, sine, along.max(along * cosine)));
+            }
+            most.store_slice(&mut out.far[at..][..WIDTH]);
+        }
+        out.set_corners(simd, normals);
+    }
+
+    /// Directions from the shoulder in which the outline lies, lowest and highest angle, radians; `None` where the
+    /// shoulder is inside.
+    pub fn directions_from_shoulder(&self, level: Level, normals: &OutlineNormals) -> Option<(f64, f64)> {
+        let view = ShoulderView::new(normals, self)?;
+        dispatch!(level, simd => self.directions_lanes(simd, normals, view))
+    }
+
+    #[inline(always)]
+    fn directions_lanes<S: Simd>(&self, simd: S, normals: &OutlineNormals, view: ShoulderView) -> Option<(f64, f64)> {
+        let mut range = TangentRange::new(simd, view);
+        for at in (0..normals.count).step_by(WIDTH) {
+            let corner = [load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..])];
+            range.include(simd, valid_lanes(normals, at), corner);
+        }
+        range.angles(simd)
+    }
+
+    /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
+    /// radians; `None` where it never does.
+    pub fn reachable_directions(&self, level: Level, normals: &OutlineNormals, reach: f32) -> Option<(f64, f64)> {
+        let Some(view) = ShoulderView::new(normals, self) else {
+            return Some((-std::f64::consts::PI, std::f64::consts::PI));
+        };
+        dispatch!(level, simd => self.reachable_lanes(simd, normals, view, reach))
+    }
+
+    #[inline(always)]
+    fn reachable_lanes<S: Simd>(
+        &self,
+        simd: S,
+        normals: &OutlineNormals,
+        view: ShoulderView,
+        reach: f32,
+    ) -> Option<(f64, f64)> {
+        let mut range = TangentRange::new(simd, view);
+        for at in (0..normals.count).step_by(WIDTH) {
+            let [x, y] = [load(simd, &normals.x[at..]), load(simd, &normals.y[at..])];
+            let far = load(simd, &self.far[at..]);
+            let square = splat(simd, reach * reach) - far * far;
+            let half = square.max(splat(simd, 0.0)).sqrt();
+            let [from, to] = [load(simd, &self.from[at..]).max(-half), load(simd, &self.to[at..]).min(half)];
+            let meets = (from.simd_le(to) & square.simd_ge(splat(simd, 0.0))).to_bitmask() & valid_lanes(normals, at);
+            for s in [from, to] {
+                range.include(simd, meets, [far * x - s * y, mad(far, y, s * x)]);
+            }
+        }
+        range.angles(simd)
+    }
+}
+
+/// Bits of the lanes from line `at` on that are lines of the outline, not padding.
+fn valid_lanes(normals: &OutlineNormals, at: usize) -> u64 {
+    !0 >> (64 - (normals.count - at).min(WIDTH))
+}
+
+/// An outline as it appears from the shoulder.
+#[derive(Clone, Copy)]
+struct ShoulderView {
+    /// Unit vector against the normal of the line that the shoulder is farthest outside of.
+    ahead: [f32; 2],
+    /// Distance of the shoulder from that line: the whole outline lies beyond it.
+    depth: f32,
+}
+
+impl ShoulderView {
+    /// `None` where the shoulder is inside.
+    fn new(normals: &OutlineNormals, outline: &Outline) -> Option<Self> {
+        let (mut k, mut least) = (0, f32::INFINITY);
+        for (line, &far) in outline.far[..normals.count].iter().enumerate() {
+            if far < least {
+                (k, least) = (line, far);
+            }
+        }
+        (least < 0.0).then_some(Self { ahead: [-normals.x[k], -normals.y[k]], depth: -least })
+    }
+}
+
+/// A range of directions from the shoulder, as tangents of the angle from the direction ahead.
+struct TangentRange<S: Simd> {
+    view: ShoulderView,
+    lo: Lanes<S>,
+    hi: Lanes<S>,
+}
+
+impl<S: Simd> TangentRange<S> {
+    /// Empty.
+    #[inline(always)]
+    fn new(simd: S, view: ShoulderView) -> Self {
+        Self { view, lo: splat(simd, f32::INFINITY), hi: splat(simd, f32::NEG_INFINITY) }
+    }
+
+    #[inline(always)]
+    fn include(&mut self, simd: S, lanes: u64, [x, y]: [Lanes<S>; 2]) {
+        let lanes = mask32x16::from_bitmask(simd, lanes);
+        let [ahead_x, ahead_y] = [splat(simd, self.view.ahead[0]), splat(simd, self.view.ahead[1])];
+        let ahead = mad(ahead_x, x, ahead_y * y).max(splat(simd, self.view.depth));
+        let tangent = (ahead_x * y - ahead_y * x) / ahead;
+        self.lo = lanes.select(self.lo.min(tangent), self.lo);
+        self.hi = lanes.select(self.hi.max(tangent), self.hi);
+    }
+
+    /// Lowest and highest angle; `None` where the range is empty.
+    #[inline(always)]
+    fn angles(&self, simd: S) -> Option<(f64, f64)> {
+        let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));
+        let (lo, hi) = (lo.min(lo.slide::<4>(lo)), hi.max(hi.slide::<4>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<2>(lo)), hi.max(hi.slide::<2>(hi)));
+        let (lo, hi) = (lo.min(lo.slide::<1>(lo)).to_array()[0], hi.max(hi.slide::<1>(hi)).to_array()[0]);
+        let (mut x, mut y) = ([1.0; WIDTH], [0.0; WIDTH]);
+        (x[0], y[0], y[1], y[2]) = (self.view.ahead[0], self.view.ahead[1], lo, hi);
+        let angles = atan2(simd, load(simd, &y), load(simd, &x)).to_array();
+        let middle = f64::from(angles[0]);
+        (lo <= hi).then(|| (middle + f64::from(angles[1]), middle + f64::from(angles[2])))
+    }
+}

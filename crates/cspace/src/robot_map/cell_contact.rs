@@ -1,0 +1,104 @@
+//! Cells that are not proven free at once: bisected until a contact is found or excluded.
+
+use elbowroom_proximity::DistanceSettings;
+
+use super::motion_bound::MotionBound;
+use super::pair_evaluator::{JointBox, PairEvaluator, PieceObstaclePair};
+use super::settings::MAX_JOINTS;
+
+/// A corner of the box is checked where it is nearer by at least this share of the distance, to first order.
+const CORNER_GAIN: f64 = 0.8;
+
+impl PairEvaluator<'_> {
+    /// True where a piece that `depth` axes move may touch in a cell, out of some pairs.
+    pub fn may_touch_in_cell(&mut self, cell: &JointBox, pairs: &[PieceObstaclePair], depth: usize) -> bool {
+        if self.contains_obstacle(depth, None) {
+            return true;
+        }
+        self.checks_left = self.task.max_checks_per_cell >> (4 * depth.saturating_sub(3));
+        let pieces = &self.task.pieces.pieces;
+        let mut here: Vec<PieceObstaclePair> =
+            pairs.iter().filter(|pair| pieces[pair.piece as usize].depth == depth).copied().collect();
+        // The nearest is the most likely to touch, and one contact is enough.
+        here.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let touches = here.into_iter().any(|pair| self.may_touch(pair, cell, None, self.task.bisections[depth]));
+        self.set_configuration(&cell.center);
+        touches
+    }
+
+    /// True where a pair may touch in a box: checks the centre, then the corner that is nearer to first order, then both
+    /// halves.
+    fn may_touch(
+        &mut self,
+        mut pair: PieceObstaclePair,
+        joint_box: &JointBox,
+        checked_corner: Option<&[f64; MAX_JOINTS]>,
+        bisections: u32,
+    ) -> bool {
+        let task = self.task;
+        let piece = &task.pieces.pieces[pair.piece as usize];
+        let obstacle = &task.obstacles[pair.obstacle as usize];
+        self.set_configuration(&joint_box.center);
+        let bound = MotionBound::new(piece, task.chain, &self.state);
+        let displacement = bound.max_displacement(piece, &joint_box.half);
+        let in_world = self.in_world(pair.piece as usize);
+        // Where the solids overlap, a collision query is the cheaper one.
+        if checked_corner.is_none() {
+            self.stats.collision_queries += 1;
+            if self.workspace.collides(&piece.shape, &in_world, &obstacle.shape, &obstacle.in_world) {
+                return true;
+            }
+        }
+        self.stats.distance_queries += 1;
+        let (shapes, poses) = ((&piece.shape, &obstacle.shape), (&in_world, &obstacle.in_world));
+        let settings = DistanceSettings {
+            limit: displacement,
+            warm_start: Some(&mut pair.warm_start),
+            ..DistanceSettings::default()
+        };
+        let found = self.workspace.separation(shapes.0, poses.0, shapes.1, poses.1, settings);
+        let Some(gap) = found.filter(|s| s.lower_bound <= displacement) else { return false };
+        if gap.distance <= 0.0 {
+            return true;
+        }
+        let line = (gap.on_b - gap.on_a) * gap.distance.recip();
+        let mut corner = joint_box.center;
+        let mut displacements = [0.0; MAX_JOINTS];
+        let mut nearer = 0.0;
+        for axis in 0..piece.depth {
+            let speed = bound.point_velocity(axis, gap.on_a).dot(line);
+            nearer += joint_box.half[axis] * speed.abs();
+            corner[axis] += joint_box.half[axis] * if speed < 0.0 { -1.0 } else { 1.0 };
+            displacements[axis] = bound.axis_displacement(piece, axis, &joint_box.half);
+        }
+        // Where the corner is little nearer, no contact is to be expected.
+        let is_worthwhile = nearer > CORNER_GAIN * gap.distance;
+        if is_worthwhile && checked_corner.is_none_or(|checked| !is_same_configuration(checked, &corner)) {
+            self.set_configuration(&corner);
+            let at_corner = self.in_world(pair.piece as usize);
+            self.stats.collision_queries += 1;
+            if self.workspace.collides(&piece.shape, &at_corner, &obstacle.shape, &obstacle.in_world) {
+                return true;
+            }
+        }
+        self.checks_left = self.checks_left.saturating_sub(1);
+        if bisections == 0 || self.checks_left == 0 {
+            self.stats.undecided += 1;
+            return true;
+        }
+        let longest = (0..piece.depth).max_by(|&a, &b| displacements[a].total_cmp(&displacements[b]));
+        let Some(axis) = longest else { return true };
+        let toward = if corner[axis] < joint_box.center[axis] { -1.0 } else { 1.0 };
+        [toward, -toward].into_iter().any(|side| {
+            let mut half = *joint_box;
+            half.half[axis] *= 0.5;
+            half.center[axis] += side * half.half[axis];
+            self.may_touch(pair, &half, Some(&corner), bisections - 1)
+        })
+    }
+}
+
+/// True where two configurations are the same but for rounding.
+fn is_same_configuration(a: &[f64; MAX_JOINTS], b: &[f64; MAX_JOINTS]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9)
+}

@@ -1,0 +1,40 @@
+//! Why there can be no map of a robot.
+
+use super::settings::MAX_JOINTS;
+use crate::GridAxisError;
+
+/// Why there can be no map of a robot.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RobotMapError {
+    /// No joint, or too many.
+    #[error("a map has 1 to {MAX_JOINTS} joints, not {0}: name fewer of them")]
+    Count(usize),
+    /// A joint that the robot does not have, or that is named twice.
+    #[error("joint {joint} of {dof} is no axis, or one for the second time: name each joint once, counted from 0")]
+    Joint {
+        /// The index given.
+        joint: usize,
+        /// Number of joints of the robot.
+        dof: usize,
+    },
+    /// An axis cannot be divided into cells.
+    #[error(transparent)]
+    Axis(#[from] GridAxisError),
+    /// The fixed values of the remaining joints do not fit the robot.
+    #[error("the other joints are held at {given} values, the robot has {dof}: give one finite number per joint")]
+    FixedValues {
+        /// How many values were given.
+        given: usize,
+        /// Number of joints of the robot.
+        dof: usize,
+    },
+    /// A solid or the base has a pose or a size that is not finite.
+    #[error("{0} has a place or a size that is NaN, infinite or beyond 1e5 m: give metres")]
+    InvalidPlacement(String),
+    /// The map would exceed the memory limit.
+    #[error("the map needs more than {mib} MiB: make the steps larger, or allow more memory")]
+    Memory {
+        /// The limit.
+        mib: usize,
+    },
+}

@@ -1,0 +1,41 @@
+//! Maps of any robot: exact solids, any number of joints, proven cell by cell.
+//!
+//! A box of joint space is free if no part of the robot is nearer to an obstacle, at the centre of the box, than it can move
+//! within the box. Boxes that are not proven free are bisected, down to single cells and, at the boundary, below them:
+//! the cost grows with the surface of the blocked region, not with the number of cells.
+//!
+//! | file | contents |
+//! | --- | --- |
+//! | `builder.rs`, `settings.rs`, `error.rs` | [`RobotMapBuilder`]: all of it together, on threads |
+//! | `driven_chain.rs` | which joints are axes of the map, and which of them move each link |
+//! | `robot_pieces.rs`, `solid_pieces.rs`, `triangle_soup.rs` | the robot in small pieces, each with the joints that move it |
+//! | `enclosure.rs` | solids swept by joints that are not axes of the map |
+//! | `motion_bound.rs` | bound of the motion of a piece within a box of joint space |
+//! | `placed_obstacle.rs`, `obstacle_solids.rs` | obstacles, and simpler solids in their place |
+//! | `subdivision.rs`, `pair_evaluator.rs`, `cell_contact.rs`, `pair_distance.rs` | bisected boxes; pairs in a box; cells at the boundary; one pair |
+//! | `box_tree.rs`, `occupancy_array.rs` | the map as a tree of boxes, or one byte per cell |
+
+mod box_tree;
+mod builder;
+mod cell_contact;
+mod driven_chain;
+mod enclosure;
+mod error;
+mod motion_bound;
+mod obstacle_solids;
+mod occupancy_array;
+mod pair_distance;
+mod pair_evaluator;
+mod placed_obstacle;
+mod robot_pieces;
+mod settings;
+mod solid_pieces;
+mod subdivision;
+mod triangle_soup;
+
+pub use box_tree::{BoxTree, CellBox};
+pub use builder::RobotMapBuilder;
+pub use driven_chain::RemainingJoints;
+pub use error::RobotMapError;
+pub use occupancy_array::OccupancyArray;
+pub use settings::{MAX_JOINTS, RobotMapSettings, RobotMapStats};

@@ -1,0 +1,143 @@
+//! The obstacle models of S2 for any robot: simpler solids that enclose an obstacle.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Shape, Sphere, separation, within};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::enclosure::Enclosure;
+use crate::ObstacleModel;
+use crate::cuboid::Bisection;
+
+/// Widest wedge of a slice, radians.
+const MAX_WEDGE_RAD: f64 = PI / 12.0;
+
+impl ObstacleModel {
+    /// Solids of this model that together enclose an obstacle (placed in the world). `base` is the frame of the base axis:
+    /// `box` is aligned with it, and `slices` are wedges about its z.
+    ///
+    /// Half spaces stay as they are.
+    ///
+    /// ```
+    /// use elbowroom_cspace::ObstacleModel;
+    /// use elbowroom_proximity::{Cuboid, Shape};
+    /// use elbowroom_spatial::{Pose, Vec3};
+    /// let beam = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.8, 0.1) });
+    /// let beam_in_world = Pose::from_xyz_rpy([1.2, 0.0, 0.8], [0.0; 3]);
+    /// let volume = |model: ObstacleModel| -> f64 {
+    ///     model.solids(&beam, &beam_in_world, &Pose::IDENTITY).iter().map(|(shape, _)| shape.volume()).sum()
+    /// };
+    /// assert!(volume(ObstacleModel::Exact) < volume(ObstacleModel::Spheres(8)));
+    /// assert!(volume(ObstacleModel::Spheres(8)) < volume(ObstacleModel::Sphere));
+    /// ```
+    pub fn solids(self, shape: &Shape, in_world: &Pose, base: &Pose) -> Vec<(Shape, Pose)> {
+        let itself = || vec![(shape.clone(), *in_world)];
+        if self == Self::Exact || matches!(shape, Shape::HalfSpace(_)) {
+            return itself();
+        }
+        let in_base = base.inverse() * *in_world;
+        let found = match self {
+            Self::Exact => None,
+            Self::Sphere => Some(vec![enclosing_sphere(shape)]),
+            Self::Spheres(count) => Some(spheres(shape, count)),
+            Self::Box => {
+                let bounds = shape.aabb(&in_base);
+                let cuboid = Shape::Cuboid(Cuboid { half_extents: bounds.extent() * 0.5 });
+                return vec![(cuboid, *base * Pose::from_translation(bounds.center()))];
+            }
+            Self::Slices => {
+                return wedges(shape, &in_base).map_or_else(itself, |w| w.into_iter().map(|s| (s, *base)).collect());
+            }
+        };
+        found
+            .map_or_else(itself, |f| f.into_iter().map(|(s, at)| (s, *in_world * Pose::from_translation(at))).collect())
+    }
+}
+
+/// A sphere about the centre of a shape's bounding box, in its frame.
+fn enclosing_sphere(shape: &Shape) -> (Shape, Vec3) {
+    if let Shape::Sphere(_) = shape {
+        return (shape.clone(), Vec3::ZERO);
+    }
+    let center = shape.aabb(&Pose::IDENTITY).center();
+    let radius = match Enclosure::new(shape, Pose::from_translation(-center)) {
+        Some(e) => e.margin + e.points.iter().map(|p| p.length()).fold(0.0, f64::max),
+        None => f64::INFINITY,
+    };
+    (Shape::Sphere(Sphere { radius: radius * (1.0 + 1e-12) }), center)
+}
+
+/// Spheres around those parts of the shape's bounding box that the shape intersects.
+fn spheres(shape: &Shape, count: u32) -> Vec<(Shape, Vec3)> {
+    let whole = shape.aabb(&Pose::IDENTITY);
+    let mut parts = vec![(whole.center(), whole.extent() * 0.5)];
+    if count <= 1 || matches!(shape, Shape::Sphere(_)) {
+        return vec![enclosing_sphere(shape)];
+    }
+    while parts.len() < count as usize {
+        parts = parts.into_iter().flat_map(halves).collect();
+    }
+    let holds = |(center, half): &(Vec3, Vec3)| {
+        let part = Shape::Cuboid(Cuboid { half_extents: *half });
+        // With a tolerance, so that no surface falls between two parts.
+        within(&part, &Pose::from_translation(*center), shape, &Pose::IDENTITY, 1e-9 * half.length())
+    };
+    parts.retain(holds);
+    let ball = |(center, half): (Vec3, Vec3)| (Shape::Sphere(Sphere { radius: half.length() * (1.0 + 1e-9) }), center);
+    parts.into_iter().map(ball).collect()
+}
+
+fn halves((center, half): (Vec3, Vec3)) -> [(Vec3, Vec3); 2] {
+    let Bisection { offset, half } = Bisection::new(half);
+    [1.0, -1.0].map(|side| (center + offset * side, half))
+}
+
+/// Bounds of angle, radius and height about the base frame's z, as convex wedges; `None` where one has no volume.
+fn wedges(shape: &Shape, in_base: &Pose) -> Option<Vec<Shape>> {
+    let solid = Enclosure::new(shape, *in_base)?;
+    let margin = solid.margin;
+    let (mut low, mut high, mut far) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+    for p in &solid.points {
+        (low, high, far) = (low.min(p.z - margin), high.max(p.z + margin), far.max(p.x.hypot(p.y) + margin));
+    }
+    // Distance from the axis within the solid's height.
+    let axis = Shape::Capsule(Capsule { half_length: 0.5 * (high - low), radius: 0.0 });
+    let on_axis = Pose::new(Rotation::IDENTITY, Vec3::Z * (0.5 * (low + high)));
+    let near = separation(shape, in_base, &axis, &on_axis).lower_bound * (1.0 - 1e-12);
+    let (first, width) = angle_range(&solid, near);
+    let count = (width / MAX_WEDGE_RAD).ceil().max(1.0);
+    let step = width / count;
+    let outer = far / (0.5 * step).cos() * (1.0 + 1e-9);
+    let wedge = |i: usize| {
+        let ends = [first + step * i as f64, first + step * (i + 1) as f64];
+        let corner = |a: f64, r: f64, z: f64| Vec3::new(r * a.cos(), r * a.sin(), z);
+        let corners: Vec<Vec3> = ends
+            .into_iter()
+            .flat_map(|a| [near, outer].into_iter().flat_map(move |r| [low, high].map(|z| corner(a, r, z))))
+            .collect();
+        ConvexHull::from_points(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))
+    };
+    (0..count as usize).map(wedge).collect()
+}
+
+/// First angle and width of the range that a solid covers about z, radians; a full turn where it contains the axis.
+fn angle_range(solid: &Enclosure, near: f64) -> (f64, f64) {
+    if near <= 0.0 {
+        return (-PI, TAU);
+    }
+    // The axis is outside the solid: less than half a turn about the direction of its centre, unless the convex hull contains
+    // the axis.
+    let middle = solid.center.y.atan2(solid.center.x);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for p in &solid.points {
+        let off = (p.y.atan2(p.x) - middle + PI).rem_euclid(TAU) - PI;
+        let Some(side) = Some(solid.margin / p.x.hypot(p.y)).filter(|s| *s < 1.0) else { return (-PI, TAU) };
+        (least, most) = (least.min(off - side.asin()), most.max(off + side.asin()));
+    }
+    if most - least >= PI {
+        return (-PI, TAU);
+    }
+    let rounding = 1e-9;
+    (middle + least - rounding, most - least + 2.0 * rounding)
+}

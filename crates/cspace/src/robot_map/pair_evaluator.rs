@@ -1,0 +1,161 @@
+//! Pairs of a piece and an obstacle in a box of joint space: proven apart, proven in contact, or neither.
+
+use std::sync::atomic::AtomicUsize;
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::{WarmStart, Workspace};
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::driven_chain::DrivenChain;
+use super::motion_bound::MotionBound;
+use super::pair_distance::distance_within;
+use super::placed_obstacle::{PlacedObstacle, depth_inside};
+use super::robot_pieces::{ClosedMesh, RobotPieces};
+use super::settings::{MAX_JOINTS, RobotMapStats};
+use crate::GridAxis;
+
+/// No distance query where the distance in an enclosing box was below this share of the required one.
+const RECHECK_RATIO: f64 = 0.85;
+
+/// A piece of the robot and an obstacle that it may touch in the current box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PieceObstaclePair {
+    pub piece: u32,
+    pub obstacle: u32,
+    /// Estimate of the distance, metres, from this box or one around it; infinite before the first query.
+    pub distance: f64,
+    pub warm_start: WarmStart,
+}
+
+/// A closed mesh of the robot and an obstacle that is small enough to be inside.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ContainmentCandidate {
+    pub closed_mesh: u32,
+    pub obstacle: u32,
+}
+
+/// What all threads share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SubdivisionTask<'a> {
+    pub chain: &'a DrivenChain,
+    pub pieces: &'a RobotPieces,
+    pub axes: &'a [GridAxis],
+    pub obstacles: &'a [PlacedObstacle],
+    pub containment_candidates: &'a [ContainmentCandidate],
+    /// How often a cell at the boundary is bisected, per number of axes that move a piece.
+    pub bisections: [u32; MAX_JOINTS + 1],
+    /// Checks of a cell of three axes.
+    pub max_checks_per_cell: u32,
+    /// Most nodes of all slabs together.
+    pub max_nodes: usize,
+    /// Nodes of the finished slabs.
+    pub used_nodes: &'a AtomicUsize,
+}
+
+/// A box of joint values.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct JointBox {
+    pub center: [f64; MAX_JOINTS],
+    pub half: [f64; MAX_JOINTS],
+}
+
+/// Evaluates pairs; one per thread.
+pub(super) struct PairEvaluator<'a> {
+    pub task: SubdivisionTask<'a>,
+    pub state: ChainState,
+    pub workspace: Workspace,
+    pub stats: RobotMapStats,
+    /// Checks left for the current cell.
+    pub checks_left: u32,
+}
+
+impl<'a> PairEvaluator<'a> {
+    pub fn new(task: SubdivisionTask<'a>) -> Self {
+        Self {
+            state: task.chain.state(),
+            task,
+            workspace: Workspace::new(),
+            stats: RobotMapStats::default(),
+            checks_left: 0,
+        }
+    }
+
+    pub fn set_configuration(&mut self, q: &[f64; MAX_JOINTS]) {
+        self.task.chain.set_axes(&mut self.state, &q[..self.task.axes.len()]);
+    }
+
+    /// Pose of a piece at the current configuration.
+    pub fn in_world(&self, piece: usize) -> Pose {
+        let piece = &self.task.pieces.pieces[piece];
+        self.task.chain.link_in_world(&self.state, piece.link) * piece.in_link
+    }
+
+    /// True where a pair is proven apart in the whole box, in which the piece moves no farther than `displacement`; what is
+    /// learnt of the pair is kept.
+    pub fn is_apart(&mut self, pair: &mut PieceObstaclePair, bound: &MotionBound, displacement: f64) -> bool {
+        let piece = &self.task.pieces.pieces[pair.piece as usize];
+        let obstacle = &self.task.obstacles[pair.obstacle as usize];
+        if obstacle.min_distance(bound.center) - piece.radius > displacement {
+            return true;
+        }
+        // Certainly not farther apart than that.
+        if obstacle.points.first().is_some_and(|p| p.distance(bound.center) + piece.radius <= displacement) {
+            return false;
+        }
+        // It was nearer in an enclosing box: a query is unlikely to prove it apart.
+        if pair.distance < RECHECK_RATIO * displacement {
+            return false;
+        }
+        self.stats.distance_queries += 1;
+        let in_world = self.in_world(pair.piece as usize);
+        let solid = (&piece.shape, &in_world);
+        let found = distance_within(&mut self.workspace, solid, obstacle, displacement, &mut pair.warm_start);
+        pair.distance = found.unwrap_or(displacement);
+        found.is_none()
+    }
+
+    /// True where the nearest of some pairs is in contact in the whole box, as one solid is so deep inside the other.
+    pub fn is_in_contact_throughout(&mut self, joint_box: &JointBox, pairs: &[PieceObstaclePair]) -> bool {
+        let Some(&nearest) = pairs.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return false };
+        let piece = &self.task.pieces.pieces[nearest.piece as usize];
+        let obstacle = &self.task.obstacles[nearest.obstacle as usize];
+        let in_world = self.in_world(nearest.piece as usize);
+        self.stats.collision_queries += 1;
+        if !self.workspace.collides(&piece.shape, &in_world, &obstacle.shape, &obstacle.in_world) {
+            return false;
+        }
+        let link = self.task.chain.link_in_world(&self.state, piece.link);
+        let bound = MotionBound::new(piece, self.task.chain, &self.state);
+        let stays =
+            |depth: f64, p: Vec3| depth > 0.0 && depth > bound.max_point_displacement(piece, &joint_box.half, p);
+        piece.points.iter().map(|p| link.transform_point(*p)).any(|p| stays(obstacle.penetration_depth(p), p))
+            || obstacle.points.iter().any(|&p| stays(depth_inside(&piece.shape, &in_world, p), p))
+    }
+
+    /// True where an obstacle is inside a link that no more than `depth` axes move, at the current configuration, without
+    /// touching its surface. With a box, only where it is so deep inside that it stays there in the whole box.
+    pub fn contains_obstacle(&self, depth: usize, throughout: Option<&JointBox>) -> bool {
+        self.task.containment_candidates.iter().any(|candidate| {
+            let ClosedMesh { mesh, piece } = &self.task.pieces.closed_meshes[candidate.closed_mesh as usize];
+            if piece.depth > depth {
+                return false;
+            }
+            let link = self.task.chain.link_in_world(&self.state, piece.link);
+            let center = link.transform_point(piece.center);
+            let mesh_in_world = link * piece.in_link;
+            // Surfaces that do not touch: a connected component is inside as a whole or not at all.
+            let inside = |p: &Vec3| {
+                let near = center.distance(*p) <= piece.radius * (1.0 + 1e-9);
+                near && mesh.contains(mesh_in_world.inverse_transform_point(*p))
+            };
+            let stays = |p: &Vec3| {
+                throughout.is_none_or(|joint_box| {
+                    let bound = MotionBound::new(piece, self.task.chain, &self.state);
+                    let displacement = bound.max_point_displacement(piece, &joint_box.half, *p);
+                    depth_inside(&piece.shape, &mesh_in_world, *p) > displacement
+                })
+            };
+            self.task.obstacles[candidate.obstacle as usize].points.iter().any(|p| inside(p) && stays(p))
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! Lines and cells of comma-separated text. Cells may be in quotation marks, but hold no commas or line ends.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+use crate::FormatError;
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+/// Longest line that is read, bytes.
+const MAX_LINE: usize = 1 << 20;
+
+/// Lines of a CSV file that are not blank, with their numbers; a byte order mark and white space at both ends are
+/// removed.
+pub(crate) struct CsvLines<'a, R> {
+    source: R,
+    file: &'a Path,
+    line: usize,
+    buffer: Vec<u8>,
+}
+
+impl<'a> CsvLines<'a, BufReader<File>> {
+    /// The lines of a file. Pipes are read too.
+    pub(crate) fn open(path: &'a Path) -> Result<Self> {
+        let unreadable = |e: std::io::Error| {
+            FormatError::new(path, None, format!("cannot be read: {e}"))
+                .hint("a CSV file: a header of column names, then rows of numbers")
+        };
+        let file = File::open(path).map_err(unreadable)?;
+        if file.metadata().map_err(unreadable)?.is_dir() {
+            return Err(FormatError::new(path, None, "is a folder").hint("a CSV file"));
+        }
+        Ok(Self::new(BufReader::with_capacity(1 << 16, file), path))
+    }
+}
+
+impl<'a, R: BufRead> CsvLines<'a, R> {
+    /// The lines of the text of `file`.
+    pub(crate) fn new(source: R, file: &'a Path) -> Self {
+        Self { source, file, line: 0, buffer: Vec::new() }
+    }
+
+    /// The next line and its number, counted from 1; `None` at the end.
+    pub(crate) fn next(&mut self) -> Result<Option<(usize, &str)>> {
+        loop {
+            self.line += 1;
+            self.buffer.clear();
+            let wrong = |what: String| {
+                FormatError::new(self.file, self.line, what).hint("a text file of comma-separated numbers")
+            };
+            let mut limited = Read::take(&mut self.source, MAX_LINE as u64);
+            let length =
+                limited.read_until(b'\n', &mut self.buffer).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+            match length {
+                0 => return Ok(None),
+                MAX_LINE => return Err(wrong(format!("is longer than {MAX_LINE} bytes"))),
+                _ if self.buffer.iter().all(u8::is_ascii_whitespace) => {}
+                _ => break,
+            }
+        }
+        let text = std::str::from_utf8(&self.buffer)
+            .map_err(|_| FormatError::new(self.file, self.line, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+        Ok(Some((self.line, text.trim_start_matches('\u{feff}').trim())))
+    }
+}
+
+/// The cells of a line, without white space and quotation marks around them.
+pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|cell| {
+        let cell = cell.trim();
+        cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')).map_or(cell, str::trim)
+    })
+}
+
+/// A name that occurs twice among the columns.
+pub(crate) fn duplicate(columns: &[String]) -> Option<&String> {
+    let mut seen = HashSet::new();
+    columns.iter().find(|name| !seen.insert(name.as_str()))
+}
+
+/// The value of a cell; `instead` is an example of a value to write.
+pub(crate) fn finite(cell: &str, column: &str, (file, line): (&Path, usize), instead: &str) -> Result<f64> {
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => {
+            let what = format!("column `{column}` holds \"{}\", which is no finite number", shortened(cell));
+            Err(FormatError::new(file, line, what).hint(instead))
+        }
+    }
+}
+
+/// The error of a row with more or fewer cells than the header.
+pub(crate) fn wrong_length(text: &str, columns: &[String], (file, line): (&Path, usize)) -> FormatError {
+    let what = format!("has {} values for {} columns", text.split(',').count(), columns.len());
+    FormatError::new(file, line, what).hint(format!("a number for each of {}", columns.join(",")))
+}
+
+/// At most 40 characters of a cell.
+fn shortened(cell: &str) -> String {
+    if cell.chars().count() > 40 { cell.chars().take(39).chain(['…']).collect() } else { cell.to_owned() }
+}
+
+/// The error where the time in a row is not after the time in the row before.
+pub(crate) fn not_rising(t_s: f64, last_s: f64, (file, line): (&Path, usize)) -> FormatError {
+    FormatError::new(file, line, format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
+}

@@ -1,0 +1,102 @@
+//! The specification of a joint.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_kinematics::JointKind;
+use elbowroom_spatial::Vec3;
+use elbowroom_spatial::units::{AngleUnit, LengthUnit};
+
+use crate::FormatError;
+
+/// The joint that the user specifies for one node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointSpec {
+    /// The file, or the option, that specifies it.
+    pub file: PathBuf,
+    /// Its line.
+    pub line: Option<usize>,
+    /// The node that moves.
+    pub node: String,
+    /// The joint's name.
+    pub name: Option<String>,
+    /// Its kind.
+    pub kind: Option<JointKind>,
+    /// Direction in [`JointSpec::frame`], of any length but 0.
+    pub axis: Option<Vec3>,
+    /// A point on the axis in [`JointSpec::frame`], m.
+    pub at: Option<Vec3>,
+    /// The frame of axis and point.
+    pub frame: AxisFrame,
+    /// Lower limit in the given units: see [`JointSpec::si`].
+    pub min: Option<f64>,
+    /// Upper limit in the given units.
+    pub max: Option<f64>,
+    /// Per second, in the given units.
+    pub speed: Option<f64>,
+    /// Per second squared, in the given units.
+    pub acceleration: Option<f64>,
+    /// Name of the joint that it mimics, multiplier, and offset in the given units.
+    pub mimic: Option<(String, f64, f64)>,
+    length: LengthUnit,
+    angle: AngleUnit,
+}
+
+/// The frame in which an axis is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AxisFrame {
+    /// The rest frame of the node itself.
+    #[default]
+    Node,
+    /// The frame of the node's parent.
+    Parent,
+    /// The frame of the model.
+    World,
+}
+
+impl JointSpec {
+    /// Converts a number of this joint to m or rad.
+    pub fn si(&self, kind: JointKind, value: f64) -> f64 {
+        if kind == JointKind::Prismatic { self.length.to_metres(value) } else { self.angle.to_radians(value) }
+    }
+
+    /// A specification that names only the node.
+    pub(super) fn new(node: &str, file: &Path, line: Option<usize>, (length, angle): (LengthUnit, AngleUnit)) -> Self {
+        Self {
+            file: file.to_owned(),
+            line,
+            node: node.to_owned(),
+            name: None,
+            kind: None,
+            axis: None,
+            at: None,
+            frame: AxisFrame::Node,
+            min: None,
+            max: None,
+            speed: None,
+            acceleration: None,
+            mimic: None,
+            length,
+            angle,
+        }
+    }
+
+    /// A length of this joint in metres.
+    pub(super) fn metres(&self, length: f64) -> f64 {
+        self.length.to_metres(length)
+    }
+
+    /// Refuses limits in the wrong order.
+    pub(super) fn check(&self) -> Result<(), FormatError> {
+        if let (Some(min), Some(max)) = (self.min, self.max)
+            && min > max
+        {
+            let what = format!("`{}` has min = {min} above max = {max}", self.node);
+            return Err(self.error(what).hint(format!("min = {max}, max = {min}")));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn error(&self, what: impl Into<String>) -> FormatError {
+        FormatError::new(&self.file, self.line, what)
+    }
+}

@@ -1,0 +1,112 @@
+//! The meshes of a robot: each file is read once, in parallel.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use elbowroom_proximity::TriMesh;
+use elbowroom_spatial::Vec3;
+use elbowroom_spatial::units::LengthUnit;
+
+use crate::mesh;
+use crate::mesh_data::{MeshData, UpAxis};
+use crate::urdf::{Geometry, LinkGeometry};
+use crate::{FormatError, Warning, input, resolve};
+
+/// The meshes of one file at one scale, with the names of its objects.
+pub(super) type TriMeshes = Arc<Vec<(String, Arc<TriMesh>)>>;
+
+type Scale = [u64; 3];
+type Loaded = Result<(HashMap<Scale, TriMeshes>, Vec<Warning>), FormatError>;
+
+pub(super) struct MeshCache {
+    /// By reference as written: the file, or a description of the search.
+    paths: HashMap<String, Result<PathBuf, String>>,
+    files: HashMap<PathBuf, Loaded>,
+}
+
+impl MeshCache {
+    /// Loads all meshes of the geometries. The result does not depend on the threads.
+    pub(super) fn load<'a>(
+        meshes: impl Iterator<Item = &'a LinkGeometry>,
+        base: &Path,
+        unit: Option<LengthUnit>,
+    ) -> Self {
+        let mut paths: HashMap<String, Result<PathBuf, String>> = HashMap::new();
+        let mut scales_of: HashMap<PathBuf, Vec<Vec3>> = HashMap::new();
+        for tri_mesh in meshes {
+            let Geometry::Mesh { filename, scale } = &tri_mesh.geometry else { continue };
+            let path = paths.entry(filename.clone()).or_insert_with(|| resolve::resolve(filename, base));
+            if let Ok(path) = path {
+                let scales = scales_of.entry(path.clone()).or_default();
+                if !scales.contains(scale) {
+                    scales.push(*scale);
+                }
+            }
+        }
+        Self { paths, files: load_files(scales_of, unit) }
+    }
+
+    pub(super) fn path(&self, filename: &str) -> Result<&Path, String> {
+        match self.paths.get(filename) {
+            Some(Ok(path)) => Ok(path),
+            Some(Err(why)) => Err(why.clone()),
+            None => Err("it was not loaded".into()),
+        }
+    }
+
+    /// The meshes of a file, and its warnings on the first call.
+    pub(super) fn meshes(&mut self, path: &Path, scale: Vec3) -> Result<(TriMeshes, Vec<Warning>), FormatError> {
+        let missing = || FormatError::new(path, None, "was not loaded");
+        match self.files.get_mut(path) {
+            Some(Ok((by_scale, warnings))) => {
+                let meshes = by_scale.get(&key(scale)).ok_or_else(missing)?;
+                Ok((Arc::clone(meshes), std::mem::take(warnings)))
+            }
+            Some(Err(e)) => Err(e.clone()),
+            None => Err(missing()),
+        }
+    }
+}
+
+fn key(scale: Vec3) -> Scale {
+    scale.to_array().map(f64::to_bits)
+}
+
+fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) -> HashMap<PathBuf, Loaded> {
+    let mut jobs: Vec<_> = scales_of.into_iter().collect();
+    // The largest file first, so that no thread starts it last.
+    jobs.sort_by_cached_key(|(path, _)| std::fs::metadata(path).map_or(0, |m| m.len()));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(jobs.len()).min(8);
+    let (jobs, files) = (Mutex::new(jobs), Mutex::new(HashMap::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some((path, scales)) = jobs.lock().ok().and_then(|mut jobs| jobs.pop()) {
+                    let loaded = load_file(&path, &scales, unit);
+                    if let Ok(mut files) = files.lock() {
+                        files.insert(path, loaded);
+                    }
+                }
+            });
+        }
+    });
+    files.into_inner().unwrap_or_default()
+}
+
+fn load_file(path: &Path, scales: &[Vec3], unit: Option<LengthUnit>) -> Loaded {
+    let loaded = mesh::parse(&input::read(path)?, path, unit, UpAxis::Ignore)?;
+    let mut by_scale = HashMap::new();
+    for scale in scales {
+        let meshes = loaded.meshes.iter().map(|mesh| tri_mesh(mesh.clone(), *scale, path)).collect::<Result<_, _>>()?;
+        by_scale.insert(key(*scale), Arc::new(meshes));
+    }
+    Ok((by_scale, loaded.warnings))
+}
+
+fn tri_mesh(mut mesh: MeshData, scale: Vec3, path: &Path) -> Result<(String, Arc<TriMesh>), FormatError> {
+    if scale != Vec3::splat(1.0) {
+        mesh.scale(scale);
+    }
+    Ok((mesh.name.clone(), Arc::new(mesh.into_trimesh(path)?)))
+}

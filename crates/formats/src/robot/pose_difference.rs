@@ -1,0 +1,11 @@
+//! Difference of two poses.
+
+use elbowroom_spatial::Pose;
+
+/// Poses with a smaller difference (m, rad) are equal.
+pub(super) const SAME_POSE: f64 = 1e-9;
+
+/// The larger of the angle (rad) and the distance (m) between two poses.
+pub(super) fn pose_difference(a: &Pose, b: &Pose) -> f64 {
+    (a.rotation.inverse() * b.rotation).angle().max(a.translation.distance(b.translation))
+}

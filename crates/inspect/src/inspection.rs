@@ -1,0 +1,281 @@
+//! Contents of a model, as one document.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::{FormatError, Warning, mesh, robot};
+use elbowroom_kinematics::dh::GeneralizedTable;
+use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_proximity::Shape;
+use elbowroom_robot::{Collider, Robot};
+use elbowroom_spatial::Pose;
+use elbowroom_spatial::units::LengthUnit;
+use serde::Serialize;
+
+use crate::dh::{self, ClassicalDh, DhConvention, DhRow, DirectDh, ModifiedDh};
+use crate::levels::{self, EnclosingVolume};
+use crate::pairs::{self, PairRow};
+use crate::resolution::{self, LinkLevels};
+use crate::rows::{JointRow, MeshRow, joint_row, mesh_row, mesh_rows};
+use crate::units::{self, SuspectUnit, suspect_units};
+
+/// Options of an inspection.
+#[derive(Debug, Clone, Default)]
+pub struct InspectOptions {
+    /// The SRDF of a URDF.
+    pub srdf: Option<PathBuf>,
+    /// The unit of formats without a unit.
+    pub unit: Option<LengthUnit>,
+    /// The joints file of a 3DS or glTF model; default: the one beside it.
+    pub joints: Option<PathBuf>,
+    /// Further joints of such a model, in the syntax of the command line.
+    pub joint: Vec<String>,
+    /// The last link of the DH table; default: the leaf with the most independent joints.
+    pub tip: Option<String>,
+    /// The DH tables in the text output, in this order; empty: the generalized one. JSON has all of them.
+    pub dh: Vec<DhConvention>,
+    /// Omits what takes time: resolution levels, pairs, and visual meshes.
+    pub brief: bool,
+}
+
+/// What a model file describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ModelKind {
+    /// A robot with links and joints.
+    Robot,
+    /// Objects of triangles.
+    Mesh,
+}
+
+/// Contents of a model. Lengths in metres, angles in radians; unlimited or unknown values are `null` in JSON.
+#[derive(Debug, Clone, Serialize)]
+pub struct Inspection {
+    /// The file.
+    pub model: PathBuf,
+    /// The model's name.
+    pub name: String,
+    /// Whether it is a robot or a mesh.
+    #[serde(rename = "what")]
+    pub kind: ModelKind,
+    /// Names of the links; for a mesh file, of its objects.
+    pub links: Vec<String>,
+    /// The joints, including fixed ones.
+    pub joints: Vec<JointRow>,
+    /// Degrees of freedom.
+    pub dof: usize,
+    /// One entry per collision mesh.
+    pub meshes: Vec<MeshRow>,
+    /// Link pairs that the SRDF disables.
+    pub disabled_pairs: usize,
+    /// The last link of the DH table; null for a mesh.
+    pub dh_tip: Option<String>,
+    /// The generalized DH table `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)`.
+    pub dh: Vec<DhRow>,
+    /// Largest difference between the product of the rows and forward kinematics; null for a mesh.
+    pub dh_residual: Option<f64>,
+    /// The classical table, which exists where all b are 0; null for a mesh.
+    pub dh_classical: Option<ClassicalDh>,
+    /// The table in the modified convention (Craig); null for a mesh.
+    pub dh_modified: Option<ModifiedDh>,
+    /// The table with one row per frame of the model; null for a mesh.
+    pub dh_direct: Option<DirectDh>,
+    /// Resolution level L2: the enclosing volume of each solid for whole-arm guarding.
+    pub levels: Vec<EnclosingVolume>,
+    /// The levels per link, including coarse, middle and fine triangles. Empty where omitted.
+    pub resolution: Vec<LinkLevels>,
+    /// The allowed collision matrix, one entry per pair of links with colliders. Empty for a mesh, and where omitted.
+    pub pairs: Vec<PairRow>,
+    /// Suspected unit errors.
+    pub suspect_units: Vec<SuspectUnit>,
+    /// Warnings.
+    pub warnings: Vec<String>,
+    #[serde(skip)]
+    pub(crate) dh_shown: Vec<DhConvention>,
+    #[serde(skip)]
+    robot: Option<Robot>,
+    /// The objects of a mesh file.
+    #[serde(skip)]
+    solids: Vec<(String, Vec<Collider>)>,
+}
+
+impl Inspection {
+    /// Inspects a URDF, a 3DS or glTF model, or a mesh file; the format is detected by content.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the file, or a collision mesh it names, cannot be read; or where the link `tip` does not
+    /// exist.
+    pub fn of(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+        if is_mesh(path) { Self::of_mesh(path, options) } else { Self::of_robot(path, options) }
+    }
+
+    fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+        let load = robot::LoadOptions {
+            srdf: options.srdf.clone(),
+            load_visuals: !options.brief,
+            unit: options.unit,
+            joints: options.joints.clone(),
+            joint: options.joint.clone(),
+        };
+        let loaded = robot::load(path, &load)?;
+        let chain = &loaded.robot.chain;
+        let tip = tip(chain, path, options.tip.as_deref())?;
+        let table = GeneralizedTable::extract(chain, tip);
+        let mut inspection = Self::empty(path, chain.name(), ModelKind::Robot, &loaded.warnings);
+        inspection.links = chain.links().to_vec();
+        inspection.joints = chain.joints().iter().map(|j| joint_row(chain, j)).collect();
+        inspection.dof = chain.dof();
+        inspection.meshes = mesh_rows(&loaded.robot);
+        inspection.disabled_pairs = loaded.robot.disabled_pairs.len();
+        inspection.dh_tip = Some(chain.links()[tip.0].clone());
+        inspection.dh = dh::generalized(&table);
+        inspection.dh_residual = Some(table.residual);
+        inspection.dh_classical = Some(ClassicalDh::of(&table));
+        inspection.dh_modified = Some(ModifiedDh::of(chain, tip));
+        inspection.dh_direct = Some(DirectDh::of(chain, tip));
+        if !options.dh.is_empty() {
+            inspection.dh_shown.clone_from(&options.dh);
+        }
+        inspection.add_suspect_units(suspect_units(&loaded.robot));
+        inspection.warn_of_meshes();
+        if !options.brief {
+            inspection.levels = levels::of_robot(&loaded.robot);
+            let links = chain.links().iter().cloned().zip(loaded.robot.colliders.iter().cloned());
+            inspection.resolution = resolution::of_links(&links.collect::<Vec<_>>());
+            inspection.pairs = pairs::of_robot(path, &loaded.robot)?;
+            inspection.warn_of_pairs();
+        }
+        inspection.robot = Some(loaded.robot);
+        Ok(inspection)
+    }
+
+    fn of_mesh(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+        if options.tip.is_some() || options.srdf.is_some() {
+            return Err(FormatError::new(path, None, "is a mesh: it has no links for --tip or --srdf")
+                .hint("a URDF or a 3DS or glTF model, or leave these options out"));
+        }
+        let loaded = mesh::load(path, options.unit)?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut inspection = Self::empty(path, &stem, ModelKind::Mesh, &loaded.warnings);
+        let format = std::fs::read(path).ok().and_then(|bytes| mesh::detect(&bytes, path).ok());
+        let mut solids = Vec::new();
+        for object in loaded.meshes {
+            let name = object.name.clone();
+            let solid = object.into_trimesh(path)?;
+            inspection.meshes.push(mesh_row(&name, &name, &solid));
+            inspection.add_suspect_units(units::of_mesh(&name, solid.aabb().extent(), format));
+            let body = Collider { name: name.clone(), shape: Shape::Mesh(solid.into()), in_link: Pose::IDENTITY };
+            solids.push((name.clone(), vec![body]));
+            inspection.links.push(name);
+        }
+        if !options.brief {
+            inspection.levels = solids.iter().map(|(name, s)| levels::of_solid(name, &s[0].shape)).collect();
+            inspection.resolution = resolution::of_links(&solids);
+        }
+        inspection.solids = solids;
+        inspection.warn_of_meshes();
+        Ok(inspection)
+    }
+
+    fn empty(path: &Path, name: &str, kind: ModelKind, warnings: &[Warning]) -> Self {
+        Self {
+            model: path.to_owned(),
+            name: name.to_owned(),
+            kind,
+            links: vec![],
+            joints: vec![],
+            dof: 0,
+            meshes: vec![],
+            disabled_pairs: 0,
+            dh_tip: None,
+            dh: vec![],
+            dh_residual: None,
+            dh_classical: None,
+            dh_modified: None,
+            dh_direct: None,
+            levels: vec![],
+            resolution: vec![],
+            pairs: vec![],
+            suspect_units: vec![],
+            warnings: warnings.iter().map(ToString::to_string).collect(),
+            dh_shown: vec![DhConvention::Generalized],
+            robot: None,
+            solids: vec![],
+        }
+    }
+
+    fn add_suspect_units(&mut self, suspects: impl IntoIterator<Item = SuspectUnit>) {
+        for suspect in suspects {
+            self.warnings.push(suspect.reason.clone());
+            self.suspect_units.push(suspect);
+        }
+    }
+
+    /// Warns of pairs that collide in every sampled state, or at rest.
+    fn warn_of_pairs(&mut self) {
+        for p in self.pairs.iter().filter(|p| p.tested && (p.always || p.at_rest)) {
+            let often = match &p.suggestion {
+                Some(reason) if p.at_rest => format!("are {reason}: a query at rest answers collision"),
+                _ => "touch in every sampled state: every query answers collision".to_owned(),
+            };
+            let hint = format!(
+                "<disable_collisions link1=\"{}\" link2=\"{}\" reason=\"Default\"/> in an SRDF, and --srdf FILE, if \
+                 they are built so",
+                p.a, p.b
+            );
+            self.warnings.push(format!("links `{}` and `{}` {often}\n  write: {hint}", p.a, p.b));
+        }
+    }
+
+    /// Warns of faults of meshes.
+    fn warn_of_meshes(&mut self) {
+        for m in &self.meshes {
+            if m.inside_out {
+                self.warnings.push(format!("`{}`: its faces are oriented inwards", m.name));
+            }
+            if m.degenerate > 0 {
+                self.warnings.push(format!("`{}`: {} faces have no area", m.name, m.degenerate));
+            }
+        }
+        let open = self.meshes.iter().filter(|m| !m.closed).count();
+        if open > 0 {
+            let all = self.meshes.len();
+            self.warnings.push(format!("{open} of {all} meshes are open: containment in them is not detected"));
+        }
+    }
+
+    /// The robot, where the model is one.
+    pub fn robot(&self) -> Option<&Robot> {
+        self.robot.as_ref()
+    }
+
+    /// The objects of a mesh file, with their names.
+    pub fn solids(&self) -> &[(String, Vec<Collider>)] {
+        &self.solids
+    }
+}
+
+/// True for everything except URDF, 3DS and glTF. A URDF is XML with the root `robot`, or has its extension.
+fn is_mesh(path: &Path) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if matches!(extension.as_deref(), Some("urdf" | "xacro" | "xml")) {
+        return false;
+    }
+    let bytes = std::fs::read(path).unwrap_or_default();
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned();
+    !(head.contains("<robot ") || head.contains("<robot>") || is_robot_tree(&bytes, path))
+}
+
+/// Whole scenes are not robots.
+fn is_robot_tree(bytes: &[u8], path: &Path) -> bool {
+    robot::tree_format(bytes, path).is_some_and(|format| {
+        robot::parse_tree(bytes, format, path, None).is_ok_and(|t| t.nodes.len() <= robot::MAX_LINKS)
+    })
+}
+
+fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, FormatError> {
+    let Some(name) = name else { return Ok(chain.tip()) };
+    chain.link(name).ok_or_else(|| {
+        FormatError::new(path, None, format!("there is no link `{name}`"))
+            .hint(format!("--tip with one of {}", chain.links().join(", ")))
+    })
+}

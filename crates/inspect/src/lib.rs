@@ -1,0 +1,38 @@
+//! Contents of a robot model or mesh file: joints and limits, meshes and their faults, DH tables, resolution levels, the
+//! allowed collision matrix, and suspected unit errors. No cell is needed; `elbowroom_report` renders the images.
+//!
+//! ```
+//! use elbowroom_inspect::{InspectOptions, Inspection};
+//! # let dir = tempfile::tempdir()?;
+//! # let path = dir.path().join("slide.urdf");
+//! # std::fs::write(&path, r#"<robot name="slide"><link name="rail"/><link name="cart"/>
+//! #   <joint name="x" type="prismatic"><parent link="rail"/><child link="cart"/>
+//! #   <limit lower="0" upper="2" velocity="1" effort="0"/></joint></robot>"#)?;
+//! let inspection = Inspection::of(&path, &InspectOptions::default())?;
+//! assert_eq!(inspection.links, ["rail", "cart"]);
+//! assert!(inspection.dh_residual.unwrap() < 1e-12);
+//! println!("{inspection}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod deviation;
+mod dh;
+mod edges;
+mod inspection;
+mod levels;
+mod pairs;
+mod quadric;
+mod resolution;
+mod rows;
+mod simplify;
+mod table;
+mod text;
+mod units;
+
+pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
+pub use inspection::{InspectOptions, Inspection, ModelKind};
+pub use levels::EnclosingVolume;
+pub use pairs::PairRow;
+pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
+pub use rows::{JointRow, MeshRow};
+pub use units::{SuspectQuantity, SuspectUnit, UnitLabel, suspect_units};

@@ -1,0 +1,157 @@
+//! Six axes with a spherical wrist, in closed form.
+//!
+//! The axes are read as lines at joint values 0, so any convention of the file is accepted. With `z` along axis 1 and `y` along
+//! axis 2 the parameters of the ortho-parallel basis follow; the transform from the model's last frame to the tip is a constant
+//! tool.
+
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose as OpwPose};
+use rs_opw_kinematics::kinematics_impl::OPWKinematics;
+use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
+
+use super::arm::{Arm, AxisInRoot};
+use super::rotation_error::rotation_error;
+use super::sequence::quasirandom;
+
+/// Files round π/2: axes this close to perpendicular count as perpendicular (rad), and this close to intersecting as intersecting
+/// (m). The solutions are refined on the chain as written.
+const SLACK: f64 = 1e-3;
+
+/// The closed-form model of an arm.
+#[derive(Clone)]
+pub struct SphericalWrist {
+    model: OPWKinematics,
+    base_in_root: Pose,
+    tool_in_flange: Pose,
+}
+
+impl SphericalWrist {
+    /// `None` where the arm has another structure, or where the model does not reproduce it.
+    pub fn detect(arm: &Arm) -> Option<Self> {
+        if arm.joints.len() != 6 || arm.variables.len() != 6 {
+            return None;
+        }
+        let plain = |j: &super::arm::ArmJoint| !j.prismatic && j.multiplier == 1.0 && j.offset == 0.0;
+        if !arm.joints.iter().all(plain) || arm.joints.iter().enumerate().any(|(i, j)| j.variable != i) {
+            return None;
+        }
+        let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
+        let tip_in_root = arm.tip_in_root(&[0.0; 6], &mut axes);
+        let mut wrist = Self::from_axes(&axes)?;
+        let flange_in_root = wrist.base_in_root * wrist.flange_in_base(&[0.0; 6])?;
+        wrist.tool_in_flange = flange_in_root.inverse() * tip_in_root;
+        wrist.reproduces(arm).then_some(wrist)
+    }
+
+    fn from_axes(axes: &[AxisInRoot; 6]) -> Option<Self> {
+        let [a1, a2, a3, a4, a5, a6] = axes;
+        let perpendicular = |a: Vec3, b: Vec3| a.dot(b).abs() < SLACK;
+        let right_angles = perpendicular(a1.axis, a2.axis)
+            && a2.axis.cross(a3.axis).length() < SLACK
+            && perpendicular(a3.axis, a4.axis)
+            && perpendicular(a4.axis, a5.axis)
+            && perpendicular(a5.axis, a6.axis);
+        let center = wrist_center(a4, a5, a6)?;
+        if !right_angles {
+            return None;
+        }
+        // Offset of axis 2 from axis 1 along x.
+        let z = a1.axis;
+        let mut y = (a2.axis - z * z.dot(a2.axis)).try_normalize()?;
+        let ahead = (a2.origin - a1.origin).dot(y.cross(z));
+        let sign2 = if ahead < -1e-9 { -1 } else { 1 };
+        y = y * f64::from(sign2);
+        let x = y.cross(z);
+        let base = Rotation::from_columns(x, y, z)?;
+        let base_in_root = Pose::new(base, a1.origin + z * z.dot(a2.origin - a1.origin));
+        let flat = |v: Vec3| {
+            let local = base.inverse_rotate(v);
+            (local.x, local.z)
+        };
+        let (ex, ez) = flat(a3.origin - a2.origin);
+        let theta2 = ex.atan2(ez);
+        let (wx, wz) = flat(center - a3.origin);
+        let (dx, dz) = flat(a4.axis);
+        let sign4 = if wx * dx + wz * dz < 0.0 { -1 } else { 1 };
+        let (dx, dz) = (dx * f64::from(sign4), dz * f64::from(sign4));
+        let theta23 = dx.atan2(dz);
+        let forearm = base * Rotation::from_axis_angle(Vec3::Y, theta23);
+        let u5 = forearm.inverse_rotate(a5.axis);
+        let theta4 = (-u5.x).atan2(u5.y);
+        let wrist4 = forearm * Rotation::from_axis_angle(Vec3::Z, theta4);
+        let u6 = wrist4.inverse_rotate(a6.axis);
+        let theta5 = u6.x.atan2(u6.z);
+        let from_elbow = forearm.inverse_rotate(center - a3.origin);
+        let parameters = Parameters {
+            a1: snap(ahead.abs()),
+            a2: snap(from_elbow.x),
+            b: snap((center - a1.origin).dot(y)),
+            c1: 0.0,
+            c2: ex.hypot(ez),
+            c3: from_elbow.z,
+            c4: 0.0,
+            offsets: [0.0, -theta2, theta2 - theta23, -theta4, -theta5, 0.0].map(within_a_turn),
+            sign_corrections: [1, sign2, if a3.axis.dot(y) < 0.0 { -1 } else { 1 }, sign4, 1, 1],
+            dof: 6,
+        };
+        let sound = parameters.c2 > 1e-6 && parameters.a2.hypot(parameters.c3) > 1e-6;
+        sound.then(|| Self { model: OPWKinematics::new(parameters), base_in_root, tool_in_flange: Pose::IDENTITY })
+    }
+
+    fn flange_in_base(&self, q: &[f64; 6]) -> Option<Pose> {
+        let pose = self.model.try_forward(q).ok()?;
+        let rotation = Rotation::from_quaternion_xyzw(pose.rotation.to_array())?;
+        Some(Pose::new(rotation, Vec3::from(pose.translation.to_array())))
+    }
+
+    fn reproduces(&self, arm: &Arm) -> bool {
+        let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
+        (0..16).all(|k| {
+            let q: [f64; 6] = std::array::from_fn(|i| 6.0 * (quasirandom(k, i, 6) - 0.5));
+            let exact = arm.tip_in_root(&q, &mut axes);
+            let Some(flange) = self.flange_in_base(&q) else {
+                return false;
+            };
+            let model = self.base_in_root * flange * self.tool_in_flange;
+            exact.translation.distance(model.translation) < 10.0 * SLACK * arm.scale().max(1.0)
+                && rotation_error(exact.rotation, model.rotation).length() < 10.0 * SLACK
+        })
+    }
+
+    /// Up to eight solutions of the model, angles near the seed's, limits ignored. Where two axes of the wrist are aligned, axis 4
+    /// stays as near to the seed as possible.
+    pub fn candidates(&self, target_in_root: &Pose, seed: &[f64; 6]) -> Vec<[f64; 6]> {
+        let flange = self.base_in_root.inverse() * *target_in_root * self.tool_in_flange.inverse();
+        let rotation = OpwRotation::from_array(flange.rotation.to_quaternion_xyzw());
+        let translation = flange.translation.to_array().into();
+        match OpwPose::try_from_parts(translation, rotation) {
+            Ok(pose) => self.model.inverse_continuing(&pose, seed),
+            Err(_) => Vec::new(),
+        }
+    }
+}
+
+type OpwRotation = rs_opw_kinematics::glam::DQuat;
+
+/// The point where the three axes of the wrist intersect; `None` where they do not.
+fn wrist_center(a4: &AxisInRoot, a5: &AxisInRoot, a6: &AxisInRoot) -> Option<Vec3> {
+    let distance = |at: &AxisInRoot, p: Vec3| at.axis.cross(p - at.origin).length();
+    // Axes 4 and 5 are perpendicular, so their common point is well defined; axes 4 and 6 may be parallel.
+    let n = a4.axis.cross(a5.axis);
+    let squared = n.length_squared();
+    if squared < 0.5 {
+        return None;
+    }
+    let t = (a5.origin - a4.origin).cross(a5.axis).dot(n) / squared;
+    let center = a4.origin + a4.axis * t;
+    (distance(a5, center) < SLACK && distance(a6, center) < SLACK).then_some(center)
+}
+
+/// Lengths that are zero but for rounding, as exact zeros: only there the model treats aligned axes as such.
+fn snap(length: f64) -> f64 {
+    if length.abs() < 1e-9 { 0.0 } else { length }
+}
+
+fn within_a_turn(angle: f64) -> f64 {
+    angle % std::f64::consts::TAU
+}

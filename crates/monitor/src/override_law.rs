@@ -1,0 +1,221 @@
+//! The override law: the override that each pair of volume and region requests.
+
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::{Aabb, Vec3};
+
+use crate::laws::{speed_zone, warning_factor};
+use crate::placement::{DynamicRegion, Placement};
+use crate::point_motion::max_speed_along;
+use crate::recovery::{RecoverySettings, leads_out};
+use crate::stopping::{StoppingLaw, StoppingQuery};
+use crate::tick_context::TickContext;
+use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
+use crate::{RegionKind, SourceState};
+
+/// Settings of the override law.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OverrideLawSettings {
+    /// Margin (m) before the border at which the stopping-distance law stops: rounding never ends inside.
+    pub(crate) stop_margin_m: f64,
+    /// Speed (rad/s, m/s) below which a joint is at rest where its deceleration is not stated.
+    pub(crate) rest_speed: f64,
+    pub(crate) recovery: RecoverySettings,
+}
+
+impl Default for OverrideLawSettings {
+    fn default() -> Self {
+        Self { stop_margin_m: 5e-4, rest_speed: 1e-3, recovery: RecoverySettings::default() }
+    }
+}
+
+/// The override law of one tick.
+pub(crate) struct OverrideLaw<'a> {
+    pub(crate) tick: TickContext<'a>,
+    /// The stopping-distance law, where it is on.
+    pub(crate) stopping: Option<&'a StoppingLaw>,
+    /// Upper bound of the speed of all points of all regions, m/s.
+    pub(crate) max_region_speed: f64,
+    pub(crate) settings: OverrideLawSettings,
+}
+
+/// Direction in which the distance of a pair changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Direction {
+    /// It decreases, or is not known to increase.
+    Approaching,
+    /// It increases.
+    Leaving,
+    /// The volume is inside and the program leads out.
+    Recovering,
+}
+
+impl OverrideLaw<'_> {
+    /// The override that a pair requests. `so_far` is the smallest request of other pairs: a request above it need not be
+    /// exact.
+    pub(crate) fn requested_override(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
+        let v0 = self.tick.snapshot.programmed_override;
+        let region = &self.tick.config.regions[pair.region];
+        match region.kind {
+            RegionKind::Forbidden | RegionKind::Exchange { .. } => self.forbidden(pair, so_far),
+            RegionKind::Monitored { slow_to: None } => RequestedOverride::gradual(v0, v0),
+            RegionKind::Monitored { slow_to: Some(slow) } => {
+                RequestedOverride::gradual(speed_zone(pair.separation.distance, region.warning_m, slow, v0), v0)
+            }
+        }
+    }
+
+    /// True where the robot, commanded to stop in this tick, ends outside the region: by the stopping-distance law or,
+    /// where no deceleration is stated, because it is at rest.
+    pub(crate) fn stops_outside(&self, pair: &VolumeRegionPair) -> bool {
+        if pair.separation.distance <= 0.0 {
+            return false;
+        }
+        let Some(law) = self.stopping else { return self.is_at_rest(pair) };
+        self.stopping_query(pair, law).is_some_and(|query| law.stops_outside(&query))
+    }
+
+    /// Distance (m) beyond the warning zone within which a region can affect this volume.
+    pub(crate) fn extra_reach(&self, volume: usize) -> f64 {
+        let Some(law) = self.stopping else { return 0.0 };
+        law.reach_m(volume) + self.settings.stop_margin_m + self.max_region_speed * law.rest_after_s()
+    }
+
+    /// True where farther pairs never request less than closer ones.
+    pub(crate) fn only_closest_matters(&self) -> bool {
+        self.tick.predicted.is_none() && self.tick.intent.is_none()
+    }
+
+    fn forbidden(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
+        let config = self.tick.config;
+        let v0 = self.tick.snapshot.programmed_override;
+        let warned = v0 * warning_factor(pair.separation.distance, config.regions[pair.region].warning_m);
+        // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the limit.
+        // An override that changes at a limited rate may exceed the request of the zone: then the limit itself is needed.
+        let max = if config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
+        let law = self.stopping.map(|law| (law, self.stopping_query(pair, law)));
+        let limit = |margin_m: f64, max: f64| match &law {
+            None => max,
+            Some((law, query)) => query.map_or(0.0, |query| law.limit(&query.with_margin(margin_m), max)),
+        };
+        let held = match limit(self.settings.stop_margin_m, max) {
+            stopping if stopping < max => {
+                RequestedOverride { speed_override: stopping.min(warned), immediate_limit: stopping }
+            }
+            _ => RequestedOverride::gradual(warned, v0),
+        };
+        if self.tick.predicted.is_none() || held.speed_override >= v0.min(so_far) {
+            return held;
+        }
+        match self.direction(pair) {
+            Direction::Approaching => held,
+            Direction::Leaving => {
+                let max = v0.min(so_far);
+                let stopping = limit(0.0, max);
+                RequestedOverride::immediate(if stopping < max { stopping } else { v0 })
+            }
+            Direction::Recovering => RequestedOverride::immediate(v0 * config.laws.recovery),
+        }
+    }
+
+    /// The pair as a query of the stopping-distance law; `None` on contact.
+    fn stopping_query(&self, pair: &VolumeRegionPair, law: &StoppingLaw) -> Option<StoppingQuery> {
+        let config = self.tick.config;
+        let s = &pair.separation;
+        let free_m = s.lower_bound.min(s.distance);
+        if !(free_m > 0.0) {
+            return None;
+        }
+        let (volume, region) = (pair.volume, &config.regions[pair.region]);
+        // Two convex solids have a separating plane: only motion across it counts. Others may approach in any direction.
+        let is_convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
+        if !(is_convex(&config.volumes[volume].shape) && is_convex(&region.shape)) {
+            let approach = law.approach_any_direction(volume);
+            return Some(StoppingQuery { volume, approach, free_m, region_speed: self.max_speed_of_region(pair) });
+        }
+        let towards = (s.on_b - s.on_a).try_normalize()?;
+        let region_speed = self.region_closing_speed(pair, towards);
+        if region_speed == 0.0 && law.is_out_of_reach(volume, free_m - self.settings.stop_margin_m) {
+            return Some(StoppingQuery { volume, approach: law.approach_any_direction(volume), free_m, region_speed });
+        }
+        let closing_speed = |state| max_speed_along(config, self.tick.now, volume, state, towards);
+        let program_speed = closing_speed(self.tick.intent?);
+        // The actual motion only counts where the program is not known.
+        let real_speed = if law.program_is_known() { 0.0 } else { closing_speed(&self.tick.now.chain) };
+        let approach = law.approach(volume, towards, program_speed, real_speed);
+        Some(StoppingQuery { volume, approach, free_m, region_speed })
+    }
+
+    /// Speed (m/s) with which the region approaches against `towards` by its own motion; never negative.
+    fn region_closing_speed(&self, pair: &VolumeRegionPair, towards: Vec3) -> f64 {
+        let region = &self.tick.config.regions[pair.region];
+        let Some(source) = region.source_state(self.tick.snapshot.sources) else { return 0.0 };
+        let angular_velocity = source.motion.angular_velocity;
+        let (at, in_world) = (pair.separation.on_b, &self.tick.now.region_in_world[pair.region]);
+        if matches!(region.shape, Shape::HalfSpace(_)) {
+            // Of a half-space only the part opposite the volume counts.
+            let across = self.tick.now.volume_box[pair.volume].extent().length() + pair.separation.distance;
+            let speed = source.motion.velocity_at(at - source.pose.translation).dot(-towards);
+            return (speed + angular_velocity.length() * across).max(0.0);
+        }
+        let lever = (-towards).cross(angular_velocity);
+        let farthest = in_world.transform_point(region.shape.support(in_world.inverse_transform_vector(lever)));
+        source.motion.velocity_at(farthest - source.pose.translation).dot(-towards).max(0.0)
+    }
+
+    /// Upper bound of the speed of the points of the region, m/s.
+    fn max_speed_of_region(&self, pair: &VolumeRegionPair) -> f64 {
+        let region = &self.tick.config.regions[pair.region];
+        let Some(source) = region.source_state(self.tick.snapshot.sources) else { return 0.0 };
+        let bounds = &self.tick.now.region_box[pair.region];
+        if !bounds.extent().is_finite() {
+            let towards = (pair.separation.on_b - pair.separation.on_a).try_normalize();
+            return towards.map_or(f64::INFINITY, |towards| self.region_closing_speed(pair, towards));
+        }
+        let center = source.motion.velocity_at(bounds.center() - source.pose.translation);
+        center.length() + source.motion.angular_velocity.length() * 0.5 * bounds.extent().length()
+    }
+
+    /// True where joints and region are at rest, and no commanded override will move the joints.
+    fn is_at_rest(&self, pair: &VolumeRegionPair) -> bool {
+        let rest_speed = self.settings.rest_speed;
+        let commanded = |v: &f64| (v * self.tick.last_override).abs() <= rest_speed;
+        self.tick.now.chain.qd.iter().all(|v| v.abs() <= rest_speed)
+            && self.tick.snapshot.intent.is_none_or(|intent| intent.iter().all(commanded))
+            && self.tick.region_point_velocity(pair.region, pair.separation.on_b).length() <= rest_speed
+    }
+
+    /// Leaving: the distance increases now and over the lookahead time, in the direction of the program, and the actual
+    /// motion does not decrease it. A distance that decreases never clears an alarm.
+    fn direction(&self, pair: &VolumeRegionPair) -> Direction {
+        let tick = &self.tick;
+        let (Some(predicted), Some(intent)) = (tick.predicted, tick.intent) else { return Direction::Approaching };
+        let (v, r) = (pair.volume, pair.region);
+        let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
+        let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
+            let leads_out = leads_out(tick, &self.settings.recovery, pair, intent, predicted);
+            return if leads_out { Direction::Recovering } else { Direction::Approaching };
+        };
+        let grown = pair.separation.distance + tick.direction.leaving_speed * tick.direction.lookahead_s;
+        let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
+        let (volume_predicted, region_predicted) = (&predicted.volume_in_world[v], &predicted.region_in_world[r]);
+        let leaves = tick.leaves_along(pair, intent, away)
+            && !elbowroom_proximity::within(volume, volume_predicted, region, region_predicted, grown);
+        if leaves { Direction::Leaving } else { Direction::Approaching }
+    }
+}
+
+/// Upper bound of the speed of all points of all dynamic regions, m/s.
+pub(crate) fn max_region_speed(now: &Placement, sources: &[SourceState]) -> f64 {
+    let max_speed = |dynamic: &DynamicRegion| {
+        let SourceState { pose, motion, .. } = &sources[dynamic.source.0];
+        let angular_speed = motion.angular_velocity.length();
+        let lever = || max_distance(&now.region_box[dynamic.region], pose.translation);
+        motion.velocity.length() + if angular_speed > 0.0 { angular_speed * lever() } else { 0.0 }
+    };
+    now.dynamic_regions.iter().map(max_speed).fold(0.0, f64::max)
+}
+
+/// Distance of a point from the farthest corner of a box, m.
+fn max_distance(bounds: &Aabb, from: Vec3) -> f64 {
+    (bounds.min - from).abs().max((bounds.max - from).abs()).length()
+}

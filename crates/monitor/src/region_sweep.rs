@@ -1,0 +1,328 @@
+//! Continuous check between two snapshots: regions that a volume passes from one to the next.
+//!
+//! Joints and regions are assumed to move straight from one snapshot to the next. No point of a volume then travels farther
+//! than `T`, the sum over the joints of lever times change; so while the distances at two instants sum to more than the
+//! travel between them, the volume cannot have touched in between. Where they do not, the interval is halved.
+
+use elbowroom_kinematics::motion_bound::motion_bound;
+use elbowroom_spatial::Pose;
+
+use crate::guarded_distance::{BoundedDistance, guarded_distance};
+use crate::placement::Placement;
+use crate::region_clearance::TravelBound;
+use crate::{Configuration, RegionId, SourceState};
+
+/// Size of an unbounded region that rotates, m: the border of a half-space beyond it is ignored.
+const UNBOUNDED_SIZE_M: f64 = 100.0;
+/// A source that moves farther than twice its reported travel plus this (m) has jumped.
+const JUMP_M: f64 = 0.01;
+/// Allowance for rounding errors of distances and positions of some metres, m.
+const ROUNDING_M: f64 = 1e-12;
+
+/// The motion of a robot and of the regions from one snapshot to the next.
+///
+/// ```
+/// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+/// # use elbowroom_monitor::{Configuration, ConfigurationParts, Guards, Laws, Region, RegionId, RegionSweep, Volume};
+/// # use elbowroom_spatial::{Pose, Rotation, Vec3};
+/// # let rail = Joint { name: "rail".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1),
+/// #     origin: Pose::IDENTITY, axis: Vec3::X, limits: Limits::range(0.0, 2.0), mimic: None };
+/// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
+/// # let plate = Region::cuboid("plate", Vec3::X, Vec3::new(0.004, 1.0, 1.0), Rotation::IDENTITY).guards(Guards::TCP);
+/// # let configuration = Configuration::new(ConfigurationParts { robot: "rail".into(), base_in_world: Pose::IDENTITY, chain,
+/// #     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![plate], sources: vec![], laws: Laws::default() })?;
+/// // A TCP on a rail moves by 8 mm, through a plate of 4 mm.
+/// let mut sweep = RegionSweep::new(&configuration);
+/// sweep.advance(&configuration, &[0.996], &[], 0.002);
+/// sweep.advance(&configuration, &[1.004], &[], 0.002);
+/// assert!(sweep.distance(&configuration, RegionId(0), 1.0).is_some_and(|d| d > 0.0));
+/// let closest = sweep.closest_approach(&configuration, RegionId(0), 0.0, 1e-6).expect("it passes through");
+/// assert!(closest.distance_m <= 0.0 && closest.fraction > 0.0 && closest.fraction < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct RegionSweep {
+    /// The placement at one instant of the motion, and the fraction of the motion at which the robot is placed.
+    at: Placement,
+    fraction: Option<f64>,
+    from: Vec<f64>,
+    to: Vec<f64>,
+    /// The motions of the dynamic regions, in the order of [`Placement::dynamic_regions`].
+    region_motions: Vec<RegionMotion>,
+    /// Per joint the largest lever of any point of any volume, m per rad or m.
+    levers: Vec<f64>,
+    travel_m: f64,
+    /// Number of known snapshots, up to two.
+    known: u8,
+}
+
+/// Motion of a dynamic region from one snapshot to the next.
+#[derive(Debug, Clone, Copy)]
+struct RegionMotion {
+    from: Pose,
+    to: Pose,
+    /// Largest travel of its points, m; infinite after a jump.
+    travel_m: f64,
+}
+
+/// The instant between two snapshots at which a region is closest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosestApproach {
+    /// Fraction of the motion, 0..1.
+    pub fraction: f64,
+    /// Distance at that instant, m.
+    pub distance_m: f64,
+}
+
+/// Settings of the bisection.
+#[derive(Debug, Clone, Copy)]
+struct BisectionSettings {
+    /// Largest number of halvings of the interval.
+    max_depth: u32,
+    /// True: an interval that is undecided at the largest depth counts as its lower bound.
+    conservative: bool,
+}
+
+/// Settings in a tick: at most 63 instants are measured, and undecided intervals count.
+const IN_TICK: BisectionSettings = BisectionSettings { max_depth: 6, conservative: true };
+
+/// An instant of the motion with a proven lower bound of the distance.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    fraction: f64,
+    lower_bound: f64,
+}
+
+impl RegionSweep {
+    /// For this configuration; everything is allocated here.
+    pub fn new(config: &Configuration) -> Self {
+        let at = Placement::new(config);
+        let dof = config.chain.dof();
+        let at_rest = RegionMotion { from: Pose::IDENTITY, to: Pose::IDENTITY, travel_m: 0.0 };
+        Self {
+            region_motions: vec![at_rest; at.dynamic_regions.len()],
+            fraction: None,
+            from: vec![0.0; dof],
+            to: vec![0.0; dof],
+            levers: max_levers(config),
+            travel_m: 0.0,
+            known: 0,
+            at,
+        }
+    }
+
+    /// Advances to the next snapshot, `dt_s` (s) after the last one: joint values (rad, m) and one source per source of the
+    /// configuration. Returns false, and resets, where their number is wrong or a value is not finite.
+    pub fn advance(&mut self, config: &Configuration, q: &[f64], sources: &[SourceState], dt_s: f64) -> bool {
+        let fits = q.len() == self.to.len() && sources.len() == config.sources.len();
+        if !fits || !q.iter().all(|v| v.is_finite()) {
+            self.reset();
+            return false;
+        }
+        self.at.place_sources(config, sources);
+        for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
+            (motion.from, motion.to) = (motion.to, self.at.region_in_world[dynamic.region]);
+        }
+        self.step(config, q, dt_s, sources);
+        true
+    }
+
+    /// As [`RegionSweep::advance`] for a snapshot that is valid and placed, `dt_s` (s) after the previous one.
+    pub(crate) fn advance_to(&mut self, config: &Configuration, now: &Placement, dt_s: f64, sources: &[SourceState]) {
+        for (motion, dynamic) in self.region_motions.iter_mut().zip(&now.dynamic_regions) {
+            (motion.from, motion.to) = (motion.to, now.region_in_world[dynamic.region]);
+        }
+        self.step(config, &now.chain.q, dt_s, sources);
+    }
+
+    fn step(&mut self, config: &Configuration, q: &[f64], dt_s: f64, sources: &[SourceState]) {
+        std::mem::swap(&mut self.from, &mut self.to);
+        self.to.copy_from_slice(q);
+        self.fraction = None;
+        self.known = (self.known + 1).min(2);
+        let moved = self.from.iter().zip(&self.to).zip(&self.levers);
+        let travel: f64 = moved.map(|((a, b), lever)| if a == b { 0.0 } else { lever * (b - a).abs() }).sum();
+        self.travel_m = travel + ROUNDING_M;
+        for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
+            let shift = (motion.to.translation - motion.from.translation).length();
+            let reported = sources[dynamic.source.0].motion.velocity.length() * dt_s;
+            let turned = (motion.from.rotation.inverse() * motion.to.rotation).angle().abs();
+            let bounds = config.regions[dynamic.region].shape.aabb(&Pose::IDENTITY);
+            let lever = bounds.min.abs().max(bounds.max.abs()).length().min(UNBOUNDED_SIZE_M);
+            let jumped = shift > 2.0 * (reported + turned * lever.max(motion.to.translation.length())) + JUMP_M;
+            motion.travel_m = if jumped { f64::INFINITY } else { shift + turned * lever };
+        }
+    }
+
+    /// Discards the known snapshots.
+    pub fn reset(&mut self) {
+        self.known = 0;
+    }
+
+    /// Upper bound of the travel (m) of a volume and a region towards each other since the last snapshot; infinite where it
+    /// is not known.
+    pub fn motion_bound(&self, region: RegionId) -> f64 {
+        if self.known < 2 {
+            return f64::INFINITY;
+        }
+        self.travel_m + self.dynamic_index(region).map_or(0.0, |i| self.region_motions[i].travel_m)
+    }
+
+    /// Upper bounds of the travel since the last snapshot; 0 where it is not known.
+    pub(crate) fn travel_bound(&self) -> TravelBound {
+        if self.known < 2 {
+            return TravelBound { volumes_m: 0.0, relative_m: 0.0 };
+        }
+        let finite = self.region_motions.iter().map(|m| m.travel_m).filter(|t| t.is_finite());
+        TravelBound { volumes_m: self.travel_m, relative_m: self.travel_m + finite.fold(0.0, f64::max) }
+    }
+
+    /// Distance (m) of the region from the guarded volumes at the last snapshot; `None` where it exceeds `limit`.
+    pub fn distance(&mut self, config: &Configuration, region: RegionId, limit: f64) -> Option<f64> {
+        self.place(config, region, 1.0);
+        guarded_distance(config, &self.at, region, limit).map(|d| d.distance)
+    }
+
+    /// The closest approach of the region and the guarded volumes between the last two snapshots, to within `resolution_m`
+    /// (m). `None` where it is not below `below_m` and below the distances at both ends, or the motion is not known.
+    pub fn closest_approach(
+        &mut self,
+        config: &Configuration,
+        region: RegionId,
+        below_m: f64,
+        resolution_m: f64,
+    ) -> Option<ClosestApproach> {
+        let travel = self.motion_bound(region);
+        if !travel.is_finite() {
+            return None;
+        }
+        let max_depth = (travel / resolution_m).log2().ceil().clamp(0.0, 30.0) as u32;
+        let ends = [0.0, 1.0].map(|fraction| self.measure(config, region, fraction, below_m + travel).lower_bound);
+        self.bisect(config, region, below_m, ends, BisectionSettings { max_depth, conservative: false })
+    }
+
+    /// [`RegionSweep::closest_approach`] with known lower bounds `ends` of the distances at the ends.
+    fn bisect(
+        &mut self,
+        config: &Configuration,
+        region: RegionId,
+        below_m: f64,
+        ends: [f64; 2],
+        settings: BisectionSettings,
+    ) -> Option<ClosestApproach> {
+        let travel = self.motion_bound(region);
+        if !travel.is_finite() {
+            return None;
+        }
+        let below_m = below_m.min(ends[0]).min(ends[1]);
+        let conservative = settings.conservative;
+        let mut bisection = Bisection { sweep: self, config, region, travel, below_m, conservative, best: None };
+        let start = Sample { fraction: 0.0, lower_bound: ends[0] };
+        let end = Sample { fraction: 1.0, lower_bound: ends[1] };
+        bisection.halve(start, end, settings.max_depth);
+        bisection.best
+    }
+
+    /// The smallest distance (m) since the last snapshot where it is inside the region or, unless the robot is `warned`
+    /// anyway, in its warning zone. `ends` are the distances at both snapshots. Undecided intervals count as passed.
+    pub(crate) fn passed(
+        &mut self,
+        config: &Configuration,
+        region: RegionId,
+        ends: [f64; 2],
+        warned: bool,
+    ) -> Option<f64> {
+        let zone_m = if warned { 0.0 } else { config.regions[region.0].warning_m };
+        // Most ticks end here: the distances at the ends exceed the travel.
+        if ends[0] + ends[1] - 2.0 * zone_m > self.motion_bound(region) {
+            return None;
+        }
+        let mut closest_below = |below_m| self.bisect(config, region, below_m, ends, IN_TICK);
+        let zone = closest_below(zone_m)?;
+        let closest =
+            if zone_m > 0.0 && zone.distance_m > 0.0 { closest_below(0.0).or(Some(zone)) } else { Some(zone) };
+        closest.map(|c| c.distance_m)
+    }
+
+    /// Distance at a fraction of the motion; distance and lower bound are `limit` where it exceeds that.
+    fn measure(&mut self, config: &Configuration, region: RegionId, fraction: f64, limit: f64) -> BoundedDistance {
+        self.place(config, region, fraction);
+        let beyond = BoundedDistance { distance: limit, lower_bound: limit };
+        guarded_distance(config, &self.at, region, limit).unwrap_or(beyond)
+    }
+
+    fn place(&mut self, config: &Configuration, region: RegionId, fraction: f64) {
+        if self.fraction != Some(fraction) {
+            let Self { at, from, to, .. } = self;
+            let ends = at.chain.q.iter_mut().zip(from.iter().zip(to.iter()));
+            ends.for_each(|(q, (a, b))| *q = if fraction < 1.0 { a + (b - a) * fraction } else { *b });
+            at.place_at_chain_state(config);
+            self.fraction = Some(fraction);
+        }
+        if let Some(i) = self.dynamic_index(region) {
+            let RegionMotion { from, to, .. } = &self.region_motions[i];
+            let pose = if fraction < 1.0 { from.interpolate(to, fraction) } else { *to };
+            self.at.region_in_world[region.0] = pose;
+            self.at.region_box[region.0] = config.regions[region.0].shape.aabb(&pose);
+        }
+    }
+
+    fn dynamic_index(&self, region: RegionId) -> Option<usize> {
+        self.at.dynamic_regions.iter().position(|d| d.region == region.0)
+    }
+}
+
+/// Search for the closest approach by bisection.
+struct Bisection<'a> {
+    sweep: &'a mut RegionSweep,
+    config: &'a Configuration,
+    region: RegionId,
+    travel: f64,
+    below_m: f64,
+    conservative: bool,
+    best: Option<ClosestApproach>,
+}
+
+impl Bisection<'_> {
+    /// Searches between two samples, with at most `depth` halvings.
+    fn halve(&mut self, a: Sample, b: Sample, depth: u32) {
+        let travel = self.travel * (b.fraction - a.fraction);
+        let lower_bound = 0.5 * (a.lower_bound + b.lower_bound - travel);
+        let so_far = self.best.map_or(f64::INFINITY, |c| c.distance_m);
+        if lower_bound > self.below_m || lower_bound >= so_far || so_far <= 0.0 {
+            return;
+        }
+        let fraction = f64::midpoint(a.fraction, b.fraction);
+        if depth == 0 {
+            if self.conservative {
+                self.best = Some(ClosestApproach { fraction, distance_m: lower_bound });
+            }
+            return;
+        }
+        let limit = self.below_m + 0.5 * travel;
+        let BoundedDistance { distance, lower_bound } = self.sweep.measure(self.config, self.region, fraction, limit);
+        if distance <= self.below_m && distance < so_far {
+            self.best = Some(ClosestApproach { fraction, distance_m: distance });
+        }
+        let middle = Sample { fraction, lower_bound };
+        self.halve(a, middle, depth - 1);
+        self.halve(middle, b, depth - 1);
+    }
+}
+
+/// Per joint the largest travel of any point of any volume per unit, m per rad or m.
+fn max_levers(config: &Configuration) -> Vec<f64> {
+    let mut levers = vec![0.0; config.chain.dof()];
+    for volume in &config.volumes {
+        let bounds = volume.shape.aabb(&volume.in_link);
+        let radius = bounds.min.abs().max(bounds.max.abs()).length();
+        let mut own = vec![0.0; levers.len()];
+        let path = config.chain.path(volume.link);
+        // Mimic joints share the index of their source; their levers add up.
+        for (joint, lever) in motion_bound(&config.chain, volume.link, radius, &path) {
+            own[joint] += lever;
+        }
+        levers.iter_mut().zip(own).for_each(|(max, own): (&mut f64, f64)| *max = max.max(own));
+    }
+    levers
+}

@@ -1,0 +1,189 @@
+//! The perception pipeline: camera frames to occupied cells of the joint-space map.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use elbowroom_cspace::{JointMap, MapReader};
+use elbowroom_kinematics::ChainState;
+use elbowroom_vision::{
+    self as vision, ArmPart, Calibration, CameraTracker, CameraTrackerSettings, Frame, FrameStatus, PixelMask,
+    RawLayout,
+};
+
+use crate::arm::MappedArm;
+use crate::error::PerceptionError;
+use crate::known::{MapUpdater, PrismSettings};
+use crate::times::{PerceptionTimes, Stopwatch};
+use crate::update::ObstacleUpdate;
+
+/// Settings of a [`PerceptionPipeline`], beside the [`CameraTrackerSettings`] of the camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PerceptionSettings {
+    /// Prediction horizon, seconds: a moving obstacle also blocks its predicted positions until this time after the
+    /// frame.
+    pub prediction_s: f64,
+    /// Margin by which the arm's silhouette is dilated, metres: calibration error, and the motion of the arm between
+    /// the frame and its joint values.
+    pub mask_margin_m: f64,
+    /// Layout of raw frames, for cameras that send them.
+    pub raw: Option<RawLayout>,
+}
+
+impl Default for PerceptionSettings {
+    /// Half a second of prediction, 3 cm around the arm.
+    fn default() -> Self {
+        Self { prediction_s: 0.5, mask_margin_m: 0.03, raw: None }
+    }
+}
+
+/// Turns camera frames into obstacles and keeps the joint-space map of an arm up to date.
+#[derive(Debug)]
+pub struct PerceptionPipeline {
+    arm: Arc<MappedArm>,
+    settings: PerceptionSettings,
+    vision: CameraTracker,
+    map: JointMap,
+    frame: Frame,
+    mask: PixelMask,
+    parts: Vec<ArmPart>,
+    chain: ChainState,
+    known: MapUpdater,
+}
+
+impl PerceptionPipeline {
+    /// Creates a pipeline. Its first [`CameraTrackerSettings::learning_frames`] frames must show the empty cell.
+    ///
+    /// # Errors
+    /// Settings out of range, a camera without calibration, an arm or a step that is not usable.
+    pub fn new(
+        arm: Arc<MappedArm>,
+        step_rad: f64,
+        camera: Calibration,
+        seeing: CameraTrackerSettings,
+        settings: PerceptionSettings,
+    ) -> Result<Self, PerceptionError> {
+        for (name, value) in [("prediction_s", settings.prediction_s), ("mask_margin_m", settings.mask_margin_m)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(PerceptionError::Setting { name, value });
+            }
+        }
+        camera.camera()?;
+        let (width, height) = camera.size()?;
+        Ok(Self {
+            settings,
+            vision: CameraTracker::new(camera, seeing)?,
+            map: JointMap::new(arm.planar, &arm.grid(step_rad)?)?,
+            frame: Frame::default(),
+            mask: PixelMask::new(width, height),
+            parts: Vec::new(),
+            chain: ChainState::new(&arm.robot.chain),
+            known: MapUpdater::default(),
+            arm,
+        })
+    }
+
+    /// The arm.
+    pub fn arm(&self) -> &Arc<MappedArm> {
+        &self.arm
+    }
+
+    /// The joint-space map. Fixed obstacles are added with [`PerceptionPipeline::map_mut`].
+    pub fn map(&self) -> &JointMap {
+        &self.map
+    }
+
+    /// The joint-space map, for fixed obstacles. Names that begin with `#` are reserved for observed obstacles.
+    pub fn map_mut(&mut self) -> &mut JointMap {
+        &mut self.map
+    }
+
+    /// The vision module: settings, foreground, detailed timings.
+    pub fn vision(&self) -> &CameraTracker {
+        &self.vision
+    }
+
+    /// Pixels that the arm covered in the last frame.
+    pub fn mask(&self) -> &PixelMask {
+        &self.mask
+    }
+
+    /// The last frame.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// A lock-free reader of the published map, for this or another thread.
+    pub fn reader(&self) -> MapReader {
+        self.map.reader()
+    }
+
+    /// Processes a frame as the camera sent it: PNG, PGM, PPM, or raw bytes (a name that ends in `.raw`, see
+    /// [`PerceptionSettings::raw`]). `q` are the joint values of the robot at that time.
+    ///
+    /// # Errors
+    /// An image that cannot be decoded, has the wrong size or is out of order; joint values that do not match the
+    /// robot. The map is unchanged: unknown is not free. With an obstacle that has no valid hull, that obstacle
+    /// keeps its place, the other obstacles are updated, and readers see the change after the next valid frame.
+    pub fn process_image(
+        &mut self,
+        bytes: &[u8],
+        name: &Path,
+        stamp_s: f64,
+        q: &[f64],
+    ) -> Result<ObstacleUpdate, PerceptionError> {
+        let mut stopwatch = Stopwatch::start();
+        let mut frame = std::mem::take(&mut self.frame);
+        let decoded = vision::decode(bytes, name, self.settings.raw, &mut frame);
+        frame.stamp_s = stamp_s;
+        let decode = stopwatch.lap();
+        let seen = decoded.map_err(PerceptionError::from).and_then(|()| self.process_frame(&frame, q));
+        self.frame = frame;
+        let mut update = seen?;
+        update.times.decode = decode;
+        Ok(update)
+    }
+
+    /// As [`PerceptionPipeline::process_image`], for a decoded frame.
+    ///
+    /// # Errors
+    /// As [`PerceptionPipeline::process_image`].
+    pub fn process_frame(&mut self, frame: &Frame, q: &[f64]) -> Result<ObstacleUpdate, PerceptionError> {
+        let dof = self.arm.robot.chain.dof();
+        if q.len() != dof || q.iter().any(|value| !value.is_finite()) {
+            return Err(PerceptionError::Values { found: q.len(), dof });
+        }
+        let mut stopwatch = Stopwatch::start();
+        self.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
+        self.mask.clear();
+        self.mask.mask_arm(self.vision.calibration(), &self.parts, self.settings.mask_margin_m)?;
+        let mut times = PerceptionTimes { mask: stopwatch.lap(), ..PerceptionTimes::default() };
+        let report = self.vision.process(frame, Some(&self.mask))?;
+        let t = &report.timings;
+        times.tracks = t.label + t.project + t.track + t.prisms;
+        times.background = t.total().saturating_sub(times.tracks);
+        stopwatch.lap();
+        let mut update = ObstacleUpdate {
+            stamp_s: report.stamp_s,
+            status: report.status,
+            prisms: Vec::new(),
+            entered: Vec::new(),
+            left: Vec::new(),
+            blocked: 0,
+            freed: 0,
+            times,
+        };
+        if update.status == FrameStatus::Valid {
+            let sweep = PrismSettings {
+                world_in_base: self.arm.base_in_world.inverse(),
+                prediction_s: self.settings.prediction_s,
+                slack_m: self.vision.settings().hysteresis_m,
+            };
+            self.known.follow(&self.vision.report().obstacles, &sweep, &mut self.map, &mut update)?;
+            update.times.fill = stopwatch.lap();
+            self.map.publish();
+            update.times.publish = stopwatch.lap();
+        }
+        update.prisms.clone_from(self.known.prisms());
+        Ok(update)
+    }
+}

@@ -1,0 +1,95 @@
+//! Time parametrization of planned paths: corners are blended where the result is proven free.
+
+use elbowroom_scene::SceneState;
+
+use super::error::RrtConnectError;
+use super::planned_path::PlannedPath;
+use super::planner::RrtConnect;
+use super::settings::RrtConnectSettings;
+use crate::time_parametrization::{KinematicLimits, PathElement, PathSegments, Trajectory};
+
+/// The blend distance of a corner is halved this often before the trajectory stops at the corner.
+const MAX_HALVINGS: i32 = 5;
+
+impl RrtConnect<'_> {
+    /// Time parametrization of a path within limits: straight along its segments, corners blended where that is proven free,
+    /// else with a stop. The proof is of the polyline through the positions at every `period` (s), which
+    /// [`Trajectory::samples`] returns and a controller with linear interpolation follows. The trajectory rests at multiples
+    /// of the period only.
+    ///
+    /// ```
+    /// use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{SceneState, example};
+    /// let scene = example::two_arms();
+    /// let mut state = SceneState::new(&scene);
+    /// state.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6])?;
+    /// let (mut planner, settings) = (RrtConnect::new(&scene, RobotId(0))?, RrtConnectSettings::default());
+    /// let path = planner.plan(&state, &[0.9, 1.3, 0.6], &settings)?;
+    /// let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![8.0; 3], jerk: vec![80.0; 3] };
+    /// let trajectory = planner.time_parametrize(&state, &path, &limits, 0.004, &settings)?;
+    /// let samples = trajectory.samples(0.004)?;
+    /// assert_eq!(samples.last().unwrap().1, [0.9, 1.3, 0.6]);
+    /// assert!(trajectory.seconds() > path.length_rad / 2.0_f64.hypot(2.0).hypot(2.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Limits that are not one finite number above 0 per joint, an invalid period, or a path of another robot.
+    pub fn time_parametrize(
+        &mut self,
+        start: &SceneState,
+        path: &PlannedPath,
+        limits: &KinematicLimits,
+        period: f64,
+        settings: &RrtConnectSettings,
+    ) -> Result<Trajectory, RrtConnectError> {
+        self.prepare(start, path.waypoints.last().map_or(&[], |q| q), settings)?;
+        let segments = PathSegments::new(&path.waypoints, limits)?;
+        let largest = |n: usize| if n > 0 { segments.max_blend_distance(n) } else { 0.0 };
+        let mut blend_distances: Vec<f64> = (0..segments.count()).map(largest).collect();
+        let least: Vec<f64> = blend_distances.iter().map(|distance| distance * 0.5_f64.powi(MAX_HALVINGS)).collect();
+        loop {
+            let trajectory = Trajectory::new(segments.clone(), &blend_distances).aligned_to_ticks(period)?;
+            let unproven = self.unproven_corners(&trajectory, period)?;
+            if unproven.is_empty() {
+                return Ok(trajectory);
+            }
+            let before = blend_distances.clone();
+            for n in unproven {
+                blend_distances[n] = if blend_distances[n] > least[n] { 0.5 * blend_distances[n] } else { 0.0 };
+            }
+            if blend_distances == before {
+                // No smaller blend is left: with stops at all corners, samples go from waypoint to waypoint.
+                blend_distances.fill(0.0);
+                return Ok(Trajectory::new(segments, &blend_distances).aligned_to_ticks(period)?);
+            }
+        }
+    }
+
+    /// The corners at which the polyline through the samples is not proven free.
+    fn unproven_corners(&mut self, trajectory: &Trajectory, period: f64) -> Result<Vec<usize>, RrtConnectError> {
+        use PathElement::{Corner, Segment};
+        let samples = trajectory.samples(period)?;
+        let mut unproven = Vec::new();
+        for pair in samples.windows(2) {
+            let ((t, a), (next, b)) = (&pair[0], &pair[1]);
+            // Slightly inside, as a stop is the end of one segment and the beginning of the next.
+            let inset = 1e-6 * period;
+            let (first, last) = match (trajectory.element_at(t + inset), trajectory.element_at(next - inset)) {
+                // Both on one segment, which is proven.
+                (Some(Segment(m)), Some(Segment(n))) if m == n => continue,
+                (Some(Segment(m)), Some(Segment(n) | Corner(n))) => (m + 1, n),
+                (Some(Corner(m)), Some(Segment(n) | Corner(n))) => (m, n),
+                _ => continue,
+            };
+            let known = (first..=last).all(|n| unproven.contains(&n));
+            if !known && !self.validator.proves_motion(a, b) {
+                unproven.extend(first..=last);
+            }
+        }
+        unproven.sort_unstable();
+        unproven.dedup();
+        Ok(unproven)
+    }
+}

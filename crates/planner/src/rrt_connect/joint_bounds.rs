@@ -1,0 +1,130 @@
+//! Joint limits, and the region from which configurations are sampled.
+
+use elbowroom_kinematics::{Chain, JointKind};
+
+use super::error::{JointUnit, RrtConnectError};
+use super::random::Random;
+use crate::path::PathEnd;
+
+/// A prismatic joint without limits is sampled this far beyond both ends, m.
+const UNBOUNDED_SLIDE_M: f64 = 1.0;
+/// Values beyond a limit by no more than this are clamped to it, rad or m.
+const LIMIT_TOLERANCE: f64 = 1e-9;
+
+/// The limits of a robot's values.
+#[derive(Debug, Clone)]
+pub(super) struct JointBounds {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    names: Vec<String>,
+    prismatic: Vec<bool>,
+}
+
+impl JointBounds {
+    pub fn new(chain: &Chain) -> Self {
+        let joints = || chain.active_joints().iter().map(|id| &chain.joints()[id.0]);
+        Self {
+            lower: chain.lower(),
+            upper: chain.upper(),
+            names: joints().map(|j| j.name.clone()).collect(),
+            prismatic: joints().map(|j| j.kind == JointKind::Prismatic).collect(),
+        }
+    }
+
+    pub fn dof(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// The values, clamped where they exceed a limit by rounding.
+    pub fn clamped_end(&self, end: PathEnd, q: &[f64]) -> Result<Vec<f64>, RrtConnectError> {
+        for (i, &value) in q.iter().enumerate() {
+            if !(value >= self.lower[i] - LIMIT_TOLERANCE && value <= self.upper[i] + LIMIT_TOLERANCE) {
+                let unit = if self.prismatic[i] { JointUnit::Metres } else { JointUnit::Radians };
+                let joint = self.names[i].clone();
+                return Err(RrtConnectError::OutOfLimits {
+                    end,
+                    joint,
+                    value,
+                    lower: self.lower[i],
+                    upper: self.upper[i],
+                    unit,
+                });
+            }
+        }
+        let mut q = q.to_vec();
+        self.clamp(&mut q);
+        Ok(q)
+    }
+
+    /// Narrows the limits.
+    pub fn narrow(&mut self, limits: impl Iterator<Item = (f64, f64)>) {
+        for ((lower, upper), (low, high)) in self.lower.iter_mut().zip(&mut self.upper).zip(limits) {
+            (*lower, *upper) = (lower.max(low), upper.min(high));
+        }
+    }
+
+    /// Clamps values to the limits.
+    pub fn clamp(&self, q: &mut [f64]) {
+        q.iter_mut().enumerate().for_each(|(i, v)| *v = v.max(self.lower[i]).min(self.upper[i]));
+    }
+
+    /// Joints that reach the same posture full turns nearer to the start, and their values there.
+    pub fn equivalent_goals(&self, from: &[f64], to: &[f64]) -> Vec<(String, f64)> {
+        let turn = std::f64::consts::TAU;
+        let other = |i: usize| {
+            let value = to[i] + ((from[i] - to[i]) / turn).round() * turn;
+            let within = value >= self.lower[i] && value <= self.upper[i];
+            (!self.prismatic[i] && value != to[i] && within).then(|| (self.names[i].clone(), value))
+        };
+        (0..self.dof()).filter_map(other).collect()
+    }
+
+    /// The region between two configurations and around them: up to the limits; half a turn beyond both ends where there are
+    /// none.
+    pub fn sampling_region(&self, from: &[f64], to: &[f64]) -> SamplingRegion {
+        let each = |i: usize| {
+            let (low, high) = (from[i].min(to[i]), from[i].max(to[i]));
+            let beyond = if self.prismatic[i] { UNBOUNDED_SLIDE_M } else { std::f64::consts::PI };
+            let least = if self.lower[i].is_finite() { self.lower[i] } else { low - beyond };
+            let most = if self.upper[i].is_finite() { self.upper[i] } else { high + beyond };
+            [least.min(low), low, high, most.max(high)]
+        };
+        SamplingRegion { each: (0..self.dof()).map(each).collect() }
+    }
+}
+
+/// Per value: lower bound, the smaller end, the greater end, upper bound.
+#[derive(Debug, Clone)]
+pub(super) struct SamplingRegion {
+    each: Vec<[f64; 4]>,
+}
+
+impl SamplingRegion {
+    /// A sample between the ends and within a share of the region beyond them.
+    pub fn sample(&self, share: f64, random: &mut Random, out: &mut [f64]) {
+        for (value, [least, low, high, most]) in out.iter_mut().zip(&self.each) {
+            let (from, to) = (low + (least - low) * share, high + (most - high) * share);
+            *value = random.between(from, to).clamp(*least, *most);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_robot::example;
+
+    use super::*;
+
+    #[test]
+    fn a_goal_one_turn_nearer_is_reported_within_the_limits() {
+        let mut bounds = JointBounds::new(&example::arm().unwrap().chain);
+        (bounds.lower, bounds.upper) = (vec![f64::NEG_INFINITY, -6.3, -3.0], vec![f64::INFINITY, 6.3, 3.0]);
+        assert_eq!(bounds.equivalent_goals(&[3.0, -1.0, 2.9], &[2.0, 1.0, -2.9]), []);
+        let found = bounds.equivalent_goals(&[10.0, -1.0, 2.9], &[-3.0, 2.9, -2.9]);
+        let names: Vec<&str> = found.iter().map(|f| f.0.as_str()).collect();
+        assert_eq!(names, ["waist", "shoulder"]);
+        assert!(
+            (found[0].1 - 9.566_370_614_359_172).abs() < 1e-12 && (found[1].1 + 3.383_185_307_179_586).abs() < 1e-12
+        );
+    }
+}

@@ -1,0 +1,24 @@
+//! Path planning for any number of joints in the exact scene: RRT-Connect, then shortcutting; every segment of the result is
+//! proven by a sweep.
+
+mod clearance_exit;
+mod corner_blending;
+mod error;
+mod interpolation;
+mod joint_bounds;
+mod joint_weights;
+mod motion_validator;
+mod path_constraint;
+mod planned_path;
+mod planner;
+mod random;
+mod settings;
+mod shortcutting;
+mod tree;
+mod tree_search;
+
+pub use error::{JointUnit, RrtConnectError};
+pub use path_constraint::PathConstraint;
+pub use planned_path::PlannedPath;
+pub use planner::RrtConnect;
+pub use settings::{RrtConnectSetting, RrtConnectSettings, ShortcuttingSettings};

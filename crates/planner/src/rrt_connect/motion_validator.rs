@@ -1,0 +1,168 @@
+//! Validity of configurations and motions of one robot in the exact scene: discrete checks and continuous proofs.
+
+use std::time::Instant;
+
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::{
+    Checker, CheckerOptions, PairContact, PairDistance, Scene, SceneError, SceneState, Selection, SweepMove,
+    SweepOptions,
+};
+
+use super::interpolation::lerp;
+use super::path_constraint::ConstraintChecker;
+
+/// Validates motions of one robot; all else stays as in a state.
+#[derive(Debug)]
+pub(super) struct MotionValidator<'s> {
+    scene: &'s Scene,
+    robot: RobotId,
+    checker: Checker<'s>,
+    state: SceneState,
+    pub sweep: SweepOptions,
+    pub constraint: Option<ConstraintChecker<'s>>,
+    /// Metres per rad or m of each value, see [`super::joint_weights`].
+    pub weights: Vec<f64>,
+    max_weight: f64,
+    /// Largest step of a discrete check, see [`Self::distance`].
+    pub check_resolution: f64,
+    /// Configurations that were checked.
+    pub states_checked: u64,
+    pub deadline: Instant,
+    pub max_states: u64,
+}
+
+impl<'s> MotionValidator<'s> {
+    pub fn new(scene: &'s Scene, robot: RobotId, weights: Vec<f64>) -> Self {
+        Self {
+            scene,
+            robot,
+            checker: Checker::new(scene, CheckerOptions::default()),
+            state: SceneState::new(scene),
+            sweep: SweepOptions::default(),
+            constraint: None,
+            max_weight: weights.iter().copied().fold(0.0, f64::max),
+            weights,
+            check_resolution: f64::INFINITY,
+            states_checked: 0,
+            deadline: Instant::now(),
+            max_states: u64::MAX,
+        }
+    }
+
+    /// True where the limit of time or configurations is reached.
+    pub fn is_exhausted(&self) -> bool {
+        self.states_checked >= self.max_states || Instant::now() >= self.deadline
+    }
+
+    /// Sets the state of the scene; fails where the scene rejects the goal.
+    pub fn set_start(&mut self, state: &SceneState, goal: &[f64]) -> Result<(), SceneError> {
+        self.state.clone_from(state);
+        self.state.set_q(self.scene, self.robot, goal)?;
+        self.states_checked = 0;
+        Ok(())
+    }
+
+    pub fn name(&self, member: GeometryId) -> String {
+        self.scene.name(member)
+    }
+
+    /// False where the scene rejects the values: they count as not free.
+    fn set_robot(&mut self, q: &[f64]) -> bool {
+        self.state.set_q(self.scene, self.robot, q).is_ok()
+    }
+
+    /// A pair nearer than the clearance.
+    pub fn first_contact(&mut self, q: &[f64]) -> Option<PairContact> {
+        self.set_robot(q);
+        self.pair_within(self.sweep.clearance_m)
+    }
+
+    fn pair_within(&mut self, metres: f64) -> Option<PairContact> {
+        self.checker.between(Selection::Robot(self.robot), Selection::All).within(&self.state, metres)
+    }
+
+    /// The nearest pair of the robot.
+    pub fn nearest_pair(&mut self, q: &[f64]) -> Option<PairDistance> {
+        self.set_robot(q);
+        self.checker.between(Selection::Robot(self.robot), Selection::All).distance(&self.state)
+    }
+
+    /// Distance of a pair less its security margin, metres.
+    pub fn pair_distance(&mut self, q: &[f64], contact: &PairContact) -> f64 {
+        self.set_robot(q);
+        let found = self.checker.between(contact.a.into(), contact.b.into()).distance(&self.state);
+        found.map_or(0.0, |d| d.metres)
+    }
+
+    /// True where the constraint, if any, is satisfied with a margin for a proof.
+    pub fn satisfies_constraint(&mut self, q: &[f64]) -> bool {
+        self.constraint.as_mut().is_none_or(|constraint| constraint.is_free(q))
+    }
+
+    /// True where a configuration is free with a margin for a proof.
+    pub fn is_free(&mut self, q: &[f64]) -> bool {
+        self.states_checked += 1;
+        let margin = self.sweep.clearance_m + self.sweep.tolerance_m;
+        // The constraint first: it is the cheaper test.
+        self.satisfies_constraint(q) && self.set_robot(q) && self.pair_within(margin).is_none()
+    }
+
+    /// Weighted distance: about how far solids move, as rad (or m) of the joint that moves them most.
+    pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let each = a.iter().zip(b).zip(&self.weights).map(|((x, y), w)| ((x - y) * w).powi(2));
+        if self.max_weight > 0.0 { each.sum::<f64>().sqrt() / self.max_weight } else { 0.0 }
+    }
+
+    /// The step of each joint, alone, of this weighted distance.
+    pub fn equivalent_steps(&self, distance: f64) -> impl Iterator<Item = f64> + '_ {
+        self.weights.iter().map(move |w| if *w > 0.0 { distance * self.max_weight / w } else { 0.0 })
+    }
+
+    /// Checks `b`, then configurations between at the resolution, coarsely first. No proof.
+    pub fn discrete_check(&mut self, a: &[f64], b: &[f64]) -> bool {
+        if !self.is_free(b) {
+            return false;
+        }
+        let steps = (self.distance(a, b) / self.check_resolution).ceil() as usize;
+        let mut stride = steps.max(1).next_power_of_two();
+        let mut q = vec![0.0; a.len()];
+        while stride > 1 {
+            let half = stride / 2;
+            for i in (half..steps).step_by(stride) {
+                lerp(a, b, i as f64 / steps as f64, &mut q);
+                if !self.is_free(&q) {
+                    return false;
+                }
+            }
+            stride = half;
+        }
+        true
+    }
+
+    /// Proves that the straight segment from `a` to `b` in joint space is free.
+    pub fn proves_motion(&mut self, a: &[f64], b: &[f64]) -> bool {
+        let constrained = self.constraint.as_mut().is_none_or(|constraint| constraint.proves_motion(a, b));
+        constrained && self.sweep_is_free(a, b)
+    }
+
+    /// The same where `a` may be nearer to a violation of the constraint than paths may, if the segment comes no nearer.
+    pub fn proves_departure(&mut self, a: &[f64], b: &[f64]) -> bool {
+        let constrained = self.constraint.as_mut().is_none_or(|constraint| constraint.proves_departure(a, b));
+        constrained && self.sweep_is_free(a, b)
+    }
+
+    /// The proof in the scene.
+    fn sweep_is_free(&mut self, a: &[f64], b: &[f64]) -> bool {
+        if !self.set_robot(a) {
+            return false;
+        }
+        let moves = [SweepMove::Robot { robot: self.robot, to: b }];
+        let mut pairs = self.checker.between(Selection::Robot(self.robot), Selection::All);
+        matches!(pairs.sweep(&self.state, &moves, &self.sweep), Ok(None))
+    }
+
+    /// A discrete check, as it is cheaper, then the proof.
+    pub fn is_valid_motion(&mut self, a: &[f64], b: &[f64]) -> bool {
+        self.discrete_check(a, b) && self.proves_motion(a, b)
+    }
+}

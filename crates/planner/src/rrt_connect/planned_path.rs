@@ -1,0 +1,38 @@
+//! The result of planning.
+
+use std::time::Duration;
+
+use super::interpolation::path_length;
+
+/// A path from start to goal: straight in joint space from each waypoint to the next, proven free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedPath {
+    /// All values of the robot, rad (m for prismatic joints), at least two waypoints; the first is the start.
+    pub waypoints: Vec<Vec<f64>>,
+    /// Euclidean length in joint space, rad (and m).
+    pub length_rad: f64,
+    /// Length before shortcutting.
+    pub raw_length_rad: f64,
+    /// Time of the search.
+    pub planning_time: Duration,
+    /// Time of shortcutting.
+    pub simplification_time: Duration,
+    /// Configurations that were checked.
+    pub states_checked: u64,
+}
+
+impl PlannedPath {
+    /// Adds segments to other ends.
+    pub(super) fn with_ends(mut self, [from, to]: [Vec<f64>; 2]) -> Self {
+        let before = path_length(&self.waypoints);
+        self.waypoints.insert(0, from);
+        self.waypoints.push(to);
+        self.waypoints.dedup();
+        if self.waypoints.len() < 2 {
+            self.waypoints.push(self.waypoints[0].clone());
+        }
+        self.length_rad = path_length(&self.waypoints);
+        self.raw_length_rad += self.length_rad - before;
+        self
+    }
+}

@@ -1,0 +1,219 @@
+//! The RRT-Connect planner.
+
+use std::time::{Duration, Instant};
+
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Scene, SceneError, SceneState, SweepOptions};
+
+use super::clearance_exit::{ClearanceExit, ExitError};
+use super::error::RrtConnectError;
+use super::interpolation::path_length;
+use super::joint_bounds::JointBounds;
+use super::joint_weights::joint_weights;
+use super::motion_validator::MotionValidator;
+use super::path_constraint::{ConstraintChecker, PathConstraint};
+use super::planned_path::PlannedPath;
+use super::random::Random;
+use super::settings::RrtConnectSettings;
+use super::shortcutting::Shortcutting;
+use super::tree_search::BidirectionalSearch;
+use crate::path::PathEnd;
+
+/// Longest time limit, a year: instants cannot be as far apart as durations can be long.
+const MAX_TIME_LIMIT: Duration = Duration::from_hours(365 * 24);
+
+/// Plans for one robot of a scene; all else stays as in a state.
+///
+/// Two trees of configurations grow from start and goal until they meet (RRT-Connect). Edges are checked at discrete
+/// configurations while the trees grow; the edges of the path are proven by
+/// [`Checker::sweep`](elbowroom_scene::Checker::sweep), which is continuous. For the same scene, ends and settings the path is
+/// the same, unless the time limit is reached.
+///
+/// ```
+/// use elbowroom_planner::{RrtConnect, RrtConnectSettings};
+/// use elbowroom_robot::RobotId;
+/// use elbowroom_scene::{SceneState, example};
+/// let scene = example::two_arms();
+/// let mut state = SceneState::new(&scene);
+/// state.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6])?;
+/// let mut planner = RrtConnect::new(&scene, RobotId(0))?;
+/// // The part on the table is between start and goal.
+/// let path = planner.plan(&state, &[0.9, 1.3, 0.6], &RrtConnectSettings::default())?;
+/// assert!(path.waypoints.len() > 2 && path.length_rad < 5.0);
+/// assert_eq!(path.waypoints.last().unwrap(), &[0.9, 1.3, 0.6]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct RrtConnect<'s> {
+    pub(super) validator: MotionValidator<'s>,
+    bounds: JointBounds,
+    robot: RobotId,
+}
+
+impl<'s> RrtConnect<'s> {
+    /// For one robot of a scene.
+    ///
+    /// # Errors
+    /// The scene has no such robot.
+    pub fn new(scene: &'s Scene, robot: RobotId) -> Result<Self, SceneError> {
+        let count = scene.robots().len();
+        let r = scene.robots().get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?;
+        let bounds = JointBounds::new(&r.robot.chain);
+        let weights = joint_weights(&r.robot, &bounds);
+        Ok(Self { validator: MotionValidator::new(scene, robot, weights), bounds, robot })
+    }
+
+    /// With a constraint that paths satisfy.
+    ///
+    /// A start that violates it, or is nearer to a violation than paths may be, is left by a straight segment that does not come
+    /// nearer; a goal that is nearer is reached in the same manner. A goal that violates it is rejected.
+    #[must_use]
+    pub fn with_constraint(mut self, constraint: impl PathConstraint + 's) -> Self {
+        self.validator.constraint = Some(ConstraintChecker::new(constraint));
+        self
+    }
+
+    /// With limits narrower than the robot's own: lowest and highest value per joint, rad or m. Missing ones, and wider ones,
+    /// have no effect.
+    #[must_use]
+    pub fn with_limits(mut self, limits: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        self.bounds.narrow(limits.into_iter());
+        self
+    }
+
+    /// Plans from the robot's configuration in `start` to `goal` (rad, m for prismatic joints). Self-collision, objects and
+    /// other robots, which stay as in `start`, are checked according to the scene's allowed collision matrix.
+    ///
+    /// # Errors
+    /// An end beyond limits, in collision or nearer than the clearance, a goal that violates the [`PathConstraint`]; values
+    /// that are NaN or too few; an invalid setting; no path found within the limits, which proves nothing.
+    pub fn plan(
+        &mut self,
+        start: &SceneState,
+        goal: &[f64],
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let begin = Instant::now();
+        let ends = self.prepare(start, goal, settings)?;
+        let mut random = Random::new(settings.seed);
+        if self.validator.constraint.is_none() {
+            return self.connect(begin, ends, &mut random, settings);
+        }
+        let exits = self.clearance_exits(&ends, &mut random, settings)?;
+        Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
+    }
+
+    /// As [`plan`](Self::plan), but the ends need only be free: an end with less than the clearance is left (or reached) by
+    /// a straight segment that keeps half of the distance at the end, before the clearance is kept.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan); where no such segment is found, no path is found.
+    pub fn plan_from_tight_ends(
+        &mut self,
+        start: &SceneState,
+        goal: &[f64],
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let begin = Instant::now();
+        let clearance_m = settings.clearance_m;
+        let ends = self.prepare(start, goal, &RrtConnectSettings { clearance_m: 0.0, ..*settings })?;
+        let mut random = Random::new(settings.seed);
+        let exits = self.clearance_exits(&ends, &mut random, settings)?;
+        self.validator.sweep = SweepOptions { clearance_m, ..self.validator.sweep };
+        Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
+    }
+
+    fn connect(
+        &mut self,
+        begin: Instant,
+        [from, to]: [Vec<f64>; 2],
+        random: &mut Random,
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let mut waypoints = if self.validator.is_valid_motion(&from, &to) {
+            vec![from, to]
+        } else {
+            let region = self.bounds.sampling_region(&from, &to);
+            let edge_length = settings.edge_length;
+            let mut search = BidirectionalSearch::new(&mut self.validator, &region, random, [&from, &to], edge_length);
+            let found = search.run();
+            let nodes = search.nodes();
+            found.ok_or_else(|| self.not_found(&[from, to], nodes, settings))?
+        };
+        let planning_time = begin.elapsed();
+        let raw_length_rad = path_length(&waypoints);
+        let shortcutting = &settings.shortcutting;
+        Shortcutting { validator: &mut self.validator, random, settings: shortcutting }.run(&mut waypoints);
+        let simplification_time = begin.elapsed().saturating_sub(planning_time);
+        Ok(PlannedPath {
+            length_rad: path_length(&waypoints),
+            raw_length_rad,
+            waypoints,
+            planning_time,
+            simplification_time,
+            states_checked: self.validator.states_checked,
+        })
+    }
+
+    fn not_found(&self, [from, to]: &[Vec<f64>; 2], nodes: usize, settings: &RrtConnectSettings) -> RrtConnectError {
+        let left = self.validator.deadline.saturating_duration_since(Instant::now());
+        let seconds = settings.time_limit.min(MAX_TIME_LIMIT).saturating_sub(left).as_secs_f64();
+        let states_checked = self.validator.states_checked;
+        RrtConnectError::NotFound { seconds, states_checked, nodes, nearer: self.bounds.equivalent_goals(from, to) }
+    }
+
+    /// For each end a configuration near by that has the clearance and satisfies the constraint, or the end itself.
+    fn clearance_exits(
+        &mut self,
+        ends: &[Vec<f64>; 2],
+        random: &mut Random,
+        settings: &RrtConnectSettings,
+    ) -> Result<[Vec<f64>; 2], RrtConnectError> {
+        let mut exits = ends.clone();
+        for (end, exit) in [PathEnd::Start, PathEnd::Goal].into_iter().zip(&mut exits) {
+            let sampler = ClearanceExit { validator: &mut self.validator, bounds: &self.bounds, random: &mut *random };
+            let found = sampler.find(end, exit, settings.clearance_m);
+            *exit = found.map_err(|e| match e {
+                ExitError::Violation { what, distance_m } => {
+                    RrtConnectError::ConstraintViolated { end, what, metres: distance_m }
+                }
+                ExitError::NotFound => self.not_found(ends, 0, settings),
+            })?;
+        }
+        Ok(exits)
+    }
+
+    /// Prepares the validator for a query. Returns start and goal, within limits and free; the tolerance of the sweep is
+    /// reduced to the distances at the ends.
+    pub(super) fn prepare(
+        &mut self,
+        start: &SceneState,
+        goal: &[f64],
+        settings: &RrtConnectSettings,
+    ) -> Result<[Vec<f64>; 2], RrtConnectError> {
+        if let Some((setting, value)) = settings.invalid() {
+            return Err(RrtConnectError::InvalidSetting { setting, value });
+        }
+        let clearance_m = settings.clearance_m;
+        self.validator.set_start(start, goal)?;
+        self.validator.deadline = Instant::now() + settings.time_limit.min(MAX_TIME_LIMIT);
+        self.validator.max_states = settings.max_states;
+        self.validator.check_resolution = settings.check_resolution;
+        self.validator.sweep = SweepOptions { clearance_m, ..Default::default() };
+        let ends = [(PathEnd::Start, start.q(self.robot)), (PathEnd::Goal, goal)];
+        let mut checked = Vec::new();
+        for (end, q) in ends {
+            let q = self.bounds.clamped_end(end, q)?;
+            if let Some(contact) = self.validator.first_contact(&q) {
+                let metres = self.validator.pair_distance(&q, &contact);
+                let [a, b] = [contact.a, contact.b].map(|m| self.validator.name(m));
+                return Err(RrtConnectError::InCollision { end, a, b, metres, clearance_m });
+            }
+            let margin = self.validator.nearest_pair(&q).map_or(f64::INFINITY, |d| d.metres) - clearance_m;
+            self.validator.sweep.tolerance_m = self.validator.sweep.tolerance_m.min(0.5 * margin);
+            checked.push(q);
+        }
+        let to = checked.pop().unwrap_or_default();
+        Ok([checked.pop().unwrap_or_default(), to])
+    }
+}

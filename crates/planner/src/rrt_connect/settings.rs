@@ -1,0 +1,106 @@
+//! Settings of RRT-Connect.
+
+use std::time::Duration;
+
+/// Settings of [`RrtConnect`](crate::RrtConnect).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RrtConnectSettings {
+    /// Time limit of search and shortcutting together, approximately.
+    pub time_limit: Duration,
+    /// Limit of the configurations checked, approximately: unlike time, the same on every machine.
+    pub max_states: u64,
+    /// Distance that pairs keep beyond their security margins, m.
+    pub clearance_m: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Longest edge of a tree. An edge moves solids about as far as this rotation (rad or m) of the joint that moves them
+    /// most.
+    pub edge_length: f64,
+    /// Largest step of a discrete check, measured like [`edge_length`](Self::edge_length). Collisions in between are found by
+    /// the proof.
+    pub check_resolution: f64,
+    /// Settings of shortcutting.
+    pub shortcutting: ShortcuttingSettings,
+}
+
+impl Default for RrtConnectSettings {
+    /// 5 s, any number of configurations, no clearance.
+    fn default() -> Self {
+        Self {
+            time_limit: Duration::from_secs(5),
+            max_states: u64::MAX,
+            clearance_m: 0.0,
+            seed: 1,
+            edge_length: 0.6,
+            check_resolution: 0.06,
+            shortcutting: ShortcuttingSettings::default(),
+        }
+    }
+}
+
+/// Settings of shortcutting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShortcuttingSettings {
+    /// Random shortcuts that are tried.
+    pub max_attempts: usize,
+    /// Consecutive failures after which no more are tried.
+    pub max_failures: usize,
+    /// Rounds of moving corners.
+    pub max_rounds: usize,
+    /// A shortcut or a round must gain this share of the length.
+    pub min_gain: f64,
+}
+
+impl Default for ShortcuttingSettings {
+    fn default() -> Self {
+        Self { max_attempts: 400, max_failures: 60, max_rounds: 12, min_gain: 1e-3 }
+    }
+}
+
+/// A setting that can be invalid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RrtConnectSetting {
+    /// [`RrtConnectSettings::clearance_m`].
+    Clearance,
+    /// [`RrtConnectSettings::edge_length`].
+    EdgeLength,
+    /// [`RrtConnectSettings::check_resolution`].
+    CheckResolution,
+}
+
+impl RrtConnectSetting {
+    /// Its valid values in words.
+    pub(super) fn range(self) -> &'static str {
+        match self {
+            Self::Clearance => "a finite number of metres, 0 or more",
+            Self::EdgeLength | Self::CheckResolution => "a finite number above 0",
+        }
+    }
+}
+
+impl std::fmt::Display for RrtConnectSetting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Clearance => "the clearance",
+            Self::EdgeLength => "the edge length",
+            Self::CheckResolution => "the check resolution",
+        })
+    }
+}
+
+impl RrtConnectSettings {
+    /// The first invalid setting and its value.
+    pub(super) fn invalid(&self) -> Option<(RrtConnectSetting, f64)> {
+        let clearance_is_valid = self.clearance_m.is_finite() && self.clearance_m >= 0.0;
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !clearance_is_valid {
+            Some((RrtConnectSetting::Clearance, self.clearance_m))
+        } else if !positive(self.edge_length) {
+            Some((RrtConnectSetting::EdgeLength, self.edge_length))
+        } else if !positive(self.check_resolution) {
+            Some((RrtConnectSetting::CheckResolution, self.check_resolution))
+        } else {
+            None
+        }
+    }
+}

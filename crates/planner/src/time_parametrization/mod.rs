@@ -1,0 +1,15 @@
+//! Time parametrization: from waypoints to a trajectory within limits of velocity, acceleration and jerk, for any number of
+//! joints.
+
+mod blend;
+mod corner_blending;
+mod limits;
+mod segments;
+mod speed_profile;
+mod speed_ramp;
+mod trajectory;
+
+pub use limits::{KinematicLimits, LimitKind, TimeParametrizationError};
+pub(crate) use segments::PathSegments;
+pub(crate) use trajectory::PathElement;
+pub use trajectory::{Trajectory, TrajectoryPoint};

@@ -1,0 +1,191 @@
+//! Trajectories: joint values as a function of time.
+
+use super::blend::Blend;
+use super::limits::TimeParametrizationError;
+use super::segments::{Corner, PathSegments, point_along};
+use super::speed_profile::SpeedProfile;
+
+/// State of the joints at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrajectoryPoint {
+    /// Positions, rad.
+    pub q: Vec<f64>,
+    /// Velocities, rad/s.
+    pub qd: Vec<f64>,
+    /// Accelerations, rad/s².
+    pub qdd: Vec<f64>,
+}
+
+/// A path with a time parametrization: at rest at both ends; velocity and acceleration are continuous, jerk is limited.
+#[derive(Debug, Clone)]
+pub struct Trajectory {
+    path: PathSegments,
+    phases: Vec<Phase>,
+    seconds: f64,
+}
+
+/// A segment or a blend in time.
+#[derive(Debug, Clone)]
+struct Phase {
+    /// Time of its beginning, s.
+    begin: f64,
+    /// The joints are at rest at its beginning.
+    starts_at_rest: bool,
+    /// Time in the phase per time of the trajectory, at most 1.
+    time_scale: f64,
+    kind: PhaseKind,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum PhaseKind {
+    /// Along segment `n`, from `blend_distance` after its corner.
+    Straight { n: usize, blend_distance: f64, profile: SpeedProfile },
+    /// The blend before segment `n`.
+    Blend { n: usize, corner: Corner },
+}
+
+/// The element of the path at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PathElement {
+    /// A segment, counted from 0.
+    Segment(usize),
+    /// The corner before a segment.
+    Corner(usize),
+}
+
+impl Trajectory {
+    /// The fastest trajectory along a path. `blend_distances[n]` is the largest distance from corner `n` at which its blend
+    /// begins: 0 to stop there; entry 0 is not used.
+    pub(crate) fn new(path: PathSegments, blend_distances: &[f64]) -> Self {
+        let corners = path.corners(blend_distances);
+        let (mut phases, mut now) = (Vec::new(), 0.0);
+        let mut add = |kind: PhaseKind, starts_at_rest: bool, seconds: f64| {
+            phases.push(Phase { begin: now, starts_at_rest, time_scale: 1.0, kind });
+            now += seconds;
+        };
+        for (n, s) in path.segments.iter().enumerate() {
+            let (a, b) = (corners[n], corners[n + 1]);
+            if n > 0 && a.seconds > 0.0 && a.speed > 0.0 {
+                add(PhaseKind::Blend { n, corner: a }, false, a.seconds);
+            }
+            let profile = SpeedProfile::new(
+                (s.length - a.blend_distance() - b.blend_distance()).max(0.0),
+                a.speed,
+                b.speed,
+                s.limits,
+            );
+            add(
+                PhaseKind::Straight { n, blend_distance: a.blend_distance(), profile },
+                a.speed == 0.0,
+                profile.seconds(),
+            );
+        }
+        Self { path, phases, seconds: now }
+    }
+
+    /// Duration, s.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Number of corners at which it stops.
+    pub fn stops(&self) -> usize {
+        self.phases.iter().skip(1).filter(|p| p.starts_at_rest).count()
+    }
+
+    /// State of the joints `t` seconds after the start; before it that at the start, afterwards (and for NaN) that at the end.
+    pub fn at(&self, t: f64) -> TrajectoryPoint {
+        let joints = self.path.end.len();
+        if self.phases.is_empty() || !(t < self.seconds) {
+            return TrajectoryPoint { q: self.path.end.clone(), qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+        }
+        let phase = &self.phases[self.phase(t)];
+        let (since, time_scale) = ((t - phase.begin).max(0.0) * phase.time_scale, phase.time_scale);
+        let scaled = |v: &[f64], factor: f64| v.iter().map(|x| x * factor).collect();
+        match phase.kind {
+            PhaseKind::Straight { n, blend_distance, ref profile } => {
+                let [s, v, a] = profile.at(since);
+                let segment = &self.path.segments[n];
+                TrajectoryPoint {
+                    q: point_along(&segment.from, &segment.direction, blend_distance + s),
+                    qd: scaled(&segment.direction, v * time_scale),
+                    qdd: scaled(&segment.direction, a * time_scale * time_scale),
+                }
+            }
+            PhaseKind::Blend { n, corner } => {
+                let (before, after) = (&self.path.segments[n - 1].direction, &self.path.segments[n].direction);
+                let blend = Blend { before, after, speed: corner.speed, seconds: corner.seconds };
+                let from = point_along(&self.path.segments[n].from, before, -corner.blend_distance());
+                let mut state = TrajectoryPoint { q: from, qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+                for i in 0..joints {
+                    let [q, qd, qdd] = blend.at(since, i);
+                    state.q[i] += q;
+                    (state.qd[i], state.qdd[i]) = (qd * time_scale, qdd * time_scale * time_scale);
+                }
+                state
+            }
+        }
+    }
+
+    fn phase(&self, t: f64) -> usize {
+        self.phases.partition_point(|p| p.begin <= t).saturating_sub(1)
+    }
+
+    /// The element of the path at an instant.
+    pub(crate) fn element_at(&self, t: f64) -> Option<PathElement> {
+        self.phases.get(self.phase(t)).map(|p| match p.kind {
+            PhaseKind::Straight { n, .. } => PathElement::Segment(n),
+            PhaseKind::Blend { n, .. } => PathElement::Corner(n),
+        })
+    }
+
+    /// The same trajectory a little slower, so that it rests at multiples of a period (s) only: samples at these times then
+    /// include every corner at which it stops. Each part from rest to rest takes less than a period longer.
+    ///
+    /// # Errors
+    /// A period that is not a finite number above 0.
+    pub fn aligned_to_ticks(mut self, period: f64) -> Result<Self, TimeParametrizationError> {
+        validate_period(period)?;
+        let ends: Vec<f64> = self.phases.iter().skip(1).map(|p| p.begin).chain([self.seconds]).collect();
+        let mut ticks = 0.0;
+        let mut from = 0;
+        while from < self.phases.len() {
+            let rest =
+                (from + 1..self.phases.len()).find(|&n| self.phases[n].starts_at_rest).unwrap_or(self.phases.len());
+            let (begin, seconds) = (self.phases[from].begin, ends[rest - 1] - self.phases[from].begin);
+            let count = periods(seconds, period).max(1.0);
+            let time_scale = (seconds / (count * period)).min(1.0);
+            for phase in &mut self.phases[from..rest] {
+                phase.begin = ticks * period + (phase.begin - begin) / time_scale;
+                phase.time_scale = time_scale;
+            }
+            ticks += count;
+            from = rest;
+        }
+        self.seconds = ticks * period;
+        Ok(self)
+    }
+
+    /// Times (s) and positions (rad) at every period from 0 to the end. With linear interpolation between them, no joint is
+    /// faster than its limit.
+    ///
+    /// # Errors
+    /// A period that is not a finite number above 0.
+    pub fn samples(&self, period: f64) -> Result<Vec<(f64, Vec<f64>)>, TimeParametrizationError> {
+        validate_period(period)?;
+        let count = periods(self.seconds, period).max(0.0) as usize;
+        let sample = |k: usize| {
+            (k as f64 * period, if k == count { self.path.end.clone() } else { self.at(k as f64 * period).q })
+        };
+        Ok((0..=count).map(sample).collect())
+    }
+}
+
+/// Number of periods, rounded up; a rounding error above a whole number is ignored.
+fn periods(seconds: f64, period: f64) -> f64 {
+    (seconds / period - 1e-9).ceil()
+}
+
+fn validate_period(period: f64) -> Result<(), TimeParametrizationError> {
+    if period.is_finite() && period > 0.0 { Ok(()) } else { Err(TimeParametrizationError::Period(period)) }
+}

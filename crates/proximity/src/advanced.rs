@@ -1,0 +1,20 @@
+//! Specialist queries on two triangle meshes: which triangles, statistics, upper bounds, levels of detail.
+//!
+//! They take [`TriMesh`](crate::TriMesh) instead of [`Shape`](crate::Shape), and a [`Workspace`](crate::Workspace). Most users
+//! need none of them: [`Workspace::separation`](crate::Workspace::separation) takes a limit and a warm start for any two
+//! shapes.
+//!
+//! | how do I … | |
+//! | --- | --- |
+//! | find the nearest two triangles | [`mesh_separation_with`], then [`Workspace::closest_features`](crate::Workspace::closest_features) |
+//! | find a pair of triangles that touch, or all | [`colliding_triangles`], [`for_each_contact`] |
+//! | find a pair of triangles within a tolerance | [`triangles_within`], [`is_farther_than`] |
+//! | get an upper bound of the distance first | [`distance_upper_bound`] |
+//! | choose which of many pairs of meshes to measure first | [`Landmarks`] |
+//! | bound the distance by the boxes of the BVH only | [`bvh_lower_bound`], [`bvh_lower_bound_to_shape`] |
+//! | count the nodes and triangles visited | [`Workspace::stats`](crate::Workspace::stats) |
+
+pub use crate::mesh_mesh::{
+    BvhBound, Landmarks, MeshFeatures, PlacedLandmarks, bvh_lower_bound, bvh_lower_bound_to_shape, colliding_triangles,
+    distance_upper_bound, for_each_contact, is_farther_than, mesh_separation, mesh_separation_with, triangles_within,
+};

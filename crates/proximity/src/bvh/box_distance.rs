@@ -1,0 +1,96 @@
+//! Distance of an oriented box.
+
+use elbowroom_spatial::{Aabb, Pose, Vec3};
+use fearless_simd::{Simd, dispatch, prelude::*};
+
+use super::bvh16::Bvh16;
+use super::node::{ARITY, Node};
+use super::node_bound::NodeBound;
+use crate::lanes::{F32_ERROR, V3, W16, abs16, array16, detected_level, load16, narrow, splat16};
+
+/// Distance from a box in its own frame.
+pub(crate) struct BoxDistance {
+    /// Middle in the mesh's frame.
+    center: [f32; 3],
+    /// Rows: the box's axes in the mesh's frame.
+    axes: [[f32; 3]; 3],
+    half: [f32; 3],
+    /// Half extents of the box around it, along the mesh's axes.
+    bounding_half: [f32; 3],
+    /// No bound is off by more.
+    error: f32,
+}
+
+impl BoxDistance {
+    /// `bounds` in the frame that `in_mesh` places, metres.
+    pub fn new(tree: &Bvh16, bounds: &Aabb, in_mesh: &Pose) -> Self {
+        let unit = tree.frame.unit;
+        let middle = tree.frame.to_units(in_mesh.transform_point(bounds.center()));
+        let half = bounds.extent() * (0.5 / unit);
+        let axes = [in_mesh.rotation.x_axis(), in_mesh.rotation.y_axis(), in_mesh.rotation.z_axis()];
+        let bounding_half = axes[0].abs() * half.x + axes[1].abs() * half.y + axes[2].abs() * half.z;
+        let extent = 1.0 + middle.abs().max_element() + half.x + half.y + half.z;
+        Self {
+            center: narrow(middle),
+            axes: [narrow(axes[0]), narrow(axes[1]), narrow(axes[2])],
+            half: narrow(half),
+            bounding_half: narrow(bounding_half),
+            error: (extent * F32_ERROR) as f32,
+        }
+    }
+
+    /// Distance from a point of the mesh's frame, metres.
+    pub fn from_point(tree: &Bvh16, p: Vec3) -> Self {
+        Self::new(tree, &Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, &Pose::from_translation(p))
+    }
+
+    /// A length in metres as a limit of the traversal.
+    pub fn limit(tree: &Bvh16, metres: f64) -> f32 {
+        (metres * tree.frame.inverse * (1.0 + 1e-6)) as f32
+    }
+
+    #[inline(always)]
+    fn lanes<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
+        let zero = W16::splat(simd, 0.0);
+        let c = load16(simd, &node.center).minus(splat16(simd, self.center));
+        let h = load16(simd, &node.half);
+        let [a, b, d] = self.bounding_half;
+        let in_mesh =
+            V3((c.0.abs() - (h.0 + a)).max(zero), (c.1.abs() - (h.1 + b)).max(zero), (c.2.abs() - (h.2 + d)).max(zero));
+        let own = V3(
+            axis_gap(simd, c, h, self.axes[0], self.half[0]).max(zero),
+            axis_gap(simd, c, h, self.axes[1], self.half[1]).max(zero),
+            axis_gap(simd, c, h, self.axes[2], self.half[2]).max(zero),
+        );
+        let slab = self.slab_gap(simd, node);
+        in_mesh.dot(in_mesh).max(own.dot(own)).sqrt().max(slab) - self.error
+    }
+
+    /// Gap along each child's slab normal.
+    #[inline(always)]
+    fn slab_gap<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
+        let n = load16(simd, &node.normal);
+        let p = n.dot(splat16(simd, self.center));
+        let spread = V3(
+            n.dot(splat16(simd, self.axes[0])),
+            n.dot(splat16(simd, self.axes[1])),
+            n.dot(splat16(simd, self.axes[2])),
+        );
+        let reach = abs16(spread).dot(splat16(simd, self.half));
+        let (low, high) = (W16::load_array_ref(simd, &node.low), W16::load_array_ref(simd, &node.high));
+        (p - high).max(low - p) - reach
+    }
+}
+
+impl NodeBound for BoxDistance {
+    fn lower_bounds(&self, node: &Node) -> [f32; ARITY] {
+        dispatch!(detected_level(), simd => array16(self.lanes(simd, node)))
+    }
+}
+
+/// Gap of boxes and an interval around 0 along an axis.
+#[inline(always)]
+fn axis_gap<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, axis: [f32; 3], half: f32) -> W16<S> {
+    let [x, y, z] = axis;
+    c.dot(splat16(simd, axis)).abs() - (h.dot(splat16(simd, [x.abs(), y.abs(), z.abs()])) + half)
+}

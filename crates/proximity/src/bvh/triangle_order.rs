@@ -1,0 +1,185 @@
+//! The order of triangles in the tree: neighbours in space become neighbours in memory.
+//!
+//! The triangles below a node are one run whose length is a power of the arity times the leaf size, so the tree needs no
+//! pointers. Splits are chosen by the surface-area heuristic (Goldsmith and Salmon, 1987; binned as Wald, 2007) among the
+//! ranks that keep every run but the last full.
+
+use elbowroom_spatial::Vec3;
+
+use super::node::{ARITY, LEAF_SIZE};
+use super::unit_frame::UnitFrame;
+
+/// Bins per axis of the split search.
+const BINS: usize = 16;
+/// Below this many triangles a second thread costs more than it saves.
+const THREAD_THRESHOLD: usize = 16_384;
+
+/// The bounds of a triangle, for sorting.
+#[derive(Clone, Copy)]
+struct TriangleBounds {
+    low: [f32; 3],
+    high: [f32; 3],
+    triangle: u32,
+}
+
+impl TriangleBounds {
+    /// Twice the middle of its box along an axis.
+    #[inline]
+    fn middle(&self, axis: usize) -> f32 {
+        self.low[axis] + self.high[axis]
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    low: [f32; 3],
+    high: [f32; 3],
+    count: usize,
+}
+
+impl Bin {
+    const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3], count: 0 };
+
+    #[inline]
+    fn add(&mut self, o: &Self) {
+        for k in 0..3 {
+            self.low[k] = self.low[k].min(o.low[k]);
+            self.high[k] = self.high[k].max(o.high[k]);
+        }
+        self.count += o.count;
+    }
+
+    /// Half the surface of the box.
+    #[inline]
+    fn area(&self) -> f32 {
+        let e: [f32; 3] = std::array::from_fn(|k| (self.high[k] - self.low[k]).max(0.0));
+        e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
+    }
+}
+
+/// Triangle indices in tree order.
+pub(super) fn order_triangles(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    frame: &UnitFrame,
+    threads: usize,
+) -> Vec<u32> {
+    let blank = TriangleBounds { low: [0.0; 3], high: [0.0; 3], triangle: 0 };
+    let mut items = vec![blank; triangles.len()];
+    in_chunks(&mut items, threads, |first, chunk| {
+        for (i, item) in chunk.iter_mut().enumerate() {
+            *item = bounds_of(first + i, vertices, triangles, frame);
+        }
+    });
+    let mut capacity = LEAF_SIZE;
+    while capacity * ARITY < items.len() {
+        capacity *= ARITY;
+    }
+    arrange(&mut items, capacity, threads);
+    items.iter().map(|i| i.triangle).collect()
+}
+
+/// Runs `work` on `threads` consecutive chunks, each with the index of its first element.
+pub(super) fn in_chunks<T: Send>(all: &mut [T], threads: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+    if threads < 2 || all.len() < 1024 {
+        return work(0, all);
+    }
+    let size = all.len().div_ceil(threads);
+    std::thread::scope(|scope| {
+        for (n, chunk) in all.chunks_mut(size).enumerate() {
+            let work = &work;
+            scope.spawn(move || work(n * size, chunk));
+        }
+    });
+}
+
+fn bounds_of(triangle: usize, vertices: &[Vec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> TriangleBounds {
+    let mut item = TriangleBounds { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3], triangle: triangle as u32 };
+    for v in triangles[triangle] {
+        let p = frame.to_units(vertices[v as usize]).to_array();
+        for k in 0..3 {
+            item.low[k] = item.low[k].min(p[k] as f32);
+            item.high[k] = item.high[k].max(p[k] as f32);
+        }
+    }
+    item
+}
+
+/// Sorts one run; `capacity` is that of the largest subtree that can be below it.
+fn arrange(items: &mut [TriangleBounds], mut capacity: usize, threads: usize) {
+    if items.len() <= LEAF_SIZE {
+        return;
+    }
+    while items.len() <= capacity {
+        capacity /= ARITY;
+    }
+    let at = split(items, capacity);
+    let (left, right) = items.split_at_mut(at);
+    if threads > 1 && left.len().min(right.len()) >= THREAD_THRESHOLD {
+        std::thread::scope(|scope| {
+            scope.spawn(|| arrange(left, capacity, threads / 2));
+            arrange(right, capacity, threads - threads / 2);
+        });
+    } else {
+        arrange(left, capacity, threads);
+        arrange(right, capacity, threads);
+    }
+}
+
+/// Partitions the triangles by the best split and returns its rank, a multiple of `capacity`.
+fn split(items: &mut [TriangleBounds], capacity: usize) -> usize {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for item in items.iter() {
+        for k in 0..3 {
+            low[k] = low[k].min(item.middle(k));
+            high[k] = high[k].max(item.middle(k));
+        }
+    }
+    let runs = items.len().div_ceil(capacity);
+    let mut best = (f32::INFINITY, 0, (runs / 2).max(1));
+    let scale: [f32; 3] = std::array::from_fn(|k| BINS as f32 / (high[k] - low[k]).max(f32::MIN_POSITIVE));
+    let mut bins = [[Bin::EMPTY; BINS]; 3];
+    for item in items.iter() {
+        let one = Bin { low: item.low, high: item.high, count: 1 };
+        for k in 0..3 {
+            bins[k][(((item.middle(k) - low[k]) * scale[k]) as usize).min(BINS - 1)].add(&one);
+        }
+    }
+    for axis in 0..3 {
+        if high[axis] > low[axis] {
+            let found = cheapest(&bins[axis], capacity, runs);
+            if found.0 < best.0 {
+                best = (found.0, axis, found.1);
+            }
+        }
+    }
+    let at = best.2 * capacity;
+    let axis = best.1;
+    items
+        .select_nth_unstable_by(at, |a, b| a.middle(axis).total_cmp(&b.middle(axis)).then(a.triangle.cmp(&b.triangle)));
+    at
+}
+
+/// The cheapest split between bins: its cost, and the number of runs to its left.
+fn cheapest(bins: &[Bin; BINS], capacity: usize, runs: usize) -> (f32, usize) {
+    let mut right = [Bin::EMPTY; BINS];
+    let mut all = Bin::EMPTY;
+    for n in (1..BINS).rev() {
+        all.add(&bins[n]);
+        right[n] = all;
+    }
+    let mut left = Bin::EMPTY;
+    let mut best = (f32::INFINITY, 1);
+    for n in 1..BINS {
+        left.add(&bins[n - 1]);
+        let at = ((left.count + capacity / 2) / capacity).clamp(1, runs - 1);
+        // Rounding the rank to full runs moves so many triangles to the other side.
+        let moved = (at * capacity).abs_diff(left.count) as f32;
+        let larger = left.area().max(right[n].area());
+        let cost = left.area() * left.count as f32 + right[n].area() * right[n].count as f32 + moved * larger;
+        if cost < best.0 {
+            best = (cost, at);
+        }
+    }
+    best
+}

@@ -1,0 +1,190 @@
+//! Collision of two meshes: the first pair of triangles that touch, or all of them.
+
+use elbowroom_spatial::Pose;
+
+use super::containment::contained_point;
+use super::cutoff::Cutoff;
+use super::leaf_pairs::{LeafPair, touching_pairs};
+use super::mesh_features::MeshFeatures;
+use super::mesh_pair::MeshPair;
+use super::node_pair::NodePair;
+use super::node_pairs::{INTERSECTION, expand};
+use super::relative_placement::{RelativePlacement, spheres_farther_than};
+use super::triangle_batch::{TriangleBatch, corners_in_a, robust_closest_points};
+use super::workspace::{QueryStats, Workspace};
+use crate::TriMesh;
+use crate::bvh::LEAF_SIZE;
+use crate::triangle::triangles_cross;
+
+/// A pair of triangles that touch, or `None` where the meshes are certainly apart.
+///
+/// Triangles closer than f64 can separate count as touching: 2⁻⁴⁰ of the sizes and distance of the meshes. A mesh wholly
+/// inside a closed one is in contact. Which of several pairs is found is unspecified.
+///
+/// ```
+/// use elbowroom_proximity::{TriMesh, Workspace, advanced::colliding_triangles};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let mut workspace = Workspace::new();
+/// let (near, far) = (Pose::from_translation(Vec3::X * 0.9), Pose::from_translation(Vec3::X * 1.1));
+/// assert!(colliding_triangles(&mesh, &Pose::IDENTITY, &mesh, &near, &mut workspace).is_some());
+/// assert!(colliding_triangles(&mesh, &Pose::IDENTITY, &mesh, &far, &mut workspace).is_none());
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn colliding_triangles(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    workspace: &mut Workspace,
+) -> Option<MeshFeatures> {
+    let mut first = None;
+    visit_contacts(a, a_in_world, b, b_in_world, workspace, &mut |features| {
+        first = Some(features);
+        true
+    });
+    first
+}
+
+/// Calls `found` with every pair of triangles that touch, or that are closer than f64 can separate, each once and in no
+/// particular order; with [`MeshFeatures::Containment`] where none touch and one mesh is inside the other.
+///
+/// ```
+/// use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
+/// use elbowroom_proximity::{TriMesh, Workspace};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let mut pairs = Vec::new();
+/// let there = Pose::from_translation(Vec3::new(0.3, 0.3, -0.5));
+/// for_each_contact(&mesh, &Pose::IDENTITY, &mesh, &there, &mut Workspace::new(), |pair| pairs.push(pair));
+/// // The tip of the second mesh passes through the bottom face of the first.
+/// assert!(pairs.iter().any(|p| matches!(p, MeshFeatures::Triangles(0, _))));
+/// # Ok::<(), elbowroom_proximity::MeshError>(())
+/// ```
+pub fn for_each_contact(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    workspace: &mut Workspace,
+    mut found: impl FnMut(MeshFeatures),
+) {
+    visit_contacts(a, a_in_world, b, b_in_world, workspace, &mut |features| {
+        found(features);
+        false
+    });
+}
+
+/// `found` returns true to end the query.
+fn visit_contacts(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    workspace: &mut Workspace,
+    found: &mut dyn FnMut(MeshFeatures) -> bool,
+) {
+    workspace.begin_query();
+    if spheres_farther_than(&a.bvh, a_in_world, &b.bvh, b_in_world, 0.0) {
+        return;
+    }
+    let placement = RelativePlacement::new(&a.bvh, a_in_world, &b.bvh, b_in_world);
+    if !placement.is_usable() {
+        found(MeshFeatures::Unknown);
+        return;
+    }
+    let mut touching = false;
+    let mut found_triangles = |x, y| {
+        touching = true;
+        found(MeshFeatures::Triangles(x, y))
+    };
+    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let ended = CollisionTraversal { meshes: &meshes, found: &mut found_triangles }.run(workspace);
+    if workspace.stack.overflowed() {
+        found(MeshFeatures::Unknown);
+    } else if !ended && !touching && contained_point(a, a_in_world, b, b_in_world).is_some() {
+        found(MeshFeatures::Containment);
+    }
+}
+
+struct CollisionTraversal<'a> {
+    meshes: &'a MeshPair<'a>,
+    /// Called with the indices of two triangles that touch; returns true to end the traversal.
+    found: &'a mut dyn FnMut(u32, u32) -> bool,
+}
+
+impl CollisionTraversal<'_> {
+    fn run(&mut self, workspace: &mut Workspace) -> bool {
+        let meshes = self.meshes;
+        let cutoff = Cutoff::new(meshes.placement.f64_error, meshes.placement);
+        let Workspace { stack, batch, stats, .. } = workspace;
+        batch.clear();
+        stack.clear();
+        stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
+        while let Some(pair) = stack.pop() {
+            if pair.is_leaves() {
+                stats.leaves += 1;
+                if self.visit_leaves(&pair, &cutoff, batch, stats) {
+                    return true;
+                }
+            } else {
+                stats.nodes += 1;
+                stats.boxes += expand::<INTERSECTION>(meshes, &pair, &cutoff, stack);
+            }
+        }
+        self.measure(batch, stats)
+    }
+
+    /// Pairs that cross are found at once; the others are measured in batches.
+    fn visit_leaves(
+        &mut self,
+        pair: &NodePair,
+        cutoff: &Cutoff,
+        batch: &mut TriangleBatch,
+        stats: &mut QueryStats,
+    ) -> bool {
+        let MeshPair { a, b, placement, .. } = *self.meshes;
+        let left = touching_pairs(self.meshes, LeafPair { a: pair.a as usize, b: pair.b as usize }, cutoff);
+        for (i, j) in left.lanes() {
+            let (slot_a, slot_b) = (pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);
+            let (ta, tb) = (a.bvh.triangle(slot_a), b.bvh.triangle(slot_b));
+            let (s, t) = corners_in_a(a, ta, b, tb, placement);
+            stats.triangles += 1;
+            if triangles_cross(s, t) {
+                if (self.found)(ta as u32, tb as u32) {
+                    return true;
+                }
+            } else if batch.push(a, slot_a, b, slot_b) && self.measure(batch, stats) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Measures the batch.
+    fn measure(&mut self, batch: &mut TriangleBatch, stats: &mut QueryStats) -> bool {
+        if batch.is_empty() {
+            return false;
+        }
+        let MeshPair { a, b, placement, level } = *self.meshes;
+        let (measured, len) = batch.measure(level, placement);
+        stats.batches += 1;
+        let contact = placement.f64_error;
+        for lane in 0..len {
+            if measured.at_least[lane] > contact {
+                continue;
+            }
+            let (ta, tb) = batch.triangles[lane];
+            let touches = || {
+                let points = robust_closest_points(a, ta as usize, b, tb as usize, placement);
+                points.squared <= contact * contact
+            };
+            if (measured.is_certain(lane) || touches()) && (self.found)(ta, tb) {
+                return true;
+            }
+        }
+        false
+    }
+}

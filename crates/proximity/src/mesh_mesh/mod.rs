@@ -1,0 +1,39 @@
+//! Queries on two triangle meshes: simultaneous traversal of their trees, sixteen boxes a test. See README.md in this folder.
+
+// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+#![allow(clippy::inline_always)]
+
+mod bvh_bound;
+mod collision;
+mod containment;
+mod continuous_witness;
+mod cutoff;
+mod distance;
+#[cfg(test)]
+mod f32_bounds_tests;
+mod gilbert;
+mod landmark_descent;
+mod landmarks;
+mod leaf_pairs;
+mod mesh_features;
+mod mesh_pair;
+mod nearest_pair;
+mod nearest_pair_search;
+mod node_pair;
+mod node_pairs;
+mod relative_placement;
+mod triangle_batch;
+mod triangle_pairs;
+mod warm_start;
+mod workspace;
+
+pub use bvh_bound::{BvhBound, bvh_lower_bound, bvh_lower_bound_to_shape};
+pub use collision::{colliding_triangles, for_each_contact};
+pub(crate) use distance::{EXPECT_FAR, EXPECT_NEAR, features_within};
+pub use distance::{distance_upper_bound, is_farther_than, mesh_separation, mesh_separation_with, triangles_within};
+pub use landmarks::{Landmarks, PlacedLandmarks};
+pub use mesh_features::MeshFeatures;
+pub(crate) use nearest_pair_search::FirstBound;
+pub use warm_start::WarmStart;
+pub(crate) use workspace::with_thread_workspace;
+pub use workspace::{QueryStats, Workspace};

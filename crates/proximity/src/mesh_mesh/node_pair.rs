@@ -1,0 +1,113 @@
+//! Pairs of nodes still to be expanded.
+
+use crate::bvh::{ARITY, Bvh16};
+
+/// A pair of nodes still to be expanded.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodePair {
+    pub a: u32,
+    pub b: u32,
+    /// A lower bound of the distance, see [`expand`](super::node_pairs::expand).
+    pub key: f32,
+    pub height_a: u8,
+    pub height_b: u8,
+}
+
+/// Which of two nodes are meant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sides {
+    pub a: bool,
+    pub b: bool,
+}
+
+impl NodePair {
+    #[inline(always)]
+    pub fn root(a: &Bvh16, b: &Bvh16) -> Self {
+        Self { a: 0, b: 0, key: f32::MIN, height_a: a.height() as u8, height_b: b.height() as u8 }
+    }
+
+    #[inline(always)]
+    pub fn is_leaves(&self) -> bool {
+        self.height_a == 0 && self.height_b == 0
+    }
+
+    /// Which of the two is replaced by its children: the higher one; both, where they are equally high.
+    #[inline(always)]
+    pub fn expanded_sides(&self) -> Sides {
+        Sides { a: self.height_a >= self.height_b, b: self.height_b >= self.height_a }
+    }
+
+    /// The pair of lanes `i` and `j` of the two nodes.
+    #[inline(always)]
+    pub fn child(&self, i: usize, j: usize, key: f32) -> Self {
+        self.child_of(self.expanded_sides(), i, j, key)
+    }
+
+    /// The same where these sides are expanded.
+    #[inline(always)]
+    pub fn child_of(&self, expanded: Sides, i: usize, j: usize, key: f32) -> Self {
+        let (a, height_a) =
+            if expanded.a { (self.a * ARITY as u32 + i as u32, self.height_a - 1) } else { (self.a, self.height_a) };
+        let (b, height_b) =
+            if expanded.b { (self.b * ARITY as u32 + j as u32, self.height_b - 1) } else { (self.b, self.height_b) };
+        Self { a, b, key, height_a, height_b }
+    }
+}
+
+/// Each step down pushes at most 256 pairs and takes one away; trees over 2³² triangles in leaves of 8 are 8 high, and
+/// pairs of unequal height push 16 a step until they are equal.
+const CAPACITY: usize = 8 * 256 + 8 * 16;
+
+/// Pairs of nodes still to be expanded, last in first out.
+#[derive(Debug)]
+pub(super) struct NodePairStack {
+    entries: [NodePair; CAPACITY],
+    len: usize,
+    overflowed: bool,
+}
+
+impl NodePairStack {
+    #[allow(
+        clippy::large_stack_arrays,
+        reason = "it lives in static or boxed memory; making it is not part of a query"
+    )]
+    pub const fn new() -> Self {
+        let blank = NodePair { a: 0, b: 0, key: 0.0, height_a: 0, height_b: 0 };
+        Self { entries: [blank; CAPACITY], len: 0, overflowed: false }
+    }
+
+    pub fn clear(&mut self) {
+        (self.len, self.overflowed) = (0, false);
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True where a pair was lost: then nothing is proven to be apart.
+    pub fn overflowed(&self) -> bool {
+        self.overflowed
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, pair: NodePair) {
+        match self.entries.get_mut(self.len) {
+            Some(slot) => (*slot, self.len) = (pair, self.len + 1),
+            None => self.overflowed = true,
+        }
+    }
+
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<NodePair> {
+        self.len = self.len.checked_sub(1)?;
+        self.entries.get(self.len).copied()
+    }
+
+    /// Makes this entry the next.
+    #[inline(always)]
+    pub fn bring_to_top(&mut self, number: usize) {
+        if number < self.len && self.len <= CAPACITY {
+            self.entries.swap(number, self.len - 1);
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The placement of the second mesh relative to the first, in both precisions, and the error bounds of f32 and f64.
+
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::bvh::{Bvh16, UnitFrame};
+use crate::lanes::F32_ERROR;
+
+/// The placement of one mesh (Y) in the other (X), in units of X: `x = m·y + t`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AffineF32 {
+    /// Rotation alone.
+    pub r: [[f32; 3]; 3],
+    /// Rotation times the ratio of units.
+    pub m: [[f32; 3]; 3],
+    pub abs: [[f32; 3]; 3],
+    pub t: [f32; 3],
+    /// Units of X per unit of Y.
+    pub scale: f32,
+}
+
+/// Both directions in f32, and B in A in f64.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RelativePlacement {
+    pub b_in_a: AffineF32,
+    pub a_in_b: AffineF32,
+    pub frame_a: UnitFrame,
+    pub frame_b: UnitFrame,
+    /// Rows of the map from units of B to units of A, translation last.
+    pub exact: [[f64; 4]; 3],
+    /// No f32 gap of boxes, slabs or triangles is off by more, in units of A. See README.md, "Error bounds".
+    pub f32_error: f64,
+    /// No f64 distance of two triangles is off by more, in units of A; nearer than this is contact.
+    pub f64_error: f64,
+}
+
+impl RelativePlacement {
+    pub fn new(a: &Bvh16, a_in_world: &Pose, b: &Bvh16, b_in_world: &Pose) -> Self {
+        let rows = (a_in_world.rotation.inverse() * b_in_world.rotation).rows();
+        let t = offset(&a.frame, a_in_world, &b.frame, b_in_world);
+        let t = (a_in_world.rotation.inverse_rotate(t) / a.frame.unit).to_array();
+        let scale = b.frame.unit / a.frame.unit;
+        let exact = std::array::from_fn(|i| [rows[i][0] * scale, rows[i][1] * scale, rows[i][2] * scale, t[i]]);
+        let columns: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
+        let back =
+            std::array::from_fn(|i| -(columns[i][0] * t[0] + columns[i][1] * t[1] + columns[i][2] * t[2]) / scale);
+        // Bounds every coordinate in units of A, up to √3.
+        let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
+        let world_rounding = world_rounding(&a.frame, a_in_world, &b.frame, b_in_world) / a.frame.unit;
+        Self {
+            b_in_a: affine_f32(rows, t, scale),
+            a_in_b: affine_f32(columns, back, 1.0 / scale),
+            exact,
+            frame_a: a.frame,
+            frame_b: b.frame,
+            f32_error: extent * F32_ERROR,
+            f64_error: extent * F64_ERROR + world_rounding,
+        }
+    }
+
+    /// False where numbers are NaN, infinite, or so large compared with the meshes that f64 has no digits left for them.
+    #[inline]
+    pub fn is_usable(&self) -> bool {
+        self.f64_error.is_finite() && self.f32_error < F32_ERROR * 1e15
+    }
+
+    /// A point of B's unit frame in A's.
+    #[inline]
+    pub fn map_to_a(&self, p: Vec3) -> Vec3 {
+        let row = |r: &[f64; 4]| r[0] * p.x + r[1] * p.y + r[2] * p.z + r[3];
+        Vec3::new(row(&self.exact[0]), row(&self.exact[1]), row(&self.exact[2]))
+    }
+}
+
+/// 2⁻⁴⁰; README.md, "Triangles in f64".
+const F64_ERROR: f64 = 1.0 / 1_099_511_627_776.0;
+
+/// From centre to centre, metres, world axes.
+#[inline]
+fn offset(a: &UnitFrame, a_in_world: &Pose, b: &UnitFrame, b_in_world: &Pose) -> Vec3 {
+    let apart = b_in_world.translation - a_in_world.translation;
+    apart + b_in_world.rotation * b.center - a_in_world.rotation * a.center
+}
+
+/// The rounding of positions in the world and of the unit frames' centres in their meshes, at most, metres.
+#[inline]
+fn world_rounding(a: &UnitFrame, a_in_world: &Pose, b: &UnitFrame, b_in_world: &Pose) -> f64 {
+    let reach = |p: &Pose, f: &UnitFrame| p.translation.abs().max_element() + f.center.abs().max_element();
+    16.0 * f64::EPSILON * (reach(a_in_world, a) + reach(b_in_world, b))
+}
+
+/// True where the bounding spheres of two meshes are so much farther apart than `limit` metres that triangles would be, too,
+/// however they are rounded: by at least twice [`RelativePlacement::f64_error`].
+#[inline]
+pub(super) fn spheres_farther_than(a: &Bvh16, a_in_world: &Pose, b: &Bvh16, b_in_world: &Pose, limit: f64) -> bool {
+    let between = offset(&a.frame, a_in_world, &b.frame, b_in_world);
+    let extent = a.frame.unit + b.frame.unit + between.x.abs() + between.y.abs() + between.z.abs();
+    let error = extent * F64_ERROR + world_rounding(&a.frame, a_in_world, &b.frame, b_in_world);
+    let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + 2.0 * error;
+    // Infinite and NaN prove nothing here; `is_usable` reports them.
+    let squared = between.length_squared();
+    squared.is_finite() && squared > reach * reach && a_in_world.is_finite() && b_in_world.is_finite()
+}
+
+fn affine_f32(rows: [[f64; 3]; 3], t: [f64; 3], scale: f64) -> AffineF32 {
+    let m = rows.map(|row| row.map(|x| (x * scale) as f32));
+    AffineF32 {
+        r: rows.map(|row| row.map(|x| x as f32)),
+        m,
+        abs: m.map(|row| row.map(f32::abs)),
+        t: t.map(|x| x as f32),
+        scale: scale as f32,
+    }
+}

@@ -1,0 +1,90 @@
+//! Memory that queries reuse, and what the last query did.
+
+use std::cell::RefCell;
+
+use fearless_simd::Level;
+
+use super::mesh_features::MeshFeatures;
+use super::node_pair::NodePairStack;
+use super::triangle_batch::TriangleBatch;
+use crate::lanes::detected_level;
+
+/// Work done by one query on two meshes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct QueryStats {
+    /// Pairs of nodes expanded.
+    pub nodes: u32,
+    /// Tests of one box against sixteen.
+    pub boxes: u32,
+    /// Pairs of leaves visited, each of up to eight triangles.
+    pub leaves: u32,
+    /// Pairs of triangles that f32 could not decide.
+    pub triangles: u32,
+    /// Batches of up to eight such pairs measured in f64.
+    pub batches: u32,
+}
+
+/// Memory that queries reuse: one per thread. It never allocates, and no answer depends on earlier queries.
+#[derive(Debug)]
+pub struct Workspace {
+    pub(super) stack: NodePairStack,
+    pub(super) batch: TriangleBatch,
+    level: Option<Level>,
+    pub(super) stats: QueryStats,
+    pub(super) closest_features: Option<MeshFeatures>,
+}
+
+impl Default for Workspace {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Workspace {
+    /// For the best instruction set of this processor.
+    pub const fn new() -> Self {
+        Self {
+            stack: NodePairStack::new(),
+            batch: TriangleBatch::new(),
+            level: None,
+            stats: QueryStats::ZERO,
+            closest_features: None,
+        }
+    }
+
+    /// For a given instruction set.
+    #[doc(hidden)]
+    pub const fn with_level(level: Level) -> Self {
+        Self { level: Some(level), ..Self::new() }
+    }
+
+    /// Work done by the last query on two meshes.
+    pub fn stats(&self) -> QueryStats {
+        self.stats
+    }
+
+    /// The closest features of the last distance query on two meshes: `None` where they were beyond the limit.
+    pub fn closest_features(&self) -> Option<MeshFeatures> {
+        self.closest_features
+    }
+
+    pub(super) fn begin_query(&mut self) {
+        self.stats = QueryStats::ZERO;
+        self.closest_features = None;
+    }
+
+    #[inline]
+    pub(super) fn level(&self) -> Level {
+        self.level.unwrap_or_else(detected_level)
+    }
+}
+
+/// Runs a query with this thread's own workspace, which is static: the first use does not allocate either.
+pub(crate) fn with_thread_workspace<T>(query: impl FnOnce(&mut Workspace) -> T) -> T {
+    thread_local! { static WORKSPACE: RefCell<Workspace> = const { RefCell::new(Workspace::new()) } }
+    WORKSPACE.with_borrow_mut(query)
+}
+
+impl QueryStats {
+    const ZERO: Self = Self { nodes: 0, boxes: 0, leaves: 0, triangles: 0, batches: 0 };
+}

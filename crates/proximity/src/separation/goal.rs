@@ -1,0 +1,22 @@
+//! What a query over a pair of shapes is for.
+
+use super::settings::WitnessPoints;
+
+/// What a query over a pair of shapes is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// A separation with these witness points.
+    Separation(WitnessPoints),
+    /// Whether the shapes are within the limit: only `Some` or `None` matters.
+    Decision,
+}
+
+impl Goal {
+    /// The distance and continuous witness points.
+    pub const CONTINUOUS: Self = Self::Separation(WitnessPoints::Continuous);
+
+    #[inline]
+    pub fn is_continuous(self) -> bool {
+        self == Self::CONTINUOUS
+    }
+}

@@ -1,0 +1,175 @@
+//! A mesh and a convex shape or a half-space: traversal of the BVH, nearest box first, with the best distance so far as the
+//! limit.
+
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::core::Core;
+use super::gap::{Gap, rounding};
+use super::goal::Goal;
+use super::mesh_continuous_witness::{mesh_continuous_witness, tolerances};
+use super::projections;
+use super::segment::Segment;
+use super::support_features::bounding_sphere;
+use crate::TriMesh;
+use crate::bvh::{BoxDistance, LeastHeight};
+use crate::triangle::{nearest_on_triangle, segment_triangle};
+
+/// The best answer so far.
+struct Best {
+    gap: Option<Gap>,
+    /// The nearest triangle.
+    triangle: usize,
+    /// Gaps above this are of no interest.
+    limit: f64,
+    /// Gaps that differ by no more are tied.
+    tie_tolerance: f64,
+    /// Sum of the distances of the witness points of tied triangles.
+    spread: f64,
+    /// The search ends at a gap no larger than this.
+    sufficient: f64,
+    /// Smallest proven bound of all triangles.
+    lower: f64,
+}
+
+impl Best {
+    fn new(limit: f64, sufficient: f64, tie_tolerance: f64) -> Self {
+        let lower = f64::INFINITY;
+        Self { gap: None, triangle: 0, limit, tie_tolerance, spread: 0.0, sufficient, lower }
+    }
+
+    fn offer(&mut self, triangle: usize, gap: Gap) {
+        if let Some(best) = &self.gap
+            && (best.distance - gap.distance).abs() <= self.tie_tolerance
+        {
+            self.spread += best.on_a.distance(gap.on_a);
+        }
+        if gap.lower > self.limit {
+            return;
+        }
+        self.lower = self.lower.min(gap.lower);
+        if self.gap.is_none_or(|best| gap.distance < best.distance) {
+            self.limit = self.limit.min(gap.distance);
+            (self.gap, self.triangle) = (Some(gap), triangle);
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.gap.is_some_and(|g| g.distance <= self.sufficient)
+    }
+
+    fn finish(self) -> Option<Gap> {
+        self.gap.map(|g| Gap { lower: self.lower.min(g.distance), ..g })
+    }
+
+    /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
+    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &dyn Fn(usize, f64) -> Option<Gap>) {
+        mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
+            if let Some(gap) = leaf(triangle, self.limit + self.tie_tolerance) {
+                self.offer(triangle, gap);
+            }
+            if self.is_done() {
+                return f32::NEG_INFINITY;
+            }
+            BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance)
+        });
+    }
+}
+
+/// Gap of a mesh and a convex core in the mesh's frame; `None` where it exceeds the limit by more than the core's radius. Gaps
+/// below the radius are contact, and are not minimized further.
+pub(super) fn mesh_core(
+    mesh: &TriMesh,
+    core: &Core,
+    core_in_mesh: &Pose,
+    limit: f64,
+    radius: f64,
+    goal: Goal,
+) -> Option<Gap> {
+    // The bound in `Gap::separation` decides; this one must not pass the limit before it.
+    let (limit, sufficient) = (limit + radius + 2.0 * rounding(radius), radius);
+    let t = core_in_mesh.translation;
+    let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
+    let scale = 3.0 * extent + t.abs().max_element() + core.size();
+    let tie_tolerance = match bounding_sphere(core) {
+        Some((radius, _)) if goal.is_continuous() => tolerances(mesh, radius).tie,
+        _ => 0.0,
+    };
+    let mut best = Best::new(limit, sufficient, tie_tolerance);
+    let query = BoxDistance::new(&mesh.bvh, &core.aabb(), core_in_mesh);
+    match core {
+        Core::Point => {
+            best.search(mesh, &query, &|i, _| Some(Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale)));
+        }
+        Core::Segment(half) => {
+            let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
+            let (p, q) = (axis.at(-half), axis.at(*half));
+            best.search(mesh, &query, &|i, _| {
+                let near = segment_triangle(p, q, mesh.corners(i));
+                Some(Gap::closed(near.on_b, near.on_a, scale))
+            });
+        }
+        _ => {
+            let mesh_in_core = core_in_mesh.inverse();
+            best.search(mesh, &query, &|i, limit| {
+                let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
+                // The rounding of the transformation back is subtracted from the bound below.
+                let limit = limit + 2.0 * rounding(scale);
+                let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
+                let back = |p| core_in_mesh.transform_point(p);
+                let lower = (gap.lower - rounding(scale)).max(0.0);
+                Some(Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap })
+            });
+        }
+    }
+    // The centre of a hull's bounds may be outside of it.
+    let own = if let Core::Hull(hull) = core { hull.vertices()[0] } else { core.middle() };
+    let inside = core_in_mesh.transform_point(own);
+    if !best.is_done() && mesh.contains(inside) {
+        return Some(Gap::touching(inside, inside));
+    }
+    let (triangle, spread) = (best.triangle, best.spread);
+    let gap = best.finish()?;
+    if !(tie_tolerance > 0.0 && gap.is_beyond(radius)) {
+        return Some(gap);
+    }
+    Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread))
+}
+
+/// The mesh's lowest point over a half-space, in the half-space's frame.
+pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose) -> Gap {
+    let up = mesh_in_b.inverse_transform_vector(Vec3::Z);
+    let mut lowest = mesh.corners(0)[0];
+    mesh.bvh.traverse(&LeastHeight::new(up), LeastHeight::limit(&mesh.bvh, up, lowest), &mut |triangle| {
+        for p in mesh.corners(triangle) {
+            if p.dot(up) < lowest.dot(up) {
+                lowest = p;
+            }
+        }
+        LeastHeight::limit(&mesh.bvh, up, lowest)
+    });
+    let t = mesh_in_b.translation.abs();
+    let size = t.x + t.y + t.z + mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
+    super::half_space::above(mesh_in_b.transform_point(lowest), size)
+}
+
+/// The surface point nearest to `p` (local frame) and its triangle.
+pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
+    let mut best = (f64::INFINITY, mesh.corners(0)[0], 0);
+    mesh.bvh.traverse(&BoxDistance::from_point(&mesh.bvh, p), f32::INFINITY, &mut |triangle| {
+        let q = nearest_on_triangle(p, mesh.corners(triangle));
+        let distance = (q - p).length();
+        // Of equals the smaller index, so that the result does not depend on the order of the tree.
+        if distance < best.0 || (distance == best.0 && triangle < best.2) {
+            best = (distance, q, triangle);
+        }
+        BoxDistance::limit(&mesh.bvh, best.0)
+    });
+    (best.1, best.2)
+}
+
+/// The point of a triangle (mesh frame) nearest to a cylinder; where they overlap, one in both.
+pub(crate) fn nearest_to_cylinder(cylinder: &crate::Cylinder, in_mesh: &Pose, triangle: [Vec3; 3]) -> Vec3 {
+    let local = triangle.map(|p| in_mesh.inverse_transform_point(p));
+    let gap = projections::distance(&Core::Triangle(local), &Core::Cylinder(*cylinder), &Pose::IDENTITY, f64::INFINITY);
+    gap.map_or(triangle[0], |g| nearest_on_triangle(in_mesh.transform_point(g.on_a), triangle))
+}

@@ -1,0 +1,257 @@
+//! The distance query: its entry points, and the choice of the method for a pair of shapes.
+
+use elbowroom_spatial::Pose;
+
+use super::capsule::capsule;
+use super::convex::rounded_convex;
+use super::core::rounded;
+use super::goal::Goal;
+use super::pair_order::comes_first;
+use super::result::Separation;
+use super::settings::DistanceSettings;
+use super::sphere::sphere;
+use super::{half_space, mesh_convex};
+use crate::mesh_mesh::{
+    EXPECT_FAR, EXPECT_NEAR, FirstBound, WarmStart, Workspace, distance_upper_bound, features_within,
+    mesh_separation_with, with_thread_workspace,
+};
+use crate::shape::is_usable_pose;
+use crate::{Shape, TriMesh};
+
+/// Distance between two shapes, with witness points.
+///
+/// A NaN or an infinity in a pose or a dimension gives distance 0: unknown does not count as free.
+///
+/// ```
+/// use elbowroom_proximity::{Cuboid, Shape, Sphere, separation};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+/// let table = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.5, 0.5, 0.1) });
+/// let s = separation(&ball, &Pose::from_translation(Vec3::new(0.2, 0.0, 0.5)), &table, &Pose::IDENTITY);
+/// assert!((s.distance - 0.3).abs() < 1e-15 && s.lower_bound <= s.distance);
+/// assert!((s.on_b - Vec3::new(0.2, 0.0, 0.1)).length() < 1e-15);
+/// ```
+pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Separation {
+    // Without a limit there is always an answer.
+    separation_within(a, a_in_world, b, b_in_world, f64::INFINITY)
+        .unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
+}
+
+/// Like [`separation`], or `None` where the shapes are certainly farther apart than `limit` metres: much faster for
+/// far pairs of boxes, cylinders, hulls and meshes.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere, separation_within};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (ball, far) = (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::X * 3.0));
+/// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 1.0).is_none());
+/// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 2.9).is_some());
+/// ```
+pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+    query(a, a_in_world, b, b_in_world, limit, Goal::CONTINUOUS, MeshOptions::DEFAULT)
+}
+
+/// True where the shapes touch or overlap, or are too close for f64 to separate: exactly where the distance of [`separation`]
+/// is 0, in either order of the shapes.
+///
+/// ```
+/// use elbowroom_proximity::{Cuboid, HalfSpace, Shape, collides};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (floor, gun) = (Shape::HalfSpace(HalfSpace), Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.1) }));
+/// assert!(collides(&gun, &Pose::from_translation(Vec3::Z * 0.1), &floor, &Pose::IDENTITY));
+/// assert!(!collides(&gun, &Pose::from_translation(Vec3::Z * 0.11), &floor, &Pose::IDENTITY));
+/// ```
+pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
+    within(a, a_in_world, b, b_in_world, 0.0)
+}
+
+/// True where the shapes are not proven to be farther apart than `tolerance` metres.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere, within};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let (ball, there) = (Shape::Sphere(Sphere { radius: 0.1 }), Pose::from_translation(Vec3::X));
+/// assert!(within(&ball, &Pose::IDENTITY, &ball, &there, 0.81));
+/// assert!(!within(&ball, &Pose::IDENTITY, &ball, &there, 0.79));
+/// ```
+pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
+    query(a, a_in_world, b, b_in_world, tolerance, Goal::Decision, MeshOptions::DEFAULT).is_some()
+}
+
+/// The distance query with reused memory and all its settings.
+impl Workspace {
+    /// Distance and witness points, or `None` where the shapes are certainly farther apart than the limit.
+    ///
+    /// ```
+    /// use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace};
+    /// use elbowroom_spatial::{Pose, Vec3};
+    /// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    /// let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+    /// let shape = Shape::Mesh(mesh.into());
+    /// let (mut workspace, mut warm_start) = (Workspace::new(), WarmStart::default());
+    /// for tick in 0..3 {
+    ///     let there = Pose::from_translation(Vec3::X * (1.5 + 0.1 * f64::from(tick)));
+    ///     let settings = DistanceSettings { limit: 0.65, warm_start: Some(&mut warm_start), ..Default::default() };
+    ///     let near = workspace.separation(&shape, &Pose::IDENTITY, &shape, &there, settings);
+    ///     assert_eq!(near.is_some(), tick < 2);
+    /// }
+    /// # Ok::<(), elbowroom_proximity::MeshError>(())
+    /// ```
+    pub fn separation(
+        &mut self,
+        a: &Shape,
+        a_in_world: &Pose,
+        b: &Shape,
+        b_in_world: &Pose,
+        settings: DistanceSettings,
+    ) -> Option<Separation> {
+        let DistanceSettings { limit, witness_points, warm_start } = settings;
+        let options = MeshOptions { workspace: Some(self), warm_start, ..MeshOptions::DEFAULT };
+        query(a, a_in_world, b, b_in_world, limit, Goal::Separation(witness_points), options)
+    }
+
+    /// [`collides`](crate::collides()).
+    pub fn collides(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
+        self.within(a, a_in_world, b, b_in_world, 0.0)
+    }
+
+    /// [`within`](crate::within()). It is fastest where most pairs are farther apart than the tolerance, as after a broad phase.
+    pub fn within(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
+        let options = MeshOptions { workspace: Some(self), first_bound: EXPECT_FAR, ..MeshOptions::DEFAULT };
+        query(a, a_in_world, b, b_in_world, tolerance, Goal::Decision, options).is_some()
+    }
+
+    /// An upper bound of the distance of two meshes, metres, at a small part of the cost of the distance
+    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)); `None` where one is no mesh or a pose is not finite.
+    /// `warm_start` as in [`DistanceSettings`].
+    pub fn distance_upper_bound(
+        &mut self,
+        a: &Shape,
+        a_in_world: &Pose,
+        b: &Shape,
+        b_in_world: &Pose,
+        warm_start: &mut WarmStart,
+    ) -> Option<f64> {
+        let (Shape::Mesh(a), Shape::Mesh(b)) = (a, b) else { return None };
+        let bound = distance_upper_bound(a, a_in_world, b, b_in_world, warm_start, self);
+        (bound < f64::INFINITY).then_some(bound)
+    }
+}
+
+/// What only queries on two meshes use.
+struct MeshOptions<'w> {
+    /// The thread's own where there is none.
+    workspace: Option<&'w mut Workspace>,
+    warm_start: Option<&'w mut WarmStart>,
+    /// Of decisions.
+    first_bound: FirstBound,
+}
+
+impl MeshOptions<'_> {
+    const DEFAULT: Self = Self { workspace: None, warm_start: None, first_bound: EXPECT_NEAR };
+}
+
+/// Every query over a pair of shapes.
+#[inline]
+fn query(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    goal: Goal,
+    options: MeshOptions,
+) -> Option<Separation> {
+    match (a, b) {
+        (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, a_in_world, n, b_in_world, limit, goal, options),
+        _ => limited(a, a_in_world, b, b_in_world, limit, goal),
+    }
+}
+
+/// All pairs but two meshes: validity of the input, the order of the pair, its method, and the limit.
+fn limited(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+    if !(a.is_usable(a_in_world) && b.is_usable(b_in_world)) {
+        return Some(Separation::unknown(a_in_world, b_in_world));
+    }
+    let found = if comes_first(a, a_in_world, b, b_in_world) {
+        ordered(a, a_in_world, b, b_in_world, limit, goal)?
+    } else {
+        ordered(b, b_in_world, a, a_in_world, limit, goal)?.swapped()
+    };
+    // Products of large numbers may have overflowed.
+    let (p, q) = (found.on_a, found.on_b);
+    if !(found.distance + (p.x + p.y + p.z) + (q.x + q.y + q.z)).is_finite() {
+        return Some(Separation::unknown(a_in_world, b_in_world));
+    }
+    (!(found.lower_bound > limit)).then_some(found)
+}
+
+/// Two meshes. A negative limit counts as 0.
+#[inline(never)]
+fn mesh_mesh(
+    a: &TriMesh,
+    a_in_world: &Pose,
+    b: &TriMesh,
+    b_in_world: &Pose,
+    limit: f64,
+    goal: Goal,
+    options: MeshOptions,
+) -> Option<Separation> {
+    let MeshOptions { workspace, warm_start, first_bound } = options;
+    let run = |workspace: &mut Workspace| match goal {
+        Goal::Separation(_) if !(is_usable_pose(a_in_world) && is_usable_pose(b_in_world)) => {
+            Some(Separation::unknown(a_in_world, b_in_world))
+        }
+        Goal::Separation(witness_points) => {
+            let settings = DistanceSettings { limit, witness_points, warm_start };
+            mesh_separation_with(a, a_in_world, b, b_in_world, settings, workspace)
+        }
+        Goal::Decision => features_within(a, a_in_world, b, b_in_world, limit, first_bound, workspace)
+            .map(|_| Separation::unknown(a_in_world, b_in_world)),
+    };
+    match workspace {
+        Some(workspace) => run(workspace),
+        None => with_thread_workspace(run),
+    }
+}
+
+/// The method for a pair of shapes, the first of which comes first. The gaps are in the frame of the second.
+#[inline]
+fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+    match a {
+        Shape::Sphere(s) => sphere(*s, a_in_world, b, b_in_world, limit),
+        _ => extended(a, a_in_world, b, b_in_world, limit, goal),
+    }
+}
+
+/// All but spheres: a function of its own, because its register pressure would slow down the few instructions for spheres.
+#[inline(never)]
+fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+    match (a, b) {
+        (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
+            capsule(c, a_in_world, b, b_in_world, limit, goal)
+        }
+        (Shape::HalfSpace(_), _) => {
+            let gap = half_space::half_space_half_space(&b_in_world.inverse_mul(a_in_world));
+            Some(gap.separation([0.0; 2], b_in_world))
+        }
+        (Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_) | Shape::Hull(_), Shape::HalfSpace(_)) => {
+            let (core, radius) = rounded(a)?;
+            let gap = half_space::core_half_space(&core, &b_in_world.inverse_mul(a_in_world));
+            Some(gap.separation([radius, 0.0], b_in_world))
+        }
+        (Shape::Mesh(m), Shape::HalfSpace(_)) => {
+            let gap = mesh_convex::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world));
+            Some(gap.separation([0.0; 2], b_in_world))
+        }
+        (_, Shape::Mesh(m)) => {
+            let (core, radius) = rounded(a)?;
+            let gap = mesh_convex::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius, goal)?;
+            Some(gap.separation([0.0, radius], b_in_world).swapped())
+        }
+        _ => {
+            let (gap, radii) = rounded_convex(a, b, &b_in_world.inverse_mul(a_in_world), limit, goal)?;
+            Some(gap.separation(radii, b_in_world))
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Why points have no convex hull.
+
+/// Why points have no convex hull with an interior.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum HullError {
+    /// Fewer than four points.
+    #[error("a convex hull needs at least 4 points, not {0}")]
+    TooFew(usize),
+    /// A coordinate is NaN or infinite.
+    #[error("point {0} has a coordinate that is not a finite number")]
+    NotFinite(usize),
+    /// All points are the same within rounding.
+    #[error("all points coincide: a convex hull needs an inside; use a sphere instead")]
+    Point,
+    /// All points lie on one line within rounding.
+    #[error("all points lie on one line: a convex hull needs an inside; use a capsule instead")]
+    Line,
+    /// All points lie in one plane within rounding.
+    #[error("all points lie in one plane: a convex hull needs an inside; use a thin box instead")]
+    Flat,
+    /// Rounding prevents a closed surface (points on a scale that f64 cannot separate).
+    #[error("the points are too close to degenerate for a closed hull; scale or thin them out")]
+    Numeric,
+}

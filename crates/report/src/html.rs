@@ -1,0 +1,157 @@
+//! The HTML page: one self-contained file.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use elbowroom_sim::Recording;
+use plotly::Plot;
+use serde_json::{Value, json};
+
+use crate::scene::ReportScene;
+use crate::summary::duration;
+use crate::tables::{self, escape, json_in_script};
+use crate::{plots, view};
+
+const THREE: &str = include_str!("../assets/three/three.bundle.min.js");
+const STYLE: &str = include_str!("../assets/report/report.css");
+const PAGE: &str = include_str!("../assets/report/page.html");
+const SCRIPTS: [&str; 3] = [
+    include_str!("../assets/report/figures.js"),
+    include_str!("../assets/report/scene.js"),
+    include_str!("../assets/report/player.js"),
+];
+
+/// Contents of the page.
+pub(super) struct PageContent<'a> {
+    /// Title, plain text.
+    pub title: &'a str,
+    /// List below the title, HTML.
+    pub facts: String,
+    /// Options of the run selector, HTML.
+    pub options: String,
+    pub figures: &'a [plots::Figure],
+    /// Below the figures, HTML.
+    pub tables: String,
+    pub scene: Value,
+}
+
+/// Writes the report of one or several runs of the same cell, each with a label (`"control on"`).
+///
+/// The curves of all runs share their plots; the 3-D scene shows the selected run, at first the first one. The outlines
+/// of the regions are those of the first run. See the module documentation for the size.
+///
+/// # Errors
+///
+/// Errors of `out`.
+pub fn write_html(out: impl Write, scene: &ReportScene, runs: &[(&str, &Recording)]) -> io::Result<()> {
+    let content = PageContent {
+        title: runs.first().map_or("no run", |(_, r)| &r.cell),
+        facts: facts(runs),
+        options: options(runs),
+        figures: &plots::all(scene, runs),
+        tables: run_tables(runs),
+        scene: view::data(scene, runs),
+    };
+    write_page(out, &content)
+}
+
+/// Fills in the page template.
+pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::Result<()> {
+    let plot_data = Value::from(content.figures.iter().map(figure_data).collect::<Vec<_>>());
+    for piece in PAGE.split("{{") {
+        let (key, rest) = piece.split_once("}}").unwrap_or(("", piece));
+        match key {
+            "" => {}
+            "title" => out.write_all(escape(content.title).as_bytes())?,
+            "style" => out.write_all(STYLE.as_bytes())?,
+            "facts" => out.write_all(content.facts.as_bytes())?,
+            "options" => out.write_all(content.options.as_bytes())?,
+            "figures" => out.write_all(placeholders(content.figures).as_bytes())?,
+            "tables" => out.write_all(content.tables.as_bytes())?,
+            "plot_data" => out.write_all(json_in_script(&plot_data.to_string()).as_bytes())?,
+            "scene_data" => out.write_all(json_in_script(&content.scene.to_string()).as_bytes())?,
+            "plotly" => out.write_all(plotly_script(&Plot::offline_js_sources()).as_bytes())?,
+            "three" => out.write_all(THREE.as_bytes())?,
+            "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
+            unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
+        }
+        out.write_all(rest.as_bytes())?;
+    }
+    out.flush()
+}
+
+/// plotly.js only: the crate also embeds a formula renderer of 2 MB, which no plot uses.
+fn plotly_script(sources: &str) -> &str {
+    let from = sources.find('>').map_or(0, |i| i + 1);
+    let to = sources[from..].find("</script>").map_or(sources.len(), |i| from + i);
+    &sources[from..to]
+}
+
+fn figure_data(figure: &plots::Figure) -> Value {
+    let plot: Value = serde_json::from_str(&figure.plot.to_json()).unwrap_or_default();
+    json!({ "data": plot["data"], "layout": plot["layout"], "time": figure.over_time })
+}
+
+fn placeholders(figures: &[plots::Figure]) -> String {
+    let one = |(i, f): (usize, &plots::Figure)| {
+        let run = f.run.map_or(String::new(), |r| format!(" data-run=\"{r}\""));
+        let class = if f.wide { "card wide" } else { "card" };
+        format!(
+            "<section class=\"{class}\"{run}><h3>{}</h3><p class=\"note\">{}</p>\
+             <div class=\"plot\" data-figure=\"{i}\" style=\"height:{}px\"></div></section>\n",
+            escape(&f.title),
+            escape(&f.note),
+            f.height
+        )
+    };
+    figures.iter().enumerate().map(one).collect()
+}
+
+fn facts(runs: &[(&str, &Recording)]) -> String {
+    let mut out = String::new();
+    for (label, rec) in runs {
+        let control = if rec.monitored { "monitor on" } else { "monitor off" };
+        let t = rec.tick_ns;
+        let line = format!(
+            "{label}: {control} · {:.2} s simulated · tick {} ms, took {} median, {} p99, {} max ({} ticks)",
+            rec.duration_s,
+            1e3 * rec.tick_s,
+            duration(t.p50),
+            duration(t.p99),
+            duration(t.max),
+            t.count
+        );
+        let _ = write!(out, "<li>{}</li>", escape(line.trim_start_matches(": ")));
+        for d in &rec.deadlocks {
+            let (robots, regions) = (d.robots.join(", "), d.regions.join(", "));
+            let line = format!("{label}: deadlock since {:.2} s: {robots} wait for each other at {regions}", d.t_s);
+            let _ = write!(out, "<li class=\"bad\">{}</li>", escape(line.trim_start_matches(": ")));
+        }
+    }
+    let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
+    format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))
+}
+
+fn options(runs: &[(&str, &Recording)]) -> String {
+    let mut out = String::new();
+    for (i, (label, _)) in runs.iter().enumerate() {
+        let _ = write!(out, "<option value=\"{i}\">{}</option>", escape(label));
+    }
+    out
+}
+
+fn run_tables(runs: &[(&str, &Recording)]) -> String {
+    let card = |i: usize, what: &str, label: &str, table: String| {
+        let heading = if runs.len() > 1 { format!("{what}: {label}") } else { what.to_owned() };
+        format!(
+            "<section class=\"card wide\" data-run=\"{i}\"><h3>{}</h3><div class=\"scroll\">{table}</div></section>\n",
+            escape(&heading)
+        )
+    };
+    let of_run = |(i, (label, rec)): (usize, &(&str, &Recording))| {
+        card(i, "Robots", label, tables::robots(rec))
+            + &card(i, "Regions", label, tables::regions(rec))
+            + &card(i, "Events", label, tables::events(rec))
+    };
+    runs.iter().enumerate().map(of_run).collect()
+}

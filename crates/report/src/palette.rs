@@ -1,0 +1,43 @@
+//! Colours of plots and of the 3-D scene.
+
+use elbowroom_sim::RecordedRegionKind;
+
+/// Colour of a region of this kind.
+pub fn of_kind(kind: RecordedRegionKind) -> &'static str {
+    match kind {
+        RecordedRegionKind::Monitored => "#2f7ed8",
+        RecordedRegionKind::Exchange => "#2ca02c",
+        RecordedRegionKind::Forbidden | RecordedRegionKind::Obstacle => "#d62728",
+    }
+}
+
+/// Colour of warning zones in plots.
+pub const WARNING: &str = "#f2c230";
+
+/// Colour of a curve: red with control, blue without, as in the paper's figure 12; each further robot has its own pair.
+pub fn of_run(robot: usize, monitored: bool) -> &'static str {
+    const PAIRS: [(&str, &str); 4] =
+        [("#d6203a", "#1f6fd6"), ("#ef8a17", "#12a5a5"), ("#9b51c9", "#5b6b7b"), ("#8c6d31", "#74c476")];
+    let (on, off) = PAIRS[robot % PAIRS.len()];
+    if monitored { on } else { off }
+}
+
+/// Colour by index.
+pub fn of_index(i: usize) -> &'static str {
+    const MANY: [&str; 10] =
+        ["#4c78a8", "#f58518", "#54a24b", "#e45756", "#72b7b2", "#b279a2", "#eeca3b", "#ff9da6", "#9d755d", "#8a8f98"];
+    MANY[i % MANY.len()]
+}
+
+/// Colour of a robot's links.
+pub fn of_robot(i: usize) -> &'static str {
+    const BODIES: [&str; 4] = ["#e2833b", "#b9c0c9", "#e0c34a", "#8f9fd6"];
+    BODIES[i % BODIES.len()]
+}
+
+/// Colour of tools.
+pub const TOOL: &str = "#59636f";
+/// Colour of objects.
+pub const OBJECT: &str = "#9aa3ad";
+/// Colour of moving objects.
+pub const MOVING: &str = "#8a6fb3";

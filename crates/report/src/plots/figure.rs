@@ -1,0 +1,90 @@
+//! Parts shared by all plots.
+
+use elbowroom_sim::{Recording, RobotTrack};
+use plotly::common::{Anchor, HoverInfo, Line, Mode, Orientation};
+use plotly::layout::{Axis, HoverMode, Legend, Margin};
+use plotly::{Layout, Plot, Scatter};
+
+use crate::tables::escape;
+
+/// One plot of the page.
+pub struct Figure {
+    /// Heading; plain text.
+    pub title: String,
+    /// One line under the heading; plain text.
+    pub note: String,
+    /// True where the x axis is time: hovering moves the animation.
+    pub over_time: bool,
+    /// Visible only while this run is selected.
+    pub run: Option<usize>,
+    /// Height in CSS pixels.
+    pub height: usize,
+    /// True where it has the full width of the page.
+    pub wide: bool,
+    /// Traces and layout.
+    pub plot: Plot,
+}
+
+/// Rounded to a micrometre (or a millionth), which is finer than a pixel: shorter numbers make a smaller file.
+pub fn round(v: f64) -> Option<f64> {
+    v.is_finite().then(|| (v * 1e6).round() / 1e6)
+}
+
+pub type Trace = Box<Scatter<Option<f64>, Option<f64>>>;
+
+/// A curve.
+pub fn line(x: Vec<Option<f64>>, y: Vec<Option<f64>>, name: &str, style: Line) -> Trace {
+    Scatter::new(x, y).name(name).mode(Mode::Lines).line(style).connect_gaps(false)
+}
+
+/// Horizontal bars at `row`, one per interval, with a hover text.
+pub fn bars(spans: &[(f64, f64)], row: f64, width: f64, name: &str, color: &'static str, text: &str) -> Trace {
+    let x = spans.iter().flat_map(|&(from, to)| [round(from), round(to), None]).collect();
+    let y = spans.iter().flat_map(|_| [Some(row), Some(row), None]).collect();
+    Scatter::new(x, y)
+        .name(name)
+        .mode(Mode::Lines)
+        .line(Line::new().color(color).width(width))
+        .connect_gaps(false)
+        .hover_info(HoverInfo::All)
+        .hover_template(format!("{text}<br>t = %{{x:.3f}} s<extra></extra>"))
+}
+
+pub fn axis(title: &str) -> Axis {
+    Axis::new().title(title).auto_margin(true).zero_line(false)
+}
+
+/// Layout with the legend above, and hover on the nearest point.
+pub fn layout() -> Layout {
+    Layout::new()
+        .margin(Margin::new().left(60).right(16).top(40).bottom(48))
+        .hover_mode(HoverMode::Closest)
+        .legend(Legend::new().orientation(Orientation::Horizontal).x(0.0).y(1.02).y_anchor(Anchor::Bottom))
+}
+
+/// Each robot of each run: label, recording, index of the robot, robot. Runs with control come last, so that their
+/// curves are on top.
+pub fn tracks<'a>(
+    runs: &'a [(&'a str, &'a Recording)],
+) -> impl Iterator<Item = (&'a str, &'a Recording, usize, &'a RobotTrack)> + 'a {
+    let with = |monitored: bool| runs.iter().filter(move |(_, rec)| rec.monitored == monitored);
+    let ordered = with(false).chain(with(true));
+    ordered.flat_map(|&(label, rec)| rec.robots.iter().enumerate().map(move |(i, robot)| (label, rec, i, robot)))
+}
+
+/// Name of a robot's curve in legends.
+pub fn curve_name(label: &str, recording: &Recording, robot: &RobotTrack) -> String {
+    let name = match (label.is_empty(), recording.robots.len() > 1) {
+        (true, _) => robot.name.clone(),
+        (false, true) => format!("{} · {label}", robot.name),
+        (false, false) => label.to_owned(),
+    };
+    plain(&name)
+}
+
+/// Escaped: Plotly interprets some HTML in texts.
+pub fn plain(text: &str) -> String {
+    let short: String =
+        if text.chars().count() > 60 { text.chars().take(59).chain(['…']).collect() } else { text.into() };
+    escape(&short)
+}

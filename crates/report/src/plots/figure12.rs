@@ -1,0 +1,153 @@
+//! The four plots of the paper's figure 12.
+
+use elbowroom_sim::{Recording, RegionPoses, RegionTrack, RobotTrack, Sample};
+use elbowroom_spatial::{Pose, Vec3};
+use plotly::common::{DashType, Fill, HoverInfo, Line, Marker, MarkerSymbol, Mode, Position};
+use plotly::layout::HoverMode;
+use plotly::{Plot, Scatter};
+
+use super::figure::{Figure, axis, curve_name, layout, line, plain, round, tracks};
+use crate::downsample::{MAX_POINTS, pick};
+use crate::scene::ReportScene;
+use crate::{outline, palette};
+
+pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
+    let mut figures = vec![path(runs)];
+    let base = |robot: usize| scene.robots.get(robot).map_or(Vec3::ZERO, |r| r.base_in_world.translation);
+    figures.push(over_time(
+        "Norm of position over time",
+        "Distance of the tool centre point from the robot's base.",
+        "‖p‖ (m)",
+        460,
+        runs,
+        |robot, s| s.tcp.distance(base(robot)),
+    ));
+    figures.push(over_time("Y over time", "Tool centre point in the world.", "y (m)", 320, runs, |_, s| s.tcp.y));
+    figures.push(speed(runs));
+    figures
+}
+
+/// The tick of the cross-sections: the closest approach of a governing point to its region.
+fn closest_moment(runs: &[(&str, &Recording)]) -> Option<(usize, f64)> {
+    let samples = runs.iter().flat_map(|(_, rec)| &rec.robots).flat_map(|r| r.samples.iter().enumerate());
+    let near = samples.clone().filter_map(|(i, s)| s.distance_m.map(|d| (d, i, s.tcp.z)));
+    let nearest = near.filter(|(d, ..)| d.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map(|(_, i, z)| (i, z)).or_else(|| samples.map(|(i, s)| (i, s.tcp.z)).next())
+}
+
+fn path(runs: &[(&str, &Recording)]) -> Figure {
+    let mut plot = Plot::new();
+    let mut note = String::from("Tool centre point seen from above.");
+    if let (Some((tick, height)), Some((_, recording))) = (closest_moment(runs), runs.first()) {
+        note =
+            format!("Tool centre point seen from above. Regions are cut at its closest approach, z = {height:.3} m.");
+        for region in &recording.regions {
+            add_region(&mut plot, region, tick, height);
+        }
+    }
+    for (label, recording, robot, track) in tracks(runs) {
+        let name = curve_name(label, recording, track);
+        add_path(&mut plot, &name, palette::of_run(robot, recording.monitored), track);
+    }
+    plot.set_layout(layout().x_axis(axis("x (m)")).y_axis(axis("y (m)").scale_anchor("x").scale_ratio(1.0)));
+    Figure { title: "Path in the X-Y plane".into(), note, over_time: false, run: None, height: 460, wide: false, plot }
+}
+
+fn add_region(plot: &mut Plot, region: &RegionTrack, tick: usize, height: f64) {
+    let pose = match &region.poses {
+        RegionPoses::Fixed(pose) => *pose,
+        RegionPoses::Moving(poses) => poses.get(tick).or(poses.last()).copied().unwrap_or(Pose::IDENTITY),
+    };
+    let name = plain(&region.name);
+    if let Some(shell) = outline::warning(&region.shape, region.warning_m) {
+        add_section(
+            plot,
+            &outline::section(&shell, &pose, height),
+            &format!("warning zone of {name}"),
+            palette::WARNING,
+            0.28,
+        );
+    }
+    let solid = outline::section(&outline::solid(&region.shape), &pose, height);
+    add_section(plot, &solid, &format!("{name} ({})", region.kind.name()), palette::of_kind(region.kind), 0.45);
+}
+
+fn add_section(plot: &mut Plot, curves: &[Vec<[f64; 2]>], name: &str, color: &'static str, alpha: f64) {
+    if curves.is_empty() {
+        return;
+    }
+    let corners = |k: usize| -> Vec<Option<f64>> {
+        curves.iter().flat_map(|c| c.iter().map(move |p| round(p[k])).chain([None])).collect()
+    };
+    let value = u32::from_str_radix(color.trim_start_matches('#'), 16).unwrap_or(0);
+    let [_, r, g, b] = value.to_be_bytes();
+    plot.add_trace(
+        Scatter::new(corners(0), corners(1))
+            .name(name)
+            .mode(Mode::Lines)
+            .line(Line::new().color(color).width(1.5))
+            .fill(Fill::ToSelf)
+            .fill_color(format!("rgba({r},{g},{b},{alpha})"))
+            .hover_info(HoverInfo::Name),
+    );
+}
+
+fn add_path(plot: &mut Plot, name: &str, color: &'static str, track: &RobotTrack) {
+    let samples = &track.samples;
+    let (x, y) = (|i: usize| samples[i].tcp.x, |i: usize| samples[i].tcp.y);
+    let kept = pick(samples.len(), MAX_POINTS, &[&x, &y]);
+    let column = |f: &dyn Fn(usize) -> f64| kept.iter().map(|&i| round(f(i))).collect::<Vec<_>>();
+    let curve = line(column(&x), column(&y), name, Line::new().color(color).width(2.5)).legend_group(name);
+    plot.add_trace(curve);
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return };
+    let (end, symbol) = if track.finished { ("end", MarkerSymbol::Square) } else { ("stopped", MarkerSymbol::X) };
+    let ends = [(first, "start", MarkerSymbol::Circle, Position::BottomRight), (last, end, symbol, Position::TopLeft)];
+    for (sample, text, symbol, position) in ends {
+        plot.add_trace(
+            Scatter::new(vec![round(sample.tcp.x)], vec![round(sample.tcp.y)])
+                .name(name)
+                .legend_group(name)
+                .show_legend(false)
+                .mode(Mode::MarkersText)
+                .marker(Marker::new().color(color).size(10).symbol(symbol))
+                .text_array(vec![text])
+                .text_position(position),
+        );
+    }
+}
+
+fn over_time(
+    title: &str,
+    note: &str,
+    unit: &str,
+    height: usize,
+    runs: &[(&str, &Recording)],
+    value: impl Fn(usize, &Sample) -> f64,
+) -> Figure {
+    let mut plot = Plot::new();
+    for (label, recording, robot, track) in tracks(runs) {
+        let at = |i: usize| value(robot, &track.samples[i]);
+        let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
+        let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
+        let y = kept.iter().map(|&i| round(at(i))).collect();
+        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
+        plot.add_trace(line(t, y, &curve_name(label, recording, track), style));
+    }
+    plot.set_layout(layout().hover_mode(HoverMode::X).x_axis(axis("time (s)")).y_axis(axis(unit)));
+    Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, plot }
+}
+
+fn speed(runs: &[(&str, &Recording)]) -> Figure {
+    let note = "Tool centre point. Dashed: programmed speed times the override.";
+    let mut figure = over_time("Norm of speed over time", note, "‖v‖ (m/s)", 320, runs, |_, s| s.tcp_speed);
+    for (label, recording, robot, track) in tracks(runs).filter(|(_, rec, ..)| rec.monitored) {
+        let at = |i: usize| track.samples[i].programmed_speed * track.samples[i].speed_override;
+        let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
+        let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
+        let y = kept.iter().map(|&i| round(at(i))).collect();
+        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(1.2).dash(DashType::Dash);
+        let name = format!("{}: programmed × override", curve_name(label, recording, track));
+        figure.plot.add_trace(line(t, y, &name, style));
+    }
+    figure
+}

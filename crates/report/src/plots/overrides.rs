@@ -1,0 +1,134 @@
+//! Override with the governing region, and the distance to it.
+
+use elbowroom_monitor::OverrideReason;
+use elbowroom_sim::{Recording, RobotTrack, Sample};
+use plotly::Plot;
+use plotly::common::Line;
+
+use super::figure::{Figure, axis, bars, curve_name, layout, line, plain, round, tracks};
+use crate::downsample::{MAX_POINTS, pick};
+use crate::palette;
+use crate::spans::runs as equal_runs;
+use crate::why::{collision_text, explanation, reason_text};
+
+/// Largest number of bands, which bounds the size of the file.
+const MAX_BANDS: usize = 1000;
+
+pub fn all(runs: &[(&str, &Recording)]) -> Vec<Figure> {
+    vec![overrides(runs), distance(runs)]
+}
+
+fn overrides(runs: &[(&str, &Recording)]) -> Figure {
+    let mut plot = Plot::new();
+    let mut rows = Vec::new();
+    for (label, recording, robot, track) in tracks(runs) {
+        let name = curve_name(label, recording, track);
+        let at = |i: usize| 100.0 * track.samples[i].speed_override;
+        let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
+        let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
+        let y = kept.iter().map(|&i| round(at(i))).collect();
+        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
+        plot.add_trace(line(t, y, &name, style));
+        add_bands(&mut plot, recording, &track.samples, rows.len(), &name);
+        add_collisions(&mut plot, recording, track, rows.len(), &name);
+        rows.push(name);
+    }
+    let strip = (0.06 * rows.len() as f64).clamp(0.08, 0.4);
+    let ticks = (0..rows.len()).map(|i| i as f64).collect();
+    let last = rows.len().max(1) as f64 - 0.5;
+    plot.set_layout(
+        layout()
+            .x_axis(axis("time (s)").anchor("y2"))
+            .y_axis(axis("override (%)").domain(&[strip + 0.05, 1.0]).range(vec![-4.0, 104.0]))
+            .y_axis2(
+                axis("")
+                    .domain(&[0.0, strip])
+                    .range(vec![last, -0.5])
+                    .tick_values(ticks)
+                    .tick_text(rows)
+                    .show_grid(false),
+            ),
+    );
+    Figure {
+        title: "Override and the region that governs".into(),
+        note: "The strip below names the cause of the override, and collisions in red: hover over it. Without control the override is not \
+               applied."
+            .into(),
+        over_time: true,
+        run: None,
+        height: 360,
+        wide: true,
+        plot,
+    }
+}
+
+/// Cause of a band: the governing region, or another reason.
+fn cause(sample: &Sample) -> Option<Result<usize, OverrideReason>> {
+    match (sample.region, sample.reason) {
+        (_, reason @ OverrideReason::Fault(_)) => Some(Err(reason)),
+        (Some(region), _) => Some(Ok(region)),
+        (None, reason) => reason.region().map(|r| Ok(r.0)),
+    }
+}
+
+fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: usize, who: &str) {
+    let mut found = equal_runs(samples.iter().map(cause));
+    found.truncate(MAX_BANDS);
+    let mut causes: Vec<Result<usize, OverrideReason>> = Vec::new();
+    for (cause, ..) in &found {
+        if !causes.contains(cause) {
+            causes.push(*cause);
+        }
+    }
+    for cause in causes {
+        let spans: Vec<(f64, f64)> = found
+            .iter()
+            .filter(|(c, ..)| *c == cause)
+            .map(|&(_, from, to)| (samples[from].t_s, samples[to - 1].t_s + recording.tick_s))
+            .collect();
+        let (text, color) = match cause {
+            Ok(i) => (recording.regions.get(i).map_or_else(|| "?".into(), |r| r.name.clone()), palette::of_index(i)),
+            Err(reason) => (reason_text(reason, recording), "#000000"),
+        };
+        let text = plain(&text);
+        let band = bars(&spans, row as f64, 10.0, &text, color, &format!("{who}<br>governed by {text}"));
+        plot.add_trace(band.y_axis("y2").show_legend(row == 0).legend_group(text));
+    }
+}
+
+/// Marks first contacts; their duration is not recorded.
+fn add_collisions(plot: &mut Plot, recording: &Recording, track: &RobotTrack, row: usize, who: &str) {
+    let wide = recording.tick_s.max(recording.duration_s / 200.0);
+    for collision in track.collisions.iter().take(MAX_BANDS) {
+        let text = plain(&collision_text(collision, track));
+        let span = [(collision.t_s, collision.t_s + wide)];
+        let mark = bars(&span, row as f64, 18.0, &text, "#d62728", &format!("{who}<br>{text}"));
+        plot.add_trace(mark.y_axis("y2").show_legend(false));
+    }
+}
+
+fn distance(runs: &[(&str, &Recording)]) -> Figure {
+    let mut plot = Plot::new();
+    for (label, recording, robot, track) in tracks(runs) {
+        let at = |i: usize| track.samples[i].distance_m.unwrap_or(f64::NAN);
+        let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
+        let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
+        let y = kept.iter().map(|&i| round(1e3 * at(i))).collect();
+        let texts = kept.iter().map(|&i| plain(&explanation(track, i, recording))).collect();
+        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
+        let curve = line(t, y, &curve_name(label, recording, track), style);
+        plot.add_trace(curve.hover_text_array(texts));
+    }
+    plot.set_layout(
+        layout().x_axis(axis("time (s)")).y_axis(axis("distance (mm)").range_mode(plotly::layout::RangeMode::ToZero)),
+    );
+    Figure {
+        title: "Distance to the governing region".into(),
+        note: "From the governing point of the robot; a gap where nothing governs.".into(),
+        over_time: true,
+        run: None,
+        height: 300,
+        wide: true,
+        plot,
+    }
+}

@@ -1,0 +1,146 @@
+//! Geometry of the 3-D scene.
+
+use elbowroom_cell::Cell;
+use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_proximity::{Shape, tessellate::tessellate};
+use elbowroom_robot::{Collider, Robot};
+use elbowroom_scene::Object;
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::palette;
+
+/// Largest chord error of curved surfaces, m.
+const CHORD_ERROR_M: f64 = 1e-3;
+
+/// Geometry of a cell, as triangles.
+#[derive(Debug, Clone, Default)]
+pub struct ReportScene {
+    /// In the order of the recording.
+    pub robots: Vec<ReportRobot>,
+    /// Objects at their initial poses.
+    pub objects: Vec<ReportObject>,
+}
+
+/// Geometry of a robot.
+#[derive(Debug, Clone)]
+pub struct ReportRobot {
+    /// Its name in the cell.
+    pub name: String,
+    /// Pose of the root link.
+    pub base_in_world: Pose,
+    /// Maps the joint positions of samples to link poses.
+    pub chain: Chain,
+    /// Per link of the chain, in the link's frame.
+    pub link_meshes: Vec<Vec<ReportMesh>>,
+    /// In the flange's frame.
+    pub tool: Vec<ReportMesh>,
+    /// Tool centre point in the flange's frame.
+    pub tcp_in_flange: Pose,
+    /// The link that carries the tool.
+    pub flange: LinkId,
+}
+
+/// A triangle mesh of one colour.
+#[derive(Debug, Clone)]
+pub struct ReportMesh {
+    /// Vertices, m.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pose of the mesh in the link, or in the flange.
+    pub in_link: Pose,
+    /// Red, green, blue.
+    pub color: [u8; 3],
+}
+
+/// An object.
+#[derive(Debug, Clone)]
+pub struct ReportObject {
+    /// Its name in the cell.
+    pub name: String,
+    /// Vertices, m.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pose of the mesh.
+    pub in_world: Pose,
+}
+
+impl ReportScene {
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The geometry of a cell.
+    pub fn of_cell(cell: &Cell) -> Self {
+        let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
+            let carried: Vec<Collider> = r.payload().cloned().collect();
+            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &carried)
+        });
+        cell.objects.iter().fold(scene, Self::object)
+    }
+
+    /// Adds a robot, coloured by its index. Its visual meshes are drawn; links without any show their collision
+    /// geometry.
+    #[must_use]
+    pub fn robot(
+        mut self,
+        name: impl Into<String>,
+        robot: &Robot,
+        base_in_world: Pose,
+        flange: LinkId,
+        tcp_in_flange: Pose,
+        tool: &[Collider],
+    ) -> Self {
+        let color = rgb(palette::of_robot(self.robots.len()));
+        let link_meshes = (0..robot.chain.links().len()).map(|link| meshes(shown(robot, link), color)).collect();
+        self.robots.push(ReportRobot {
+            name: name.into(),
+            base_in_world,
+            chain: robot.chain.clone(),
+            link_meshes,
+            tool: meshes(tool, rgb(palette::TOOL)),
+            tcp_in_flange,
+            flange,
+        });
+        self
+    }
+
+    /// Adds an object.
+    #[must_use]
+    pub fn object(mut self, object: &Object) -> Self {
+        let (vertices, triangles) = tessellate(&object.shape, CHORD_ERROR_M);
+        self.objects.push(ReportObject { name: object.name.clone(), vertices, triangles, in_world: object.in_world });
+        self
+    }
+}
+
+fn shown(robot: &Robot, link: usize) -> &[Collider] {
+    let of = |list: &'_ [Vec<Collider>]| list.get(link).is_some_and(|bodies| !bodies.is_empty());
+    if of(&robot.visuals) {
+        &robot.visuals[link]
+    } else if of(&robot.colliders) {
+        &robot.colliders[link]
+    } else {
+        &[]
+    }
+}
+
+fn meshes(bodies: &[Collider], color: [u8; 3]) -> Vec<ReportMesh> {
+    bodies
+        .iter()
+        .filter(|body| !matches!(body.shape, Shape::HalfSpace(_)))
+        .map(|body| {
+            let (vertices, triangles) = tessellate(&body.shape, CHORD_ERROR_M);
+            ReportMesh { vertices, triangles, in_link: body.in_link, color }
+        })
+        .collect()
+}
+
+/// `#rrggbb` as bytes.
+fn rgb(hex: &str) -> [u8; 3] {
+    let value = u32::from_str_radix(hex.trim_start_matches('#'), 16).unwrap_or(0x80_80_80);
+    let [_, r, g, b] = value.to_be_bytes();
+    [r, g, b]
+}

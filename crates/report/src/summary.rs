@@ -1,0 +1,307 @@
+//! Text summary of a run.
+
+use std::fmt;
+
+use elbowroom_sim::{AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotTrack};
+
+use crate::spark::sparkline;
+use crate::why::explanation;
+
+/// Largest number of listed regions; the rest is counted.
+const MAX_REGIONS: usize = 12;
+/// Below this speed (m/s) a TCP counts as stationary.
+const STATIONARY_M_S: f64 = 1e-4;
+
+/// Text summary of a run: robots, regions, tick times. No line is longer than `width` (at least 40) characters; colour
+/// codes only where `color` is true (a terminal). To list written files, use [`TextSummary`].
+///
+/// ```
+/// use elbowroom_sim::{Recording, TickTimes};
+/// let recording = Recording {
+///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, monitored: true,
+///     robots: vec![], regions: vec![], objects: vec![], deadlocks: vec![], events: vec![],
+///     tick_ns: TickTimes::default(),
+/// };
+/// assert!(elbowroom_report::summary(&recording, 80, false).contains("welding column"));
+/// ```
+pub fn summary(recording: &Recording, width: usize, color: bool) -> String {
+    TextSummary::new(recording).width(width).color(color).to_string()
+}
+
+/// A [`summary`] with options. Its `Display` is the text, with a line break after every line.
+#[derive(Debug, Clone)]
+pub struct TextSummary<'a> {
+    recording: &'a Recording,
+    width: usize,
+    color: bool,
+    files: Vec<(String, String)>,
+}
+
+impl<'a> TextSummary<'a> {
+    /// 80 columns, no colour, no files.
+    pub fn new(recording: &'a Recording) -> Self {
+        Self { recording, width: 80, color: false, files: Vec::new() }
+    }
+
+    /// Largest line length, in characters; at least 40.
+    #[must_use]
+    pub fn width(mut self, columns: usize) -> Self {
+        self.width = columns.max(40);
+        self
+    }
+
+    /// With ANSI colours.
+    #[must_use]
+    pub fn color(mut self, color: bool) -> Self {
+        self.color = color;
+        self
+    }
+
+    /// Adds a written file: what it is, and its path. Paths are never shortened.
+    #[must_use]
+    pub fn file(mut self, what: impl Into<String>, path: impl fmt::Display) -> Self {
+        self.files.push((what.into(), path.to_string()));
+        self
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Style {
+    Plain,
+    Bold,
+    Dim,
+    Good,
+    Bad,
+    Warn,
+}
+
+impl Style {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Plain => "0",
+            Self::Bold => "1",
+            Self::Dim => "2",
+            Self::Good => "32",
+            Self::Bad => "31",
+            Self::Warn => "33",
+        }
+    }
+}
+
+type Line = Vec<(String, Style)>;
+
+impl fmt::Display for TextSummary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rec = self.recording;
+        let mut lines = vec![heading(rec), Line::new()];
+        let names = rec.robots.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).clamp(5, 14);
+        lines.extend(rec.robots.iter().flat_map(|robot| robot_lines(robot, rec, names, self.width)));
+        if !rec.regions.is_empty() {
+            lines.push(Line::new());
+            lines.extend(region_lines(rec, self.width));
+        }
+        if !rec.deadlocks.is_empty() {
+            lines.push(Line::new());
+            lines.extend(rec.deadlocks.iter().flat_map(deadlock_lines));
+        }
+        lines.push(Line::new());
+        lines.push(ticks(rec));
+        for line in &lines {
+            self.write_line(f, line)?;
+        }
+        for (what, path) in &self.files {
+            writeln!(f, "  {} {path}", pad(what, 7))?;
+        }
+        self.write_line(f, &vec![("  Not a certified safety device.".into(), Style::Dim)])
+    }
+}
+
+impl TextSummary<'_> {
+    fn write_line(&self, f: &mut fmt::Formatter<'_>, line: &Line) -> fmt::Result {
+        let mut left = self.width;
+        for (text, style) in line {
+            let text = clip(text, left);
+            left -= text.chars().count();
+            if self.color && !matches!(style, Style::Plain) {
+                write!(f, "\u{1b}[{}m{text}\u{1b}[0m", style.code())?;
+            } else {
+                f.write_str(&text)?;
+            }
+        }
+        writeln!(f)
+    }
+}
+
+fn heading(rec: &Recording) -> Line {
+    let (monitor, style) = if rec.monitored { ("monitor on", Style::Good) } else { ("monitor off", Style::Warn) };
+    vec![
+        (clip(&rec.cell, 32), Style::Bold),
+        (format!(" · {:.2} s · ", rec.duration_s), Style::Plain),
+        (monitor.into(), style),
+        (format!(" · checksum {}", rec.checksum.chars().take(12).collect::<String>()), Style::Dim),
+    ]
+}
+
+fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) -> Vec<Line> {
+    let indent = " ".repeat(names + 4);
+    let style = match robot.ending.outcome {
+        Outcome::Collided | Outcome::Deadlock => Style::Bad,
+        _ if !robot.collisions.is_empty() => Style::Bad,
+        _ if robot.finished => Style::Good,
+        _ => Style::Warn,
+    };
+    let mut lines = vec![vec![(format!("  {}  ", pad(&robot.name, names)), Style::Bold), (outcome(robot, rec), style)]];
+    let values: Vec<f64> = robot.samples.iter().map(|s| s.speed_override).collect();
+    let numbers = format!("  smallest {:.1} %, stopped {:.2} s", 100.0 * robot.min_override, robot.stopped_s);
+    let available = width.saturating_sub(indent.len() + "override ".len() + numbers.len());
+    let curve = sparkline(&values, available.clamp(4, 60));
+    lines.push(vec![
+        (indent.clone(), Style::Plain),
+        ("override ".into(), Style::Dim),
+        (curve, Style::Plain),
+        (numbers, Style::Dim),
+    ]);
+    if let Some(track) = &robot.avoidance {
+        lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
+    }
+    lines.extend(
+        robot
+            .collisions
+            .iter()
+            .take(3)
+            .map(|c| vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]),
+    );
+    lines
+}
+
+/// Summary of avoidance.
+fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
+    let a = AvoidanceSummary::new(track, tick_s);
+    let nearest =
+        a.min_distance_m.map_or_else(|| "no obstacle near".into(), |m| format!("nearest {}", millimetres(Some(m))));
+    let plans = if a.plans > 0 {
+        format!(", {} of {} replanning attempts found a path", a.plans_found, a.plans)
+    } else {
+        String::new()
+    };
+    let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
+    let step = duration(a.step_ns.p50);
+    format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
+}
+
+/// Description of the outcome of a robot's program.
+pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
+    let Some(last) = robot.samples.last() else { return "no samples".into() };
+    if robot.finished {
+        let moving = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S);
+        let t = moving.map_or(last.t_s, |i| robot.samples[i].t_s);
+        return format!("finished at {t:.2} s");
+    }
+    let since = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S).map_or(0.0, |i| robot.samples[i].t_s);
+    if robot.ending.outcome == Outcome::Deadlock {
+        let at = robot.ending.by.as_deref().unwrap_or("an exchange region");
+        return format!("deadlock: stopped since {since:.2} s, waiting for {}", clip(at, 20));
+    }
+    let p = last.tcp;
+    let place = format!("at {since:.2} s, TCP ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z);
+    match (last.region.and_then(|i| rec.regions.get(i)), last.distance_m) {
+        (Some(region), Some(d)) if d > 0.0 => {
+            format!("stopped {} before {}, {place}", millimetres(Some(d)), clip(&region.name, 20))
+        }
+        (Some(region), _) => format!("stopped at {}, {place}", clip(&region.name, 20)),
+        _ if last.tcp_speed > STATIONARY_M_S => format!("still moving at {:.2} s", last.t_s),
+        _ => format!("stopped {place}: {}", explanation(robot, robot.samples.len() - 1, rec)),
+    }
+}
+
+/// Two lines, for narrow screens.
+fn deadlock_lines(deadlock: &Deadlock) -> [Line; 2] {
+    let who = format!("  deadlock since {:.2} s: {} wait for each other", deadlock.t_s, deadlock.robots.join(", "));
+    let what = format!("           at {}; one of them must be moved out by hand", deadlock.regions.join(", "));
+    [vec![(who, Style::Bad)], vec![(what, Style::Bad)]]
+}
+
+fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {
+    // 2 + name + the columns below make 80.
+    let names = width.saturating_sub(56).clamp(8, 32);
+    let head = format!(
+        "  {} {:<10}{:>11}  {:<8}{:>9}  {:<11}",
+        pad("region", names),
+        "kind",
+        "closest",
+        "entered",
+        "warned",
+        "output"
+    );
+    let mut lines = vec![vec![(head, Style::Dim)]];
+    for region in rec.regions.iter().take(MAX_REGIONS) {
+        lines.push(region_line(region, rec, names));
+    }
+    if rec.regions.len() > MAX_REGIONS {
+        lines.push(vec![(format!("  and {} more regions", rec.regions.len() - MAX_REGIONS), Style::Dim)]);
+    }
+    lines
+}
+
+fn region_line(region: &RegionTrack, rec: &Recording, names: usize) -> Line {
+    let bad = region.is_violated();
+    let rises = rec.events.iter().filter(|e| e.region == region.name && e.event.name() == "output_on").count();
+    let output = if rises == 0 { "–".into() } else { format!("on {rises}×") };
+    let style = match (bad, region.warned_s > 0.0) {
+        (true, _) => Style::Bad,
+        (false, true) => Style::Warn,
+        (false, false) => Style::Plain,
+    };
+    let entered = match (region.entered, bad) {
+        (true, true) => "YES",
+        (true, false) => "yes",
+        (false, _) => "no",
+    };
+    vec![
+        (format!("  {} ", pad(&region.name, names)), Style::Bold),
+        (format!("{:<10}{:>11}  ", region.kind.name(), millimetres(region.min_distance_m)), Style::Plain),
+        (format!("{entered:<8}"), if bad { Style::Bad } else { Style::Good }),
+        (format!("{:>7.2} s  ", region.warned_s), style),
+        (output, Style::Plain),
+    ]
+}
+
+fn ticks(rec: &Recording) -> Line {
+    let t = rec.tick_ns;
+    let text = format!("  tick    median {}, p99 {}, max {}", duration(t.p50), duration(t.p99), duration(t.max));
+    vec![(text, Style::Plain), (format!(" ({} of {} ms)", t.count, 1e3 * rec.tick_s), Style::Dim)]
+}
+
+/// A duration with a suitable unit.
+pub fn duration(ns: u64) -> String {
+    match ns {
+        0..1_000 => format!("{ns} ns"),
+        1_000..1_000_000 => format!("{:.1} µs", ns as f64 * 1e-3),
+        _ => format!("{:.1} ms", ns as f64 * 1e-6),
+    }
+}
+
+/// Metres as millimetres; a dash for `None`.
+pub fn millimetres(metres: Option<f64>) -> String {
+    match metres {
+        None => "–".into(),
+        Some(d) if d.abs() < 0.1 => format!("{:.2} mm", 1e3 * d),
+        Some(d) => format!("{:.0} mm", 1e3 * d),
+    }
+}
+
+/// At most `width` characters of one line; control characters become spaces, so that names cannot control the terminal.
+fn clip(text: &str, width: usize) -> String {
+    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    if text.chars().count() <= width {
+        return text.chars().map(clean).collect();
+    }
+    let kept = text.chars().map(clean).take(width.saturating_sub(1));
+    if width == 0 { String::new() } else { kept.chain(['…']).collect() }
+}
+
+fn pad(text: &str, width: usize) -> String {
+    let text = clip(text, width);
+    let missing = width - text.chars().count();
+    text + &" ".repeat(missing)
+}

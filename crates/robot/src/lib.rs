@@ -1,0 +1,32 @@
+//! A robot as data: a kinematic chain, the collision shapes of its links, and the link pairs that never count.
+//!
+//! [`Robot`] is what model files are read into and what the monitor, the configuration-space maps and the scene are built
+//! from. This crate has no checker: it answers which pairs of links and objects have to be checked at all
+//! ([`collision_pairs`], [`Robot::exclusion`]) and which links touch in the rest pose ([`rest_pose_contacts`]).
+//!
+//! ```
+//! use elbowroom_kinematics::LinkId;
+//! use elbowroom_robot::{Exclusion, collision_pairs, example};
+//! let arm = example::arm()?;
+//! let (base, column, forearm) = (LinkId(0), LinkId(1), LinkId(3));
+//! assert_eq!(arm.exclusion(base, column), Some(Exclusion::Adjacent));
+//! assert!(arm.links_can_meet(base, forearm));
+//! // Three pairs of links, and three moving links against one object.
+//! assert_eq!(collision_pairs(&[&arm], 1).len(), 3 + 3);
+//! # Ok::<(), elbowroom_kinematics::ChainError>(())
+//! ```
+
+mod adjacency;
+mod collision_pairs;
+pub mod example;
+mod ids;
+mod r_sequence;
+mod rest_pose;
+mod robot;
+
+pub use adjacency::Exclusion;
+pub use collision_pairs::collision_pairs;
+pub use ids::{GeometryId, ObjectId, RobotId};
+pub use r_sequence::RSequence;
+pub use rest_pose::{RestPoseContact, rest_pose_contacts};
+pub use robot::{Collider, Robot};

@@ -1,0 +1,53 @@
+//! Changes of single pairs by hand.
+
+use elbowroom_robot::GeometryId;
+
+use super::entry::{PairNumber, PairState};
+use super::matrix::AllowedCollisionMatrix;
+use super::reason::Reason;
+use crate::{MatrixError, Scene};
+
+/// A change of one pair.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PairEdit {
+    /// Skip the pair, with the reason why.
+    Skip(String),
+    /// Test the pair, with the reason why.
+    Test(String),
+    /// Security margin in metres, in place of the paddings.
+    Margin(f64),
+    /// Weight.
+    Weight(f64),
+}
+
+impl AllowedCollisionMatrix {
+    /// Changes one pair by hand. `scene` supplies the names for errors.
+    ///
+    /// # Errors
+    /// [`MatrixError`] where there is no such pair or the number is invalid.
+    pub fn edit(&mut self, scene: &Scene, a: GeometryId, b: GeometryId, edit: PairEdit) -> Result<(), MatrixError> {
+        let Some(at) = self.position(a, b) else {
+            return Err(MatrixError::NoSuchPair { a: scene.name(a), b: scene.name(b) });
+        };
+        let entry = &mut self.entries_mut()[at];
+        let check = |what, value: f64| {
+            if value >= 0.0 && value.is_finite() {
+                return Ok(value);
+            }
+            Err(MatrixError::Number { a: scene.name(a), b: scene.name(b), what, value })
+        };
+        match edit {
+            PairEdit::Skip(note) => (entry.state, entry.reason) = (PairState::Skipped, Reason::ByHand(note)),
+            PairEdit::Test(note) => (entry.state, entry.reason) = (PairState::Tested, Reason::ByHand(note)),
+            PairEdit::Weight(weight) => entry.weight = check(PairNumber::Weight, weight)?,
+            PairEdit::Margin(margin_m) => {
+                entry.margin_m = check(PairNumber::Margin, margin_m)?;
+                // Out of reach of each other, but not out of reach of the margin.
+                if matches!(entry.reason, Reason::OutOfReach { least_m } if least_m <= entry.margin_m) {
+                    (entry.state, entry.reason) = (PairState::Tested, Reason::Default);
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,63 @@
+//! One entry of the allowed collision matrix.
+
+use std::fmt;
+
+use elbowroom_robot::GeometryId;
+
+use super::reason::Reason;
+
+/// Whether a pair is tested.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairState {
+    /// Tested by collision queries.
+    Tested,
+    /// Skipped by collision queries.
+    Skipped,
+}
+
+impl fmt::Display for PairState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Tested => "tested",
+            Self::Skipped => "skipped",
+        })
+    }
+}
+
+/// A number of an entry, for messages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairNumber {
+    /// [`PairEntry::margin_m`].
+    Margin,
+    /// [`PairEntry::weight`].
+    Weight,
+}
+
+impl fmt::Display for PairNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Margin => "margin_m",
+            Self::Weight => "weight",
+        })
+    }
+}
+
+/// What is known of one pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairEntry {
+    /// The geometry that comes first: lower robot, lower link, links before objects.
+    pub a: GeometryId,
+    /// The other geometry.
+    pub b: GeometryId,
+    /// Whether the pair is tested.
+    pub state: PairState,
+    /// Security margin, metres: the pair collides where it is not farther apart. The sum of both paddings, unless set by hand.
+    pub margin_m: f64,
+    /// Pairs of larger weight are tested first. Dimensionless.
+    pub weight: f64,
+    /// Why the pair is tested or skipped.
+    pub reason: Reason,
+    /// What samples suggest; without effect until
+    /// [accepted](crate::AllowedCollisionMatrix::accept_suggestions).
+    pub suggestion: Option<Reason>,
+}

@@ -1,0 +1,144 @@
+//! The minimum distance: one decreasing upper bound over all pairs.
+
+use super::core::{Candidate, CheckerCore};
+use super::pair_list::{CarrierBlock, PairList};
+use super::result::PairDistance;
+use crate::{Level, SceneState};
+
+/// Number of the nearest candidates whose upper bounds are computed before any candidate is measured.
+const UPPER_BOUNDS: usize = 2;
+
+impl CheckerCore<'_> {
+    /// The nearest pair; `None` where there is none.
+    pub(super) fn minimum_distance(&mut self, list: &mut PairList, state: &SceneState) -> Option<PairDistance> {
+        self.finest = Level::L1;
+        self.upper_bound = f64::INFINITY;
+        let mut best: Option<PairDistance> = None;
+        // The pair that was nearest is likely to be nearest again, and gives a limit to the others.
+        let mut last = list.nearest.filter(|_| self.options.level != Level::L1);
+        if let Some(index) = last {
+            if self.lower_upper_bound(list, index, state) {
+                last = None;
+            } else {
+                self.measure(list, index, state, &mut best);
+            }
+        }
+        self.collect_by_gap(list, state, &mut best, last);
+        self.sort_candidates();
+        for i in 0..self.candidates.len().min(UPPER_BOUNDS) {
+            self.lower_upper_bound(list, self.candidates[i].index as usize, state);
+        }
+        for i in 0..self.candidates.len() {
+            let Candidate { key, index, .. } = self.candidates[i];
+            if self.exceeds_best(key, best.as_ref()) {
+                self.narrow.stats.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
+                break;
+            }
+            self.measure(list, index as usize, state, &mut best);
+        }
+        self.answered();
+        best
+    }
+
+    /// True where a pair at least so far apart cannot be the nearest.
+    fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
+        metres > self.upper_bound || best.is_some_and(|b| metres >= b.metres)
+    }
+
+    /// Lowers the upper bound by that of one pair; false where it has none that is cheap.
+    fn lower_upper_bound(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
+        if !matches!(self.options.level, Level::Auto | Level::L3) {
+            return false;
+        }
+        let pair = &mut list.pairs[index];
+        let [a, b] = self.sides(pair, state);
+        let Some(metres) = self.narrow.upper_bound(&a, &b, &mut pair.warm_start) else { return false };
+        self.upper_bound = self.upper_bound.min((metres - pair.margin).max(0.0));
+        true
+    }
+
+    /// Collects the pairs that the gaps of world boxes leave undecided, with these gaps as keys.
+    fn collect_by_gap(
+        &mut self,
+        list: &PairList,
+        state: &SceneState,
+        best: &mut Option<PairDistance>,
+        last: Option<usize>,
+    ) {
+        self.candidates.clear();
+        let (boxes, robot_boxes) = (self.options.uses_boxes(), self.options.uses_robot_boxes());
+        for block in &list.blocks {
+            let same = block.a == block.b;
+            if robot_boxes && !same {
+                let gap = f64::from(state.boxes[block.a].gap(&state.boxes[block.b])) - block.margin;
+                if self.options.level == Level::L1 {
+                    self.measure_robot_boxes(list, block, state, best);
+                    continue;
+                }
+                if self.exceeds_best(gap, best.as_ref()) {
+                    self.narrow.stats.pairs_cleared.l1 += (block.end - block.start) as u64;
+                    continue;
+                }
+            }
+            for index in (block.start..block.end).filter(|i| Some(*i) != last) {
+                let packed = &list.packed[index];
+                let proven = if packed.proven { self.proven_distance(&list.pairs[index], state) } else { 0.0 };
+                if proven == f64::INFINITY {
+                    self.narrow.stats.pairs_skipped += 1;
+                    continue;
+                }
+                let gap = if boxes {
+                    f64::from(state.boxes[packed.a as usize].gap(&state.boxes[packed.b as usize]))
+                } else {
+                    0.0
+                };
+                let key = (gap.max(proven) - f64::from(packed.margin)).max(0.0);
+                if self.exceeds_best(key, best.as_ref()) {
+                    self.cleared(Level::L2);
+                    continue;
+                }
+                self.candidates.push(Candidate { key, rank: list.pairs[index].rank, index: index as u32 });
+            }
+        }
+    }
+
+    /// Measures the box of a robot against that of another robot or an object.
+    fn measure_robot_boxes(
+        &mut self,
+        list: &PairList,
+        block: &CarrierBlock,
+        state: &SceneState,
+        best: &mut Option<PairDistance>,
+    ) {
+        let (a, b) = (&state.boxes[block.a], &state.boxes[block.b]);
+        let (on_a, on_b) = a.nearest_points(b);
+        let gap = f64::from(a.gap(b));
+        let mut pairs = list.pairs[block.start..block.end].iter();
+        let Some(pair) = pairs.find(|p| self.proven_distance(p, state) < f64::INFINITY) else { return };
+        let metres = (gap - block.margin).max(0.0);
+        if best.is_none_or(|b| metres < b.metres) {
+            let [x, y] = self.sides(pair, state).map(|p| p.model.id);
+            // The block is ordered by box, the pair by geometry id.
+            let box_of_x = state.carrier(x).map_or(pair.a as usize, |(r, _)| self.scene.models.len() + r.0);
+            let (on_a, on_b) = if box_of_x == block.a { (on_a, on_b) } else { (on_b, on_a) };
+            *best = Some(PairDistance { metres, lower_bound: metres, on_a, on_b, a: x, b: y, level: Level::L1 });
+        }
+    }
+
+    /// Measures one pair, no farther than the best so far.
+    fn measure(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<PairDistance>) {
+        let pair = &mut list.pairs[index];
+        let sides = self.sides(pair, state);
+        let level = self.options.pair_level();
+        let margin = pair.margin + (sides[0].model.slack_m(level) + sides[1].model.slack_m(level));
+        let limit = best.map_or(self.upper_bound, |b| b.metres.min(self.upper_bound)) + margin;
+        let Some(found) = self.pair_distance(pair, &sides, state, margin, limit) else { return };
+        let lower_bound = best.map_or(found.lower_bound, |b| b.lower_bound.min(found.lower_bound));
+        if best.is_none_or(|b| found.metres < b.metres) {
+            list.nearest = Some(index);
+            *best = Some(PairDistance { lower_bound, ..found });
+        } else if let Some(best) = best {
+            best.lower_bound = lower_bound;
+        }
+    }
+}

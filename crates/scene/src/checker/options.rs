@@ -1,0 +1,54 @@
+//! Settings of a checker.
+
+use crate::Level;
+
+/// Settings of a [`Checker`](crate::Checker). None of them but [`CheckerOptions::level`] changes an answer; at levels of
+/// enclosing volumes the allowed collision matrix, whose proofs are tighter, makes distances more exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CheckerOptions {
+    /// The models that are compared.
+    pub level: Level,
+    /// Where [`Level::Auto`] begins: [`Level::L1`], [`Level::L2`], or [`Level::L3`], which compares the exact geometry only.
+    pub start: Level,
+    /// Whether the pairs most likely to collide are tested first, by kinematics and by earlier contacts. Otherwise the order is
+    /// that of the hierarchy: of several contacts, the one nearest to a base is reported.
+    pub weights: bool,
+    /// Whether pairs that the allowed collision matrix proves out of reach are skipped. Pairs excluded by rule (adjacent
+    /// links, SRDF, by hand) never count.
+    pub matrix: bool,
+}
+
+impl Default for CheckerOptions {
+    fn default() -> Self {
+        Self { level: Level::Auto, start: Level::L1, weights: true, matrix: true }
+    }
+}
+
+impl CheckerOptions {
+    /// The level at which pairs are compared one by one.
+    pub(crate) fn pair_level(self) -> Level {
+        match self.level {
+            Level::Auto => Level::L3,
+            Level::L1 => Level::L2,
+            level => level,
+        }
+    }
+
+    /// True where the boxes of a pair may decide that it is clear: the answer is the same.
+    pub(crate) fn uses_boxes(self) -> bool {
+        match self.level {
+            Level::Auto => self.start <= Level::L2,
+            Level::L1 | Level::L2 | Level::Hull => true,
+            // A capsule may extend beyond the box.
+            Level::Capsule | Level::L3 => false,
+        }
+    }
+
+    /// True where the boxes around whole robots may decide that all their pairs are clear.
+    pub(crate) fn uses_robot_boxes(self) -> bool {
+        match self.level {
+            Level::Auto => self.start <= Level::L1,
+            level => level == Level::L1,
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The pairs of one query, prepared for the broad phase.
+
+use std::collections::HashMap;
+
+use elbowroom_robot::{GeometryId, ObjectId};
+
+use crate::narrow_phase::PairWarmStart;
+use crate::world_box::round_up;
+use crate::{PairState, Reason, Scene, SceneState, Selection, pair_weight};
+
+/// A pair and what was learned of it.
+#[derive(Debug, Clone)]
+pub(crate) struct GeometryPair {
+    /// Indices of models.
+    pub a: u32,
+    pub b: u32,
+    /// Security margin, metres.
+    pub margin: f64,
+    /// Proven least distance, metres; 0 without a proof. Infinite where the user has excluded the pair.
+    pub least: f64,
+    /// Position in the order of the hierarchy.
+    pub rank: u32,
+    pub weight: f64,
+    pub warm_start: PairWarmStart,
+}
+
+impl GeometryPair {
+    /// A pair without a proof; `None` where one has no shape.
+    pub fn of(scene: &Scene, (a, b): (GeometryId, GeometryId), margin: f64) -> Option<Self> {
+        let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
+        Some(Self { a, b, margin, least: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })
+    }
+}
+
+/// The data of a pair that the broad phase reads, packed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PackedPair {
+    pub a: u32,
+    pub b: u32,
+    /// Metres, rounded up.
+    pub margin: f32,
+    /// True where there is a proof of the least distance.
+    pub proven: bool,
+}
+
+/// Pairs between the same two carriers: robots, or objects that are not attached.
+#[derive(Debug, Clone)]
+pub(crate) struct CarrierBlock {
+    /// Indices of boxes of a state: of a robot, or of an object that is not attached.
+    pub a: usize,
+    pub b: usize,
+    pub start: usize,
+    pub end: usize,
+    /// Largest margin, metres.
+    pub margin: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct PairList {
+    pub key: (Selection, Selection),
+    /// The arrangement of attached objects that it was made for.
+    pub arrangement: Option<u64>,
+    pub pairs: Vec<GeometryPair>,
+    /// One per pair.
+    pub packed: Vec<PackedPair>,
+    pub blocks: Vec<CarrierBlock>,
+    /// The pair that was nearest last time.
+    pub nearest: Option<usize>,
+}
+
+impl PairList {
+    pub fn new(key: (Selection, Selection)) -> Self {
+        Self { key, arrangement: None, pairs: Vec::new(), packed: Vec::new(), blocks: Vec::new(), nearest: None }
+    }
+
+    /// Makes the list again for the attachments of a state; what was learned of pairs that remain is kept.
+    pub fn rebuild(&mut self, scene: &Scene, state: &SceneState) {
+        let known: HashMap<(u32, u32), GeometryPair> = self.pairs.drain(..).map(|p| ((p.a, p.b), p)).collect();
+        self.nearest = None;
+        self.arrangement = Some(state.arrangement);
+        self.add_matrix_pairs(scene, state);
+        self.add_object_pairs(scene, state);
+        self.rank(scene, state);
+        for p in &mut self.pairs {
+            if let Some(old) = known.get(&(p.a, p.b)) {
+                (p.weight, p.warm_start) = (old.weight, old.warm_start);
+            }
+        }
+        self.make_blocks(scene, state);
+    }
+
+    pub fn selects(&self, state: &SceneState, a: GeometryId, b: GeometryId) -> bool {
+        let (one, other) = self.key;
+        let contains = |s: Selection, id: GeometryId| {
+            let carrier = if let GeometryId::Object(_) = id { state.carrier(id).map(|c| c.0) } else { None };
+            s.contains(id, carrier)
+        };
+        (contains(one, a) && contains(other, b)) || (contains(one, b) && contains(other, a))
+    }
+
+    /// Updates the weights after a pair was reported in contact.
+    pub fn learn(&mut self, contact: usize) {
+        let before = self.pairs[contact].weight;
+        self.pairs.iter_mut().for_each(|p| p.weight = pair_weight::lowered(p.weight));
+        self.pairs[contact].weight = pair_weight::raised(before);
+    }
+
+    fn add_matrix_pairs(&mut self, scene: &Scene, state: &SceneState) {
+        for e in scene.matrix.entries() {
+            if !self.selects(state, e.a, e.b) {
+                continue;
+            }
+            let least = match state.pair(scene, e.a, e.b) {
+                Some((PairState::Tested, _)) => 0.0,
+                Some((_, Reason::OutOfReach { least_m })) => least_m,
+                Some((_, Reason::NeverInSamples { .. })) => f64::INFINITY,
+                _ => continue,
+            };
+            self.push(scene, (e.a, e.b), e.margin_m, least, e.weight);
+        }
+    }
+
+    /// Pairs of two objects: where one is attached, or where the query names nothing but objects.
+    fn add_object_pairs(&mut self, scene: &Scene, state: &SceneState) {
+        let named = self.key.0.is_objects() && self.key.1.is_objects();
+        let attached = |o: usize| state.attached[o].is_some();
+        let objects = scene.objects.len();
+        for i in (0..objects).filter(|i| named || attached(*i)) {
+            // A pair of two attached objects is added once.
+            for j in (0..objects).filter(|j| *j != i && (*j > i || !(named || attached(*j)))) {
+                let [a, b] = [i.min(j), i.max(j)].map(|o| GeometryId::Object(ObjectId(o)));
+                let tested = match state.pair(scene, a, b) {
+                    Some((state, _)) => state == PairState::Tested,
+                    None => named,
+                };
+                if tested && self.selects(state, a, b) {
+                    let margin = [i, j].map(|o| scene.models[scene.first_object + o].padding_m).iter().sum();
+                    self.push(scene, (a, b), margin, 0.0, 1.0);
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, scene: &Scene, ids: (GeometryId, GeometryId), margin: f64, least: f64, weight: f64) {
+        self.pairs.extend(GeometryPair::of(scene, ids, margin).map(|p| GeometryPair { least, weight, ..p }));
+    }
+
+    /// Orders the pairs by the hierarchy: nearest to a base first, in the order of the matrix among equals.
+    fn rank(&mut self, scene: &Scene, state: &SceneState) {
+        let depth = |model: u32| {
+            let carrier = state.carrier(scene.models[model as usize].id);
+            carrier.map(|carrier| pair_weight::link_depth(&scene.robots, carrier))
+        };
+        self.pairs.sort_by_cached_key(|p| {
+            let (a, b) = (depth(p.a), depth(p.b));
+            let first = a.into_iter().chain(b).min().unwrap_or(usize::MAX);
+            (first, a.unwrap_or(0).max(b.unwrap_or(0)))
+        });
+        for (rank, p) in self.pairs.iter_mut().enumerate() {
+            p.rank = rank as u32;
+        }
+    }
+
+    fn make_blocks(&mut self, scene: &Scene, state: &SceneState) {
+        let carrier_box = |model: u32| match state.carrier(scene.models[model as usize].id) {
+            Some((robot, _)) => scene.models.len() + robot.0,
+            None => model as usize,
+        };
+        let carriers = |p: &GeometryPair| {
+            let [a, b] = [p.a, p.b].map(carrier_box);
+            (a.min(b), a.max(b))
+        };
+        self.pairs.sort_by_key(|p| (carriers(p), p.rank));
+        let packed =
+            |p: &GeometryPair| PackedPair { a: p.a, b: p.b, margin: round_up(p.margin), proven: p.least > 0.0 };
+        self.packed = self.pairs.iter().map(packed).collect();
+        self.blocks.clear();
+        for (i, p) in self.pairs.iter().enumerate() {
+            let (a, b) = carriers(p);
+            match self.blocks.last_mut() {
+                Some(last) if (last.a, last.b) == (a, b) => {
+                    last.end = i + 1;
+                    last.margin = last.margin.max(p.margin);
+                }
+                _ => self.blocks.push(CarrierBlock { a, b, start: i, end: i + 1, margin: p.margin }),
+            }
+        }
+    }
+}

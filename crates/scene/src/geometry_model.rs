@@ -1,0 +1,164 @@
+//! The models of one link or object, from coarse to exact.
+
+use std::sync::OnceLock;
+
+use elbowroom_proximity::{Capsule, Cuboid, Shape};
+use elbowroom_robot::GeometryId;
+use elbowroom_spatial::{Aabb, Obb, Vec3};
+
+use crate::Level;
+use crate::bounding_volume;
+use crate::local_shape::LocalShape;
+
+/// The constant models of a link or object with shapes.
+#[derive(Debug, Clone)]
+pub(crate) struct GeometryModel {
+    pub id: GeometryId,
+    pub exact: Vec<LocalShape>,
+    /// Built at first use: for large meshes it takes longer than all the rest.
+    hull: OnceLock<Vec<LocalShape>>,
+    pub capsule: Vec<LocalShape>,
+    pub cuboid: Vec<LocalShape>,
+    /// `cuboid` as an oriented box; `None` where the geometry is unbounded.
+    pub obb: Option<Obb>,
+    /// True where a coarse model is much cheaper than the exact one.
+    pub complex: bool,
+    /// True where the capsule has the smaller volume of the two enclosures, so that it can separate what the box cannot.
+    pub slim: bool,
+    pub padding_m: f64,
+    /// Metres by which a hull may fail to enclose its mesh.
+    hull_slack_m: f64,
+}
+
+/// The error bound of [`ConvexHull::from_points`](elbowroom_proximity::ConvexHull::from_points), rounded up, as a fraction of
+/// the extent.
+const HULL_TOLERANCE: f64 = 1e-12;
+
+impl GeometryModel {
+    pub fn new(id: GeometryId, exact: Vec<LocalShape>, padding_m: f64) -> Self {
+        let complex = exact.len() > 1 || exact.iter().any(|s| matches!(s.shape, Shape::Mesh(_) | Shape::Hull(_)));
+        let unbounded = exact.iter().any(|s| matches!(s.shape, Shape::HalfSpace(_)));
+        let boxed = if unbounded { None } else { cuboid(&exact) };
+        let rounded = if unbounded { None } else { capsule(&exact) };
+        let hull_slack_m = exact
+            .iter()
+            .filter(|s| matches!(s.shape, Shape::Mesh(_)))
+            .map(|s| HULL_TOLERANCE * s.bounds.extent().length())
+            .fold(0.0, f64::max);
+        let volume = |s: &Option<LocalShape>| s.as_ref().map_or(f64::INFINITY, |s| s.shape.volume());
+        Self {
+            id,
+            slim: volume(&rounded) < volume(&boxed),
+            obb: boxed.as_ref().and_then(obb),
+            hull: OnceLock::new(),
+            capsule: rounded.map_or_else(|| exact.clone(), |s| vec![s]),
+            cuboid: boxed.map_or_else(|| exact.clone(), |s| vec![s]),
+            exact,
+            complex,
+            padding_m,
+            hull_slack_m,
+        }
+    }
+
+    /// Metres by which the models of a level may fail to enclose the geometry.
+    pub fn slack_m(&self, level: Level) -> f64 {
+        if level == Level::Hull { self.hull_slack_m } else { 0.0 }
+    }
+
+    /// The shapes of a level. L1 has no model of a single link or object.
+    pub fn at(&self, level: Level) -> &[LocalShape] {
+        match level {
+            Level::L1 | Level::L2 => &self.cuboid,
+            Level::Capsule => &self.capsule,
+            Level::Hull => self.hull.get_or_init(|| self.exact.iter().map(hull).collect()),
+            Level::L3 | Level::Auto => &self.exact,
+        }
+    }
+
+    /// Upper bound (m) on the distance of any point from the origin; infinite or NaN where the geometry is unbounded.
+    pub fn radius(&self) -> f64 {
+        let farthest_corner = |b: &Aabb| b.min.abs().max(b.max.abs()).length();
+        self.exact.iter().map(|s| farthest_corner(&s.bounds)).fold(0.0, f64::max)
+    }
+}
+
+fn obb(local: &LocalShape) -> Option<Obb> {
+    match local.shape {
+        Shape::Cuboid(c) => Some(Obb { pose: local.in_geometry, half_extents: c.half_extents }),
+        _ => None,
+    }
+}
+
+fn cuboid(exact: &[LocalShape]) -> Option<LocalShape> {
+    if let [only] = exact
+        && let Some(half_extents) = half_extents(&only.shape)
+    {
+        return Some(LocalShape::new(Shape::Cuboid(Cuboid { half_extents }), only.in_geometry));
+    }
+    let (shape, in_geometry) = bounding_volume::cuboid(&points(exact))?;
+    Some(LocalShape::new(shape, in_geometry))
+}
+
+fn capsule(exact: &[LocalShape]) -> Option<LocalShape> {
+    if let [only] = exact {
+        let round = |half_length, radius| Shape::Capsule(Capsule { half_length, radius });
+        let shape = match &only.shape {
+            Shape::Sphere(s) => Some(round(0.0, s.radius)),
+            Shape::Capsule(c) => Some(Shape::Capsule(*c)),
+            _ => None,
+        };
+        if let Some(shape) = shape {
+            return Some(LocalShape::new(shape, only.in_geometry));
+        }
+    }
+    let (shape, in_geometry) = bounding_volume::capsule(&points(exact))?;
+    Some(LocalShape::new(shape, in_geometry))
+}
+
+/// The box around a primitive in its own frame.
+fn half_extents(shape: &Shape) -> Option<Vec3> {
+    match shape {
+        Shape::Sphere(s) => Some(Vec3::splat(s.radius)),
+        Shape::Capsule(c) => Some(Vec3::new(c.radius, c.radius, c.half_length + c.radius)),
+        Shape::Cylinder(c) => Some(Vec3::new(c.radius, c.radius, c.half_length)),
+        Shape::Cuboid(c) => Some(c.half_extents),
+        Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => None,
+    }
+}
+
+/// Points whose convex hull encloses the shapes.
+fn points(shapes: &[LocalShape]) -> Vec<Vec3> {
+    let mut points = Vec::new();
+    for s in shapes {
+        let place = |p: Vec3| s.in_geometry.transform_point(p);
+        match &s.shape {
+            Shape::Mesh(m) => points.extend(m.vertices().iter().map(|&p| place(p))),
+            Shape::Hull(h) => points.extend(h.vertices().iter().map(|&p| place(p))),
+            Shape::Cylinder(c) => points.extend(prism(c.half_length, c.radius).into_iter().map(place)),
+            other => points.extend(
+                half_extents(other)
+                    .into_iter()
+                    .flat_map(|half_extents| Obb { pose: s.in_geometry, half_extents }.corners()),
+            ),
+        }
+    }
+    points
+}
+
+/// Corners of a 24-sided prism around a cylinder along z.
+fn prism(half_length: f64, radius: f64) -> Vec<Vec3> {
+    let step = std::f64::consts::TAU / 24.0;
+    // The corners lie outside the cylinder, so that the sides touch it; slightly enlarged for rounding.
+    let out = radius / (0.5 * step).cos() * (1.0 + 1e-14);
+    let corner = |i: u32| (f64::from(i) * step).sin_cos();
+    (0..24).map(corner).flat_map(|(s, c)| [-1.0, 1.0].map(|z| Vec3::new(out * c, out * s, z * half_length))).collect()
+}
+
+/// The convex shape around one shape: itself, the hull of a mesh, or the box of a mesh too flat to have a hull.
+fn hull(local: &LocalShape) -> LocalShape {
+    let Shape::Mesh(mesh) = &local.shape else { return local.clone() };
+    match mesh.hull() {
+        Some(hull) => LocalShape::new(Shape::Hull(std::sync::Arc::new(hull.clone())), local.in_geometry),
+        None => cuboid(std::slice::from_ref(local)).unwrap_or_else(|| local.clone()),
+    }
+}

@@ -1,0 +1,270 @@
+//! The narrow phase: two links or objects against each other.
+
+use elbowroom_proximity::advanced::{bvh_lower_bound, bvh_lower_bound_to_shape};
+use elbowroom_proximity::contact::{ContactPoint, ContactSettings, contact_point};
+use elbowroom_proximity::{DistanceSettings, Separation, Shape, WarmStart, Workspace, separation_within};
+use elbowroom_spatial::{Obb, Pose, Vec3};
+
+use crate::geometry_model::GeometryModel;
+use crate::local_shape::LocalShape;
+use crate::obb_gap::obb_gap;
+use crate::world_box::{WorldBox, round_up};
+use crate::{CheckerStats, Level, Scene, SceneState};
+
+/// Workspace of the narrow phase, and statistics of its work.
+#[derive(Debug)]
+pub(crate) struct NarrowPhase {
+    workspace: Workspace,
+    /// World boxes of the shapes of the second geometry.
+    bounds: Vec<WorldBox>,
+    pub stats: CheckerStats,
+}
+
+/// The models of a link or object and its pose.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedModel<'s> {
+    pub model: &'s GeometryModel,
+    pub in_world: Pose,
+}
+
+impl<'s> PlacedModel<'s> {
+    pub fn new(scene: &'s Scene, state: &SceneState, model: usize) -> Self {
+        Self { model: &scene.models[model], in_world: state.in_world[model] }
+    }
+
+    /// The oriented box in the world; `None` where the geometry is unbounded.
+    pub fn obb(&self) -> Option<Obb> {
+        self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
+    }
+}
+
+/// Warm start of a pair of links or objects: the pair of shapes that was nearest last time, and where.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct PairWarmStart {
+    shapes: (u32, u32),
+    mesh: WarmStart,
+}
+
+impl NarrowPhase {
+    pub fn new(scene: &Scene) -> Self {
+        let most = scene.models.iter().map(|m| m.exact.len()).max().unwrap_or(0);
+        Self { workspace: Workspace::new(), bounds: Vec::with_capacity(most), stats: CheckerStats::default() }
+    }
+
+    /// The coarse level whose enclosures are certainly farther apart than `limit` metres; `None` where neither is.
+    pub fn separated_coarsely(&mut self, a: &PlacedModel, b: &PlacedModel, limit: f64) -> Option<Level> {
+        if !(a.model.complex || b.model.complex) {
+            return None;
+        }
+        if let (Some(x), Some(y)) = (a.obb(), b.obb()) {
+            self.stats.pairs_tested.l2 += 1;
+            if obb_gap(&x, &y) > limit {
+                return Some(Level::L2);
+            }
+        }
+        if a.model.slim || b.model.slim {
+            self.stats.pairs_tested.capsule += 1;
+            let ([x], [y]) = (enclosure(a.model), enclosure(b.model)) else { return None };
+            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            if separation_within(&x.shape, &in_a, &y.shape, &in_b, limit).is_none() {
+                return Some(Level::Capsule);
+            }
+        }
+        None
+    }
+
+    /// Lower bound (m) on the distance by the oriented boxes; -∞ where they are no cheaper than the exact shapes.
+    pub fn obb_distance(&mut self, a: &PlacedModel, b: &PlacedModel) -> f64 {
+        match (a.obb(), b.obb()) {
+            (Some(x), Some(y)) if a.model.complex || b.model.complex => {
+                self.stats.pairs_tested.l2 += 1;
+                obb_gap(&x, &y)
+            }
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// True where the models of a level are not certainly farther apart than `limit` metres.
+    pub fn within(&mut self, a: &PlacedModel, b: &PlacedModel, level: Level, limit: f64) -> bool {
+        self.stats.pairs_tested.add(level, 1);
+        let (of_a, of_b) = (a.model.at(level), b.model.at(level));
+        if let ([x], [y]) = (of_a, of_b) {
+            return self.shapes_within(x, &a.in_world, y, &b.in_world, limit);
+        }
+        let margin = round_up(limit);
+        self.fill_bounds(of_b, &b.in_world);
+        for x in of_a {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                let separated = bounds.separated(&self.bounds[j], margin);
+                if !separated && self.shapes_within(x, &a.in_world, y, &b.in_world, limit) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    fn shapes_within(
+        &mut self,
+        x: &LocalShape,
+        a_in_world: &Pose,
+        y: &LocalShape,
+        b_in_world: &Pose,
+        limit: f64,
+    ) -> bool {
+        let (in_a, in_b) = (*a_in_world * x.in_geometry, *b_in_world * y.in_geometry);
+        let within = if limit > 0.0 {
+            self.workspace.within(&x.shape, &in_a, &y.shape, &in_b, limit)
+        } else {
+            self.workspace.collides(&x.shape, &in_a, &y.shape, &in_b)
+        };
+        self.count_mesh_query(x, y);
+        within
+    }
+
+    /// Adds the statistics of the last query, which was about these shapes.
+    fn count_mesh_query(&mut self, x: &LocalShape, y: &LocalShape) {
+        if let (Shape::Mesh(_), Shape::Mesh(_)) = (&x.shape, &y.shape) {
+            self.stats.add_mesh_query(self.workspace.stats());
+        }
+    }
+
+    /// Separation of the models of a level, or `None` where it is certainly above `limit` metres.
+    pub fn separation(
+        &mut self,
+        a: &PlacedModel,
+        b: &PlacedModel,
+        level: Level,
+        limit: f64,
+        warm_start: &mut PairWarmStart,
+    ) -> Option<Separation> {
+        self.stats.pairs_tested.add(level, 1);
+        let (of_a, of_b) = (a.model.at(level), b.model.at(level));
+        if let ([x], [y]) = (of_a, of_b) {
+            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            let settings = distance_settings(limit, &mut warm_start.mesh);
+            let found = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+            self.count_mesh_query(x, y);
+            return found;
+        }
+        // The pair of shapes that was nearest last time gives a limit to the others.
+        let (first, mut best, mut limit) = ((warm_start.shapes.0 as usize, warm_start.shapes.1 as usize), None, limit);
+        if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
+            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            let settings = distance_settings(limit, &mut warm_start.mesh);
+            best = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+            self.count_mesh_query(x, y);
+            limit = best.map_or(limit, |s: Separation| s.distance);
+        }
+        self.fill_bounds(of_b, &b.in_world);
+        for (i, x) in of_a.iter().enumerate() {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                if (i, j) == first || f64::from(bounds.gap(&self.bounds[j])) > limit {
+                    continue;
+                }
+                let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+                let mut mesh = WarmStart::default();
+                let settings = distance_settings(limit, &mut mesh);
+                let found = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+                self.count_mesh_query(x, y);
+                let Some(s) = found else { continue };
+                best = Some(nearer(best, s));
+                if best == Some(s) {
+                    *warm_start = PairWarmStart { shapes: (i as u32, j as u32), mesh };
+                }
+                limit = limit.min(s.distance);
+            }
+        }
+        best
+    }
+
+    /// Lower bound (m) on the distance by the box trees of the meshes down to a depth, with points of the nearest boxes; a
+    /// little more than `limit` where the bound is certainly above it. `None` where there are no such trees.
+    pub fn box_tree_bound(
+        &mut self,
+        a: &PlacedModel,
+        b: &PlacedModel,
+        depth: u8,
+        limit: f64,
+    ) -> Option<(f64, [Vec3; 2])> {
+        let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
+        let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+        let beyond = (limit + 1e-9 * (1.0 + limit), [in_a.translation, in_b.translation]);
+        let coarse = match (&x.shape, &y.shape) {
+            (Shape::Mesh(m), Shape::Mesh(n)) => bvh_lower_bound(m, &in_a, n, &in_b, depth, limit, &mut self.workspace),
+            (Shape::Mesh(m), other) => Some(bvh_lower_bound_to_shape(m, &in_a, other, &in_b, depth)?),
+            (other, Shape::Mesh(m)) => {
+                let coarse = bvh_lower_bound_to_shape(m, &in_b, other, &in_a, depth)?;
+                return Some((coarse.lower_bound, [coarse.on_b, coarse.on_a]));
+            }
+            _ => return None,
+        };
+        self.count_mesh_query(x, y);
+        Some(coarse.map_or(beyond, |c| (c.lower_bound, [c.on_a, c.on_b])))
+    }
+
+    /// Where the exact models touch, or are no farther apart than the limit, and which of their shapes: the first pair of
+    /// shapes that touches, else the first within the limit.
+    pub fn contact_point(
+        &mut self,
+        a: &PlacedModel,
+        b: &PlacedModel,
+        settings: ContactSettings,
+    ) -> Option<((usize, usize), ContactPoint)> {
+        self.stats.pairs_tested.add(Level::L3, 1);
+        let (of_a, of_b) = (&a.model.exact, &b.model.exact);
+        let margin = round_up(settings.limit);
+        let mut near = None;
+        self.fill_bounds(of_b, &b.in_world);
+        for (i, x) in of_a.iter().enumerate() {
+            let bounds = WorldBox::of_aabb(&x.bounds.transformed(&a.in_world));
+            for (j, y) in of_b.iter().enumerate() {
+                if bounds.separated(&self.bounds[j], margin) {
+                    continue;
+                }
+                let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+                let found = contact_point(&x.shape, &in_a, &y.shape, &in_b, settings, &mut self.workspace);
+                self.count_mesh_query(x, y);
+                match found {
+                    Some(c) if c.touching => return Some(((i, j), c)),
+                    Some(c) => near = near.or(Some(((i, j), c))),
+                    None => {}
+                }
+            }
+        }
+        near
+    }
+
+    /// An upper bound (m) on the distance of the exact models; `None` where it is not cheap.
+    pub fn upper_bound(&mut self, a: &PlacedModel, b: &PlacedModel, warm_start: &mut PairWarmStart) -> Option<f64> {
+        let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
+        let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+        self.workspace.distance_upper_bound(&x.shape, &in_a, &y.shape, &in_b, &mut warm_start.mesh)
+    }
+
+    fn fill_bounds(&mut self, shapes: &[LocalShape], in_world: &Pose) {
+        self.bounds.clear();
+        self.bounds.extend(shapes.iter().map(|s| WorldBox::of_aabb(&s.bounds.transformed(in_world))));
+    }
+}
+
+fn distance_settings(limit: f64, warm_start: &mut WarmStart) -> DistanceSettings<'_> {
+    DistanceSettings { limit, warm_start: Some(warm_start), ..DistanceSettings::default() }
+}
+
+/// The tighter one of capsule and box, where there is one.
+fn enclosure(model: &GeometryModel) -> &[LocalShape] {
+    let shapes = if model.slim { &model.capsule } else { &model.cuboid };
+    if matches!(shapes[..], [LocalShape { shape: Shape::Capsule(_) | Shape::Cuboid(_), .. }]) { shapes } else { &[] }
+}
+
+/// The nearer of two, with the smaller lower bound of both.
+fn nearer(best: Option<Separation>, s: Separation) -> Separation {
+    match best {
+        None => s,
+        Some(b) if b.distance <= s.distance => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..b },
+        Some(b) => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..s },
+    }
+}

@@ -1,0 +1,57 @@
+//! Settings and result of a sweep.
+
+use elbowroom_robot::GeometryId;
+use elbowroom_spatial::Vec3;
+
+use crate::Level;
+
+/// Settings of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepOptions {
+    /// A pair is hit as soon as it is nearer than this beyond its margin, metres. Values below 0 count as 0, NaN as infinite.
+    pub clearance_m: f64,
+    /// Resolution of "nearer", metres: before a reported hit every pair was farther than its margin and the clearance, at the
+    /// hit one is no farther than that and the tolerance. A pass in between may or may not be reported. Not finer than the
+    /// rounding of poses of that size (about 1e-14 of the largest coordinate); 0, a negative number or NaN require just that.
+    pub tolerance_m: f64,
+    /// After so many distances of exact shapes the answer is a hit that is not [`SweepHit::certain`].
+    pub max_steps: u32,
+}
+
+impl Default for SweepOptions {
+    /// Contact (no clearance) to 0.1 mm, 20,000 distances.
+    fn default() -> Self {
+        Self { clearance_m: 0.0, tolerance_m: 1e-4, max_steps: 20_000 }
+    }
+}
+
+/// The first time at which a pair is too near during a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepHit {
+    /// Time as a fraction of the motion in `[0, 1]`: no pair was too near before. 0 where one is at the start.
+    pub time: f64,
+    /// The first of the pair, in the order of the allowed collision matrix.
+    pub a: GeometryId,
+    /// The other.
+    pub b: GeometryId,
+    /// Witness point on `a` (without padding) at that time, in the world.
+    pub on_a: Vec3,
+    /// Witness point on `b`.
+    pub on_b: Vec3,
+    /// Metres between the shapes at that time, less the pair's margin; 0 on contact.
+    pub metres: f64,
+    /// The level of the models that were measured.
+    pub level: Level,
+    /// Number of distances measured, over all pairs and times.
+    pub steps: u32,
+    /// False where the proof ended here without a contact: steps used up, a number that is not finite, an infinite speed bound.
+    /// The motion is free before `time` and unknown after, and unknown is not free.
+    pub certain: bool,
+}
+
+impl SweepHit {
+    /// True where the pair was too near from the start.
+    pub fn at_start(&self) -> bool {
+        self.time == 0.0
+    }
+}

@@ -1,0 +1,390 @@
+//! The motion of a scene during a sweep: poses at an instant, and bounds on speeds.
+
+use elbowroom_kinematics::LinkId;
+use elbowroom_kinematics::motion_bound::SpeedBound;
+use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_spatial::Vec3;
+
+use super::link_bounds::{JointRates, LinkBounds};
+use super::moves::SweepMove;
+use crate::{Level, Scene, SceneError, SceneState};
+
+/// A motion of the scene.
+#[derive(Debug)]
+pub(super) struct SweepTrajectory {
+    /// The scene at the time set last.
+    pub state: SceneState,
+    link_bounds: LinkBounds,
+    /// Per robot.
+    segments: Vec<JointSegment>,
+    /// Per object: its path, where it has one.
+    free_objects: Vec<Option<FreeObject>>,
+    /// Per model: where its bounds begin in `bounds`. One more: the end.
+    first: Vec<usize>,
+    bounds: Vec<SpeedBound>,
+    /// Per model: sum of the lengths that its pose is computed from, metres.
+    sizes: Vec<f64>,
+    /// True where the velocities of the links are those of the time set last.
+    velocities_known: bool,
+    now: f64,
+}
+
+/// Joint values of a robot over time: `from + rate·t`.
+#[derive(Debug)]
+struct JointSegment {
+    moves: bool,
+    from: Vec<f64>,
+    rate: Vec<f64>,
+    /// True where both ends are within the joint limits.
+    within_limits: bool,
+}
+
+/// An object on a path of its own.
+#[derive(Debug, Clone, Copy)]
+struct FreeObject {
+    /// The path, where it is one at constant velocities.
+    steady: Option<ConstantTwist>,
+}
+
+/// A model as seen from the frame below the first `cut` joints of the path from the root to it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PairSide {
+    pub model: usize,
+    pub cut: usize,
+}
+
+impl SweepTrajectory {
+    pub fn new(scene: &Scene, level: Level) -> Self {
+        let link_bounds = LinkBounds::new(scene, level);
+        let segment =
+            |dof: usize| JointSegment { moves: false, from: vec![0.0; dof], rate: vec![0.0; dof], within_limits: true };
+        let models = scene.models.len();
+        Self {
+            state: SceneState::new(scene),
+            segments: scene.robots.iter().map(|r| segment(r.robot.chain.dof())).collect(),
+            free_objects: vec![None; scene.objects.len()],
+            first: Vec::with_capacity(models + 1),
+            bounds: Vec::with_capacity(models * (link_bounds.longest_path() + 1)),
+            sizes: vec![0.0; models],
+            link_bounds,
+            velocities_known: false,
+            now: 0.0,
+        }
+    }
+
+    /// Checks all moves, then begins at a state.
+    pub fn start(&mut self, scene: &Scene, start: &SceneState, moves: &[SweepMove]) -> Result<(), SceneError> {
+        self.segments.iter_mut().for_each(|s| s.moves = false);
+        self.free_objects.fill(None);
+        for m in moves {
+            match *m {
+                SweepMove::Robot { robot, to } => {
+                    start.check_q(scene, robot, to)?;
+                    if std::mem::replace(&mut self.segments[robot.0].moves, true) {
+                        return Err(SceneError::MovesTwice(scene.robots[robot.0].name.clone()));
+                    }
+                }
+                SweepMove::Object { object, path } => {
+                    let name = start.check_place(scene, object)?;
+                    if !(path.pose(0.0).is_finite() && path.pose(1.0).is_finite()) {
+                        return Err(SceneError::PoseNotFinite(format!("`{name}` on its path")));
+                    }
+                    if self.free_objects[object.0].replace(FreeObject { steady: path.constant_twist() }).is_some() {
+                        return Err(SceneError::MovesTwice(name.to_string()));
+                    }
+                }
+            }
+        }
+        self.state.copy_from(scene, start);
+        for (robot, segment) in self.segments.iter_mut().enumerate() {
+            self.state.chains[robot].qd.fill(0.0);
+            segment.from.copy_from_slice(start.q(RobotId(robot)));
+            segment.rate.fill(0.0);
+            segment.within_limits = !start.beyond_limits[robot];
+        }
+        for m in moves {
+            if let SweepMove::Robot { robot, to } = *m {
+                self.set_target(scene, robot, to);
+            }
+        }
+        self.compute_bounds(scene, moves);
+        Ok(())
+    }
+
+    /// Begins the next segment of the only robot that moves, between joint values that were checked.
+    pub fn next_segment(&mut self, scene: &Scene, robot: RobotId, from: &[f64], to: &[f64]) {
+        let segment = &mut self.segments[robot.0];
+        segment.from.copy_from_slice(from);
+        segment.within_limits = scene.within_limits(robot, from);
+        self.set_target(scene, robot, to);
+        self.compute_bounds(scene, &[]);
+    }
+
+    fn set_target(&mut self, scene: &Scene, robot: RobotId, to: &[f64]) {
+        let segment = &mut self.segments[robot.0];
+        for (rate, (to, from)) in segment.rate.iter_mut().zip(to.iter().zip(&segment.from)) {
+            *rate = to - from;
+        }
+        segment.within_limits &= scene.within_limits(robot, to);
+        self.state.chains[robot.0].qd.copy_from_slice(&segment.rate);
+    }
+
+    fn compute_bounds(&mut self, scene: &Scene, moves: &[SweepMove]) {
+        self.first.clear();
+        self.bounds.clear();
+        for (model, m) in scene.models.iter().enumerate() {
+            let begin = self.bounds.len();
+            self.first.push(begin);
+            self.sizes[model] = if let Some((robot, link)) = self.state.carrier(m.id) {
+                let segment = &self.segments[robot.0];
+                let in_link = self.state.attachment_of(m.id).map(|a| a.in_link);
+                let rates = JointRates { from: &segment.from, rate: &segment.rate };
+                let size = self.link_bounds.append_bounds((robot, link), model, in_link, rates, &mut self.bounds);
+                size + scene.robots[robot.0].base_in_world.translation.length()
+            } else {
+                self.bounds.push(self.free_object_bound(m.id, model, moves));
+                self.state.in_world[model].translation.length() + self.link_bounds.finite_radius(model)
+            };
+            let travel = self.bounds[begin].speed;
+            self.sizes[model] += if travel.is_finite() { travel } else { 0.0 };
+        }
+        self.first.push(self.bounds.len());
+    }
+
+    /// Bound of an object that is not attached.
+    fn free_object_bound(&self, id: GeometryId, model: usize, moves: &[SweepMove]) -> SpeedBound {
+        let own = moves.iter().find_map(|m| match m {
+            SweepMove::Object { object, path } if GeometryId::Object(*object) == id => Some(*path),
+            _ => None,
+        });
+        own.map_or(SpeedBound::REST, |path| path_bound(path, self.link_bounds.radius(model)))
+    }
+
+    /// Moves everything to its pose at `t`.
+    pub fn set_time(&mut self, scene: &Scene, moves: &[SweepMove], t: f64) {
+        for (robot, segment) in self.segments.iter().enumerate().filter(|(_, s)| s.moves) {
+            let chain = &mut self.state.chains[robot];
+            for (q, (from, rate)) in chain.q.iter_mut().zip(segment.from.iter().zip(&segment.rate)) {
+                *q = from + rate * t;
+            }
+            scene.robots[robot].robot.chain.forward(chain);
+            self.state.robot_moved(scene, RobotId(robot));
+        }
+        for m in moves {
+            if let SweepMove::Object { object, path } = m {
+                self.state.set_model_pose(scene, scene.object_model(*object), path.pose(t));
+            }
+        }
+        self.velocities_known = false;
+        self.now = t;
+    }
+
+    /// The two sides of a pair, each as seen from the last link that carries both.
+    pub fn sides(&self, scene: &Scene, a: usize, b: usize) -> [PairSide; 2] {
+        let carriers = [a, b].map(|m| self.state.carrier(scene.models[m].id));
+        let cut = match carriers {
+            [Some((ra, la)), Some((rb, lb))] if ra == rb => self.link_bounds.common_joints(ra, la, lb),
+            _ => 0,
+        };
+        [PairSide { model: a, cut }, PairSide { model: b, cut }]
+    }
+
+    /// Bounds throughout the motion.
+    pub fn bound(&self, side: PairSide) -> SpeedBound {
+        self.bounds[(self.first[side.model] + side.cut).min(self.first[side.model + 1] - 1)]
+    }
+
+    /// Resolution (m) of poses of this size in double precision.
+    pub fn resolution(&self, a: usize, b: usize) -> f64 {
+        64.0 * f64::EPSILON * (self.sizes[a] + self.sizes[b])
+    }
+
+    /// True where the out-of-reach proofs of the scene hold throughout the motion.
+    pub fn proofs_hold(&self, id: GeometryId) -> bool {
+        match id {
+            GeometryId::Link { robot, .. } => self.segments[robot.0].within_limits,
+            GeometryId::Object(o) => !self.is_free(o) && self.state.proofs_hold(id),
+        }
+    }
+
+    /// True where the object moves on a path of its own.
+    pub fn is_free(&self, object: ObjectId) -> bool {
+        self.free_objects[object.0].is_some()
+    }
+
+    /// The largest speed of any point of a side at the time set last, metres per unit of time.
+    pub fn speed_now(&mut self, scene: &Scene, side: PairSide) -> f64 {
+        let bound = self.bound(side).speed;
+        if bound == 0.0 {
+            return 0.0;
+        }
+        let id = scene.models[side.model].id;
+        if self.state.carrier(id).is_some() {
+            self.compute_velocities(scene);
+        }
+        let Some(corners) = self.link_bounds.corners(side.model) else { return bound };
+        let in_world = self.state.in_world[side.model];
+        let fastest = if let Some((robot, link)) = self.state.carrier(id) {
+            let base = &scene.robots[robot.0].base_in_world;
+            let seen_from = self.link_bounds.link_below(robot, link, side.cut);
+            let own = self.twist(robot, link);
+            let other = seen_from.map_or((Vec3::ZERO, Vec3::ZERO), |l| self.twist(robot, l));
+            // The relative velocity field: velocity at the root's origin, and angular velocity.
+            let (velocity, angular) = (own.0 - other.0, own.1 - other.1);
+            let in_root = base.inverse_mul(&in_world);
+            largest_speed(corners, |p| velocity + angular.cross(in_root.transform_point(p)))
+        } else {
+            let GeometryId::Object(o) = id else { return bound };
+            let Some(FreeObject { steady: Some(s) }) = self.free_objects[o.0] else { return bound };
+            largest_speed(corners, |p| s.velocity_at(in_world.transform_point(p), self.now))
+        };
+        // Rounding is relative to the terms, not to their difference.
+        let rounded_up = fastest * (1.0 + 1e-9) + 1e-12 * bound;
+        if rounded_up < bound { rounded_up } else { bound }
+    }
+
+    /// Velocity of the point of a link at the root's origin, and its angular velocity, in the root's frame.
+    fn twist(&self, robot: RobotId, link: LinkId) -> (Vec3, Vec3) {
+        let chain = &self.state.chains[robot.0];
+        (chain.point_velocity(link, Vec3::ZERO), chain.link_motion(link).angular_velocity)
+    }
+
+    fn compute_velocities(&mut self, scene: &Scene) {
+        if !std::mem::replace(&mut self.velocities_known, true) {
+            for (robot, _) in self.segments.iter().enumerate().filter(|(_, s)| s.moves) {
+                scene.robots[robot].robot.chain.forward_motion(&mut self.state.chains[robot]);
+            }
+        }
+    }
+}
+
+/// Bound of an object on a path of its own whose points are within `radius` metres of its frame's origin.
+fn path_bound(path: &dyn RigidMotion, radius: f64) -> SpeedBound {
+    let steady = path.constant_twist();
+    let speed = match steady {
+        // Without rotation, far points are no faster than near ones.
+        Some(s) if s.rotation == Vec3::ZERO => s.velocity.length(),
+        _ => path.speed(radius, 0.0, 1.0),
+    };
+    let acceleration = steady.map_or(f64::INFINITY, |s| {
+        let rotation = s.rotation.length();
+        if rotation == 0.0 { 0.0 } else { rotation * rotation * (s.start.translation.distance(s.pivot) + radius) }
+    });
+    SpeedBound { speed, acceleration }.rounded_up()
+}
+
+/// The largest length of the velocities at some points; NaN counts as infinite.
+fn largest_speed(points: &[Vec3], velocity: impl Fn(Vec3) -> Vec3) -> f64 {
+    let known = |v: f64| if v.is_nan() { f64::INFINITY } else { v };
+    points.iter().map(|p| known(velocity(*p).length_squared())).fold(0.0, f64::max).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Object;
+    use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, Mimic};
+    use elbowroom_proximity::{Cuboid, Shape};
+    use elbowroom_robot::{Collider, Robot};
+    use elbowroom_spatial::{Pose, Rotation};
+
+    struct Random(u64);
+
+    impl Random {
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn vec3(&mut self, size: f64) -> Vec3 {
+            Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
+        }
+
+        fn pose(&mut self) -> Pose {
+            Pose::new(Rotation::from_rotation_vector(self.vec3(2.0)), self.vec3(0.3))
+        }
+    }
+
+    /// A robot of revolute, prismatic, fixed and mimic joints at all angles, and two objects.
+    fn scene(r: &mut Random) -> Scene {
+        use JointKind::{Continuous, Fixed, Prismatic, Revolute};
+        let kinds = [Revolute, Prismatic, Fixed, Revolute, Continuous, Revolute, Prismatic];
+        let joint = |(i, kind): (usize, JointKind)| Joint {
+            name: format!("j{i}"),
+            kind,
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin: r.pose(),
+            axis: r.vec3(1.0),
+            limits: Limits::symmetric(2.0),
+            mimic: (i == 5).then(|| Mimic { joint: JointId(0), multiplier: -1.5, offset: 0.2 }),
+        };
+        let joints = kinds.into_iter().enumerate().map(joint).collect();
+        let links = (0..=kinds.len()).map(|i| format!("l{i}")).collect();
+        let mut robot = Robot::new(Chain::new("any", links, joints).unwrap());
+        let cuboid = |r: &mut Random| Shape::Cuboid(Cuboid { half_extents: r.vec3(0.1).abs() + Vec3::splat(0.01) });
+        for colliders in &mut robot.colliders {
+            colliders.push(Collider { name: String::new(), shape: cuboid(r), in_link: r.pose() });
+        }
+        let mut builder = Scene::builder();
+        builder.prove_out_of_reach(false);
+        builder.robot("any", robot, r.pose());
+        for name in ["attached", "free"] {
+            builder.object(Object { name: name.into(), shape: cuboid(r), in_world: r.pose() });
+        }
+        builder.build().unwrap()
+    }
+
+    #[test]
+    fn no_point_travels_farther_than_the_bounds_seen_from_any_link() {
+        let mut r = Random(3);
+        let mut tightest: f64 = 0.0;
+        let robot = RobotId(0);
+        for _ in 0..60 {
+            let scene = scene(&mut r);
+            let mut start = SceneState::new(&scene);
+            let dof = scene.robots[0].robot.chain.dof();
+            let mut q = |size: f64| (0..dof).map(|_| r.between(-size, size)).collect::<Vec<_>>();
+            let to = q(2.0);
+            start.set_q(&scene, robot, &q(2.0)).unwrap();
+            let hand = LinkId(scene.robots[0].robot.chain.links().len() - 1);
+            start.attach(&scene, ObjectId(0), robot, hand, &[]).unwrap();
+            let path =
+                ConstantTwist { start: r.pose(), pivot: r.vec3(0.5), velocity: r.vec3(1.0), rotation: r.vec3(2.0) };
+            let moves = [SweepMove::Robot { robot, to: &to }, SweepMove::Object { object: ObjectId(1), path: &path }];
+            let mut trajectory = SweepTrajectory::new(&scene, Level::L3);
+            trajectory.start(&scene, &start, &moves).unwrap();
+            for (model, m) in scene.models.iter().enumerate() {
+                let carrier = start.carrier(m.id);
+                let above = carrier.map_or(0, |(_, link)| scene.robots[0].robot.chain.path(link).len());
+                for cut in 0..=above {
+                    let side = PairSide { model, cut };
+                    // The pose of the model in the link below the first `cut` joints.
+                    let seen = |trajectory: &SweepTrajectory| {
+                        let link =
+                            carrier.and_then(|(robot, link)| trajectory.link_bounds.link_below(robot, link, cut));
+                        let from = link.map_or(Pose::IDENTITY, |l| trajectory.state.link_in_world(&scene, robot, l));
+                        from.inverse_mul(&trajectory.state.in_world[model])
+                    };
+                    let (t, u) = (r.between(0.0, 1.0), r.between(0.0, 1.0));
+                    trajectory.set_time(&scene, &moves, t);
+                    let before = seen(&trajectory);
+                    let (now, bound) = (trajectory.speed_now(&scene, side), trajectory.bound(side));
+                    trajectory.set_time(&scene, &moves, u);
+                    let after = seen(&trajectory);
+                    let travel = |p: &Vec3| before.transform_point(*p).distance(after.transform_point(*p));
+                    let corners = trajectory.link_bounds.corners(model).unwrap();
+                    let farthest = corners.iter().map(travel).fold(0.0, f64::max);
+                    let most = bound.distance(now, (t - u).abs());
+                    assert!(farthest <= most + 1e-12, "{farthest} {most} {:?} {cut}", m.id);
+                    assert!(now <= bound.speed);
+                    if farthest > 1e-3 {
+                        tightest = tightest.max(farthest / most);
+                    }
+                }
+            }
+        }
+        assert!(tightest > 0.9, "{tightest}");
+    }
+}

@@ -1,0 +1,295 @@
+//! Statistics of many runs with and without avoidance, with an obstacle that crosses the workspace at random.
+//! Collisions are detected by continuous sweeps of the exact scene from tick to tick.
+//!
+//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL]`
+#![allow(clippy::print_stdout)]
+
+#[path = "../tests/common/random.rs"]
+mod random;
+
+use std::f64::consts::PI;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use elbowroom_avoidance::AvoiderState;
+use elbowroom_cell::{Cell, Drive, ObjectPath, PathRepeat};
+use elbowroom_robot::ObjectId;
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
+use elbowroom_sim::run::simulate;
+use elbowroom_sim::{Recording, RobotTrack, RunOptions};
+use elbowroom_spatial::{Pose, Vec3};
+use random::Random;
+
+/// Smallest distance of the obstacle to the axis of the base, m: a pedestal cannot move away.
+const PEDESTAL_M: f64 = 1.0;
+/// Smallest initial distance of the obstacle to the robot, m.
+const LEAST_START_DISTANCE_M: f64 = 0.8;
+/// Below this share of its speed a joint counts as stationary.
+const STATIONARY_SHARE: f64 = 1e-4;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let runs: usize = arguments.next().map_or(Ok(100), |n| n.parse())?;
+    let file = arguments.next().map_or_else(
+        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pallet/cell.toml")),
+        PathBuf::from,
+    );
+    let cell = Cell::load(file)?;
+    let seen =
+        cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();
+    let moves = |o: &&usize| cell.moving_objects.iter().any(|m| m.object == **o);
+    let object = *seen.iter().find(moves).ok_or("no moving object is evaded")?;
+    let free = without_obstacle(&cell)?;
+    println!(
+        "{}: {} robot(s), without the obstacle the program takes {:.2} s",
+        cell.name,
+        cell.robots.len(),
+        free.duration_s
+    );
+    // A single run, with the state of the robot before a collision.
+    let only: Option<usize> = std::env::var("EVADE_ONLY").ok().and_then(|o| o.parse().ok());
+    let mut random = Random(2026);
+    let mut paths = Vec::new();
+    let scene = obstacle_scene(&cell, object)?;
+    while paths.len() < runs {
+        paths.extend(crossing(&cell, &scene, free.duration_s, &mut random)?);
+    }
+    let chosen: Vec<usize> = only.map_or_else(|| (0..runs).collect(), |o| vec![o.min(runs - 1)]);
+    let mut statistics = Statistics { show: only.is_some(), least_reversal_s: f64::INFINITY, ..Statistics::default() };
+    for some in chosen.chunks(50) {
+        for run in compare(&cell, object, &paths, some)? {
+            statistics.add(&cell, &run);
+        }
+        eprintln!("{} runs: {} collide without, {} with", statistics.runs, statistics.hit_off, statistics.hit_on);
+    }
+    statistics.print();
+    Ok(())
+}
+
+/// The runs of one object path, without avoidance and with it.
+struct RunComparison {
+    number: usize,
+    off: Recording,
+    on: Recording,
+}
+
+/// The chosen runs, in parallel, in order.
+fn compare(cell: &Cell, object: usize, paths: &[ObjectPath], chosen: &[usize]) -> Result<Vec<RunComparison>, String> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let (mut mine, mut cell) = (Vec::new(), cell.clone());
+        while let Some(&number) = chosen.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let drive = Drive::Path(paths[number].clone());
+            cell.moving_objects.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = drive.clone());
+            let run = |avoidance| simulate(&cell, &RunOptions { avoidance, ..RunOptions::default() });
+            let comparison =
+                run(false).and_then(|off| Ok(RunComparison { number, off: off.recording, on: run(true)?.recording }));
+            mine.push(comparison.map_err(|e| e.to_string()));
+        }
+        mine
+    };
+    let all = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().flat_map(|t| t.join().expect("a run does not panic")).collect::<Result<Vec<_>, String>>()
+    });
+    let mut all = all?;
+    all.sort_by_key(|comparison| comparison.number);
+    Ok(all)
+}
+
+/// The program without the obstacle.
+fn without_obstacle(cell: &Cell) -> Result<Recording, Box<dyn std::error::Error>> {
+    let mut cell = cell.clone();
+    for m in &mut cell.moving_objects {
+        let far = Vec3::new(100.0, 100.0, 100.0);
+        m.rest_in_world.translation = far;
+        m.drive = Drive::Path(ObjectPath::new(vec![far], 0.0, 0.0, PathRepeat::Once, Vec3::ZERO));
+    }
+    let recording = simulate(&cell, &RunOptions::default())?.recording;
+    let robot = &recording.robots[0];
+    if !robot.finished || !robot.collisions.is_empty() {
+        return Err(format!("the program fails without the obstacle: {:?}", robot.collisions.first()).into());
+    }
+    Ok(recording)
+}
+
+/// A scene of the robot and the obstacle.
+fn obstacle_scene(cell: &Cell, object: usize) -> Result<Scene, Box<dyn std::error::Error>> {
+    let mut builder = Scene::builder();
+    let robot = &cell.robots[0];
+    builder.robot(&robot.name, robot.robot.clone(), robot.base_in_world);
+    builder.object(cell.objects[object].clone());
+    Ok(builder.build()?)
+}
+
+/// A straight path through the workspace of the arm; `None` where it would start in the arm or cross the pedestal.
+fn crossing(
+    cell: &Cell,
+    scene: &Scene,
+    seconds: f64,
+    random: &mut Random,
+) -> Result<Option<ObjectPath>, Box<dyn std::error::Error>> {
+    let base = cell.robots[0].base_in_world;
+    let speed = random.range(0.1, 1.2);
+    let (turn, climb) = (random.range(-PI, PI), random.range(-0.3, 0.3));
+    let along = Vec3::new(turn.cos() * f64::cos(climb), turn.sin() * f64::cos(climb), f64::sin(climb));
+    let (about, radius) = (random.range(-PI, PI), random.range(PEDESTAL_M, 2.6));
+    let through = Vec3::new(radius * about.cos(), radius * about.sin(), random.range(0.6, 2.2));
+    let when = random.range(0.1, 0.9) * seconds;
+    let flat = Vec3::new(along.x, along.y, 0.0).try_normalize().ok_or("no direction")?;
+    let base_distance = through.cross(flat).z.abs();
+    let (from, to) = (through - along * (speed * when), through + along * (speed * seconds));
+    let from = base.transform_point(from);
+    let path = ObjectPath::new(vec![from, base.transform_point(to)], speed, 0.0, PathRepeat::Once, Vec3::ZERO);
+    if base_distance < PEDESTAL_M {
+        return Ok(None);
+    }
+    let mut state = SceneState::new(scene);
+    state.set_q(scene, RobotId(0), &cell.robots[0].start)?;
+    state.place(scene, ObjectId(0), Pose { translation: from, ..scene.objects()[0].in_world })?;
+    let mut checker = Checker::new(scene, CheckerOptions::default());
+    let near = checker
+        .between(Selection::Robot(RobotId(0)), Selection::Object(ObjectId(0)))
+        .within(&state, LEAST_START_DISTANCE_M);
+    Ok(near.is_none().then_some(path))
+}
+
+#[derive(Default)]
+struct Statistics {
+    runs: usize,
+    hit_off: usize,
+    hit_on: usize,
+    resolved: usize,
+    moving: usize,
+    unfinished: usize,
+    extra_s: Vec<f64>,
+    travel: Vec<f64>,
+    nearest_m: Vec<f64>,
+    step_us: Vec<f64>,
+    /// Largest excess over a speed and a limit of a joint.
+    over: [f64; 2],
+    least_reversal_s: f64,
+    plans: [usize; 2],
+    show: bool,
+}
+
+impl Statistics {
+    fn add(&mut self, cell: &Cell, RunComparison { number, off, on }: &RunComparison) {
+        self.runs += 1;
+        let (without, with) = (&off.robots[0], &on.robots[0]);
+        let (hit_off, hit_on) = (!without.collisions.is_empty(), !with.collisions.is_empty());
+        self.hit_off += usize::from(hit_off);
+        self.hit_on += usize::from(hit_on);
+        if let Some(first) = with.collisions.first() {
+            println!("run {number}: {} hits {} at {:.3} s, {} without avoidance", first.a, first.b, first.t_s, hit_off);
+            if self.show {
+                show(with, first.t_s);
+            }
+        }
+        if !with.finished {
+            println!("run {number}: not finished after {:.1} s", on.duration_s);
+            if self.show {
+                show(with, on.duration_s);
+            }
+            self.unfinished += 1;
+        }
+        let Some(track) = &with.avoidance else { return };
+        if hit_off && !hit_on && with.finished {
+            self.resolved += 1;
+            self.moving += usize::from(!track.samples.iter().any(|s| s.state == AvoiderState::Waiting));
+        }
+        if !hit_on && with.finished {
+            self.extra_s.push(on.duration_s - off.duration_s);
+            self.travel.push(travel(with) / travel(without));
+        }
+        self.nearest_m.push(track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min));
+        self.step_us.push(track.step_ns.p50 as f64 / 1e3);
+        self.plans[0] += track.plans.len();
+        self.plans[1] += track.plans.iter().filter(|p| p.search_s.is_some()).count();
+        self.limits(cell, with, on.tick_s);
+    }
+
+    fn limits(&mut self, cell: &Cell, track: &RobotTrack, tick_s: f64) {
+        let robot = &cell.robots[0];
+        let chain = &robot.robot.chain;
+        let (lower, upper) = (chain.lower(), chain.upper());
+        for j in 0..robot.limits.len() {
+            let (mut sign, mut reversed_s) = (0.0, f64::NEG_INFINITY);
+            let off_path = track.avoidance.iter().flat_map(|a| &a.samples).map(|a| a.path_deviation_s > 0.0);
+            for (w, off_path) in track.samples.windows(2).zip(off_path.skip(1)) {
+                let v = (w[1].q[j] - w[0].q[j]) / tick_s;
+                self.over[0] = self.over[0].max(v.abs() / robot.limits[j].velocity - 1.0);
+                self.over[1] = self.over[1].max(w[1].q[j] - upper[j]).max(lower[j] - w[1].q[j]);
+                // Reversals of the program itself do not count.
+                if !off_path {
+                    (sign, reversed_s) = (0.0, f64::NEG_INFINITY);
+                } else if v.abs() > STATIONARY_SHARE * robot.limits[j].velocity {
+                    if sign * v < 0.0 {
+                        self.least_reversal_s = self.least_reversal_s.min(w[1].t_s - reversed_s);
+                        reversed_s = w[1].t_s;
+                    }
+                    sign = v.signum();
+                }
+            }
+        }
+    }
+
+    fn print(&mut self) {
+        let at = |v: &mut Vec<f64>, share: f64| {
+            v.sort_by(f64::total_cmp);
+            v.get(((v.len() as f64 * share) as usize).min(v.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+        };
+        let three = |v: &mut Vec<f64>| [at(v, 0.5), at(v, 0.9), at(v, 1.0)];
+        println!("{} runs: {} collide without avoidance, {} with it", self.runs, self.hit_off, self.hit_on);
+        let hit = self.hit_off.max(1) as f64;
+        println!(
+            "of those that collide without avoidance: {} ({:.1} %) complete with it, {} ({:.1} %) without waiting; \
+             {} of all not completed",
+            self.resolved,
+            100.0 * self.resolved as f64 / hit,
+            self.moving,
+            100.0 * self.moving as f64 / hit,
+            self.unfinished
+        );
+        let [extra, travel, nearest] = [&mut self.extra_s, &mut self.travel, &mut self.nearest_m].map(three);
+        println!("extra time, s: median {:.2}, 90 % {:.2}, most {:.2}", extra[0], extra[1], extra[2]);
+        println!("joint travel, times: median {:.2}, 90 % {:.2}, most {:.2}", travel[0], travel[1], travel[2]);
+        println!("nearest, m: least {:.4}, median {:.3}", at(&mut self.nearest_m, 0.0), nearest[0]);
+        println!("over a joint's speed by {:.1e}, over a limit by {:.1e} rad", self.over[0], self.over[1]);
+        println!("shortest time between two reversals of a joint: {:.3} s", self.least_reversal_s);
+        println!("replanning attempts: {}, found: {}", self.plans[0], self.plans[1]);
+        println!(
+            "step, us: median of the runs' medians {:.0}, largest median {:.0}",
+            at(&mut self.step_us, 0.5),
+            at(&mut self.step_us, 1.0)
+        );
+    }
+}
+
+/// Prints the states of the robot in the last second.
+fn show(track: &RobotTrack, until_s: f64) {
+    let Some(avoidance) = &track.avoidance else { return };
+    let last = |t: f64| t > until_s - 1.5 && t < until_s + 0.1;
+    let both = track.samples.iter().zip(&avoidance.samples).filter(|(s, _)| last(s.t_s));
+    for (sample, a) in both.step_by(10) {
+        println!(
+            "  {:.3} {:9} nearest {:.3} size {:.2} deviation {:.3} rate {:.2} q {:.3?}",
+            sample.t_s,
+            a.state.name(),
+            a.nearest_m,
+            a.size,
+            a.path_deviation_s,
+            a.rate,
+            sample.q
+        );
+    }
+    println!("  plans {:?}", avoidance.plans);
+}
+
+/// Sum of the motion of all joints.
+fn travel(track: &RobotTrack) -> f64 {
+    let step = |w: &[elbowroom_sim::Sample]| w[1].q.iter().zip(&w[0].q).map(|(a, b)| (a - b).abs()).sum::<f64>();
+    track.samples.windows(2).map(step).sum()
+}

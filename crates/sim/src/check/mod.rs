@@ -1,0 +1,105 @@
+//! Which regions the active laws keep free, and what is missing where they do not (`elbowroom check`).
+//!
+//! For each region and each robot that it guards, [`check`] decides whether entry is excluded, and why. The thickness
+//! that the warning zone needs without the stopping-distance law is computed from the cell: v²/2a + v·t
+//! (`docs/laws.md`, section 2), with the largest speed v of any guarded point in the robot's program, the deceleration
+//! a of its joints (`stop_time`) and the reaction time t.
+//!
+//! ```
+//! use elbowroom_cell::Cell;
+//! use elbowroom_sim::check::check;
+//! let text = r#"
+//! version = 1
+//! units = { length = "mm", angle = "deg" }
+//! [robot.cart]
+//! dh = [{ kind = "prismatic", min = 0, max = 5000, speed = 2000, acceleration = 8000 }]
+//! links = [{ sphere = { radius = 50 } }]
+//! stop_time = 0.25
+//! [region.wall]
+//! shape = "box"
+//! base = [0, 0, 3500]
+//! size = [1000, 1000, 1000]
+//! warning = 50
+//! [program.cart]
+//! steps = [{ move = "joint", to = [5000] }]
+//! "#;
+//! let without_law = check(&Cell::parse("cart.toml", text)?)?;
+//! assert!(!without_law[0].excluded);
+//! assert!((without_law[0].needed_warning_m.unwrap() - 0.254).abs() < 1e-3); // 2²/(2·8) + 2·0.002, and a margin
+//! let stopping = check(&Cell::parse("cart.toml", &format!("{text}[monitor]\nstopping_distance = true\n"))?)?;
+//! assert!(stopping[0].excluded);
+//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! ```
+
+mod decide;
+mod entry;
+mod outline;
+mod profile;
+mod program;
+mod start;
+mod table;
+mod thickness;
+mod travel;
+
+use elbowroom_cell::trajectory::recording_warnings;
+use elbowroom_cell::{Cell, configure};
+use elbowroom_formats::{FormatError, Warning};
+
+use decide::{EntryAnalysis, EntryDecision};
+use program::programs;
+
+pub use entry::EntryCheck;
+pub use table::table;
+
+/// Analyses every region for every robot that it guards; regions in file order.
+///
+/// # Errors
+/// [`FormatError`] at the line of an infeasible step of a program.
+pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
+    let programs = programs(cell)?;
+    let slots = configure::slots(cell);
+    let inside = start::inside(cell, &programs);
+    let mut checks = Vec::new();
+    for (index, region) in cell.regions.iter().enumerate() {
+        let travel_m_s = travel::fastest(cell, region)?;
+        for robot in &region.robots {
+            let shares = |other: &usize| slots[*other].is_some() && slots[*other] == slots[index];
+            let analysis = EntryAnalysis {
+                cell,
+                region: index,
+                robot: *robot,
+                program: &programs[*robot],
+                travel_m_s,
+                starts_inside: inside.contains(&(index, *robot)),
+                shared_at_start: inside.iter().any(|(r, other)| other != robot && shares(r)),
+            };
+            let EntryDecision { excluded, reason, write_instead, needed_warning_m } = analysis.decide();
+            let overrun = analysis.overrun();
+            let robot = *robot;
+            checks.push(EntryCheck {
+                region: index,
+                robot,
+                excluded,
+                reason,
+                write_instead,
+                needed_warning_m,
+                overrun,
+            });
+        }
+    }
+    Ok(checks)
+}
+
+/// Warnings before a run: one for each region and robot that can overrun its border under the active laws, with the
+/// needed thickness of the warning zone.
+///
+/// # Errors
+/// As for [`check`].
+pub fn overruns(cell: &Cell) -> Result<Vec<Warning>, FormatError> {
+    Ok(check(cell)?.into_iter().filter_map(|c| c.overrun).collect())
+}
+
+/// Warnings for recordings that exceed the joint limits of the cell; a run repeats them in its notes.
+pub fn recordings(cell: &Cell) -> Vec<Warning> {
+    (0..cell.robots.len()).flat_map(|robot| recording_warnings(cell, robot)).collect()
+}

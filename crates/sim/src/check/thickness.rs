@@ -1,0 +1,131 @@
+//! Thickness of a warning zone for a robot with bounded deceleration and a delay.
+//!
+//! `docs/laws.md`, section 2, derives it. A robot that moves v·τ before it starts to brake stays outside as long as its
+//! speed is at most its distance over τ. It exceeds the speed of the law only while it brakes. So each braking course
+//! from the last moment below that speed to rest is tested: from the full override, and from each fraction of it.
+
+use std::f64::consts::E;
+
+/// Fractions of the full override from which braking is tested.
+const PARTS: u32 = 128;
+/// Relative reserve for the finite number of fractions and samples.
+const MARGIN: f64 = 0.002;
+/// Relative tolerance of comparisons.
+const ROUNDING: f64 = 1e-9;
+
+/// Response delay of a robot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ResponseDelay {
+    /// Upper bound of the time from entering the zone to the first deceleration: the reaction time and one tick, s.
+    pub delay_s: f64,
+    /// Period of the control tick, s.
+    pub tick_s: f64,
+}
+
+impl ResponseDelay {
+    /// Headway time (s): the distance divided by the speed must not fall below it. A controller changes the override
+    /// linearly between ticks, not on the law's curve: that adds a little to the delay itself.
+    pub fn headway_s(self) -> f64 {
+        let ticks = self.tick_s / self.delay_s.max(self.tick_s);
+        self.delay_s * (ticks * ticks / 8.0).exp()
+    }
+}
+
+/// Braking of one point from the full override, along its program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Braking {
+    /// From the fraction x of the full override it moves at most x² times this, m.
+    pub distance_m: f64,
+    /// While braking, its speed is at most this times the square root of the remaining braking, m/s.
+    pub speed_m_s: f64,
+    /// Largest sum of the distance so far and the headway distance at the speed there, m.
+    pub peak_m: f64,
+}
+
+/// Sufficient thickness (m) for one braking course, at least `least_m`; `fastest_m_s` is the largest speed of the point
+/// anywhere.
+pub(super) fn thickness(least_m: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> f64 {
+    let fits = |zone: f64| enough(zone, braking, fastest_m_s, response_delay);
+    if least_m > 0.0 && fits(least_m / (1.0 + MARGIN)) {
+        return least_m;
+    }
+    let delay_m = fastest_m_s * response_delay.headway_s();
+    // From here on every fraction fits, for any course.
+    let (mut low, mut high) = (0.0, E * (delay_m + braking.distance_m.max(braking.peak_m)));
+    for _ in 0..40 {
+        let middle = f64::midpoint(low, high);
+        if fits(middle) { high = middle } else { low = middle }
+    }
+    least_m.max(high * (1.0 + MARGIN))
+}
+
+fn enough(zone: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> bool {
+    let headway_s = response_delay.headway_s();
+    let part = |i: u32| f64::from(i) / f64::from(PARTS);
+    let fits = |x: f64| {
+        left(x * zone, fastest_m_s * response_delay.delay_s) * (1.0 + ROUNDING)
+            >= needed(braking, fastest_m_s, headway_s, x)
+    };
+    zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s && (1..=PARTS).map(part).all(fits)
+}
+
+/// The remaining distance (m) after the delay, in which the robot moves at most `delay_m` and its speed is at most its
+/// distance over the delay.
+fn left(distance: f64, delay_m: f64) -> f64 {
+    let times = distance / delay_m.max(f64::MIN_POSITIVE);
+    if times >= 2.0 {
+        distance - delay_m
+    } else if times >= 1.0 {
+        delay_m * (times - 2.0).exp()
+    } else {
+        distance / E
+    }
+}
+
+/// Needed distance of a course from the fraction x of the full override, m: the maximum of
+/// `W·(x² − s²) + τ·min(v·x, V·s)` for s in [0, x].
+fn needed(braking: &Braking, fastest_m_s: f64, headway_s: f64, x: f64) -> f64 {
+    let (distance, steep, flat) = (braking.distance_m, braking.speed_m_s * headway_s, fastest_m_s * headway_s);
+    if distance <= 0.0 {
+        return (steep.min(flat) * x).min(braking.peak_m);
+    }
+    let top = steep / (2.0 * distance);
+    let course = if steep <= flat {
+        if x >= top { distance * x * x + steep * top / 2.0 } else { steep * x }
+    } else if x <= steep * top / flat {
+        flat * x + distance * x * x * (1.0 - (flat / steep).powi(2))
+    } else {
+        distance * x * x + steep * top / 2.0
+    };
+    course.min(braking.peak_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At constant speed, with a stopping distance of `distance_m`.
+    fn steady(distance_m: f64, fastest_m_s: f64, response_delay: ResponseDelay) -> f64 {
+        let delay_m = fastest_m_s * response_delay.headway_s();
+        let peak_m =
+            if delay_m <= 2.0 * distance_m { distance_m + delay_m * delay_m / (4.0 * distance_m) } else { delay_m };
+        thickness(0.0, &Braking { distance_m, speed_m_s: fastest_m_s, peak_m }, fastest_m_s, response_delay)
+    }
+
+    #[test]
+    fn at_constant_speed_the_thickness_is_the_documented_formula() {
+        for reaction_s in [0.0, 0.01, 0.03, 0.06, 0.2] {
+            let response_delay = ResponseDelay { delay_s: reaction_s + 0.002, tick_s: 0.002 };
+            let (delay, headway) = (2.0 * response_delay.delay_s, 2.0 * response_delay.headway_s());
+            let formula = (0.25 + delay + headway * headway / 1.0).max(E * headway);
+            let named = steady(0.25, 2.0, response_delay);
+            assert!(named >= formula && named < 1.022 * formula, "{reaction_s} s: {named} m, formula {formula} m");
+        }
+    }
+
+    #[test]
+    fn a_stationary_robot_needs_no_thickness() {
+        let response_delay = ResponseDelay { delay_s: 0.002, tick_s: 0.002 };
+        assert_eq!(steady(0.0, 0.0, response_delay), 0.0);
+    }
+}

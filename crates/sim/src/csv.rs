@@ -1,0 +1,51 @@
+//! `trace.csv` and `events.csv`. Numbers are written such that they read back to the same bits.
+
+use std::io::{self, Write};
+
+use crate::recording::Recording;
+
+/// Writes `t_s,robot,q1..qn,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m`: one row per robot and
+/// tick, ordered by time, then robot.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()> {
+    let joints = recording.robots.iter().map(|r| r.joints.len()).max().unwrap_or(0);
+    write!(out, "t_s,robot,")?;
+    for j in 1..=joints {
+        write!(out, "q{j},")?;
+    }
+    writeln!(out, "tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m")?;
+    let ticks = recording.robots.iter().map(|r| r.samples.len()).max().unwrap_or(0);
+    for tick in 0..ticks {
+        for robot in &recording.robots {
+            let Some(s) = robot.samples.get(tick) else { continue };
+            write!(out, "{},{},", s.t_s, robot.name)?;
+            for j in 0..joints {
+                match s.q.get(j) {
+                    Some(q) => write!(out, "{q},")?,
+                    None => write!(out, ",")?,
+                }
+            }
+            write!(out, "{},{},{},{},{},", s.tcp.x, s.tcp.y, s.tcp.z, s.tcp_speed, s.speed_override)?;
+            let region = s.region.and_then(|r| recording.regions.get(r)).map_or("", |r| &r.name);
+            match s.distance_m {
+                Some(d) => writeln!(out, "{region},{d}")?,
+                None => writeln!(out, "{region},")?,
+            }
+        }
+    }
+    out.flush()
+}
+
+/// Writes `t_s,robot,region,event`.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_events(recording: &Recording, mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "t_s,robot,region,event")?;
+    for e in &recording.events {
+        writeln!(out, "{},{},{},{}", e.t_s, e.robot, e.region, e.event.name())?;
+    }
+    out.flush()
+}

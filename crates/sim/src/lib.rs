@@ -1,0 +1,43 @@
+//! The programs of a cell in simulated time, under the monitor.
+//!
+//! [`simulate`] runs the programs of a [`Cell`](elbowroom_cell::Cell) on one clock and returns a [`Recording`], which
+//! [`Summary`] and [`csv`] turn into what scripts read and `elbowroom_report` into what people read. [`check`](check::check)
+//! says, without a run, which regions the laws that are on keep free in these programs; [`motion`] times the programs for both.
+//!
+//! ```
+//! use elbowroom_cell::Cell;
+//! use elbowroom_sim::{RunOptions, simulate};
+//! let cell = Cell::parse("rail.toml", r#"
+//! version = 1
+//! units = { length = "mm", angle = "deg" }
+//! [robot.rail]
+//! dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+//! [region.end]
+//! shape = "plane"
+//! origin = [0, 0, 1000]
+//! x = [0, 1, 1000]
+//! y = [1, 0, 1000]       # its normal points down: all above z = 1000 is forbidden
+//! warning = 300
+//! guards = ["tcp"]
+//! [program.rail]
+//! steps = [{ move = "joint", to = [1500], speed = 50 }]
+//! "#)?;
+//! let outcome = simulate(&cell, &RunOptions::default())?;
+//! assert!(!outcome.recording.robots[0].finished); // it stopped at the border
+//! assert!(!outcome.has_violation());
+//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! ```
+
+pub mod check;
+pub mod csv;
+pub mod motion;
+mod recording;
+pub mod run;
+mod summary;
+
+pub use recording::{
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, RecordedRegionKind,
+    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEvent, Sample, Span, TickTimes,
+};
+pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
+pub use summary::{AvoidanceSummary, RunSummary};

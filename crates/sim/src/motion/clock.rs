@@ -1,0 +1,282 @@
+//! Execution of a program in time: scaled by the override, within the joints' decelerations, never backwards.
+
+use elbowroom_cell::JointLimits;
+use elbowroom_cell::trajectory::PathPoint;
+
+use super::{Geometry, PlanStep, ProgramPlan};
+
+/// Smallest share of the acceleration that remains for speeding up along a curve.
+const RESERVE: f64 = 0.1;
+/// Iterations for the state at the end of a braking tick.
+const SAMPLES: u32 = 4;
+/// At the start of a move the intended velocity is taken from this time, s: at rest there is none.
+const AHEAD_S: f64 = 0.05;
+
+/// A program switches a region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RegionSwitch {
+    /// Index of the region.
+    pub region: usize,
+    /// On or off.
+    pub active: bool,
+}
+
+/// Position of a robot in its program.
+#[derive(Debug)]
+pub struct ProgramClock {
+    plan: ProgramPlan,
+    limits: Vec<JointLimits>,
+    step: usize,
+    /// Time in the step at override 1, s; in a wait, time waited.
+    time: f64,
+    /// dτ/dt: rate of the program's time, 0..1.
+    rate: f64,
+    /// Change of the rate in the last advance, 1/s.
+    rate_change: f64,
+    programmed: f64,
+    here: PathPoint,
+    intent: Vec<f64>,
+    switches: Vec<RegionSwitch>,
+    held: bool,
+}
+
+impl ProgramClock {
+    /// Starts a program.
+    pub fn new(plan: ProgramPlan, limits: Vec<JointLimits>) -> Self {
+        let programmed = plan.speed_override;
+        let here = PathPoint {
+            first: vec![0.0; plan.start.len()],
+            second: vec![0.0; plan.start.len()],
+            q: plan.start.clone(),
+        };
+        let mut clock = Self {
+            plan,
+            limits,
+            step: 0,
+            time: 0.0,
+            rate: 0.0,
+            rate_change: 0.0,
+            programmed,
+            intent: here.first.clone(),
+            here,
+            switches: Vec::new(),
+            held: false,
+        };
+        clock.pass_instants();
+        clock.update_point();
+        // A program starts at full rate: its own time law starts from rest.
+        clock.rate = clock.programmed;
+        clock
+    }
+
+    /// Current joint values, with derivatives by the program's time (that is, at override 1).
+    pub fn point(&self) -> &PathPoint {
+        &self.here
+    }
+
+    /// Intended joint velocities at override 1, rad/s or m/s. At the start of a move from rest, those shortly after the
+    /// start: a direction-aware monitor needs the direction of the motion.
+    pub fn intent(&self) -> &[f64] {
+        &self.intent
+    }
+
+    /// Current joint velocities, rad/s or m/s.
+    pub fn velocity(&self) -> impl Iterator<Item = f64> + '_ {
+        self.here.first.iter().map(|v| v * self.rate)
+    }
+
+    /// Current joint accelerations.
+    pub fn acceleration(&self) -> impl Iterator<Item = f64> + '_ {
+        let (square, change) = (self.rate * self.rate, self.rate_change);
+        self.here.first.iter().zip(&self.here.second).map(move |(v, a)| a * square + v * change)
+    }
+
+    /// Rate of the program's time, 0..1.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// The programmed override, 0..1.
+    pub fn programmed_override(&self) -> f64 {
+        self.programmed
+    }
+
+    /// The current step, and the time in it (s, at override 1; in a wait, time waited).
+    pub fn position(&self) -> (usize, f64) {
+        (self.step, self.time)
+    }
+
+    /// True after the last step.
+    pub fn finished(&self) -> bool {
+        self.step >= self.plan.steps.len()
+    }
+
+    /// True during a move.
+    pub fn moving(&self) -> bool {
+        matches!(self.plan.steps.get(self.step), Some(PlanStep::Move(_) | PlanStep::Play(_)))
+    }
+
+    /// True during a wait.
+    pub fn waiting(&self) -> bool {
+        matches!(self.plan.steps.get(self.step), Some(PlanStep::Wait(_)))
+    }
+
+    /// End of the current joint move; `None` for other steps, whose path must be followed.
+    pub fn end_of_joint_move(&self) -> Option<Vec<f64>> {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) if matches!(m.geometry(), Geometry::Joint { .. }) => Some(m.end()),
+            _ => None,
+        }
+    }
+
+    /// Jumps to the end of the joint move: the robot is moved there on another path. The next step starts with the next
+    /// [`ProgramClock::advance`] that is not [held](ProgramClock::hold).
+    pub fn skip_move(&mut self) {
+        let Some(PlanStep::Move(m)) = self.plan.steps.get(self.step) else { return };
+        (self.time, self.rate, self.rate_change) = (m.duration(), 0.0, 0.0);
+        self.update_point();
+    }
+
+    /// Region switches since the last call.
+    pub fn take_switches(&mut self) -> Vec<RegionSwitch> {
+        std::mem::take(&mut self.switches)
+    }
+
+    /// Advances by `dt` seconds under the override `target`.
+    pub fn advance(&mut self, dt: f64, target: f64) {
+        let target = target.clamp(0.0, 1.0);
+        let next =
+            if target < self.rate { self.braked(dt, target) } else { target.min(self.rate + self.largest_rise() * dt) };
+        let mean = f64::midpoint(self.rate, next);
+        self.rate_change = (next - self.rate) / dt;
+        self.rate = next;
+        let duration = match self.plan.steps.get(self.step) {
+            None => return,
+            Some(PlanStep::Wait(s)) => {
+                self.time += dt;
+                *s
+            }
+            Some(PlanStep::Move(m)) => {
+                self.time += dt * mean;
+                m.duration()
+            }
+            Some(PlanStep::Play(p)) => {
+                self.time += dt * mean;
+                p.duration()
+            }
+            Some(_) => 0.0,
+        };
+        if self.time >= duration - 1e-12 {
+            if self.held {
+                (self.time, self.rate, self.rate_change) = (duration, 0.0, 0.0);
+            } else {
+                self.end_step(duration);
+            }
+        }
+        self.update_point();
+    }
+
+    /// While held, no step ends: the robot is off its path, and the next step must not start.
+    pub fn hold(&mut self, held: bool) {
+        self.held = held;
+    }
+
+    /// The end is met exactly: steps meet at rest.
+    fn end_step(&mut self, duration: f64) {
+        self.time = duration;
+        self.update_point();
+        self.step += 1;
+        self.time = 0.0;
+        self.pass_instants();
+    }
+
+    /// The rate after braking for `dt` seconds, at least `target`.
+    ///
+    /// The robot brakes along its path: its stop time, the longest stop time of any joint, falls by one second per
+    /// second. Where the program accelerates meanwhile, the rate falls faster; where it decelerates harder by itself,
+    /// the program is followed.
+    fn braked(&self, dt: f64, target: f64) -> f64 {
+        let left = self.stop_time(&self.here.first) * self.rate - dt;
+        if left <= 0.0 {
+            return target;
+        }
+        let mut rate = self.rate;
+        for _ in 0..SAMPLES {
+            let ahead = self.point_at(self.time + dt * f64::midpoint(self.rate, rate));
+            let stop_time = ahead.map_or(0.0, |p| self.stop_time(&p.first));
+            let fits = if stop_time * rate > left { left / stop_time } else { rate };
+            if fits >= rate {
+                break;
+            }
+            rate = fits;
+        }
+        rate.max(target)
+    }
+
+    /// The longest stop time of any joint from these velocities, s.
+    fn stop_time(&self, velocity: &[f64]) -> f64 {
+        velocity.iter().zip(&self.limits).fold(0.0, |most, (v, l)| f64::max(most, v.abs() / l.stop))
+    }
+
+    /// The point at a time (s) of the current step; `None` for a step without motion.
+    fn point_at(&self, time: f64) -> Option<PathPoint> {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => Some(m.at(time)),
+            Some(PlanStep::Play(p)) => Some(p.at(time)),
+            _ => None,
+        }
+    }
+
+    /// Upper bound of the rise of the rate, 1/s.
+    ///
+    /// With `q̇ = q′σ` and `q̈ = q″σ² + q′σ̇`, `|q̈| ≤ a` leaves `σ̇ ≤ (a − |q″|σ²) / |q′|` per joint.
+    fn largest_rise(&self) -> f64 {
+        let square = self.rate * self.rate;
+        let mut rise = f64::INFINITY;
+        for ((first, second), l) in self.here.first.iter().zip(&self.here.second).zip(&self.limits) {
+            let speed = first.abs();
+            if speed >= 1e-12 {
+                rise = rise.min((l.acceleration - second.abs() * square).max(RESERVE * l.acceleration) / speed);
+            }
+        }
+        // A finite bound avoids 0 · ∞.
+        rise.min(1e9)
+    }
+
+    /// Executes the steps without duration.
+    fn pass_instants(&mut self) {
+        loop {
+            match self.plan.steps.get(self.step) {
+                Some(PlanStep::Switch { region, active }) => {
+                    self.switches.push(RegionSwitch { region: *region, active: *active });
+                }
+                Some(PlanStep::Override(o)) => self.programmed = *o,
+                Some(PlanStep::Move(m)) if m.duration() <= 0.0 => {}
+                Some(PlanStep::Wait(s)) if *s <= 0.0 => {}
+                _ => return,
+            }
+            self.step += 1;
+        }
+    }
+
+    fn update_point(&mut self) {
+        let point = self.point_at(self.time);
+        let moves = point.is_some();
+        if let Some(point) = point {
+            self.here = point;
+        } else {
+            self.here.first.fill(0.0);
+            self.here.second.fill(0.0);
+        }
+        self.intent.clone_from(&self.here.first);
+        let duration = match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => m.duration(),
+            Some(PlanStep::Play(p)) => p.duration(),
+            _ => 0.0,
+        };
+        let ahead = AHEAD_S.min(duration / 2.0);
+        if moves && self.time < ahead {
+            self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.first);
+        }
+    }
+}

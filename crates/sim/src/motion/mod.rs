@@ -1,0 +1,20 @@
+//! Conversion of programs to joint values over time.
+//!
+//! A [`Geometry`] is the path of a move, a [`Segment`] adds the time law within the joint limits, a [`ProgramPlan`]
+//! joins the steps of a program, and a [`ProgramClock`] advances along it as fast as the monitor's override and the
+//! joint decelerations permit.
+//!
+//! Defaults without values in model and cell file: full speed in 0.25 s, full acceleration in 0.1 s, and a stop from
+//! full speed in 0.1 s.
+
+mod clock;
+mod geometry;
+mod line;
+mod plan;
+mod segment;
+
+pub use clock::{ProgramClock, RegionSwitch};
+pub use geometry::Geometry;
+pub use line::TcpLine;
+pub use plan::{PlanStep, ProgramPlan, plan};
+pub use segment::Segment;

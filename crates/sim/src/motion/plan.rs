@@ -1,0 +1,211 @@
+//! Planning of a program: every move is computed before the simulation starts.
+
+use std::rc::Rc;
+
+use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings};
+use elbowroom_cell::{Cell, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction};
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+
+use super::{Geometry, Segment, TcpLine};
+
+/// Largest number of steps of a plan, including repetitions.
+const MOST_STEPS: u64 = 1_000_000;
+
+/// A planned program.
+#[derive(Debug, Clone, Default)]
+pub struct ProgramPlan {
+    /// Joint values before the first step, rad or m.
+    pub start: Vec<f64>,
+    /// Programmed override at the start, 0..1.
+    pub speed_override: f64,
+    /// The steps, in order.
+    pub steps: Vec<PlanStep>,
+}
+
+/// One step of a plan.
+#[derive(Debug, Clone)]
+pub enum PlanStep {
+    /// A timed move.
+    Move(Rc<Segment>),
+    /// A recording.
+    Play(Rc<Playback>),
+    /// Switches the region with this index.
+    Switch {
+        /// Index in the cell.
+        region: usize,
+        /// On or off.
+        active: bool,
+    },
+    /// Waits, s.
+    Wait(f64),
+    /// Sets the programmed override, 0..1.
+    Override(f64),
+}
+
+/// Plans the program of one robot, run `repeat` times (times the program's own `repeat`).
+///
+/// # Errors
+/// [`FormatError`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
+pub fn plan(cell: &Cell, robot: usize, repeat: u32, notes: &mut Vec<Warning>) -> Result<ProgramPlan, FormatError> {
+    let at = &cell.robots[robot];
+    let Some(program) = &cell.programs[robot] else {
+        return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
+    };
+    let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
+    let mut planner = ProgramPlanner { cell, robot: at, q: at.start.clone(), notes, known: Vec::new() };
+    match &program.body {
+        ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MOST_STEPS / steps.len().max(1) as u64)),
+        ProgramBody::Trajectory(rows) => {
+            planner.notes.extend(recording_warnings(cell, robot));
+            planner.playback(program, rows, passes.min(MOST_STEPS))
+        }
+    }
+}
+
+struct ProgramPlanner<'a> {
+    cell: &'a Cell,
+    robot: &'a CellRobot,
+    /// Joint values after the steps so far.
+    q: Vec<f64>,
+    notes: &'a mut Vec<Warning>,
+    /// Moves of earlier passes.
+    known: Vec<(usize, Vec<f64>, Rc<Segment>)>,
+}
+
+impl ProgramPlanner<'_> {
+    fn steps(&mut self, program: &Program, steps: &[ProgramStep], passes: u64) -> Result<ProgramPlan, FormatError> {
+        let mut plan = ProgramPlan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
+        for pass in 0..passes {
+            if pass > 0 {
+                plan.steps.push(PlanStep::Override(program.speed_override));
+            }
+            for (i, step) in steps.iter().enumerate() {
+                plan.steps.push(match &step.action {
+                    StepAction::Switch { region, active } => PlanStep::Switch { region: *region, active: *active },
+                    StepAction::Wait(s) => PlanStep::Wait(*s),
+                    StepAction::Override(o) => PlanStep::Override(*o),
+                    StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
+                });
+            }
+        }
+        Ok(plan)
+    }
+
+    fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Rc<Segment>, FormatError> {
+        let known = self.known.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let segment = if let Some(segment) = known {
+            segment
+        } else {
+            let segment = Rc::new(self.timed(index, step)?);
+            self.known.push((index, self.q.clone(), segment.clone()));
+            segment
+        };
+        self.q = segment.end();
+        Ok(segment)
+    }
+
+    fn error(&self, index: usize, step: &ProgramStep, what: &str) -> FormatError {
+        let what = format!("`program.{}`, step {}: {what}", self.robot.name, index + 1);
+        FormatError::new(&self.cell.file, step.line, what)
+    }
+
+    fn timed(&mut self, index: usize, step: &ProgramStep) -> Result<Segment, FormatError> {
+        let limits = &self.robot.limits;
+        match &step.action {
+            StepAction::Linear { to, speed } => {
+                let line = self.line(index, step, to)?;
+                let rate = if line.length() > 1e-9 { speed / line.length() } else { f64::INFINITY };
+                if !line.keeps_orientation {
+                    let what = "the robot has too few axes to turn the tool along this line: only the TCP follows it";
+                    let note = self.error(index, step, what);
+                    self.notes.push(note.into());
+                }
+                let segment = Segment::new(Geometry::TcpLine(Box::new(line)), limits, 1.0, rate)
+                    .map_err(|e| self.error(index, step, &e))?;
+                if segment.speed_share < 0.999 {
+                    let share = segment.speed_share * 100.0;
+                    let reached = self.cell.units.show_length(speed * segment.speed_share);
+                    let what =
+                        format!("the joints allow {share:.0} % of the programmed speed on this line: {reached}/s");
+                    let note = self.error(index, step, &what);
+                    self.notes.push(note.into());
+                }
+                Ok(segment)
+            }
+            StepAction::Joint { to, speed } => {
+                let to = self.joint_target(index, step, to)?;
+                let course = Geometry::Joint { from: self.q.clone(), to };
+                Segment::new(course, limits, *speed, f64::INFINITY).map_err(|e| self.error(index, step, &e))
+            }
+            _ => Err(self.error(index, step, "is not a move")),
+        }
+    }
+
+    fn line(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<TcpLine, FormatError> {
+        let to_in_root = match to {
+            MoveTarget::Tcp(in_world) => self.robot.base_in_world.inverse_mul(in_world),
+            MoveTarget::Joints(q) => self.tcp_in_root(q),
+        };
+        TcpLine::new(self.robot, &self.q, to_in_root).map_err(|error| {
+            let [at, length] = [error.at_m, error.length_m].map(|m| format!("{:.1} mm", m * 1000.0));
+            let what = format!("the line of {length} cannot be followed beyond {at}: {}", error.why);
+            let hint = "a target within reach on this side of the arm, or a joint move to it";
+            self.error(index, step, &what).hint(hint)
+        })
+    }
+
+    fn tcp_in_root(&self, q: &[f64]) -> elbowroom_spatial::Pose {
+        let chain = &self.robot.robot.chain;
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(q);
+        chain.forward(&mut state);
+        state.link_in_root(self.robot.flange) * self.robot.tcp_in_flange
+    }
+
+    fn joint_target(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<Vec<f64>, FormatError> {
+        let in_world = match to {
+            MoveTarget::Joints(q) => return Ok(q.clone()),
+            MoveTarget::Tcp(in_world) => in_world,
+        };
+        let target = self.robot.base_in_world.inverse_mul(in_world);
+        let mut solver =
+            IkSolver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, IkOptions::default());
+        match solver.solve(&target, &self.q) {
+            Ok(solution) => Ok(solution.q),
+            Err(e) => Err(self.error(index, step, &e.to_string()).hint("a pose within reach, or joint values")),
+        }
+    }
+
+    fn playback(
+        &mut self,
+        program: &Program,
+        rows: &[elbowroom_cell::TrajectoryRow],
+        passes: u64,
+    ) -> Result<ProgramPlan, FormatError> {
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(ProgramPlan::default()) };
+        let farthest = first.q.iter().zip(&self.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if self.robot.start_given && farthest > 1e-6 {
+            let what = format!(
+                "the trajectory of \"{}\" does not begin at `start`: it begins at its first row",
+                self.robot.name
+            );
+            self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
+        }
+        let mut plan =
+            ProgramPlan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
+        let play = Rc::new(Playback::new(rows.to_vec(), &motion_bounds(self.robot)));
+        let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
+        let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
+            .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
+        let back = Rc::new(back);
+        for pass in 0..passes {
+            if pass > 0 {
+                plan.steps.push(PlanStep::Move(back.clone()));
+            }
+            plan.steps.push(PlanStep::Play(play.clone()));
+        }
+        Ok(plan)
+    }
+}

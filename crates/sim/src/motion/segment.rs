@@ -1,0 +1,139 @@
+//! A move with its time law.
+
+use elbowroom_cell::JointLimits;
+use elbowroom_cell::trajectory::PathPoint;
+use rsruckig::prelude::*;
+
+use super::Geometry;
+
+/// A move with its path and duration.
+#[derive(Debug)]
+pub struct Segment {
+    geometry: Geometry,
+    law: TimeLaw,
+    /// Share of the programmed speed that the joint limits permit, 0..1.
+    pub speed_share: f64,
+}
+
+#[derive(Debug)]
+enum TimeLaw {
+    Rest,
+    Ruckig(Box<Trajectory<1>>),
+}
+
+/// Largest first, second and third derivative of s by time.
+#[derive(Debug, Clone, Copy)]
+struct PathLimits {
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl Segment {
+    /// Times a path within all joint limits; `speed` is the share of each joint's speed, `path_rate` the largest
+    /// programmed ds/dt (TCP speed over length; infinite for none).
+    ///
+    /// Joint limits become limits of s by the chain rule, with the largest derivatives on the path:
+    /// `|q′|ṡ ≤ v`, `|q′|s̈ + |q″|ṡ² ≤ a`, `|q′|s⃛ + 3|q″|ṡs̈ + |q‴|ṡ³ ≤ j`.
+    ///
+    /// # Errors
+    /// Message of the time law's library.
+    pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, String> {
+        let probes = geometry.probes();
+        let Some((bounds, share)) = bounds(&probes, limits, speed, path_rate) else {
+            return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0 });
+        };
+        let mut otg = Ruckig::<1, ThrowErrorHandler>::new(None, 0.001);
+        let mut input = InputParameter::new(None);
+        input.target_position[0] = 1.0;
+        input.max_velocity[0] = bounds.velocity;
+        input.max_acceleration[0] = bounds.acceleration;
+        input.max_jerk[0] = bounds.jerk;
+        let mut trajectory = Trajectory::new(None);
+        otg.calculate(&input, &mut trajectory).map_err(|e| e.to_string())?;
+        Ok(Self { geometry, law: TimeLaw::Ruckig(Box::new(trajectory)), speed_share: share })
+    }
+
+    /// Duration at override 1, s.
+    pub fn duration(&self) -> f64 {
+        match &self.law {
+            TimeLaw::Rest => 0.0,
+            TimeLaw::Ruckig(t) => t.get_duration(),
+        }
+    }
+
+    /// Joint values at time `t` (s, at override 1), with derivatives by time.
+    pub fn at(&self, t: f64) -> PathPoint {
+        let (s, v, a) = self.parameter(t);
+        let mut point = self.geometry.at(s);
+        for (first, second) in point.first.iter_mut().zip(&mut point.second) {
+            *second = *second * v * v + *first * a;
+            *first *= v;
+        }
+        point
+    }
+
+    fn parameter(&self, t: f64) -> (f64, f64, f64) {
+        let TimeLaw::Ruckig(trajectory) = &self.law else { return (1.0, 0.0, 0.0) };
+        if t >= trajectory.get_duration() {
+            return (1.0, 0.0, 0.0);
+        }
+        let (mut s, mut v, mut a) = ([0.0], [0.0], [0.0]).map_stack();
+        trajectory.at_time(t.max(0.0), &mut Some(&mut s), &mut Some(&mut v), &mut Some(&mut a), &mut None, &mut None);
+        (s[0].clamp(0.0, 1.0), v[0].max(0.0), a[0])
+    }
+
+    /// Joint values at the end.
+    pub fn end(&self) -> Vec<f64> {
+        self.geometry.end()
+    }
+
+    /// The path.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+}
+
+/// Conversion to the library's one-dimensional vectors.
+trait MapStack {
+    fn map_stack(self) -> (DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>);
+}
+
+impl MapStack for ([f64; 1], [f64; 1], [f64; 1]) {
+    fn map_stack(self) -> (DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>) {
+        (DataArrayOrVec::Stack(self.0), DataArrayOrVec::Stack(self.1), DataArrayOrVec::Stack(self.2))
+    }
+}
+
+/// The limits of s, and the share of the programmed rate that remains; `None` without motion.
+fn bounds(probes: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
+    let joints = limits.len();
+    let largest =
+        |f: &dyn Fn(&PathPoint, usize) -> f64, j: usize| probes.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()));
+    let first: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.first[j], j)).collect();
+    let second: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.second[j], j)).collect();
+    let third: Vec<f64> = (0..joints).map(|j| largest_change(probes, j)).collect();
+    if first.iter().all(|f| *f < 1e-12) {
+        return None;
+    }
+    let least = |f: &dyn Fn(usize) -> f64| (0..joints).map(f).filter(|v| !v.is_nan()).fold(f64::INFINITY, f64::min);
+    let joint_rate = least(&|j| limits[j].velocity * speed / first[j]);
+    // Half of acceleration and a quarter of jerk may be used for following the curve; a joint move needs none.
+    let curve_rate = least(&|j| (limits[j].acceleration / (2.0 * second[j])).sqrt());
+    let jerk_rate = least(&|j| (limits[j].jerk / (4.0 * third[j])).cbrt());
+    let velocity = path_rate.min(joint_rate).min(curve_rate).min(jerk_rate);
+    let acceleration = least(&|j| (limits[j].acceleration - second[j] * velocity * velocity) / first[j]);
+    let acceleration = acceleration.min(least(&|j| limits[j].jerk / (4.0 * 3.0 * second[j] * velocity)));
+    let jerk = least(&|j| {
+        let spent = 3.0 * second[j] * velocity * acceleration + third[j] * velocity.powi(3);
+        (limits[j].jerk - spent) / first[j]
+    });
+    let share = if path_rate.is_finite() { (velocity / path_rate).min(1.0) } else { 1.0 };
+    Some((PathLimits { velocity, acceleration, jerk }, share))
+}
+
+/// |q‴| from the change of q″ between samples at equal steps of s.
+fn largest_change(probes: &[PathPoint], j: usize) -> f64 {
+    let steps = (probes.len() - 1) as f64;
+    probes.windows(2).fold(0.0_f64, |m, w| m.max((w[1].second[j] - w[0].second[j]).abs() * steps))
+}

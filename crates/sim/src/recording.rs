@@ -1,0 +1,361 @@
+//! Recording of a run, for the report and the CSV writers.
+
+use elbowroom_avoidance::AvoiderState;
+use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::{Pose, Vec3};
+use serde::Serialize;
+
+/// One run of a cell.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// The cell's name.
+    pub cell: String,
+    /// Checksum of the configuration (hex SHA-256).
+    pub checksum: String,
+    /// Period of the control tick, seconds.
+    pub tick_s: f64,
+    /// Simulated time from the first to the last tick, seconds.
+    pub duration_s: f64,
+    /// False where the override of the monitor was not applied.
+    pub monitored: bool,
+    /// One per robot, in the order of the cell file.
+    pub robots: Vec<RobotTrack>,
+    /// One per region, in the order of the cell file.
+    pub regions: Vec<RegionTrack>,
+    /// One per moving object, in the order of the cell file.
+    pub objects: Vec<ObjectTrack>,
+    /// Deadlocks at the end of the run.
+    pub deadlocks: Vec<Deadlock>,
+    /// In order of time.
+    pub events: Vec<EventRow>,
+    /// Wall-clock time of the monitor's ticks.
+    pub tick_ns: TickTimes,
+}
+
+/// Recording of one robot.
+#[derive(Debug, Clone)]
+pub struct RobotTrack {
+    /// The robot's name in the cell file.
+    pub name: String,
+    /// Names of the joints in the order of `q`.
+    pub joints: Vec<String>,
+    /// One per tick, first to last of the run.
+    pub samples: Vec<Sample>,
+    /// True where the program was completed.
+    pub finished: bool,
+    /// Time (s) in which the robot was stopped although its program was not.
+    pub stopped_s: f64,
+    /// Smallest override commanded, 0..1.
+    pub min_override: f64,
+    /// First contact of each pair that touched.
+    pub collisions: Vec<Collision>,
+    /// Evasion; `None` for a robot without avoidance.
+    pub avoidance: Option<AvoidanceTrack>,
+    /// How its run ended.
+    pub ending: RobotEnding,
+}
+
+/// How a robot's run ended.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RobotEnding {
+    /// The outcome.
+    pub outcome: Outcome,
+    /// Since when (s) it is stopped at its final configuration; `None` for one that finished or was still moving.
+    pub stopped_at_s: Option<f64>,
+    /// The region that stopped it, or what it collided with first: an object, or `robot/link`.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to the region, or collided first.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+}
+
+/// Outcome of a robot's run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Its program was completed.
+    #[default]
+    Finished,
+    /// It was stopped, or still moving at the end of the run.
+    Stopped,
+    /// It waits for an exchange region.
+    Held,
+    /// It collided.
+    Collided,
+    /// It waits for robots that wait for it.
+    Deadlock,
+}
+
+impl Outcome {
+    /// The word in JSON and CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Stopped => "stopped",
+            Self::Held => "held",
+            Self::Collided => "collided",
+            Self::Deadlock => "deadlock",
+        }
+    }
+}
+
+/// Robots that wait for each other, for exchange regions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deadlock {
+    /// Since when all of them are stopped, s.
+    pub t_s: f64,
+    /// The robots, in the order of the cell file.
+    pub robots: Vec<String>,
+    /// The regions they wait for.
+    pub regions: Vec<String>,
+}
+
+/// Evasion of one robot.
+#[derive(Debug, Clone, Default)]
+pub struct AvoidanceTrack {
+    /// One per tick, as the samples are.
+    pub samples: Vec<AvoidanceSample>,
+    /// Wall-clock time of its steps: sensing, correction, check, command.
+    pub step_ns: TickTimes,
+    /// Replanning attempts, in order of time.
+    pub plans: Vec<ReplanRecord>,
+    /// Its rules: one control surface per output.
+    pub surfaces: Vec<Surface>,
+}
+
+/// One replanning attempt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReplanRecord {
+    /// Simulated time of the attempt, s.
+    pub t_s: f64,
+    /// Wall-clock time of the search, s; `None` where no path was found.
+    pub search_s: Option<f64>,
+}
+
+/// Evasion at one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoidanceSample {
+    /// State of the avoider.
+    pub state: AvoiderState,
+    /// Smallest separation distance to any obstacle, m; infinite where none is near.
+    pub nearest_m: f64,
+    /// Size of the correction, 0..1.
+    pub size: f64,
+    /// Path deviation: seconds of joint motion at full speed back to the path.
+    pub path_deviation_s: f64,
+    /// How fast the path may advance, 0..1.
+    pub rate: f64,
+}
+
+/// State of a robot at one tick.
+#[derive(Debug, Clone)]
+pub struct Sample {
+    /// Seconds since the run began.
+    pub t_s: f64,
+    /// Joint positions, rad or m.
+    pub q: Vec<f64>,
+    /// Tool centre point in the world, m.
+    pub tcp: Vec3,
+    /// Speed of the TCP, m/s.
+    pub tcp_speed: f64,
+    /// Speed the TCP would have at override 1, m/s.
+    pub programmed_speed: f64,
+    /// The override of this tick, 0..1, the programmed override included.
+    pub speed_override: f64,
+    /// Index of the governing region, where there is one.
+    pub region: Option<usize>,
+    /// Distance (m) from the governing point to its region.
+    pub distance_m: Option<f64>,
+    /// Why the override has this value.
+    pub reason: OverrideReason,
+}
+
+/// Poses of one moving object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectTrack {
+    /// The object's name in the cell file.
+    pub name: String,
+    /// Its frame in the world, one per tick.
+    pub poses: Vec<Pose>,
+}
+
+/// First contact of two colliders.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collision {
+    /// Time of the first contact, s; may lie between ticks.
+    pub t_s: f64,
+    /// `robot/link`.
+    pub a: String,
+    /// `robot/link` or an object's name.
+    pub b: String,
+}
+
+/// Recording of one region.
+#[derive(Debug, Clone)]
+pub struct RegionTrack {
+    /// The region's name in the cell file.
+    pub name: String,
+    /// Its kind.
+    pub kind: RecordedRegionKind,
+    /// Its life.
+    pub life: Life,
+    /// Which parts of the robots it guards.
+    pub guards: Guards,
+    /// Thickness of the warning zone, m.
+    pub warning_m: f64,
+    /// Its shape.
+    pub shape: Shape,
+    /// Its poses.
+    pub poses: RegionPoses,
+    /// Switching: time (s) and whether it was active from then on. The first entry is at the start.
+    pub active: Vec<(f64, bool)>,
+    /// Smallest distance (m) of any guarded volume while active.
+    pub min_distance_m: Option<f64>,
+    /// True where a guarded volume touched or entered it while active (for an exchange region: without holding it).
+    pub entered: bool,
+    /// Time (s) during which any robot was in its warning zone.
+    pub warned_s: f64,
+    /// Intervals in the warning zone.
+    pub warning_spans: Vec<Span>,
+    /// Intervals inside.
+    pub inside_spans: Vec<Span>,
+}
+
+/// An interval of one robot in a region or its warning zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Index of the robot.
+    pub robot: usize,
+    /// Start, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+}
+
+/// Poses of a region's shape in the world.
+#[derive(Debug, Clone)]
+pub enum RegionPoses {
+    /// Constant.
+    Fixed(Pose),
+    /// One pose per tick.
+    Moving(Vec<Pose>),
+}
+
+/// A line of `events.csv`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventRow {
+    /// Seconds since the run began.
+    pub t_s: f64,
+    /// The robot concerned.
+    pub robot: String,
+    /// The region concerned; empty where none is.
+    pub region: String,
+    /// The event.
+    pub event: RunEvent,
+}
+
+/// An event of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEvent {
+    /// An event of a robot's monitor.
+    Monitor(EventKind),
+    /// A program switched a region on.
+    On,
+    /// A program switched a region off.
+    Off,
+    /// The monitor stopped a robot.
+    Stop,
+    /// A stopped robot moves again.
+    Resume,
+    /// The avoidance of a robot changed to this state.
+    Avoidance(AvoiderState),
+}
+
+impl RunEvent {
+    /// Its name in `events.csv`: `warn_in`, `stop`, …
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Monitor(kind) => kind.name(),
+            Self::On => "on",
+            Self::Off => "off",
+            Self::Stop => "stop",
+            Self::Resume => "resume",
+            Self::Avoidance(AvoiderState::Following) => "on_path",
+            Self::Avoidance(AvoiderState::Evading) => "evade",
+            Self::Avoidance(AvoiderState::Returning) => "return",
+            Self::Avoidance(AvoiderState::Detouring) => "go_around",
+            Self::Avoidance(AvoiderState::Waiting) => "wait",
+            Self::Avoidance(AvoiderState::Halted) => "halt",
+        }
+    }
+}
+
+/// Kind of a recorded region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RecordedRegionKind {
+    /// Entry is a violation.
+    Forbidden,
+    /// Raises outputs; entry is permitted.
+    Monitored,
+    /// Entry without the grant is a violation.
+    Exchange,
+    /// The true pose of an obstacle, in recordings of perception.
+    Obstacle,
+}
+
+impl RecordedRegionKind {
+    /// `forbidden`, `monitored`, `exchange` or `obstacle`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forbidden => "forbidden",
+            Self::Monitored => "monitored",
+            Self::Exchange => "exchange",
+            Self::Obstacle => "obstacle",
+        }
+    }
+}
+
+impl From<RegionKind> for RecordedRegionKind {
+    fn from(kind: RegionKind) -> Self {
+        match kind {
+            RegionKind::Forbidden => Self::Forbidden,
+            RegionKind::Monitored { .. } => Self::Monitored,
+            RegionKind::Exchange { .. } => Self::Exchange,
+        }
+    }
+}
+
+impl RegionTrack {
+    /// True where a robot entered it and must not.
+    pub fn is_violated(&self) -> bool {
+        self.entered && matches!(self.kind, RecordedRegionKind::Forbidden | RecordedRegionKind::Exchange)
+    }
+}
+
+/// Statistics of wall-clock times, nanoseconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TickTimes {
+    /// Median.
+    pub p50: u64,
+    /// 99th percentile.
+    pub p99: u64,
+    /// Largest.
+    pub max: u64,
+    /// Number of samples.
+    pub count: usize,
+}
+
+impl TickTimes {
+    /// Of the times of all ticks, nanoseconds.
+    pub fn of(mut ns: Vec<u64>) -> Self {
+        ns.sort_unstable();
+        let at = |share: f64| {
+            ns.get(((ns.len() as f64 * share) as usize).min(ns.len().saturating_sub(1))).copied().unwrap_or(0)
+        };
+        Self { p50: at(0.5), p99: at(0.99), max: ns.last().copied().unwrap_or(0), count: ns.len() }
+    }
+}

@@ -1,0 +1,565 @@
+//! Simulation of a cell: programs on one clock, under the monitor.
+
+mod avoid;
+mod deadlock;
+mod delay;
+mod ending;
+mod faults;
+mod needs;
+mod outcome;
+mod regions;
+mod waits;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use elbowroom_cell::configure::{self, MonitorSetup};
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_cell::{Cell, Frames, MovingObject, ObjectMotion};
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{
+    AccessClass, EventKind, Monitor, OverrideReason, RegionKind, Snapshot, SourceState, VirtualTcp, ZoneArbiter,
+};
+use elbowroom_robot::{GeometryId, ObjectId};
+use elbowroom_scene::{FirstContact, FirstContacts, ObjectPath};
+
+use crate::motion::{ProgramClock, RegionSwitch, plan};
+use crate::recording::{
+    Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEvent, Sample, TickTimes,
+};
+use avoid::AvoidingRobot;
+use deadlock::DeadlockDetector;
+use delay::OverrideDelay;
+use ending::{IdleDetector, StopState};
+pub use faults::{InputFault, InputFaultKind};
+use needs::ZoneClaims;
+use regions::RegionRecorder;
+use waits::WaitForGraph;
+
+/// Options of a simulation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunOptions {
+    /// False: the override of the monitor is computed but not applied (`--no-monitor`).
+    pub monitored: bool,
+    /// False: robots with `[avoidance]` follow their programs (`--no-avoidance`).
+    pub avoidance: bool,
+    /// Number of repetitions of the programs, times their own `repeat`.
+    pub repeat: u32,
+    /// Fault injection: robots (by index) that are silent and stopped from a time (s) on.
+    pub silent_from: Vec<(usize, f64)>,
+    /// Fault injection: faulty inputs of the robots' monitors. Where two faults of one robot overlap, the first one in
+    /// this list applies.
+    pub faults: Vec<InputFault>,
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        Self { monitored: true, avoidance: true, repeat: 1, silent_from: Vec::new(), faults: Vec::new() }
+    }
+}
+
+/// Result of a simulation.
+#[derive(Debug, Clone)]
+pub struct RunOutcome {
+    /// The recording.
+    pub recording: Recording,
+    /// Notes on the programs: speeds beyond the joint limits, and the like.
+    pub notes: Vec<Warning>,
+}
+
+impl RunOutcome {
+    /// True where a collision occurred, a forbidden region was entered, or robots are in a deadlock: exit status 1.
+    pub fn has_violation(&self) -> bool {
+        let r = &self.recording;
+        r.robots.iter().any(|r| !r.collisions.is_empty())
+            || r.regions.iter().any(RegionTrack::is_violated)
+            || !r.deadlocks.is_empty()
+    }
+}
+
+/// Progress of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunProgress {
+    /// Simulated time, s.
+    pub t_s: f64,
+    /// Number of robots with completed programs.
+    pub finished: usize,
+    /// Number of robots.
+    pub robots: usize,
+}
+
+/// Simulates the programs of a cell.
+///
+/// All robot states of an instant are computed before the first monitor runs, so followed frames have no latency; the
+/// override of a tick applies to the motion from this tick to the next.
+///
+/// # Errors
+/// [`FormatError`] at the line of an infeasible step. Nothing has moved then.
+pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
+    simulate_with(cell, options, &mut |_| {})
+}
+
+/// [`simulate`] with a progress callback.
+///
+/// # Errors
+/// As for [`simulate`].
+pub fn simulate_with(
+    cell: &Cell,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(RunProgress),
+) -> Result<RunOutcome, FormatError> {
+    let mut notes = Vec::new();
+    let mut clocks = Vec::new();
+    let setups = configure::setups(cell)?;
+    let arbiter = configure::zone_arbiter(cell);
+    let monitors = configure::monitors_with(cell, &setups, arbiter.as_ref())?;
+    let mut claims = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        let plan = plan(cell, i, options.repeat, &mut notes)?;
+        // A robot with avoidance leaves its program: its claims are not known.
+        let keeps_to_plan =
+            options.monitored && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
+        let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
+        claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(i, &setups[i], &plan, arbiter)));
+        clocks.push(ProgramClock::new(plan, robot.limits.clone()));
+    }
+    let scene = elbowroom_cell::QueryModel::of_cell(cell).scene(false)?;
+    let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
+    let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
+    (run.arbiter, run.claims) = (arbiter, claims);
+    let mut tick = 0_u64;
+    loop {
+        let t_s = instant(tick, cell.tick_s);
+        if tick.is_multiple_of(256) {
+            let finished = run.clocks.iter().filter(|c| c.finished()).count();
+            progress(RunProgress { t_s, finished, robots: run.clocks.len() });
+        }
+        if tick == 0 {
+            run.announce();
+        }
+        run.tick(t_s);
+        if run.ended(t_s) {
+            notes.extend(run.avoiding.iter().flatten().filter_map(|e| e.fault_warning(cell)));
+            return Ok(RunOutcome { recording: run.finish(t_s), notes });
+        }
+        run.advance();
+        tick += 1;
+    }
+}
+
+struct Simulation<'a> {
+    cell: &'a Cell,
+    options: &'a RunOptions,
+    setups: &'a [MonitorSetup],
+    monitors: Vec<Monitor>,
+    /// Arbiter of the exchange regions.
+    arbiter: Option<Arc<ZoneArbiter>>,
+    /// Per robot the claims of its program; `None` for one that declares none.
+    claims: Vec<Option<ZoneClaims>>,
+    deadlocks: DeadlockDetector,
+    /// Per robot the point with the smallest requested override in the last tick.
+    governing: Vec<Option<VirtualTcp>>,
+    clocks: Vec<ProgramClock>,
+    /// Per robot; `None` for one without avoidance.
+    avoiding: Vec<Option<AvoidingRobot<'a>>>,
+    states: Vec<ChainState>,
+    scratch: Vec<ChainState>,
+    frames: Frames<'a>,
+    inputs: faults::FaultInjector<'a>,
+    regions: RegionRecorder<'a>,
+    checker: FirstContacts<'a>,
+    tracks: Vec<RobotTrack>,
+    objects: Vec<ObjectTrack>,
+    /// Time of the last collision check, s.
+    checked_s: f64,
+    stop_states: Vec<StopState>,
+    /// Override applied to each robot until the next tick.
+    applied: Vec<f64>,
+    delays: Vec<OverrideDelay>,
+    events: Vec<EventRow>,
+    idle_detector: IdleDetector,
+    tick_ns: Vec<u64>,
+}
+
+impl<'a> Simulation<'a> {
+    fn new(
+        cell: &'a Cell,
+        options: &'a RunOptions,
+        setups: &'a [MonitorSetup],
+        monitors: Vec<Monitor>,
+        clocks: Vec<ProgramClock>,
+        mut avoiding: Vec<Option<AvoidingRobot<'a>>>,
+    ) -> Self {
+        avoiding.resize_with(cell.robots.len(), || None);
+        let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
+        let track = |r: &elbowroom_cell::CellRobot| RobotTrack {
+            name: r.name.clone(),
+            joints: r.joint_names(),
+            samples: Vec::new(),
+            finished: false,
+            stopped_s: 0.0,
+            min_override: 1.0,
+            collisions: Vec::new(),
+            avoidance: None,
+            ending: RobotEnding::default(),
+        };
+        Self {
+            arbiter: None,
+            claims: Vec::new(),
+            deadlocks: DeadlockDetector::new(cell.robots.len()),
+            governing: vec![None; cell.robots.len()],
+            options,
+            setups,
+            scratch: states.clone(),
+            states,
+            frames: Frames::new(cell),
+            inputs: faults::FaultInjector::new(&options.faults, cell.robots.len()),
+            regions: RegionRecorder::new(cell, setups),
+            checker: FirstContacts::new(
+                cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
+                &cell.objects,
+            )
+            .moving(&cell.moving_objects.iter().map(|m| ObjectId(m.object)).collect::<Vec<_>>()),
+            tracks: cell.robots.iter().map(track).collect(),
+            objects: cell.moving_objects.iter().map(|m| object_track(cell, m)).collect(),
+            checked_s: 0.0,
+            stop_states: vec![StopState::default(); cell.robots.len()],
+            applied: vec![0.0; cell.robots.len()],
+            delays: cell.robots.iter().map(|_| OverrideDelay::new(cell.laws.reaction_delay_s)).collect(),
+            events: Vec::new(),
+            idle_detector: IdleDetector::new(cell),
+            tick_ns: Vec::new(),
+            monitors,
+            clocks,
+            avoiding,
+            cell,
+        }
+    }
+
+    fn is_silent(&self, robot: usize, t_s: f64) -> bool {
+        self.options.silent_from.iter().any(|(r, from)| *r == robot && t_s >= *from)
+    }
+
+    fn event(&mut self, t_s: f64, robot: usize, region: &str, event: RunEvent) {
+        let robot = self.cell.robots[robot].name.clone();
+        self.events.push(EventRow { t_s, robot, region: region.to_owned(), event });
+    }
+
+    /// Publishes the state of every robot before the first tick of a cell with exchange regions: a robot that starts
+    /// inside would otherwise wait for robots without a status, and count as having entered.
+    fn announce(&mut self) {
+        if !self.cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. })) {
+            return;
+        }
+        self.update_states(0.0);
+        self.declare_claims();
+        for i in 0..self.clocks.len() {
+            if self.is_silent(i, 0.0) {
+                continue;
+            }
+            let sources = self.frames.sources(&self.setups[i].sources, &self.states, 0.0);
+            let before = -self.cell.tick_s;
+            let sources: Vec<_> = sources.into_iter().map(|s| SourceState { stamp_s: before, ..s }).collect();
+            let (state, clock) = (&self.states[i], &self.clocks[i]);
+            let snapshot = Snapshot {
+                now_s: before,
+                stamp_s: before,
+                q: &state.q,
+                qd: &state.qd,
+                qdd: &state.qdd,
+                programmed_override: clock.programmed_override(),
+                intent: Some(clock.intent()),
+                sources: &sources,
+            };
+            self.monitors[i].tick(&snapshot);
+            self.log_events(i, 0.0);
+        }
+    }
+
+    /// Evaluates one instant; nothing moves.
+    fn tick(&mut self, t_s: f64) {
+        self.apply_switches(t_s);
+        self.update_states(t_s);
+        self.declare_claims();
+        for i in 0..self.clocks.len() {
+            if self.is_silent(i, t_s) { self.record_silent(i, t_s) } else { self.monitor(i, t_s) }
+        }
+        self.regions.observe(t_s, &self.monitors, &self.states, &self.frames);
+        if let Some(arbiter) = &self.arbiter {
+            self.deadlocks.observe(t_s, arbiter, &self.stop_states);
+        }
+        self.collide(t_s);
+    }
+
+    fn declare_claims(&mut self) {
+        let Some(arbiter) = &self.arbiter else { return };
+        for (claims, clock) in self.claims.iter_mut().zip(&self.clocks) {
+            if let Some(claims) = claims {
+                claims.declare(clock, arbiter);
+            }
+        }
+    }
+
+    fn update_states(&mut self, t_s: f64) {
+        for (i, clock) in self.clocks.iter().enumerate() {
+            let state = &mut self.states[i];
+            state.q.copy_from_slice(&clock.point().q);
+            // A silent robot is assumed to be stationary.
+            let is_silent = self.options.silent_from.iter().any(|(r, from)| *r == i && t_s >= *from);
+            let scale = if is_silent { 0.0 } else { 1.0 };
+            state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
+            state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
+            if let Some(avoiding) = self.avoiding[i].as_ref().filter(|e| !e.is_on_path()) {
+                avoiding.write_state(state);
+                state.qd.iter_mut().chain(&mut state.qdd).for_each(|v| *v *= scale);
+            }
+            self.cell.robots[i].robot.chain.forward_motion(state);
+        }
+    }
+
+    fn apply_switches(&mut self, t_s: f64) {
+        for robot in 0..self.clocks.len() {
+            for RegionSwitch { region, active } in self.clocks[robot].take_switches() {
+                if !self.regions.switch(region, t_s, active) {
+                    continue;
+                }
+                let cell = self.cell;
+                self.event(
+                    t_s,
+                    robot,
+                    &cell.regions[region].region.name,
+                    if active { RunEvent::On } else { RunEvent::Off },
+                );
+                for (setup, monitor) in self.setups.iter().zip(&mut self.monitors) {
+                    let Some(local) = setup.regions.iter().position(|r| *r == region) else { continue };
+                    // The cell file refuses switching of permanent regions, so this cannot fail.
+                    let _ = monitor.switch(elbowroom_monitor::RegionId(local), active, AccessClass::Programmer);
+                }
+            }
+        }
+    }
+
+    fn monitor(&mut self, i: usize, t_s: f64) {
+        let sources = self.frames.sources(&self.setups[i].sources, &self.states, t_s);
+        let clock = &self.clocks[i];
+        let state = &self.states[i];
+        let snapshot = Snapshot {
+            now_s: t_s,
+            stamp_s: t_s,
+            q: &state.q,
+            qd: &state.qd,
+            qdd: &state.qdd,
+            programmed_override: clock.programmed_override(),
+            intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |e| e.intent(clock))),
+            sources: &sources,
+        };
+        let Some(snapshot) = self.inputs.pass(i, &snapshot) else { return self.record_without_input(i, t_s) };
+        let begin = Instant::now();
+        let report = self.monitors[i].tick(&snapshot);
+        self.tick_ns.push(begin.elapsed().as_nanos() as u64);
+        let applied = if self.options.monitored { report.speed_override } else { clock.programmed_override() };
+        self.applied[i] = applied;
+        self.log_events(i, t_s);
+        // A region governs where it makes the robot slower than its program.
+        let governs = self.options.monitored.then(|| report.reason.region()).flatten();
+        let region = governs.map(|r| self.setups[i].regions[r.0]);
+        self.governing[i] = report.governing;
+        let distance_m = region.and(report.governing).map(|g| g.distance_m);
+        let reason = if self.options.monitored { report.reason } else { OverrideReason::Free };
+        self.record(i, t_s, applied, region, distance_m, reason);
+        if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
+            let region = region.map_or("", |r| self.cell.regions[r].region.name.as_str());
+            self.event(t_s, i, region, event);
+        }
+        if self.stop_states[i].stopped {
+            self.tracks[i].stopped_s += self.cell.tick_s;
+        }
+    }
+
+    fn log_events(&mut self, i: usize, t_s: f64) {
+        let robot = &self.cell.robots[i].name;
+        for e in self.monitors[i].events() {
+            // Switching is reported once, by the switch itself.
+            if matches!(e.kind, EventKind::On | EventKind::Off) {
+                continue;
+            }
+            let region = e.region.map(|r| self.cell.regions[self.setups[i].regions[r.0]].region.name.clone());
+            let region = region.unwrap_or_default();
+            self.events.push(EventRow { t_s, robot: robot.clone(), region, event: RunEvent::Monitor(e.kind) });
+        }
+    }
+
+    fn record_silent(&mut self, i: usize, t_s: f64) {
+        self.applied[i] = 0.0;
+        self.record(i, t_s, 0.0, None, None, OverrideReason::Fault(elbowroom_monitor::Fault::Stale));
+    }
+
+    /// Records a tick without input of the monitor.
+    fn record_without_input(&mut self, i: usize, t_s: f64) {
+        if self.options.monitored && !self.inputs.keeps_last_override(i, t_s) {
+            self.applied[i] = 0.0;
+        }
+        self.record(i, t_s, self.applied[i], None, None, OverrideReason::Fault(elbowroom_monitor::Fault::Stale));
+    }
+
+    fn record(
+        &mut self,
+        i: usize,
+        t_s: f64,
+        o: f64,
+        region: Option<usize>,
+        distance_m: Option<f64>,
+        reason: OverrideReason,
+    ) {
+        let (tcp, tcp_speed) = self.frames.tcp(i, &self.states[i]);
+        // Off its path a robot does not move by its program's time.
+        let off_path = self.avoiding[i].as_ref().is_some_and(|e| !e.is_on_path());
+        let rate = if off_path { 1.0 } else { self.clocks[i].rate() };
+        if let Some(avoiding) = &mut self.avoiding[i] {
+            avoiding.record();
+        }
+        let programmed_speed = if rate > 1e-3 {
+            tcp_speed / rate
+        } else {
+            let scratch = &mut self.scratch[i];
+            scratch.q.copy_from_slice(&self.states[i].q);
+            scratch.qd.copy_from_slice(&self.clocks[i].point().first);
+            self.cell.robots[i].robot.chain.forward_motion(scratch);
+            self.frames.tcp(i, &self.scratch[i]).1
+        };
+        let track = &mut self.tracks[i];
+        track.min_override = track.min_override.min(o);
+        let q = self.states[i].q.clone();
+        track.samples.push(Sample {
+            t_s,
+            q,
+            tcp,
+            tcp_speed,
+            programmed_speed,
+            speed_override: o,
+            region,
+            distance_m,
+            reason,
+        });
+    }
+
+    fn collide(&mut self, t_s: f64) {
+        let Self { checker, states, tracks, objects, cell, checked_s, .. } = self;
+        let states: Vec<&ChainState> = states.iter().collect();
+        let before = std::mem::replace(checked_s, t_s);
+        let motions: Vec<ObjectMotion<'_>> =
+            cell.moving_objects.iter().map(|m| m.motion_between(before, t_s)).collect();
+        let steps: Vec<ObjectPath<'_>> = cell
+            .moving_objects
+            .iter()
+            .zip(&motions)
+            .map(|(m, motion)| ObjectPath { object: ObjectId(m.object), path: motion, jumps: motion.jumps() })
+            .collect();
+        objects.iter_mut().zip(&cell.moving_objects).for_each(|(track, m)| track.poses.push(m.pose(t_s)));
+        let name = |m: GeometryId| match m {
+            GeometryId::Object(o) => cell.objects[o.0].name.clone(),
+            GeometryId::Link { robot, link } => {
+                let r = &cell.robots[robot.0];
+                format!("{}/{}", r.name, r.robot.chain.links()[link.0])
+            }
+        };
+        checker.check(&states, &steps, |FirstContact { a, b, fraction }| {
+            // Exactly the time of the tick where the contact is at its end.
+            let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
+            let collision = Collision { t_s, a: name(a), b: name(b) };
+            let robot = |m: GeometryId| if let GeometryId::Link { robot, .. } = m { Some(robot.0) } else { None };
+            // A collision of two robots is listed for both.
+            let mut concerned: Vec<usize> = [robot(a), robot(b)].into_iter().flatten().collect();
+            concerned.dedup();
+            for robot in concerned {
+                tracks[robot].collisions.push(collision.clone());
+            }
+        });
+    }
+
+    fn ended(&mut self, t_s: f64) -> bool {
+        let present: Vec<usize> = (0..self.clocks.len()).filter(|i| !self.is_silent(*i, t_s)).collect();
+        if present.iter().all(|i| self.finished(*i)) || t_s >= self.cell.max_s {
+            return true;
+        }
+        let on_path = |i: usize| self.avoiding[i].as_ref().is_none_or(AvoidingRobot::is_on_path);
+        let waiting = present.iter().any(|i| self.clocks[*i].waiting() && on_path(*i));
+        let in_motion = self.frames.is_any_moving(t_s);
+        self.idle_detector.is_idle(t_s, &self.states, waiting || in_motion)
+    }
+
+    fn finished(&self, robot: usize) -> bool {
+        self.clocks[robot].finished() && self.avoiding[robot].as_ref().is_none_or(AvoidingRobot::is_on_path)
+    }
+
+    fn advance(&mut self) {
+        let dt = self.cell.tick_s;
+        let t_s = self.tracks.first().and_then(|t| t.samples.last()).map_or(0.0, |s| s.t_s);
+        for i in 0..self.clocks.len() {
+            if self.is_silent(i, t_s) {
+                continue;
+            }
+            let Self { cell, clocks, avoiding, states, applied, delays, monitors, frames, setups, .. } = self;
+            let Some(avoiding) = &mut avoiding[i] else {
+                delays[i].send(t_s, applied[i]);
+                delays[i].advance(&mut clocks[i], t_s, dt);
+                continue;
+            };
+            let regions = |share: f64| {
+                let sources = frames.sources(&setups[i].sources, states, t_s);
+                RegionConstraint::new(&monitors[i], &sources, share, 0.0)
+            };
+            if let Some(event) = avoiding.advance(cell, &mut clocks[i], states, t_s, applied[i], regions) {
+                self.event(t_s, i, "", event);
+            }
+        }
+    }
+
+    fn finish(mut self, t_s: f64) -> Recording {
+        let mut robots = std::mem::take(&mut self.tracks);
+        for (i, track) in robots.iter_mut().enumerate() {
+            track.finished = self.finished(i);
+        }
+        let mut deadlocks = self.arbiter.as_ref().map_or_else(Vec::new, |arbiter| {
+            self.deadlocks.finish(t_s, arbiter, self.cell, self.setups, &self.monitors)
+        });
+        deadlocks.extend(
+            WaitForGraph::new(self.cell, self.setups, self.arbiter.as_deref(), &self.stop_states, &robots)
+                .cycles(&deadlocks),
+        );
+        for (i, track) in robots.iter_mut().enumerate() {
+            // Collisions of one tick come in the order of the pairs.
+            track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+            let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
+            let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
+            let governing = self.governing[i].as_ref();
+            track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
+        }
+        for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
+            track.avoidance = avoiding.map(AvoidingRobot::finish);
+        }
+        Recording {
+            cell: self.cell.name.clone(),
+            checksum: self.cell.checksum.clone(),
+            tick_s: self.cell.tick_s,
+            duration_s: t_s,
+            monitored: self.options.monitored,
+            robots,
+            regions: self.regions.finish(t_s),
+            objects: self.objects,
+            deadlocks,
+            events: self.events,
+            tick_ns: TickTimes::of(self.tick_ns),
+        }
+    }
+}
+
+fn object_track(cell: &Cell, moving_object: &MovingObject) -> ObjectTrack {
+    ObjectTrack { name: cell.objects[moving_object.object].name.clone(), poses: Vec::new() }
+}
+
+/// Time of a tick, s, rounded to nanoseconds.
+fn instant(tick: u64, tick_s: f64) -> f64 {
+    (tick as f64 * tick_s * 1e9).round() / 1e9
+}

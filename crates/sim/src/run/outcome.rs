@@ -1,0 +1,56 @@
+//! Outcome of each robot's run.
+
+use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp};
+
+use crate::recording::{Outcome, RobotEnding, RobotTrack};
+
+/// Joints that differ by less than this (rad, m) from their final values have reached them.
+const THERE: f64 = 1e-5;
+
+/// Outcome of a robot with the recording `track`; `governing` is the point with the smallest requested override of the
+/// last tick, `region` the name of the governing region.
+pub(super) fn ending(
+    track: &RobotTrack,
+    deadlocked: bool,
+    region: Option<&str>,
+    governing: Option<&VirtualTcp>,
+    configuration: &Configuration,
+) -> RobotEnding {
+    if let Some(hit) = track.collisions.first() {
+        let own = format!("{}/", track.name);
+        let (part, by) = if hit.a.starts_with(&own) { (&hit.a, &hit.b) } else { (&hit.b, &hit.a) };
+        return RobotEnding {
+            outcome: Outcome::Collided,
+            stopped_at_s: if track.finished { None } else { stopped_at(track) },
+            by: Some(by.clone()),
+            part: part.strip_prefix(&own).map(str::to_owned),
+            point: None,
+        };
+    }
+    if track.finished {
+        return RobotEnding::default();
+    }
+    let waits = matches!(track.samples.last().map(|s| s.reason), Some(OverrideReason::Waiting(_)));
+    let outcome = match (deadlocked, waits) {
+        (true, _) => Outcome::Deadlock,
+        (false, true) => Outcome::Held,
+        (false, false) => Outcome::Stopped,
+    };
+    let point = governing.filter(|_| region.is_some());
+    RobotEnding {
+        outcome,
+        stopped_at_s: stopped_at(track),
+        by: region.map(str::to_owned),
+        part: point.and_then(|p| configuration.volumes().get(p.volume)).map(|v| v.name.clone()),
+        point: point.map(|p| p.position),
+    }
+}
+
+/// Since when the robot is at its final configuration, s; `None` where it was still moving.
+pub(super) fn stopped_at(track: &RobotTrack) -> Option<f64> {
+    let last = track.samples.last()?;
+    let elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > THERE);
+    let moving = track.samples.iter().rposition(|s| elsewhere(&s.q));
+    let first = moving.map_or(0, |i| i + 1);
+    (first + 1 < track.samples.len()).then(|| track.samples[first].t_s)
+}

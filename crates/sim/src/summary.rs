@@ -1,0 +1,184 @@
+//! Summary of a run as one JSON document: the output of `elbowroom run --json`.
+
+use elbowroom_avoidance::AvoiderState;
+use serde::Serialize;
+
+use crate::recording::{AvoidanceSample, AvoidanceTrack, Outcome, RecordedRegionKind, Recording};
+
+/// Figures of a run, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name of the cell.
+    pub cell: String,
+    /// Checksum of its configuration.
+    pub checksum: String,
+    /// Simulated time, s.
+    pub duration_s: f64,
+    /// Number of ticks.
+    pub ticks: usize,
+    /// Wall-clock time of the monitor's ticks, ns.
+    pub tick_ns: TickNs,
+    /// Per robot.
+    pub robots: Vec<RobotSummary>,
+    /// Per region.
+    pub regions: Vec<RegionSummary>,
+    /// Deadlocks at the end of the run.
+    pub deadlocks: Vec<DeadlockSummary>,
+}
+
+/// Wall-clock time of ticks, ns.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TickNs {
+    /// Median.
+    pub p50: u64,
+    /// 99th percentile.
+    pub p99: u64,
+    /// Largest.
+    pub max: u64,
+}
+
+/// Result of one robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RobotSummary {
+    /// Its name.
+    pub name: String,
+    /// True where its program was completed.
+    pub finished: bool,
+    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
+    pub outcome: Outcome,
+    /// Since when it is stopped at its final configuration, s; null for one that finished or was still moving.
+    pub stopped_at_s: Option<f64>,
+    /// The region that stopped it, or what it collided with first; null where there is none.
+    pub by: Option<String>,
+    /// The link, tool or load concerned.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point_m: Option<[f64; 3]>,
+    /// Time stopped by the monitor, s.
+    pub stopped_s: f64,
+    /// Smallest override, 0..1.
+    pub min_override: f64,
+    /// First contact of each pair.
+    pub collisions: Vec<CollisionSummary>,
+    /// Evasion; left out for a robot without avoidance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub avoidance: Option<AvoidanceSummary>,
+}
+
+/// Evasion of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AvoidanceSummary {
+    /// Time in which the rules corrected its motion, s.
+    pub evading_s: f64,
+    /// Time off its path, s.
+    pub off_path_s: f64,
+    /// Time in which it was stopped by an obstacle, s.
+    pub waiting_s: f64,
+    /// Smallest separation distance to any obstacle, m; null where none was near.
+    pub min_distance_m: Option<f64>,
+    /// Number of replanning attempts.
+    pub plans: usize,
+    /// Number of successful ones.
+    pub plans_found: usize,
+    /// Wall-clock time of a step: sensing, correction, check, command, ns.
+    pub step_ns: TickNs,
+}
+
+impl AvoidanceSummary {
+    /// Summary of a track recorded with this tick (s).
+    pub fn new(track: &AvoidanceTrack, tick_s: f64) -> Self {
+        let time = |f: &dyn Fn(&AvoidanceSample) -> bool| track.samples.iter().filter(|s| f(s)).count() as f64 * tick_s;
+        let least = track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min);
+        let t = track.step_ns;
+        Self {
+            evading_s: time(&|s| s.state == AvoiderState::Evading),
+            off_path_s: time(&|s| s.path_deviation_s > 0.0),
+            waiting_s: time(&|s| s.state == AvoiderState::Waiting),
+            min_distance_m: least.is_finite().then_some(least),
+            plans: track.plans.len(),
+            plans_found: track.plans.iter().filter(|p| p.search_s.is_some()).count(),
+            step_ns: TickNs { p50: t.p50, p99: t.p99, max: t.max },
+        }
+    }
+}
+
+/// Robots that wait for each other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DeadlockSummary {
+    /// Since when all of them are stopped, s.
+    pub t_s: f64,
+    /// The robots.
+    pub robots: Vec<String>,
+    /// The exchange regions they wait for.
+    pub regions: Vec<String>,
+}
+
+/// A contact.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CollisionSummary {
+    /// When, s.
+    pub t_s: f64,
+    /// `robot/link`.
+    pub a: String,
+    /// `robot/link` or an object.
+    pub b: String,
+}
+
+/// Result for one region.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegionSummary {
+    /// Its name.
+    pub name: String,
+    /// `forbidden`, `monitored`, `exchange`.
+    pub kind: RecordedRegionKind,
+    /// Smallest distance while active, m; null where it never was.
+    pub min_distance_m: Option<f64>,
+    /// True where a guarded volume touched it (for an exchange region: without holding it).
+    pub entered: bool,
+    /// Time in which any robot was in its warning zone, s.
+    pub warned_s: f64,
+}
+
+impl From<&Recording> for RunSummary {
+    fn from(r: &Recording) -> Self {
+        let robot = |t: &crate::recording::RobotTrack| RobotSummary {
+            name: t.name.clone(),
+            finished: t.finished,
+            outcome: t.ending.outcome,
+            stopped_at_s: t.ending.stopped_at_s,
+            by: t.ending.by.clone(),
+            part: t.ending.part.clone(),
+            point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
+            stopped_s: t.stopped_s,
+            min_override: t.min_override,
+            collisions: t
+                .collisions
+                .iter()
+                .map(|c| CollisionSummary { t_s: c.t_s, a: c.a.clone(), b: c.b.clone() })
+                .collect(),
+            avoidance: t.avoidance.as_ref().map(|a| AvoidanceSummary::new(a, r.tick_s)),
+        };
+        let region = |t: &crate::recording::RegionTrack| RegionSummary {
+            name: t.name.clone(),
+            kind: t.kind,
+            min_distance_m: t.min_distance_m,
+            entered: t.entered,
+            warned_s: t.warned_s,
+        };
+        let deadlock = |d: &crate::recording::Deadlock| DeadlockSummary {
+            t_s: d.t_s,
+            robots: d.robots.clone(),
+            regions: d.regions.clone(),
+        };
+        Self {
+            deadlocks: r.deadlocks.iter().map(deadlock).collect(),
+            cell: r.cell.clone(),
+            checksum: r.checksum.clone(),
+            duration_s: r.duration_s,
+            ticks: (r.duration_s / r.tick_s).round() as usize + 1,
+            tick_ns: TickNs { p50: r.tick_ns.p50, p99: r.tick_ns.p99, max: r.tick_ns.max },
+            robots: r.robots.iter().map(robot).collect(),
+            regions: r.regions.iter().map(region).collect(),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Global illumination change: one gain and one offset per plane between the background model and the present frame.
+//!
+//! Lamps, sun and the camera's exposure change the whole image at once. A line `observed = gain · learnt + offset` is fitted
+//! to a grid of pixels: of some candidate lines the one with the most inliers is taken and refined by least squares over
+//! its inliers, so that pixels of obstacles have no influence.
+
+use crate::background::BackgroundPlane;
+use crate::illumination::Illumination;
+
+/// Distance of the samples, both ways, pixels.
+const SAMPLE_STEP_PX: usize = 8;
+/// Largest distance of an inlier from the line, grey levels.
+const INLIER_LEVELS: f32 = 8.0;
+/// Weight of the candidate's gain in the least squares, squared grey levels: a uniform floor does not determine a gain.
+const GAIN_PRIOR_WEIGHT: f32 = 25.0;
+
+/// Workspace of the estimate.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct IlluminationEstimator {
+    /// Learnt and observed grey levels.
+    samples: Vec<(f32, f32)>,
+    sorted: Vec<f32>,
+}
+
+impl IlluminationEstimator {
+    /// The illumination of a plane of an image that is `width` wide; `frozen` pixels are left out. The line of the frame
+    /// before, `previous`, is one of the candidates. `None` where there are too few samples.
+    pub(crate) fn estimate(
+        &mut self,
+        plane: &BackgroundPlane,
+        pixels: &[u8],
+        frozen: &[u8],
+        width: usize,
+        previous: &Illumination,
+    ) -> Option<Illumination> {
+        self.sample(plane, pixels, frozen, width);
+        if self.samples.len() < 16 {
+            return None;
+        }
+        let ratio = self.median(|(learnt, observed)| observed / learnt.max(1.0));
+        let offset = self.median(|(learnt, observed)| observed - learnt);
+        let candidates = [(previous.gain as f32, previous.offset as f32), (1.0, 0.0), (ratio, 0.0), (1.0, offset)];
+        let best = candidates.into_iter().fold((0, candidates[0]), |best, line| {
+            let inliers = self.inliers(line).count();
+            if inliers > best.0 { (inliers, line) } else { best }
+        });
+        let line = self.refined(self.refined(best.1));
+        let inlier_ratio = self.inliers(line).count() as f64 / self.samples.len() as f64;
+        Some(Illumination { gain: f64::from(line.0), offset: f64::from(line.1), inlier_ratio })
+    }
+
+    fn sample(&mut self, plane: &BackgroundPlane, pixels: &[u8], frozen: &[u8], width: usize) {
+        const STEP: usize = SAMPLE_STEP_PX;
+        self.samples.clear();
+        let starts = (STEP / 2 * width..pixels.len()).step_by(STEP * width);
+        for i in starts.flat_map(|start| (start + STEP / 2..(start + width).min(pixels.len())).step_by(STEP)) {
+            // Saturated pixels do not follow the line.
+            if frozen[i] == 0 && pixels[i] > 2 && pixels[i] < 253 {
+                self.samples.push((plane.mean(i), f32::from(pixels[i])));
+            }
+        }
+    }
+
+    fn median(&mut self, value: impl Fn((f32, f32)) -> f32) -> f32 {
+        self.sorted.clear();
+        self.sorted.extend(self.samples.iter().map(|&s| value(s)));
+        let middle = self.sorted.len() / 2;
+        *self.sorted.select_nth_unstable_by(middle, f32::total_cmp).1
+    }
+
+    fn inliers(&self, (gain, offset): (f32, f32)) -> impl Iterator<Item = &(f32, f32)> {
+        self.samples.iter().filter(move |(b, f)| (f - gain * b - offset).abs() < INLIER_LEVELS)
+    }
+
+    /// Least squares over the inliers of a line.
+    fn refined(&self, line: (f32, f32)) -> (f32, f32) {
+        let inliers = || self.inliers(line);
+        let n = inliers().count() as f32;
+        if n < 8.0 {
+            return line;
+        }
+        let (sum_b, sum_f) = inliers().fold((0.0, 0.0), |s, (b, f)| (s.0 + b, s.1 + f));
+        let (mean_b, mean_f) = (sum_b / n, sum_f / n);
+        let (cross, square) = inliers().fold((0.0, 0.0), |s, (b, f)| {
+            let (b, f) = (b - mean_b, f - mean_f);
+            (s.0 + b * f, s.1 + b * b)
+        });
+        let gain = (cross / n + GAIN_PRIOR_WEIGHT * line.0) / (square / n + GAIN_PRIOR_WEIGHT);
+        (gain, mean_f - gain * mean_b)
+    }
+}

@@ -1,0 +1,39 @@
+//! One cell, run and checked.
+
+use elbowroom_cell::Cell;
+use elbowroom_sim::{InputFault, RunOptions, simulate};
+
+use super::generate::Places;
+use super::oracle::{self, Findings};
+use super::spec::CellSpec;
+
+/// A run and what the oracle found in it.
+pub struct CheckedRun {
+    pub findings: Findings,
+    pub finished: usize,
+    pub slowed: usize,
+    pub stopped: usize,
+    pub robots: usize,
+    pub simulated_s: f64,
+}
+
+/// Runs a cell with these faults of its input.
+pub fn run(cell: &Cell, faults: Vec<InputFault>) -> Result<CheckedRun, String> {
+    let options = RunOptions { faults, ..RunOptions::default() };
+    let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
+    let robots = &outcome.recording.robots;
+    Ok(CheckedRun {
+        findings: oracle::check(cell, &outcome.recording, outcome.has_violation())?,
+        finished: robots.iter().filter(|r| r.finished).count(),
+        slowed: robots.iter().filter(|r| r.min_override < 0.2).count(),
+        stopped: robots.iter().filter(|r| r.stopped_s > 0.0).count(),
+        robots: robots.len(),
+        simulated_s: outcome.recording.duration_s,
+    })
+}
+
+/// As [`run`], of a cell that is not written yet.
+pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
+    let cell = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()).map_err(|e| e.to_string())?;
+    run(&cell, spec.faults.clone())
+}

@@ -1,0 +1,76 @@
+//! Random cells.
+
+mod exchange;
+mod faults;
+mod moving;
+mod region;
+mod robot;
+mod settings;
+
+use elbowroom_cell::Cell;
+
+use super::random::Random;
+use super::spec::CellSpec;
+
+pub use settings::Places;
+use settings::settings;
+
+/// What a cell is to find out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Forbidden regions, with the stopping distance on.
+    Stop,
+    /// Exchange regions of 2 to 6 robots.
+    Exchange,
+    /// As `Stop`, with faults in the monitors' input.
+    Faults,
+}
+
+impl Kind {
+    pub const ALL: [Self; 3] = [Self::Stop, Self::Exchange, Self::Faults];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stop => "stop",
+            Self::Exchange => "exchange",
+            Self::Faults => "faults",
+        }
+    }
+
+    /// The random numbers of one case.
+    pub fn random(self, seed: u64, case: u64) -> Random {
+        Random::of_case(seed, case + ((self as u64) << 32))
+    }
+}
+
+/// A random cell of a kind; always the same for the same stream.
+pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
+    match kind {
+        Kind::Exchange => exchange::cell(random),
+        Kind::Stop => stop(random, places),
+        Kind::Faults => {
+            let mut spec = stop(random, places);
+            faults::add(&mut spec, random);
+            spec
+        }
+    }
+}
+
+fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = settings(random);
+    spec.robots.push(robot::any(random, places));
+    if random.percent(15) {
+        let mut second = robot::small(random);
+        second.at = [random.between(-1.5, 1.5), random.between(-1.5, 1.5), random.between(-0.5, 0.5)];
+        spec.robots.push(second);
+    }
+    // Without regions first: they are put where the robot will come.
+    let Ok(cell) = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()) else { return spec };
+    for i in 0..random.whole(1, 3) {
+        if let Some(region) = region::in_the_way(&spec, &cell, &format!("g{i}"), random) {
+            spec.regions.push(region);
+        }
+    }
+    moving::some(&mut spec, random);
+    spec
+}

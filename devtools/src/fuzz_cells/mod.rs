@@ -1,0 +1,234 @@
+//! `cargo xtask fuzz cells`: random cells, run in simulated time, and an oracle that knows only the recording.
+
+mod checked_run;
+mod generate;
+mod oracle;
+mod random;
+mod shrink;
+mod spec;
+mod summary;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+
+use generate::{Kind, Places};
+use oracle::Finding;
+use spec::CellSpec;
+use summary::Summary;
+use xtask::Failure;
+
+/// A mesh for regions: a corner of two plates, 0.3 m wide, closed and not convex.
+const CORNER: &str = include_str!("corner.obj");
+/// Failing cells that are written as files, per kind; more teach nothing new.
+const WRITTEN: usize = 20;
+
+/// Cells per kind in the test suite, and their seed.
+const SUITE_CELLS: usize = 150;
+const SUITE_SEED: u64 = 13;
+
+/// What to do.
+#[derive(Debug, PartialEq)]
+pub struct Options {
+    count: usize,
+    seed: u64,
+    kinds: Vec<Kind>,
+    json: bool,
+    /// Only this case of each kind.
+    case: Option<u64>,
+    replay: Option<PathBuf>,
+    shrinks: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { count: 1000, seed: 1, kinds: Kind::ALL.to_vec(), json: false, case: None, replay: None, shrinks: true }
+    }
+}
+
+impl Options {
+    /// Reads the words after `fuzz cells`.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let mut options = Self::default();
+        let mut words = words.iter();
+        while let Some(word) = words.next() {
+            let mut value = || words.next().copied().ok_or_else(|| format!("`{word}` needs a value"));
+            match *word {
+                "--count" => options.count = xtask::call::count(word, value()?)?,
+                "--seed" => options.seed = number(word, value()?)?,
+                "--case" => options.case = Some(number(word, value()?)?),
+                "--kind" => options.kinds = kinds(value()?)?,
+                "--replay" => options.replay = Some(PathBuf::from(value()?)),
+                "--json" => options.json = true,
+                "--no-shrink" => options.shrinks = false,
+                other => return Err(format!("`fuzz cells` does not know `{other}`")),
+            }
+        }
+        Ok(options)
+    }
+}
+
+fn number(option: &str, value: &str) -> Result<u64, String> {
+    value.parse().map_err(|_| format!("`{option} {value}`: write a whole number"))
+}
+
+fn kinds(word: &str) -> Result<Vec<Kind>, String> {
+    if word == "all" {
+        return Ok(Kind::ALL.to_vec());
+    }
+    let kind = Kind::ALL.into_iter().find(|k| k.name() == word);
+    kind.map(|k| vec![k]).ok_or_else(|| format!("`--kind {word}`: write stop, exchange, faults or all"))
+}
+
+/// Runs the cells, or one file, and prints what was found; fails where anything was.
+pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
+    let cells = root.join("target/fuzz-cells");
+    let written = std::fs::create_dir_all(&cells).and_then(|()| std::fs::write(cells.join("corner.obj"), CORNER));
+    written.map_err(|e| format!("{}: {e}", cells.display()))?;
+    if let Some(file) = &options.replay {
+        return replay(file);
+    }
+    let data = xtask::call::data_folder(root, None);
+    let places = Places { cells: &cells, root, data: data.is_dir().then_some(&data) };
+    let summaries: Vec<Summary> = options.kinds.iter().map(|kind| fuzz(*kind, options, &places)).collect();
+    if options.json {
+        println!("{}", summary::json(options.seed, &summaries));
+    } else {
+        summary::print(&summaries);
+    }
+    let failed: usize = summaries.iter().map(Summary::failed).sum();
+    if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
+}
+
+/// The cells of every kind that the test suite runs, always the same ones.
+pub fn check(root: &Path) -> Result<(), String> {
+    let options = Options { count: SUITE_CELLS, seed: SUITE_SEED, ..Options::default() };
+    run(root, &options).map_err(|failure| match failure {
+        Failure::Check(message) | Failure::Usage(message) => message,
+    })
+}
+
+/// Runs a cell file and checks it by the oracle.
+fn replay(file: &Path) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    let faults = spec::read_faults(&text)?;
+    let cell = Cell::parse(file, &text).map_err(|e| e.to_string())?;
+    let findings = checked_run::run(&cell, faults).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
+    for finding in &findings {
+        println!("{}", summary::in_words(finding, &cell));
+    }
+    if findings.is_empty() {
+        println!("{}: nothing found", file.display());
+        return Ok(());
+    }
+    Err(Failure::Check(format!("{} findings", findings.len())))
+}
+
+/// Runs the cases on all cores; what is found does not depend on how many there are.
+fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
+    let mut summary = Summary::new(kind.name());
+    let begin = Instant::now();
+    let (first, end) = options.case.map_or((0, options.count as u64), |case| (case, case + 1));
+    let spec = |case| generate::cell(kind, &mut kind.random(options.seed, case), places);
+    let next = AtomicU64::new(first);
+    std::thread::scope(|threads| {
+        let (send, results) = mpsc::channel();
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            let (send, spec, next) = (send.clone(), &spec, &next);
+            threads.spawn(move || {
+                loop {
+                    let case = next.fetch_add(1, Ordering::Relaxed);
+                    if case >= end || send.send((case, checked_run::run_spec(&spec(case), places))).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(send);
+        let mut printed = Instant::now();
+        for (case, result) in results {
+            match result {
+                Ok(run) => {
+                    if let Some(finding) = run.findings.list.first() {
+                        report(finding, &spec(case), (kind, case), options, places, &mut summary);
+                    }
+                    summary.add(&run);
+                }
+                Err(e) => summary.refuse(&e),
+            }
+            if printed.elapsed() > Duration::from_secs(2) && !options.json {
+                printed = Instant::now();
+                eprint!("\r{}", summary.progress());
+            }
+        }
+    });
+    summary.files.sort();
+    summary.took = begin.elapsed();
+    if !options.json {
+        eprintln!("\r{}", summary.progress());
+    }
+    summary
+}
+
+/// Makes the cell smaller while it fails in the same way, and writes it.
+fn report(
+    finding: &Finding,
+    spec: &CellSpec,
+    (kind, case): (Kind, u64),
+    options: &Options,
+    places: &Places<'_>,
+    summary: &mut Summary,
+) {
+    if summary.files.len() >= WRITTEN {
+        return;
+    }
+    let fails = |s: &CellSpec| {
+        let run = checked_run::run_spec(s, places).ok()?;
+        run.findings.list.iter().find(|f| std::mem::discriminant(*f) == std::mem::discriminant(finding)).cloned()
+    };
+    let (small, finding) =
+        if options.shrinks { shrink::smallest(spec, finding, &fails) } else { (spec.clone(), finding.clone()) };
+    let text = small.to_toml();
+    let file = places.cells.join(format!("{}-{}-{case}.toml", kind.name(), options.seed));
+    let Ok(cell) = Cell::parse(&file, &text) else { return };
+    let words = summary::in_words(&finding, &cell);
+    let head = format!(
+        "# {words}\n# Found by: cargo xtask fuzz cells --kind {} --seed {} --case {case}\n# Again: cargo xtask fuzz cells --replay FILE, or elbowroom run FILE\n",
+        kind.name(),
+        options.seed
+    );
+    if std::fs::write(&file, head + &text).is_ok() {
+        summary.files.push((file, words));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_read_and_nonsense_is_refused() {
+        let options = Options::parse(&["--count", "7", "--seed", "3", "--kind", "exchange", "--json"]).unwrap();
+        assert_eq!((options.count, options.seed, options.json), (7, 3, true));
+        assert_eq!(options.kinds, [Kind::Exchange]);
+        assert!(Options::parse(&["--kind", "all"]).unwrap().kinds.len() == 3);
+        assert!(Options::parse(&["--kind", "nothing"]).is_err());
+        assert!(Options::parse(&["--count"]).is_err());
+        assert!(Options::parse(&["--fast"]).is_err());
+    }
+
+    #[test]
+    fn a_case_is_the_same_cell_every_time() {
+        let root = crate::workspace_root().unwrap();
+        let cells = root.join("target/fuzz-cells");
+        let places = Places { cells: &cells, root: &root, data: None };
+        for kind in Kind::ALL {
+            let text = |case| generate::cell(kind, &mut kind.random(5, case), &places).to_toml();
+            assert_eq!(text(3), text(3));
+            assert_ne!(text(3), text(4));
+        }
+    }
+}

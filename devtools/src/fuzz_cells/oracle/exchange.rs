@@ -1,0 +1,146 @@
+//! Exchange regions: never two inside, and no deadlock in silence.
+
+use elbowroom_monitor::RegionKind;
+use elbowroom_spatial::Vec3;
+
+use super::findings::{Finding, Findings};
+use super::guarded::Guarded;
+use super::motion::Motion;
+use super::sweep::Pair;
+
+/// A tick in which both of two robots are inside at some time is divided into so many parts.
+const PARTS: usize = 64;
+/// A robot that has not moved for so long (s) at the end stands for ever: a run goes on for a second without motion.
+const STANDS_S: f64 = 0.5;
+/// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
+const STILL: f64 = 1e-4;
+
+/// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin
+/// (hysteresis), and monitors measure volumes that enclose a link's solids, which may lie apart.
+const PARKED_M: f64 = 0.1;
+
+/// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
+type ZoneVisit<'a> = (usize, Vec<Pair<'a>>, Vec<bool>);
+
+/// `has_violation`: the run said that something went wrong.
+pub fn check(motion: &Motion<'_>, guarded: &[Vec<Guarded>], has_violation: bool, findings: &mut Findings) {
+    let mut in_zone = vec![vec![false; motion.places.len()]; guarded.len()];
+    for (region, place) in motion.places.iter().enumerate() {
+        if !matches!(place.kind, RegionKind::Exchange { .. }) {
+            continue;
+        }
+        let stays: Vec<ZoneVisit<'_>> = place
+            .robots
+            .iter()
+            .map(|&robot| {
+                let counting = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
+                let pairs: Vec<Pair<'_>> = counting.map(|g| Pair::new(motion, g, robot, region)).collect();
+                let mut during = vec![false; motion.ticks()];
+                for p in &pairs {
+                    mark_inside(p, &mut during);
+                }
+                (robot, pairs, during)
+            })
+            .collect();
+        for (i, a) in stays.iter().enumerate() {
+            for b in &stays[i + 1..] {
+                two_inside(motion, region, a, b, findings);
+            }
+        }
+        let last = motion.ticks().saturating_sub(1);
+        let zone = motion.cell.regions[region].region.warning_m;
+        for (robot, pairs, _) in &stays {
+            let more = if motion.recording.robots[*robot].finished { PARKED_M + spread_m(motion, pairs) } else { 0.0 };
+            in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone + more);
+        }
+    }
+    deadlock(motion, &in_zone, has_violation, findings);
+}
+
+/// Largest distance (m) of the middles of two of a robot's solids, at the start.
+fn spread_m(motion: &Motion<'_>, pairs: &[Pair<'_>]) -> f64 {
+    let frames = motion.frames(&motion.q[0]);
+    let middles: Vec<_> = pairs.iter().map(|p| p.guarded.center(&frames[p.robot])).collect();
+    let from = |a: &Vec3| middles.iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
+    middles.iter().map(from).fold(0.0, f64::max)
+}
+
+/// Marks the ticks from which to the next the solid touches the region at some time.
+fn mark_inside(pair: &Pair<'_>, during: &mut [bool]) {
+    let mut k = 0;
+    while let Some((at, _)) = pair.first_touch(k, pair.motion.ticks()) {
+        during[at] = true;
+        k = at + 1;
+    }
+}
+
+fn two_inside(motion: &Motion<'_>, region: usize, a: &ZoneVisit<'_>, b: &ZoneVisit<'_>, findings: &mut Findings) {
+    let both = |k: &usize| motion.is_active(region, *k) && a.2[*k] && b.2[*k];
+    // Whoever starts inside is not brought there by the protocol: counted once one of the two has been out.
+    let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
+    let inside = |s: &ZoneVisit<'_>, k: usize, u: f64| s.1.iter().any(|p| p.distance(k, u).upper <= 0.0);
+    for k in (apart..motion.ticks()).filter(both) {
+        let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
+        if let Some(u) = at_once {
+            let t_s = motion.times[k] + u * motion.recording.tick_s;
+            findings.list.push(Finding::TwoInside { region, robots: [a.0, b.0], t_s });
+            return;
+        }
+    }
+}
+
+/// Robots that stand unfinished at the end, each in a zone of which another of them is, in a circle. A robot that waits for
+/// one that has finished, or stands for another reason, is in no circle.
+fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], has_violation: bool, findings: &mut Findings) {
+    let ticks = motion.ticks();
+    let held = (STANDS_S / motion.recording.tick_s).ceil() as usize;
+    if ticks <= held + 1 {
+        return;
+    }
+    let stands = |robot: usize| {
+        let track = &motion.recording.robots[robot];
+        let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
+        !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < STILL)
+    };
+    // While anybody moves, as in a run that was cut off, those who stand may still be let in.
+    if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !stands(r)) {
+        return;
+    }
+    // A crossing of several regions is one: whoever is in one of their zones is in all.
+    let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
+    let robots: Vec<usize> = (0..in_zone.len()).filter(|r| stands(*r) && in_zone[*r].contains(&true)).collect();
+    let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
+    let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
+    // Whoever has finished, or left, and is still in the zone blocks the others for good: they wait, but not in a circle.
+    let parked = |a: usize| (0..in_zone.len()).any(|b| motion.recording.robots[b].finished && meet(a, b));
+    if circle.len() < 2 || circle.iter().any(|a| parked(*a)) {
+        return;
+    }
+    findings.deadlocks += 1;
+    let named = |robot: &usize| {
+        let name = &motion.recording.robots[*robot].name;
+        motion.recording.deadlocks.iter().any(|d| d.robots.contains(name))
+    };
+    let reported = circle.iter().any(named);
+    if !(reported && has_violation) {
+        findings.list.push(Finding::SilentDeadlock { robots: circle });
+    }
+}
+
+/// The regions whose zones overlap, directly or through others, with one of these.
+fn spread(motion: &Motion<'_>, zones: &[bool]) -> Vec<bool> {
+    let exchange = |r: usize| matches!(motion.places[r].kind, RegionKind::Exchange { .. });
+    let warning = |r: usize| motion.cell.regions[r].region.warning_m;
+    let overlap = |a: usize, b: usize| motion.places[a].distance(&motion.places[b]) <= warning(a) + warning(b);
+    let mut reached = zones.to_vec();
+    let mut open: Vec<usize> = (0..zones.len()).filter(|r| zones[*r]).collect();
+    while let Some(from) = open.pop() {
+        for to in (0..reached.len()).filter(|r| exchange(*r)) {
+            if !reached[to] && overlap(from, to) {
+                reached[to] = true;
+                open.push(to);
+            }
+        }
+    }
+    reached
+}

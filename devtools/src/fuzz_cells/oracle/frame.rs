@@ -1,0 +1,63 @@
+//! Rigid frames of the oracle's own, so that it shares no arithmetic of poses with what it checks.
+
+use elbowroom_spatial::{Pose, Vec3};
+
+/// Columns of a rotation matrix, and a translation in m.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    x: Vec3,
+    y: Vec3,
+    z: Vec3,
+    /// Its origin.
+    pub at: Vec3,
+}
+
+impl Frame {
+    pub const IDENTITY: Self = Self { x: Vec3::X, y: Vec3::Y, z: Vec3::Z, at: Vec3::ZERO };
+
+    pub fn of(pose: &Pose) -> Self {
+        let r = pose.to_rows();
+        let column = |i: usize| Vec3::new(r[0][i], r[1][i], r[2][i]);
+        Self { x: column(0), y: column(1), z: column(2), at: column(3) }
+    }
+
+    pub fn shift(by: Vec3) -> Self {
+        Self { at: by, ..Self::IDENTITY }
+    }
+
+    /// A turn about a unit vector, rad (Rodrigues).
+    pub fn turn(axis: Vec3, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let turned = |v: Vec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+        Self { x: turned(Vec3::X), y: turned(Vec3::Y), z: turned(Vec3::Z), at: Vec3::ZERO }
+    }
+
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.x * v.x + self.y * v.y + self.z * v.z
+    }
+
+    pub fn point(&self, p: Vec3) -> Vec3 {
+        self.vector(p) + self.at
+    }
+
+    pub fn vector_back(&self, v: Vec3) -> Vec3 {
+        Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
+    }
+
+    /// `inner`, given in this frame, seen from where this frame is given.
+    pub fn then(&self, inner: &Self) -> Self {
+        let v = |v: Vec3| self.vector(v);
+        Self { x: v(inner.x), y: v(inner.y), z: v(inner.z), at: self.point(inner.at) }
+    }
+
+    /// Half-extents of an upright box around a box of these half-extents.
+    pub fn extents(&self, half: Vec3) -> Vec3 {
+        self.x.abs() * half.x + self.y.abs() * half.y + self.z.abs() * half.z
+    }
+
+    /// This frame, seen from another.
+    pub fn seen_from(&self, other: &Self) -> Self {
+        let v = |v: Vec3| other.vector_back(v);
+        Self { x: v(self.x), y: v(self.y), z: v(self.z), at: v(self.at - other.at) }
+    }
+}

@@ -1,0 +1,55 @@
+//! What moved, from one tick to the next.
+
+use elbowroom_cell::Cell;
+use elbowroom_sim::Recording;
+
+use super::arm::Arm;
+use super::frame::Frame;
+use super::place::Place;
+
+/// Positions of all robots at all ticks, and the regions.
+pub struct Motion<'a> {
+    pub cell: &'a Cell,
+    pub recording: &'a Recording,
+    pub arms: &'a [Arm],
+    pub places: Vec<Place>,
+    pub times: Vec<f64>,
+    /// Per tick, per robot.
+    pub q: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'a> Motion<'a> {
+    pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Result<Self, String> {
+        let ticks = recording.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
+        let at = |k: usize| recording.robots.iter().map(|r| r.samples[k].q.clone()).collect();
+        let times = recording.robots.first().map_or(Vec::new(), |r| r.samples.iter().map(|s| s.t_s).collect());
+        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, arms)).collect::<Result<_, _>>()?;
+        Ok(Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect() })
+    }
+
+    pub fn ticks(&self) -> usize {
+        self.q.len()
+    }
+
+    /// True where a region was active from tick `k` to the next.
+    pub fn is_active(&self, region: usize, k: usize) -> bool {
+        let list = &self.recording.regions[region].active;
+        list.iter().rev().find(|(t_s, _)| *t_s <= self.times[k] + 1e-9).is_some_and(|(_, on)| *on)
+    }
+
+    /// True where a robot moves from tick `k` to the next.
+    pub fn moves(&self, robot: usize, k: usize) -> bool {
+        k + 1 < self.ticks() && self.q[k][robot].iter().zip(&self.q[k + 1][robot]).any(|(a, b)| (a - b).abs() > 1e-9)
+    }
+
+    /// All robots' joints at a share `u` of the way from tick `k` to the next.
+    pub fn joints(&self, k: usize, u: f64) -> Vec<Vec<f64>> {
+        let Some(next) = self.q.get(k + 1) else { return self.q[k].clone() };
+        let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + (b - a) * u).collect();
+        self.q[k].iter().zip(next).map(mix).collect()
+    }
+
+    pub fn frames(&self, joints: &[Vec<f64>]) -> Vec<Vec<Frame>> {
+        self.arms.iter().zip(joints).map(|(arm, q)| arm.frames(q)).collect()
+    }
+}

@@ -1,0 +1,115 @@
+//! One solid of a robot against one region, between ticks: conservative advancement with the oracle's own bound of motion.
+
+use super::guarded::Guarded;
+use super::motion::Motion;
+use super::solid::Bounds;
+
+/// Distances beyond this (m) are not computed: what is farther is computed again when it may be nearer.
+const FAR_M: f64 = 0.5;
+/// The smallest step within a tick moves nothing by more than this, m: a tenth of the tolerance.
+const STEP_M: f64 = 1e-7;
+
+/// A pair under watch.
+pub struct Pair<'a> {
+    pub motion: &'a Motion<'a>,
+    pub guarded: &'a Guarded,
+    pub robot: usize,
+    pub region: usize,
+    levers: Vec<f64>,
+}
+
+impl<'a> Pair<'a> {
+    pub fn new(motion: &'a Motion<'a>, guarded: &'a Guarded, robot: usize, region: usize) -> Self {
+        let levers = motion.arms[robot].levers(guarded.link, guarded.radius_m);
+        Self { motion, guarded, robot, region, levers }
+    }
+
+    /// False where no joint moves it.
+    pub fn is_moved(&self) -> bool {
+        self.levers.iter().any(|l| *l > 0.0)
+    }
+
+    /// No point of the two comes nearer than this to the other's between tick `k` and the next, m.
+    pub fn travel(&self, k: usize) -> f64 {
+        self.own_travel(k) + self.region_travel(k)
+    }
+
+    /// The robot's share of it.
+    pub fn own_travel(&self, k: usize) -> f64 {
+        let (from, to) = (&self.motion.q[k][self.robot], &self.motion.q[k + 1][self.robot]);
+        self.levers.iter().zip(from).zip(to).map(|((l, a), b)| l * (b - a).abs()).sum()
+    }
+
+    fn region_travel(&self, k: usize) -> f64 {
+        let place = &self.motion.places[self.region];
+        let travelled = place.travel_at(self.motion.times[k + 1]).0 - place.travel_at(self.motion.times[k]).0;
+        place.carried(&self.motion.q[k], &self.motion.q[k + 1]) + travelled.abs()
+    }
+
+    /// True where the region's belt begins again between tick `k` and the next: it does not come from there to here.
+    pub fn region_jumps(&self, k: usize) -> bool {
+        let place = &self.motion.places[self.region];
+        place.travel_at(self.motion.times[k]).1 != place.travel_at(self.motion.times[k + 1]).1
+    }
+
+    /// Distance at a share `u` of the way from tick `k` to the next, to half a metre.
+    pub fn distance(&self, k: usize, u: f64) -> Bounds {
+        self.distance_between((k, u), (k, u))
+    }
+
+    /// Distance of the robot at one instant from the region at another.
+    pub fn distance_between(&self, (k, u): (usize, f64), (region_k, region_u): (usize, f64)) -> Bounds {
+        let place = &self.motion.places[self.region];
+        let frames = self.motion.frames(&self.motion.joints(k, u));
+        let later = self.motion.frames(&self.motion.joints(region_k, region_u));
+        let times = &self.motion.times;
+        let next = times.get(region_k + 1).unwrap_or(&times[region_k]);
+        let t_s = times[region_k] + (next - times[region_k]) * region_u;
+        let at = place.at(place.travel_at(t_s).0, &later);
+        self.guarded.distance(&frames[self.robot], &place.solid, &at, FAR_M)
+    }
+
+    /// When they first touch from tick `k` on before the tick after: the share of the way. `gap_m` is proven at its begin.
+    fn crossing(&self, k: usize, mut gap_m: f64) -> Option<f64> {
+        let travel = self.travel(k);
+        if travel < gap_m {
+            return None;
+        }
+        let mut u = 0.0;
+        loop {
+            u += gap_m.max(STEP_M) / travel.max(STEP_M);
+            if u >= 1.0 {
+                return None;
+            }
+            let found = self.distance(k, u);
+            if found.upper <= 0.0 {
+                return Some(u);
+            }
+            gap_m = found.lower;
+        }
+    }
+
+    /// The first touch from tick `from` on before tick `to`: the tick before it, and the share of the path to the next.
+    pub fn first_touch(&self, from: usize, to: usize) -> Option<(usize, f64)> {
+        // What is proven of the distance at tick `k`.
+        let mut gap_m = 0.0;
+        for k in from..to {
+            let travel = if k + 1 < self.motion.ticks() { self.travel(k) } else { 0.0 };
+            if gap_m <= travel {
+                let now = self.distance(k, 0.0);
+                if now.upper <= 0.0 {
+                    return Some((k, 0.0));
+                }
+                gap_m = now.lower;
+            }
+            if k + 1 >= self.motion.ticks() {
+                return None;
+            }
+            if let Some(u) = self.crossing(k, gap_m) {
+                return Some((k, u));
+            }
+            gap_m -= travel;
+        }
+        None
+    }
+}

@@ -1,0 +1,183 @@
+//! The oracle itself: it must see what is planted, and nothing where nothing is.
+
+use elbowroom_cell::Cell;
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, Shape, Sphere, separation};
+use elbowroom_sim::{RunOptions, RunOutcome, simulate};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::frame::Frame;
+use super::solid::Solid;
+use super::{Arm, Finding, check};
+use crate::fuzz_cells::random::Random;
+
+const HEAD: &str = "version = 1\nunits = { length = \"m\", angle = \"rad\" }\ntick_ms = 4\n";
+
+fn rail(name: &str, y: f64, from: f64, to: f64) -> String {
+    format!(
+        "[robot.{name}]\nbase = {{ at = [0, {y}, 0], rpy = [0, 1.5707963267948966, 0] }}\nstart = [{from}]\n\
+         dh = [{{ kind = \"prismatic\", min = -3, max = 3, speed = 2, acceleration = 8 }}]\n\
+         links = [{{ sphere = {{ radius = 0.02 }} }}]\n[program.{name}]\nsteps = [{{ move = \"joint\", to = [{to}] }}]\n"
+    )
+}
+
+fn plate(x: f64, thickness: f64, kind: &str) -> String {
+    format!(
+        "[region.plate]\nshape = \"box\"\nbase = [{x}, 0, -0.5]\nsize = [{thickness}, 2, 1]\nkind = \"{kind}\"\nwarning = 0.3\n"
+    )
+}
+
+fn run(text: &str, monitored: bool) -> (Cell, RunOutcome) {
+    let cell = Cell::parse("test.toml", &format!("{HEAD}{text}")).unwrap();
+    let outcome = simulate(&cell, &RunOptions { monitored, ..RunOptions::default() }).unwrap();
+    (cell, outcome)
+}
+
+fn findings(text: &str, monitored: bool) -> Vec<Finding> {
+    let (cell, outcome) = run(text, monitored);
+    check(&cell, &outcome.recording, outcome.has_violation()).unwrap().list
+}
+
+fn vector(random: &mut Random, most: f64) -> Vec3 {
+    let [x, y, z] = random.vector(most);
+    Vec3::new(x, y, z)
+}
+
+fn pose(random: &mut Random) -> Pose {
+    Pose::new(Rotation::from_rotation_vector(vector(random, 2.0)), vector(random, 1.0))
+}
+
+fn shape(random: &mut Random) -> Shape {
+    let (radius, half_length) = (random.between(0.01, 0.3), random.between(0.01, 0.3));
+    match random.whole(0, 4) {
+        0 => Shape::Sphere(Sphere { radius }),
+        1 => Shape::Capsule(Capsule { half_length, radius }),
+        2 => Shape::Cylinder(Cylinder { half_length, radius }),
+        3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(radius, half_length, random.between(0.001, 0.3)) }),
+        _ => {
+            let points: Vec<Vec3> = (0..8).map(|_| vector(random, 0.4)).collect();
+            Shape::Hull(std::sync::Arc::new(ConvexHull::from_points(&points).unwrap()))
+        }
+    }
+}
+
+#[test]
+fn distances_are_those_of_the_kernels() {
+    let mut random = Random::of_case(3, 0);
+    let mut apart = 0;
+    for _ in 0..3000 {
+        let (a, b, pa, pb) = (shape(&mut random), shape(&mut random), pose(&mut random), pose(&mut random));
+        let theirs = separation(&a, &pa, &b, &pb).distance;
+        let ours = Solid::eroded(&a, 0.0).distance(&Frame::of(&pa), &Solid::eroded(&b, 0.0), &Frame::of(&pb), 10.0);
+        assert!(ours.lower <= theirs + 1e-9 && theirs <= ours.upper.max(0.0) + 1e-9, "{ours:?} {theirs} {a:?} {b:?}");
+        assert!(ours.upper - ours.lower < 1e-6 || ours.upper <= 0.0, "{ours:?} {a:?} {b:?}");
+        apart += usize::from(theirs > 0.0);
+    }
+    assert!(apart > 1000);
+}
+
+#[test]
+fn frames_are_those_of_the_kernels_and_levers_bound_them() {
+    let text = "[robot.r]\nbase = { at = [1, 2, 3], rpy = [0.3, 0.2, 0.1] }\ndh = [\n\
+        { a = 0.3, alpha = 1.5, d = 0.2, theta = 0.3 }, { kind = \"prismatic\", a = 0.1, alpha = -0.7, min = -1, max = 1 },\n\
+        { a = 0.2, alpha = 0.4, d = -0.1, theta = 1 } ]\nlinks = [[], [], { sphere = { radius = 0.1 } }]\n";
+    let cell = Cell::parse("test.toml", &format!("{HEAD}{text}")).unwrap();
+    let robot = &cell.robots[0];
+    let (arm, chain) = (Arm::new(robot), &robot.robot.chain);
+    let mut random = Random::of_case(4, 0);
+    let mut state = ChainState::new(chain);
+    for _ in 0..200 {
+        let q: Vec<f64> = (0..3).map(|_| random.between(-1.0, 1.0)).collect();
+        let to: Vec<f64> = q.iter().map(|q| (q + random.between(-0.1, 0.1)).clamp(-1.0, 1.0)).collect();
+        state.q.copy_from_slice(&q);
+        chain.forward(&mut state);
+        let (frames, later) = (arm.frames(&q), arm.frames(&to));
+        for link in 0..chain.links().len() {
+            let theirs = robot.base_in_world * state.link_in_root(elbowroom_kinematics::LinkId(link));
+            let point = vector(&mut random, 0.3);
+            assert!((theirs.transform_point(point) - frames[link].point(point)).length() < 1e-12);
+            let bound: f64 = arm
+                .levers(link, point.length())
+                .iter()
+                .zip(q.iter().zip(&to))
+                .map(|(l, (a, b))| l * (b - a).abs())
+                .sum();
+            assert!((later[link].point(point) - frames[link].point(point)).length() <= bound + 1e-12);
+        }
+    }
+}
+
+#[test]
+fn whoever_drives_in_has_entered_and_whoever_stops_before_has_not() {
+    let text = rail("a", 0.0, -2.0, 2.0) + &plate(0.0, 0.5, "forbidden");
+    assert_eq!(findings(&text, true), []);
+    let found = findings(&text, false);
+    let [Finding::Entry { robot: 0, region: 0, t_s, speed }] = found.as_slice() else { panic!("{found:?}") };
+    assert!(*t_s > 0.5 && (speed - 2.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_plate_that_is_jumped_between_two_samples_is_entered() {
+    // 8 mm from tick to tick, 1 mm thick; the ball has no size.
+    let text =
+        (rail("a", 0.0, -2.003, 2.0) + &plate(0.0, 0.001, "forbidden")).replace("radius = 0.02", "radius = 0.0001");
+    let (cell, outcome) = run(&text, false);
+    let inside = |x: f64| x.abs() < 0.0006;
+    assert!(!outcome.recording.robots[0].samples.iter().any(|s| inside(s.q[0])), "a sample fell into the plate");
+    let found = check(&cell, &outcome.recording, true).unwrap().list;
+    assert!(matches!(found.as_slice(), [Finding::Entry { .. }]), "{found:?}");
+}
+
+#[test]
+fn whoever_starts_inside_has_not_entered() {
+    let text = rail("a", 0.0, 0.1, 2.0) + &plate(0.0, 0.5, "forbidden");
+    assert_eq!(findings(&text, false), []);
+}
+
+#[test]
+fn a_region_that_runs_into_a_robot_that_stands_was_not_entered() {
+    let text = rail("a", 0.0, 0.0, 0.0)
+        + "[encoder.belt]\nspeed = 0.5\nat = -1\n"
+        + &plate(0.0, 0.1, "forbidden")
+        + "follow = { encoder = \"belt\" }\n";
+    let text = text.replace("steps = [{ move = \"joint\", to = [0] }]", "steps = [{ wait = 3 }]");
+    let (cell, outcome) = run(&text, true);
+    assert!(outcome.recording.regions[0].entered, "it never came there");
+    assert_eq!(check(&cell, &outcome.recording, true).unwrap().list, []);
+}
+
+#[test]
+fn two_in_one_exchange_region_are_seen() {
+    let text = rail("a", 0.0, -2.0, 2.0) + &rail("b", 0.5, 2.0, -2.0) + &plate(0.0, 0.5, "exchange");
+    assert_eq!(findings(&text, true), []);
+    let found = findings(&text, false);
+    assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
+}
+
+#[test]
+fn a_deadlock_must_be_reported() {
+    // Both start in the region and want to go on in it: nobody can be granted it.
+    let text = rail("a", 0.0, -0.1, 2.0) + &rail("b", 0.5, 0.1, -2.0) + &plate(0.0, 0.5, "exchange");
+    let (cell, mut outcome) = run(&text, true);
+    assert!(outcome.recording.robots.iter().all(|r| !r.finished), "no deadlock");
+    let reported = |outcome: &RunOutcome, has_violation| {
+        let findings = check(&cell, &outcome.recording, has_violation).unwrap();
+        assert_eq!(findings.deadlocks, 1);
+        findings.list.is_empty()
+    };
+    assert!(reported(&outcome, outcome.has_violation()) && !reported(&outcome, false));
+    outcome.recording.deadlocks.clear();
+    assert!(!reported(&outcome, true));
+}
+
+#[test]
+fn who_stops_harder_than_it_can_is_seen() {
+    let text = rail("a", 0.0, -2.0, 2.0) + &plate(0.0, 0.5, "forbidden");
+    let (cell, mut outcome) = run(&text, true);
+    let samples = &mut outcome.recording.robots[0].samples;
+    let fast = samples.iter().position(|s| s.q[0] > -1.0).unwrap();
+    let there = samples[fast].q.clone();
+    samples[fast..].iter_mut().for_each(|s| s.q.clone_from(&there));
+    let found = check(&cell, &outcome.recording, true).unwrap().list;
+    assert!(matches!(found.as_slice(), [Finding::TooHard { robot: 0, joint: 0, .. }]), "{found:?}");
+}

@@ -1,0 +1,188 @@
+//! What a run of the fuzzer found, in a table or as JSON.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use elbowroom_cell::Cell;
+
+use super::checked_run::CheckedRun;
+use super::oracle::Finding;
+
+/// Counts of one kind of cells.
+#[derive(Debug, Default)]
+pub struct Summary {
+    kind: &'static str,
+    /// Run and run.
+    pub cells: usize,
+    /// Refused by the cell file or the programs, and why.
+    refused: BTreeMap<String, usize>,
+    robots: usize,
+    finished: usize,
+    slowed: usize,
+    stopped: usize,
+    watched: usize,
+    deadlocks: usize,
+    unforeseen: usize,
+    simulated_s: f64,
+    /// Cells with at least one, by what was found.
+    entries: usize,
+    two_inside: usize,
+    silent: usize,
+    too_hard: usize,
+    failed: usize,
+    pub took: Duration,
+    /// Failing cells as files, and what is wrong there.
+    pub files: Vec<(PathBuf, String)>,
+}
+
+impl Summary {
+    pub fn new(kind: &'static str) -> Self {
+        Self { kind, ..Self::default() }
+    }
+
+    /// Cells in which something was found.
+    pub fn failed(&self) -> usize {
+        self.failed
+    }
+
+    pub(super) fn add(&mut self, run: &CheckedRun) {
+        let o = &run.findings;
+        let has = |test: fn(&Finding) -> bool| usize::from(o.list.iter().any(test));
+        self.cells += 1;
+        self.robots += run.robots;
+        self.finished += run.finished;
+        self.slowed += run.slowed;
+        self.stopped += run.stopped;
+        self.watched += o.watched;
+        self.deadlocks += o.deadlocks;
+        self.unforeseen += o.unforeseen_entries;
+        self.simulated_s += run.simulated_s;
+        self.entries += has(|f| matches!(f, Finding::Entry { .. }));
+        self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
+        self.silent += has(|f| matches!(f, Finding::SilentDeadlock { .. }));
+        self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
+        self.failed += usize::from(!o.list.is_empty());
+    }
+
+    pub fn refuse(&mut self, why: &str) {
+        // Without its numbers and names one message stands for many.
+        let short: String = why.lines().next().unwrap_or("").chars().filter(|c| !c.is_ascii_digit()).take(90).collect();
+        *self.refused.entry(short).or_default() += 1;
+    }
+
+    pub fn progress(&self) -> String {
+        format!(
+            "{}: {} cells, {} refused, {} entries, {} two inside, {} silent deadlocks, {} too hard",
+            self.kind,
+            self.cells,
+            self.refused.values().sum::<usize>(),
+            self.entries,
+            self.two_inside,
+            self.silent,
+            self.too_hard
+        )
+    }
+
+    fn rows(&self) -> [(&'static str, String); 14] {
+        let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
+        [
+            ("cells", self.cells.to_string()),
+            ("refused", self.refused.values().sum::<usize>().to_string()),
+            ("simulated s", format!("{:.0}", self.simulated_s)),
+            ("pairs watched", self.watched.to_string()),
+            ("robots slowed", share(self.slowed)),
+            ("robots stopped", share(self.stopped)),
+            ("robots finished", share(self.finished)),
+            ("entries", self.entries.to_string()),
+            ("two inside", self.two_inside.to_string()),
+            ("deadlocks", self.deadlocks.to_string()),
+            ("silent deadlocks", self.silent.to_string()),
+            ("braked too hard", self.too_hard.to_string()),
+            ("unforeseen", self.unforeseen.to_string()),
+            ("took s", format!("{:.1}", self.took.as_secs_f64())),
+        ]
+    }
+}
+
+/// A table, and the failing cells.
+pub fn print(summaries: &[Summary]) {
+    let names = summaries.iter().map(|s| format!(" {:>10}", s.kind)).collect::<Vec<_>>().concat();
+    println!("{:<18}{names}", "");
+    let rows: Vec<_> = summaries.iter().map(Summary::rows).collect();
+    for i in 0..rows.first().map_or(0, |r| r.len()) {
+        let values = rows.iter().map(|r| format!(" {:>10}", r[i].1)).collect::<Vec<_>>().concat();
+        println!("{:<18}{values}", rows[0][i].0);
+    }
+    for s in summaries {
+        for (why, count) in &s.refused {
+            println!("{} refused {count}: {why}", s.kind);
+        }
+        for (file, words) in &s.files {
+            println!("{}\n    {words}", file.display());
+        }
+    }
+}
+
+/// One line of JSON.
+pub fn json(seed: u64, summaries: &[Summary]) -> String {
+    let mut text = format!("{{\"seed\":{seed},\"kinds\":[");
+    for (i, s) in summaries.iter().enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        let _ = write!(
+            text,
+            "{comma}{{\"kind\":\"{}\",\"cells\":{},\"refused\":{},\"robots\":{},\"finished\":{},\"slowed\":{},\"stopped\":{},\
+             \"entries\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"unforeseen_entries\":{},\
+             \"failed\":{},\"simulated_s\":{:.3},\"took_s\":{:.3}}}",
+            s.kind,
+            s.cells,
+            s.refused.values().sum::<usize>(),
+            s.robots,
+            s.finished,
+            s.slowed,
+            s.stopped,
+            s.entries,
+            s.two_inside,
+            s.deadlocks,
+            s.silent,
+            s.too_hard,
+            s.unforeseen,
+            s.failed,
+            s.simulated_s,
+            s.took.as_secs_f64()
+        );
+    }
+    text + "]}"
+}
+
+/// A finding as a sentence.
+pub fn in_words(finding: &Finding, cell: &Cell) -> String {
+    let robot = |r: &usize| cell.robots[*r].name.as_str();
+    let region = |r: &usize| cell.regions[*r].region.name.as_str();
+    match finding {
+        Finding::Entry { robot: r, region: g, t_s, speed } => {
+            format!(
+                "robot {} entered the forbidden region {} at {t_s:.4} s, at up to {speed:.3} m/s",
+                robot(r),
+                region(g)
+            )
+        }
+        Finding::TwoInside { region: g, robots: [a, b], t_s } => {
+            format!(
+                "robots {} and {} were both inside the exchange region {} at {t_s:.4} s",
+                robot(a),
+                robot(b),
+                region(g)
+            )
+        }
+        Finding::SilentDeadlock { robots } => {
+            let names: Vec<&str> = robots.iter().map(robot).collect();
+            format!("robots {} wait for one another for ever, and the run does not report it", names.join(", "))
+        }
+        Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
+            "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",
+            robot(r)
+        ),
+    }
+}

@@ -1,0 +1,128 @@
+//! What was planned in one cell, and how it is printed.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use elbowroom_scene::Scene;
+
+/// A path: a time (or length) and joint values, linear between.
+pub type Polyline = Vec<(f64, Vec<f64>)>;
+
+/// What the reference found on the paths of a course.
+pub struct PathCheck {
+    pub points: usize,
+    /// Paths with a collision.
+    pub hits: usize,
+    /// The first of them in words.
+    pub first: Option<String>,
+}
+
+/// Many starts and goals in one scene.
+pub struct Course {
+    pub name: String,
+    /// What Pinocchio reads the joints from.
+    pub urdf: PathBuf,
+    pub scene: Scene,
+    pub asked: usize,
+    pub found: usize,
+    pub straight: usize,
+    /// Of the whole plan, per pair.
+    pub planning: Vec<Duration>,
+    /// Of making it short, and of timing, per path.
+    pub simplifying: Vec<Duration>,
+    pub timing: Vec<Duration>,
+    /// Corners at which a motion stops, of all.
+    pub stops: usize,
+    pub corners: usize,
+    /// Waypoints and motions of all paths.
+    pub paths: Vec<Polyline>,
+}
+
+pub const HEAD: &str = "Times in ms: median and 99th percentile; stops of corners; points checked by Coal, paths on which it finds a collision\n\n\
+cell                                      pairs  found straight |   plan    p99 | shorten    p99 |   time |  stops/corners |    points  colliding";
+
+impl Course {
+    pub fn new(name: &str, urdf: PathBuf, scene: Scene) -> Self {
+        let name = name.to_owned();
+        let none = Vec::new;
+        let [planning, simplifying, timing] = [none(), none(), none()];
+        let (paths, [asked, found, straight, stops, corners]) = (Vec::new(), [0; 5]);
+        Self { name, urdf, scene, asked, found, straight, planning, simplifying, timing, stops, corners, paths }
+    }
+
+    pub fn row(&self, check: &PathCheck) -> String {
+        let [plan, shorten, time] = [&self.planning, &self.simplifying, &self.timing].map(|times| spread(times));
+        format!(
+            "{:<40} {:>6} {:>6} {:>8} | {:>6.2} {:>6.1} | {:>7.2} {:>6.1} | {:>6.2} | {:>6}/{:<7} | {:>9}  {:>9}",
+            self.name,
+            self.asked,
+            self.found,
+            self.straight,
+            plan[0],
+            plan[1],
+            shorten[0],
+            shorten[1],
+            time[0],
+            self.stops,
+            self.corners,
+            check.points,
+            check.hits
+        )
+    }
+
+    pub fn json(&self, check: &PathCheck) -> String {
+        let [plan, shorten, time] = [&self.planning, &self.simplifying, &self.timing].map(|times| spread(times));
+        format!(
+            r#"{{"cell":"{}","pairs":{},"found":{},"straight":{},"plan_ms":{:.4},"plan_p99_ms":{:.4},"shorten_ms":{:.4},"shorten_p99_ms":{:.4},"time_ms":{:.4},"stops":{},"corners":{},"points":{},"colliding":{}}}"#,
+            self.name,
+            self.asked,
+            self.found,
+            self.straight,
+            plan[0],
+            plan[1],
+            shorten[0],
+            shorten[1],
+            time[0],
+            self.stops,
+            self.corners,
+            check.points,
+            check.hits
+        )
+    }
+}
+
+/// Median and 99th percentile, ms.
+fn spread(times: &[Duration]) -> [f64; 2] {
+    let mut times = times.to_vec();
+    times.sort_unstable();
+    let at = |share: f64| {
+        times.get((times.len() as f64 * share) as usize).or(times.last()).map_or(0.0, Duration::as_secs_f64)
+    };
+    [0.5, 0.99].map(|share| 1e3 * at(share))
+}
+
+/// Waypoints with the length gone so far.
+pub fn along<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Polyline {
+    let mut far = 0.0;
+    let mut last: Option<&[f64]> = None;
+    let mut line = Vec::with_capacity(waypoints.len());
+    for q in waypoints {
+        let q = q.as_ref();
+        far += last.map_or(0.0, |l| l.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt());
+        line.push((far, q.to_vec()));
+        last = Some(q);
+    }
+    line
+}
+
+/// `SplitMix64` (Steele, Lea, Flood 2014).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

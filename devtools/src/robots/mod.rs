@@ -1,0 +1,43 @@
+//! Example robots of our own: figures in, URDF or 3DS, SRDF and meshes out. One file per robot.
+
+mod arm;
+mod kr125;
+mod kr150;
+mod model;
+mod ns16;
+mod parts;
+mod rx60b;
+mod srdf;
+pub mod tools;
+mod tree;
+mod urdf;
+
+pub use model::File;
+use model::{Form, Robot};
+
+use crate::solid::binary_stl;
+
+/// Every robot we generate.
+pub fn all() -> Vec<Robot> {
+    vec![ns16::robot(), rx60b::robot(), kr125::robot(), kr150::robot()]
+}
+
+impl Robot {
+    /// The model and its SRDF; an error where a solid does not close.
+    pub fn files(&self) -> Result<Vec<File>, String> {
+        let name = self.name;
+        let solids = || self.links.iter().filter_map(|l| Some((l.name, l.solid.as_ref()?)));
+        for (link, solid) in solids() {
+            solid.check().map_err(|e| format!("{name}, {link}: {e}"))?;
+        }
+        let mut files = vec![(format!("{name}/{name}.srdf"), srdf::text(self).into_bytes())];
+        match self.form {
+            Form::Tds => files.extend(tree::files(self)?),
+            Form::Urdf => {
+                files.push((format!("{name}/{name}.urdf"), urdf::text(self).into_bytes()));
+                files.extend(solids().map(|(link, solid)| (format!("{name}/meshes/{link}.stl"), binary_stl(solid))));
+            }
+        }
+        Ok(files)
+    }
+}

@@ -1,0 +1,259 @@
+//! Who may depend on whom. The order of [`LAYERS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
+//! no two files may use each other in a circle.
+
+mod circles;
+mod module;
+mod source;
+mod uses;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use toml::{Table, Value};
+
+/// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
+const LAYERS: [&str; 25] = [
+    "spatial",
+    "proximity",
+    "kinematics",
+    "robot",
+    "scene",
+    "formats",
+    "validity",
+    "monitor",
+    "cspace",
+    "planner",
+    "avoidance",
+    "shared_control",
+    "cooperation",
+    "vision",
+    "perception",
+    "cell",
+    "analysis",
+    "sim",
+    "inspect",
+    "report",
+    "live",
+    "testkit",
+    "elbowroom",
+    "cli",
+    "python",
+];
+
+/// Crates that may opt out of `forbid(unsafe_code)`: the glue that Python needs.
+const MAY_USE_UNSAFE: [&str; 1] = ["python"];
+
+/// Never, not even through others: (who, on whom, why).
+const NEVER: [(&str, &str, &str); 3] = [
+    ("monitor", "avoidance", "avoidance proposes a motion, the monitor scales it last"),
+    ("monitor", "planner", "a planner can fail; the monitor must not be affected"),
+    ("monitor", "scene", "the monitor links only what its tick runs; the scene checker allocates"),
+];
+
+/// Checks the workspace at `root` and prints the result.
+pub fn run(root: &Path) -> Result<(), String> {
+    let workspace = parse(&root.join("Cargo.toml"))?;
+    let mut manifests = BTreeMap::new();
+    let entries = std::fs::read_dir(root.join("crates")).map_err(|e| format!("crates: {e}"))?;
+    for entry in entries {
+        let path = entry.map_err(|e| format!("crates: {e}"))?.path();
+        let manifest = path.join("Cargo.toml");
+        if manifest.is_file() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            manifests.insert(name, parse(&manifest)?);
+        }
+    }
+    let mut problems = problems(&workspace, &manifests);
+    for name in manifests.keys() {
+        problems.extend(circle_problems(name, &root.join("crates").join(name).join("src"))?);
+    }
+    for name in ["devtools", "xtask"] {
+        problems.extend(circle_problems(name, &root.join(name).join("src"))?);
+    }
+    if problems.is_empty() {
+        println!("layers: {} crates, every dependency points to a lower layer, 0 circles of files", manifests.len());
+        return Ok(());
+    }
+    Err(format!("the layers are broken\n  {}", problems.join("\n  ")))
+}
+
+fn circle_problems(name: &str, src: &Path) -> Result<Vec<String>, String> {
+    let circles = circles::circles_of(src)?;
+    Ok(circles.iter().map(|lines| format!("{name}: a circle of files\n    {}", lines.join("\n    "))).collect())
+}
+
+fn parse(path: &Path) -> Result<Table, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    text.parse().map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Everything wrong with these manifests (crate name → its `Cargo.toml`), in a fixed order.
+fn problems(workspace: &Table, manifests: &BTreeMap<String, Table>) -> Vec<String> {
+    let mut found = Vec::new();
+    if lookup(workspace, &["workspace", "lints", "rust", "unsafe_code"]).and_then(Value::as_str) != Some("forbid") {
+        found.push("Cargo.toml: [workspace.lints.rust] must say unsafe_code = \"forbid\"".into());
+    }
+    let uses: BTreeMap<&str, BTreeSet<String>> =
+        manifests.iter().map(|(name, manifest)| (name.as_str(), crates_used(manifest))).collect();
+    for (name, manifest) in manifests {
+        found.extend(name_problems(name, manifest));
+        found.extend(lint_problem(name, manifest));
+        found.extend(order_problems(name, &uses[name.as_str()]));
+    }
+    let links: BTreeMap<&str, BTreeSet<String>> =
+        manifests.iter().map(|(name, manifest)| (name.as_str(), crates_linked(manifest))).collect();
+    for (who, whom, why) in NEVER {
+        if reaches(&links, who, whom, &mut BTreeSet::new()) {
+            found.push(format!("{who} must not depend on {whom}, directly or through others: {why}"));
+        }
+    }
+    found
+}
+
+fn name_problems(name: &str, manifest: &Table) -> Option<String> {
+    let package = lookup(manifest, &["package", "name"]).and_then(Value::as_str).unwrap_or_default();
+    let expected = if name == "elbowroom" { name.to_owned() } else { format!("elbowroom-{name}") };
+    (package != expected)
+        .then(|| format!("crates/{name}/Cargo.toml: the package is called `{package}`, not `{expected}`"))
+}
+
+fn lint_problem(name: &str, manifest: &Table) -> Option<String> {
+    if MAY_USE_UNSAFE.contains(&name) {
+        return None;
+    }
+    let opted_in = lookup(manifest, &["lints", "workspace"]).and_then(Value::as_bool) == Some(true);
+    (!opted_in)
+        .then(|| format!("crates/{name}/Cargo.toml: add `[lints]` with `workspace = true` (it forbids unsafe code)"))
+}
+
+fn order_problems(name: &str, uses: &BTreeSet<String>) -> Vec<String> {
+    let Some(layer) = layer_of(name) else {
+        return vec![format!(
+            "crates/{name} is not in LAYERS of xtask/src/layers/mod.rs: add it there, at its layer, and to docs/architecture.md"
+        )];
+    };
+    let too_high = uses.iter().filter(|used| layer_of(used).is_none_or(|other| other >= layer));
+    too_high.map(|used| format!("{name} depends on {used}, which is not a lower layer")).collect()
+}
+
+fn layer_of(name: &str) -> Option<usize> {
+    LAYERS.iter().position(|&layer| layer == name)
+}
+
+fn reaches(uses: &BTreeMap<&str, BTreeSet<String>>, from: &str, to: &str, seen: &mut BTreeSet<String>) -> bool {
+    let Some(used) = uses.get(from) else { return false };
+    used.iter().any(|next| next == to || (seen.insert(next.clone()) && reaches(uses, next, to, seen)))
+}
+
+/// Crates of this workspace named by any dependency table, those of tests, build scripts and single targets included.
+fn crates_used(manifest: &Table) -> BTreeSet<String> {
+    crates_in(manifest, &["dependencies", "dev-dependencies", "build-dependencies"])
+}
+
+/// Crates of this workspace that a program which uses the crate links.
+fn crates_linked(manifest: &Table) -> BTreeSet<String> {
+    crates_in(manifest, &["dependencies"])
+}
+
+fn crates_in(manifest: &Table, kinds: &[&str]) -> BTreeSet<String> {
+    let mut tables = vec![manifest];
+    if let Some(targets) = manifest.get("target").and_then(Value::as_table) {
+        tables.extend(targets.values().filter_map(Value::as_table));
+    }
+    let sections = tables.iter().flat_map(|table| kinds.iter().filter_map(|kind| table.get(*kind)?.as_table()));
+    sections.flatten().filter_map(|(key, value)| crate_of_dependency(key, value)).collect()
+}
+
+fn crate_of_dependency(key: &str, value: &Value) -> Option<String> {
+    let package = value.get("package").and_then(Value::as_str).unwrap_or(key);
+    if package == "elbowroom" {
+        return Some(package.to_owned());
+    }
+    package.strip_prefix("elbowroom-").map(str::to_owned)
+}
+
+fn lookup<'a>(table: &'a Table, keys: &[&str]) -> Option<&'a Value> {
+    let (first, rest) = keys.split_first()?;
+    rest.iter().try_fold(table.get(*first)?, |value, key| value.get(*key))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn workspace() -> Table {
+        "[workspace.lints.rust]\nunsafe_code = \"forbid\"".parse().unwrap()
+    }
+
+    fn manifest(name: &str, rest: &str) -> (String, Table) {
+        let text = format!("[package]\nname = \"elbowroom-{name}\"\n[lints]\nworkspace = true\n{rest}");
+        (name.to_owned(), text.parse().unwrap())
+    }
+
+    fn check(manifests: impl IntoIterator<Item = (String, Table)>) -> Vec<String> {
+        problems(&workspace(), &manifests.into_iter().collect())
+    }
+
+    #[test]
+    fn a_sound_order_passes() {
+        let crates = [
+            manifest("spatial", "[dependencies]\nglam = \"1\""),
+            manifest("monitor", "[dependencies]\nelbowroom-spatial.workspace = true"),
+            manifest("cell", "[dev-dependencies]\nelbowroom-monitor = { path = \"../monitor\" }"),
+        ];
+        assert_eq!(check(crates), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_dependency_on_a_higher_layer_is_found_in_every_kind_of_table() {
+        let tables = [
+            "[dependencies]\nelbowroom-cell.workspace = true",
+            "[dev-dependencies]\nelbowroom-cell.workspace = true",
+            "[build-dependencies]\nelbowroom-cell.workspace = true",
+            "[target.'cfg(unix)'.dependencies]\nelbowroom-cell.workspace = true",
+            "[dependencies]\nother = { package = \"elbowroom-cell\", path = \"../cell\" }",
+        ];
+        for table in tables {
+            let found = check([manifest("scene", table)]);
+            assert_eq!(found, ["scene depends on cell, which is not a lower layer"], "{table}");
+        }
+    }
+
+    #[test]
+    fn the_facade_is_for_the_command_only() {
+        assert_eq!(check([manifest("cli", "[dependencies]\nelbowroom.workspace = true")]), Vec::<String>::new());
+        assert_eq!(check([manifest("cell", "[dependencies]\nelbowroom.workspace = true")]).len(), 1);
+    }
+
+    #[test]
+    fn monitor_never_reaches_avoidance_through_others() {
+        let crates = [
+            manifest("monitor", "[dependencies]\nelbowroom-scene.workspace = true"),
+            manifest("scene", "[dependencies]\nelbowroom-avoidance.workspace = true"),
+        ];
+        let found = check(crates);
+        assert!(found.iter().any(|line| line.starts_with("monitor must not depend on avoidance")), "{found:?}");
+    }
+
+    #[test]
+    fn monitor_never_links_the_scene_checker() {
+        let found =
+            check([manifest("monitor", "[dependencies]\nelbowroom-scene.workspace = true"), manifest("scene", "")]);
+        assert!(found.iter().any(|line| line.starts_with("monitor must not depend on scene")), "{found:?}");
+    }
+
+    #[test]
+    fn unknown_crates_wrong_names_and_missing_lints_are_found() {
+        assert!(check([manifest("unknown", "")])[0].contains("add it there"));
+        let renamed = ("scene".to_owned(), manifest("scenery", "").1);
+        assert!(check([renamed])[0].contains("not `elbowroom-scene`"));
+        let bare = ("scene".to_owned(), "[package]\nname = \"elbowroom-scene\"".parse().unwrap());
+        assert!(check([bare])[0].contains("[lints]"));
+    }
+
+    #[test]
+    fn unsafe_code_must_be_forbidden_for_all() {
+        let lax: Table = "[workspace.lints.rust]\nunsafe_code = \"warn\"".parse().unwrap();
+        assert_eq!(problems(&lax, &BTreeMap::new()).len(), 1);
+    }
+}
