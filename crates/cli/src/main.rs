@@ -6,6 +6,7 @@ mod args;
 mod check;
 mod convert;
 mod example;
+mod former_fields;
 mod inspect;
 mod map;
 mod output;

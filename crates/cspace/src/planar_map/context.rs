@@ -22,6 +22,9 @@ pub(super) struct ConvexContext {
     /// Tangent of half a step of θ1, and 1/cos − 1.
     pub tangent: f64,
     pub stretch: f64,
+    /// How much farther from the base axis a point of the grown obstacle may be than along the wedge's middle (x/cos δ1
+    /// for x), metres.
+    pub max_stretch: f32,
     /// Sine and cosine of half a step of θ2.
     pub turn: [f32; 2],
     /// Margin for single precision, metres.
@@ -57,14 +60,17 @@ impl ConvexContext {
         let wrist_radius_m = arm_grid.arm.wrist_radius_m.max(arm_grid.arm.fore_radius_m);
         let arm = PlanarArm { wrist_radius_m, ..arm_grid.arm };
         let size = center.length() + radius + arm.reach_m();
+        let grown_radius = radius + arm.max_radius_m();
+        let stretch = 1.0 / half1.cos() - 1.0;
         Self {
             level: arm_grid.level,
             arm,
             spans: SpanWriter::new(&arm_grid.grid.axes()[2]),
             center,
-            grown_radius: radius + arm.max_radius_m(),
+            grown_radius,
             tangent: half1.tan(),
-            stretch: 1.0 / half1.cos() - 1.0,
+            stretch,
+            max_stretch: ((center.x.hypot(center.y) + grown_radius) * stretch) as f32,
             turn: [half2.sin() as f32, half2.cos() as f32],
             margin: (MARGIN * size) as f32,
             sectors: Sectors::new(half2 * 2.0, radius > arm.fore_length_m),

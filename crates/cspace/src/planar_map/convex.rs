@@ -1,5 +1,6 @@
 //! Boxes and convex polyhedra: outlines plane by plane, intervals row by row.
 
+use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use elbowroom_spatial::Vec3;
@@ -8,6 +9,7 @@ use super::arm_grid::ArmGrid;
 use super::context::{ConvexContext, Outlines, PlaneRows};
 use super::line_distances::{line_distances, reaching_radius};
 use super::normals::OutlineNormals;
+use super::outline::Directions;
 use super::plane_solid::PlaneSolid;
 use super::rows::write_plane;
 use super::simd_math::ANGLE_ERROR;
@@ -37,13 +39,14 @@ pub(super) fn build<B: PlaneSolid>(
                 continue;
             }
             solid.rotate_to_plane(plane);
-            if !outlines.set_whole(&context, solid, side) {
+            if !outlines.set_normals(&context, solid, side) {
                 continue;
             }
             full_rows.fill(0);
-            if outlines.upper.exists {
-                let range = outlines.upper.reachable_directions(context.level, &outlines.normals, context.upper_reach);
-                if let Some((lo, hi)) = range {
+            match outlines.set_upper(&context, solid, side) {
+                Directions::Nowhere => {}
+                Directions::Everywhere => upper_arm::mark_rows(shoulder, -PI - UPPER_MARGIN, PI + UPPER_MARGIN, full_rows),
+                Directions::Between(lo, hi) => {
                     upper_arm::mark_rows(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, full_rows);
                 }
             }
@@ -64,8 +67,8 @@ pub(super) fn build<B: PlaneSolid>(
 }
 
 impl Outlines {
-    /// The whole outlines of one plane; false where no link reaches the solid.
-    fn set_whole<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> bool {
+    /// Which links reach the solid in one plane, and the normals of its outline; false where none does.
+    fn set_normals<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> bool {
         let lean = (context.tangent * side) as f32;
         let gap = reaching_radius(context, solid, lean, side as f32) - context.margin;
         let arm = &context.arm;
@@ -77,11 +80,17 @@ impl Outlines {
         // y is down in the shoulder's frame, z up in the solid's.
         let own = solid.own_directions(lean).map(|[x, z]| [x, -z]);
         self.normals = OutlineNormals::new(own, context.spacing_cosine);
-        if self.upper.exists {
-            line_distances(context, solid, &self.normals, lean, upper, &mut self.upper.far);
-            self.upper.complete(context.level, &self.normals);
-        }
         true
+    }
+
+    /// The upper arm's outline; directions in which the upper arm meets it.
+    fn set_upper<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> Directions {
+        if !self.upper.exists {
+            return Directions::Nowhere;
+        }
+        let (lean, radius) = ((context.tangent * side) as f32, context.arm.upper_radius_m as f32);
+        line_distances(context, solid, &self.normals, lean, radius, &mut self.upper.far);
+        self.upper.complete_within(context.level, &self.normals, context.upper_reach)
     }
 
     /// Adds the spans of one plane; false where their rows do not ascend.
@@ -100,8 +109,10 @@ impl Outlines {
         if !(self.fore.exists || self.wrist.exists) {
             return write_plane(context, self, rows, true, layer);
         }
-        let range = self.set_rotated(context, solid, lean, None);
-        let (lo, hi) = range.unwrap_or((0.0, std::f64::consts::TAU));
+        let (lo, hi) = match self.set_rotated(context, solid, lean, None) {
+            Directions::Between(lo, hi) => (lo, hi),
+            Directions::Nowhere | Directions::Everywhere => (0.0, TAU),
+        };
         if hi - lo < context.sectors.whole_rad {
             return write_plane(context, self, rows, true, layer);
         }
@@ -128,9 +139,9 @@ impl Outlines {
         solid: &B,
         lean: f32,
         sector: Option<[[f32; 2]; 2]>,
-    ) -> Option<(f64, f64)> {
+    ) -> Directions {
         let Self { normals, raw, fore, wrist, .. } = self;
-        let mut range: Option<Option<(f64, f64)>> = None;
+        let mut directions = Directions::Nowhere;
         for (link, radius) in [(wrist, context.arm.wrist_radius_m), (fore, context.arm.fore_radius_m)] {
             if !link.exists {
                 continue;
@@ -143,24 +154,13 @@ impl Outlines {
                     raw.far[k] = raw.far[k].min(context.margin);
                 }
             }
-            raw.complete(context.level, normals);
-            if !raw.exists {
-                link.exists = false;
-                continue;
-            }
-            let directions = raw.directions_from_shoulder(context.level, normals);
-            range = Some(match (range, directions) {
-                (None, directions) => directions,
-                (Some(Some(a)), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
-                _ => None,
-            });
-            raw.rotate_both_ways(context.level, normals, context.turn, link);
+            directions = directions.union(raw.rotate_both_ways(context.level, normals, context.turn, link));
         }
         // Where the wrist's outline vanishes by rounding, the forearm's is used for the end of the forearm.
         if self.fore.exists && !self.wrist.exists {
             self.wrist.clone_from(&self.fore);
         }
         self.set_reach_limits(context);
-        range.flatten()
+        directions
     }
 }

@@ -61,9 +61,7 @@ fn line_distances_lanes<S: Simd, B: PlaneSolid>(
     let side = splat(simd, lean.signum());
     let offset = splat(simd, context.arm.offset_m as f32);
     let [up, down] = solid.vertical_extents();
-    // A point at x along the wedge's middle may be x/cos δ1 from the axis.
-    let farthest = context.center.x.hypot(context.center.y) + context.grown_radius;
-    let stretch = splat(simd, (farthest * context.stretch) as f32);
+    let stretch = splat(simd, context.max_stretch);
     // What is out of the arm's reach does not matter, and rotating far corners would enlarge the outline.
     let length = (context.arm.upper_length_m + context.arm.fore_length_m) as f32;
     let limit = splat(simd, length * (1.0 + 1e-5) + context.margin);

@@ -36,13 +36,10 @@ impl Outline {
         exists: false,
     };
 
-    /// Computes corners and stretches from the lines' distances, after moving lines inward that do not touch; sets `exists`.
-    pub fn complete(&mut self, level: Level, normals: &OutlineNormals) {
-        self.exists = dispatch!(level, simd => self.complete_lanes(simd, normals));
-    }
-
+    /// Computes corners and stretches from the lines' distances, after moving lines inward that do not touch; false where
+    /// the outline is empty.
     #[inline(always)]
-    fn complete_lanes<S: Simd>(&mut self, simd: S, normals: &OutlineNormals) -> bool {
+    fn complete<S: Simd>(&mut self, simd: S, normals: &OutlineNormals) -> bool {
         let mut is_tight = false;
         loop {
             self.set_corners(simd, normals);
@@ -93,11 +90,25 @@ impl Outline {
         }
     }
 
-    /// Writes an outline that contains this one rotated about the shoulder by any angle up to the one of this sine and cosine,
-    /// to either side.
-    pub fn rotate_both_ways(&self, level: Level, normals: &OutlineNormals, sin_cos: [f32; 2], out: &mut Self) {
-        dispatch!(level, simd => self.rotate_lanes(simd, normals, sin_cos, out));
-        out.exists = self.exists;
+    /// Completes this outline and writes one that contains it rotated about the shoulder by any angle up to the one of this
+    /// sine and cosine, to either side. Returns the directions in which this one lies.
+    pub fn rotate_both_ways(
+        &mut self,
+        level: Level,
+        normals: &OutlineNormals,
+        sin_cos: [f32; 2],
+        out: &mut Self,
+    ) -> Directions {
+        let directions = dispatch!(level, simd => {
+            if self.complete(simd, normals) {
+                self.rotate_lanes(simd, normals, sin_cos, out);
+                self.directions_lanes(simd, normals)
+            } else {
+                Directions::Nowhere
+            }
+        });
+        (self.exists, out.exists) = (directions != Directions::Nowhere, directions != Directions::Nowhere);
+        directions
     }
 
     #[inline(always)]
@@ -117,40 +128,29 @@ impl Outline {
         out.set_corners(simd, normals);
     }
 
-    /// Directions from the shoulder in which the outline lies, lowest and highest angle, radians; `None` where the
-    /// shoulder is inside.
-    pub fn directions_from_shoulder(&self, level: Level, normals: &OutlineNormals) -> Option<(f64, f64)> {
-        let view = ShoulderView::new(normals, self)?;
-        dispatch!(level, simd => self.directions_lanes(simd, normals, view))
-    }
-
+    /// Directions from the shoulder in which the outline lies.
     #[inline(always)]
-    fn directions_lanes<S: Simd>(&self, simd: S, normals: &OutlineNormals, view: ShoulderView) -> Option<(f64, f64)> {
+    fn directions_lanes<S: Simd>(&self, simd: S, normals: &OutlineNormals) -> Directions {
+        let Some(view) = ShoulderView::new(normals, self) else { return Directions::Everywhere };
         let mut range = TangentRange::new(simd, view);
         for at in (0..normals.count).step_by(WIDTH) {
             let corner = [load(simd, &self.corner_x[at..]), load(simd, &self.corner_y[at..])];
             range.include(simd, valid_lanes(normals, at), corner);
         }
-        range.angles(simd)
+        range.directions(simd).unwrap_or(Directions::Everywhere)
     }
 
-    /// Directions from the shoulder in which a link of length `reach` meets the outline: lowest and highest angle,
-    /// radians; `None` where it never does.
-    pub fn reachable_directions(&self, level: Level, normals: &OutlineNormals, reach: f32) -> Option<(f64, f64)> {
-        let Some(view) = ShoulderView::new(normals, self) else {
-            return Some((-std::f64::consts::PI, std::f64::consts::PI));
-        };
-        dispatch!(level, simd => self.reachable_lanes(simd, normals, view, reach))
+    /// Completes this outline. Returns the directions from the shoulder in which a link of length `reach` meets it.
+    pub fn complete_within(&mut self, level: Level, normals: &OutlineNormals, reach: f32) -> Directions {
+        dispatch!(level, simd => {
+            self.exists = self.complete(simd, normals);
+            if self.exists { self.reachable_lanes(simd, normals, reach) } else { Directions::Nowhere }
+        })
     }
 
     #[inline(always)]
-    fn reachable_lanes<S: Simd>(
-        &self,
-        simd: S,
-        normals: &OutlineNormals,
-        view: ShoulderView,
-        reach: f32,
-    ) -> Option<(f64, f64)> {
+    fn reachable_lanes<S: Simd>(&self, simd: S, normals: &OutlineNormals, reach: f32) -> Directions {
+        let Some(view) = ShoulderView::new(normals, self) else { return Directions::Everywhere };
         let mut range = TangentRange::new(simd, view);
         for at in (0..normals.count).step_by(WIDTH) {
             let [x, y] = [load(simd, &normals.x[at..]), load(simd, &normals.y[at..])];
@@ -163,7 +163,29 @@ impl Outline {
                 range.include(simd, meets, [far * x - s * y, mad(far, y, s * x)]);
             }
         }
-        range.angles(simd)
+        range.directions(simd).unwrap_or(Directions::Nowhere)
+    }
+}
+
+/// Directions from the shoulder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Directions {
+    /// None: the outline is empty or out of reach.
+    Nowhere,
+    /// All: the shoulder is inside the outline.
+    Everywhere,
+    /// From the lowest to the highest angle, radians.
+    Between(f64, f64),
+}
+
+impl Directions {
+    /// The smallest range that contains both.
+    pub fn union(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nowhere, any) | (any, Self::Nowhere) => any,
+            (Self::Between(lo, hi), Self::Between(from, to)) => Self::Between(lo.min(from), hi.max(to)),
+            _ => Self::Everywhere,
+        }
     }
 }
 
@@ -183,6 +205,7 @@ struct ShoulderView {
 
 impl ShoulderView {
     /// `None` where the shoulder is inside.
+    #[inline(always)]
     fn new(normals: &OutlineNormals, outline: &Outline) -> Option<Self> {
         let (mut k, mut least) = (0, f32::INFINITY);
         for (line, &far) in outline.far[..normals.count].iter().enumerate() {
@@ -218,9 +241,9 @@ impl<S: Simd> TangentRange<S> {
         self.hi = lanes.select(self.hi.max(tangent), self.hi);
     }
 
-    /// Lowest and highest angle; `None` where the range is empty.
+    /// `None` where the range is empty.
     #[inline(always)]
-    fn angles(&self, simd: S) -> Option<(f64, f64)> {
+    fn directions(&self, simd: S) -> Option<Directions> {
         let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));
         let (lo, hi) = (lo.min(lo.slide::<4>(lo)), hi.max(hi.slide::<4>(hi)));
         let (lo, hi) = (lo.min(lo.slide::<2>(lo)), hi.max(hi.slide::<2>(hi)));
@@ -229,6 +252,6 @@ impl<S: Simd> TangentRange<S> {
         (x[0], y[0], y[1], y[2]) = (self.view.ahead[0], self.view.ahead[1], lo, hi);
         let angles = atan2(simd, load(simd, &y), load(simd, &x)).to_array();
         let middle = f64::from(angles[0]);
-        (lo <= hi).then(|| (middle + f64::from(angles[1]), middle + f64::from(angles[2])))
+        (lo <= hi).then(|| Directions::Between(middle + f64::from(angles[1]), middle + f64::from(angles[2])))
     }
 }
