@@ -12,9 +12,9 @@ use elbowroom_cspace::{
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::JointKind;
 
-use crate::plan::subject;
+use crate::plan::request_validation::select_robot;
 
-/// A request.
+/// A request for the map of a robot.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MapRequest {
     /// Name of the robot; optional where there is only one, or only one map.
@@ -31,7 +31,7 @@ pub struct CellMap {
     /// The joint axes, divided into cells.
     pub axes: Vec<GridAxis>,
     /// Per axis: true for an angle.
-    pub turns: Vec<bool>,
+    pub is_angle: Vec<bool>,
     /// Per object of the cell, in its order.
     pub obstacles: Vec<MapObstacle>,
     /// Number of cells that any object blocks.
@@ -84,10 +84,10 @@ pub struct MapObstacle {
 /// # Errors
 /// An unknown or ambiguous robot, a joint without limits, too many cells for the memory.
 pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
-    let (robot, spec) = chosen(cell, request.robot.as_deref())?;
+    let (robot, spec) = select_map(cell, request.robot.as_deref())?;
     let wrong = |what: String, hint: &str| FormatError::new(&cell.file, spec.line, what).hint(hint);
     let mut warnings = Vec::new();
-    let (axes, turns) = axes(cell, robot, &spec, &mut warnings)?;
+    let (axes, is_angle) = axes(cell, robot, &spec, &mut warnings)?;
     let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
     let refuse = |e: RobotMapError| {
         let hint = match e {
@@ -132,7 +132,7 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
-    Ok(CellMap { robot: robot.name.clone(), axes, turns, obstacles, blocked, static_blocked, dense, warnings })
+    Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
 }
 
 impl CellMap {
@@ -148,10 +148,10 @@ impl CellMap {
 }
 
 /// The requested robot, the only one with a map, or the only one.
-fn chosen<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
+fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
     let robot = match (name, &cell.maps[..]) {
         (None, [only]) => only.robot,
-        _ => subject::robot(cell, name)?.0,
+        _ => select_robot(cell, name)?.0,
     };
     let spec = cell.maps.iter().find(|m| m.robot == robot).cloned();
     let spec = spec.unwrap_or_else(|| MapSpec::of(robot, &cell.robots[robot]));
@@ -167,7 +167,7 @@ fn axes(
 ) -> Result<(Vec<GridAxis>, Vec<bool>), FormatError> {
     let chain = &robot.robot.chain;
     let mut axes = Vec::new();
-    let mut turns = Vec::new();
+    let mut is_angle = Vec::new();
     for (&index, &step) in spec.joints.iter().zip(&spec.step) {
         let joint = &chain.joints()[chain.active_joints()[index].0];
         let limits = match joint.kind {
@@ -188,7 +188,7 @@ fn axes(
             FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {e}", robot.name)).hint(hint)
         })?;
         axes.push(axis);
-        turns.push(joint.kind.turns());
+        is_angle.push(joint.kind.turns());
     }
-    Ok((axes, turns))
+    Ok((axes, is_angle))
 }

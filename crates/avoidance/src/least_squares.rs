@@ -9,6 +9,8 @@
 //! line search follows the step as far as the true cost falls. Where the same constraints are active at its end, it is the
 //! minimum.
 
+use elbowroom_spatial::linalg::solve_spd_in_place;
+
 /// Largest number of Newton steps; three to ten are usual.
 const MAX_STEPS: usize = 100;
 /// Slope of the cost that counts as 0, relative to the largest curvature.
@@ -57,7 +59,9 @@ pub struct LeastSquares {
     hessian: Vec<f64>,
     /// Gradient of the quadratic cost at 0.
     gradient_at_zero: Vec<f64>,
+    /// Cholesky factor of the Hessian of the free unknowns, and the step of those.
     factor: Vec<f64>,
+    free_step: Vec<f64>,
     /// Minimum of the quadratic cost, and the gradient there.
     target: Vec<f64>,
     target_gradient: Vec<f64>,
@@ -81,6 +85,7 @@ impl LeastSquares {
             hessian: vec![0.0; n * n],
             gradient_at_zero: vec![0.0; n],
             factor: vec![0.0; n * n],
+            free_step: vec![0.0; n],
             target: vec![0.0; n],
             target_gradient: vec![0.0; n],
             step: vec![0.0; n],
@@ -226,29 +231,15 @@ impl LeastSquares {
         self.step.fill(0.0);
         for i in 0..m {
             for j in 0..=i {
-                let mut sum = self.hessian[self.free[i] * n + self.free[j]];
-                for k in 0..j {
-                    sum -= self.factor[i * n + k] * self.factor[j * n + k];
-                }
-                if i == j && !(sum > 0.0) {
-                    return false;
-                }
-                self.factor[i * n + j] = if i == j { sum.sqrt() } else { sum / self.factor[j * n + j] };
+                self.factor[i * n + j] = self.hessian[self.free[i] * n + self.free[j]];
             }
+            self.free_step[i] = -self.target_gradient[self.free[i]];
         }
-        for i in 0..m {
-            let mut sum = -self.target_gradient[self.free[i]];
-            for k in 0..i {
-                sum -= self.factor[i * n + k] * self.step[self.free[k]];
-            }
-            self.step[self.free[i]] = sum / self.factor[i * n + i];
+        if !solve_spd_in_place(&mut self.factor, n, &mut self.free_step[..m]) {
+            return false;
         }
-        for i in (0..m).rev() {
-            let mut sum = self.step[self.free[i]];
-            for k in i + 1..m {
-                sum -= self.factor[k * n + i] * self.step[self.free[k]];
-            }
-            self.step[self.free[i]] = sum / self.factor[i * n + i];
+        for (&j, step) in self.free.iter().zip(&self.free_step) {
+            self.step[j] = *step;
         }
         true
     }

@@ -2,8 +2,8 @@
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, PairDistance, Scene, SceneState, Selection};
-use elbowroom_spatial::{Aabb, FrameMotion, Pose, Vec3};
+use elbowroom_scene::{Checker, CheckerOptions, Object, PairDistance, Scene, SceneState, Selection};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::motion_bounds::MotionBounds;
 use crate::reactive_controller::MAX_PAIRS;
@@ -66,14 +66,14 @@ pub(crate) struct ProximityQuery<'s> {
 
 impl<'s> ProximityQuery<'s> {
     pub(crate) fn new(scene: &'s Scene, robot: RobotId) -> Self {
-        let object_radii = scene.objects().iter().map(|o| max_distance(&o.shape.aabb(&Pose::IDENTITY))).collect();
+        let object_radius = |o: &Object| o.shape.aabb(&Pose::IDENTITY).max_distance(Vec3::ZERO);
         Self {
             scene,
             robot,
             checker: Checker::new(scene, CheckerOptions::default()),
             state: SceneState::new(scene),
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
-            object_radii,
+            object_radii: scene.objects().iter().map(object_radius).collect(),
             motion_bounds: scene.robots().iter().map(|r| MotionBounds::new(&r.robot)).collect(),
             excluded: [None; 2],
             observed: vec![None; scene.objects().len()],
@@ -255,8 +255,7 @@ impl PairConverter<'_> {
             GeometryId::Link { robot, link } => {
                 let base = self.scene.robots()[robot.0].base_in_world;
                 let chain = &self.chains[robot.0];
-                let in_root = base.inverse().transform_point(on_other);
-                let velocity = chain.link_motion(link).velocity_at(in_root - chain.link_in_root(link).translation);
+                let velocity = chain.point_velocity(link, base.inverse().transform_point(on_other));
                 if self.known_robots[robot.0] {
                     let velocity = self.world_in_root.rotation * (base.rotation * velocity);
                     return ObstacleKind::KnownMoving { velocity };
@@ -276,9 +275,4 @@ impl PairConverter<'_> {
             key,
         }
     }
-}
-
-/// Distance of the farthest corner of a box from the origin, m.
-fn max_distance(bounds: &Aabb) -> f64 {
-    bounds.min.abs().max(bounds.max.abs()).length()
 }

@@ -133,6 +133,7 @@ fn neighbour(obstacles: &DynamicObstacles<'_>, member: GeometryId, robot: RobotI
 #[cfg(test)]
 mod tests {
     use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection, example};
+    use elbowroom_testkit::random::{linear_congruential, unit};
 
     use super::*;
     use crate::Neighbour;
@@ -160,10 +161,7 @@ mod tests {
         let (mut query, mut check) = (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene));
         let duration_s = 0.3;
         let mut seed = 7_u64;
-        let mut random = |low: f64, high: f64| {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            low + (high - low) * ((seed >> 11) as f64 / (1_u64 << 53) as f64)
-        };
+        let mut random = |low: f64, high: f64| low + (high - low) * unit(linear_congruential(&mut seed));
         let (mut hits, mut free, mut only_moving) = (0, 0, 0);
         for _ in 0..3_000 {
             // Both arms lean towards each other.

@@ -300,11 +300,11 @@ impl CellRobot {
     pub fn guarded_volumes(&self) -> Vec<Volume> {
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
         let parts = [("tool", &self.tool), ("load", &self.load)];
-        volumes.extend(parts.into_iter().filter_map(|(name, body)| {
-            let body = body.as_ref()?;
-            let (shape, in_link) = match body.shape {
-                Shape::Mesh(_) => self.volumes.of(&body.shape, body.in_link),
-                _ => (body.shape.clone(), body.in_link),
+        volumes.extend(parts.into_iter().filter_map(|(name, collider)| {
+            let collider = collider.as_ref()?;
+            let (shape, in_link) = match collider.shape {
+                Shape::Mesh(_) => self.volumes.of(&collider.shape, collider.in_link),
+                _ => (collider.shape.clone(), collider.in_link),
             };
             Some(Volume { name: name.into(), part: Part::Tool, link: self.flange, shape, in_link })
         }));
@@ -338,8 +338,8 @@ impl CellRobot {
     /// The robot without tool and load.
     pub fn without_payload(&self) -> Robot {
         let mut robot = self.robot.clone();
-        let bodies = &mut robot.colliders[self.flange.0];
-        bodies.truncate(bodies.len().saturating_sub(self.payload().count()));
+        let colliders = &mut robot.colliders[self.flange.0];
+        colliders.truncate(colliders.len().saturating_sub(self.payload().count()));
         robot
     }
 

@@ -33,10 +33,10 @@ mod file;
 mod frames;
 mod moving_object;
 mod poses;
+mod query_model;
 pub mod region_constraint;
-mod resting;
+mod rest_pose_contacts;
 pub mod seal;
-mod subject;
 pub mod suggest;
 pub mod trajectory;
 
@@ -44,8 +44,8 @@ pub use cell::{
     AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, JointLimits, MapSpec, MoveTarget, Program,
     ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
-pub use file::{CellFile, NumberTable};
+pub use file::CellFile;
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use poses::{PoseRate, PoseTrack};
-pub use subject::{QueryModel, QueryRobot};
+pub use query_model::{QueryModel, QueryRobot};

@@ -36,13 +36,13 @@ pub fn quoted<'a>(words: impl Iterator<Item = &'a str>) -> String {
 
 /// What to write instead of `word`.
 pub fn hint<'a>(word: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    const MOST: usize = 24;
+    const MAX_SUGGESTIONS: usize = 24;
     let count = known.clone().count();
     if count == 0 {
         return "none is defined: define it first, or leave this out".into();
     }
-    let mut list = known.clone().take(MOST).collect::<Vec<_>>().join(", ");
-    if count > MOST {
+    let mut list = known.clone().take(MAX_SUGGESTIONS).collect::<Vec<_>>().join(", ");
+    if count > MAX_SUGGESTIONS {
         list.push_str(", …");
     }
     match nearest(word, known) {

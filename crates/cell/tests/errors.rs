@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{HEAD, rail, sound};
+use common::{HEAD, rail, valid_cell};
 use elbowroom_cell::Cell;
 
 #[test]
 fn the_valid_cell_is_valid() {
-    let cell = Cell::parse("test.toml", &sound()).unwrap_or_else(|e| panic!("{e}"));
+    let cell = Cell::parse("test.toml", &valid_cell()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((cell.robots.len(), cell.regions.len(), cell.maps.len()), (3, 4, 1));
     let warned: Vec<_> = cell.regions.iter().map(|r| r.robots.clone()).collect();
     assert_eq!(
@@ -208,11 +208,11 @@ const CASES: &[(&str, &str, &str, &str)] = &[
 
 #[test]
 fn every_error_names_its_line_and_a_correction() {
-    let sound = sound();
+    let valid = valid_cell();
     for (line, by, what, hint) in CASES {
-        let text = sound.replacen(line, by, 1);
-        assert_ne!(text, sound, "the case `{line}` changes nothing");
-        let at = sound[..sound.find(line).unwrap()].lines().count();
+        let text = valid.replacen(line, by, 1);
+        assert_ne!(text, valid, "the case `{line}` changes nothing");
+        let at = valid[..valid.find(line).unwrap()].lines().count();
         let Err(e) = Cell::parse("test.toml", &text) else { panic!("`{by}` passed") };
         let text = e.to_string();
         assert!(e.what.contains(what), "`{by}`: {text}");
@@ -247,7 +247,7 @@ fn missing_tables_and_duplicate_names_are_errors() {
 }
 
 /// A box on a fixed post, as 3DS.
-fn still_model() -> Vec<u8> {
+fn static_model() -> Vec<u8> {
     use elbowroom_formats::nodetree::{Node, NodeTree};
     use elbowroom_formats::{MeshData, tds};
     use elbowroom_spatial::{Pose, Vec3};
@@ -264,7 +264,7 @@ fn still_model() -> Vec<u8> {
 #[test]
 fn a_3d_model_without_joints_yields_a_template_of_joints_that_is_accepted() {
     let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("arm.3ds"), still_model()).unwrap();
+    std::fs::write(dir.path().join("arm.3ds"), static_model()).unwrap();
     let parse = |more: &str| {
         Cell::parse(dir.path().join("cell.toml"), &format!("{HEAD}[robot.r]\nmodel = \"arm.3ds\"\n{more}"))
     };
@@ -289,9 +289,9 @@ fn a_3d_model_without_joints_yields_a_template_of_joints_that_is_accepted() {
 
 #[test]
 fn a_checksum_is_verified() {
-    let sum = Cell::parse("t.toml", &sound()).unwrap().checksum;
+    let sum = Cell::parse("t.toml", &valid_cell()).unwrap().checksum;
     assert_eq!(sum.len(), 64);
-    let pinned = sound().replacen("tick_ms", &format!("checksum = \"{sum}\"\ntick_ms"), 1);
+    let pinned = valid_cell().replacen("tick_ms", &format!("checksum = \"{sum}\"\ntick_ms"), 1);
     assert!(Cell::parse("t.toml", &pinned).is_ok());
     let e = Cell::parse("t.toml", &pinned.replace("radius = 150", "radius = 149")).unwrap_err();
     assert!(e.what.contains(&sum), "{e}");
@@ -306,6 +306,8 @@ fn errors_of_trajectories_name_the_line() {
         Cell::parse(dir.path().join("cell.toml"), &text)
     };
     assert!(cell("joint_1,t_s\n0,0\n0.1,1\n").is_ok());
+    let noted = cell("r.joint_1,note,t_s\n0,up,0\n0.1,,1\n").unwrap();
+    assert!(noted.warnings.iter().any(|w| w.what.contains("column `note` is not a joint of")));
     for (csv, line, what) in [
         ("t_s,joint_2\n0,0\n", 1, "no column `joint_1`"),
         ("t_s,joint_1\n0,0\n0,0.1\n", 3, "t_s is 0 after 0"),

@@ -109,8 +109,8 @@ impl<'a> Document<'a> {
 fn text(map: &CellMap) -> String {
     let share = |blocked: u64| 100.0 * blocked as f64 / map.cells().max(1) as f64;
     let mut out = format!("{}: {} cells, {:.2} % blocked\n\n", map.robot, grouped(map.cells()), share(map.blocked));
-    for (axis, turns) in map.axes.iter().zip(&map.turns) {
-        let show = |v: f64| if *turns { format!("{:.1}°", v.to_degrees()) } else { format!("{v:.3} m") };
+    for (axis, is_angle) in map.axes.iter().zip(&map.is_angle) {
+        let show = |v: f64| if *is_angle { format!("{:.1}°", v.to_degrees()) } else { format!("{v:.3} m") };
         let (min, max, step) = (show(axis.min()), show(axis.max()), show(axis.step()));
         let _ = writeln!(out, "  {:<24} {min:>9} to {max:>8}, {:>5} cells of {step}", axis.joint(), axis.count());
     }

@@ -49,10 +49,11 @@ impl CellChanges {
     pub fn between(old: &OccupancyBitmap, new: &OccupancyBitmap) -> Self {
         let mut changes = Self::default();
         changes.reset(new.shape());
-        let rows = new.shape()[1];
+        let (rows, width) = (new.shape()[1], new.words_per_row().max(1));
         for plane in (0..new.shape()[0]).filter(|&plane| !old.shares(new, plane)) {
-            for row in plane * rows..(plane + 1) * rows {
-                changes.record_row(row, old.row(row), new.row(row));
+            let (was, now) = (old.plane(plane).chunks_exact(width), new.plane(plane).chunks_exact(width));
+            for (row, (was, now)) in was.zip(now).enumerate() {
+                changes.record_row(plane * rows + row, was, now);
             }
         }
         changes

@@ -17,10 +17,10 @@
 //! | [`vision`] | camera frames and point clouds to tracked obstacles |
 //! | [`perception`] | camera frames to a joint-space map, and the map to a replanned motion |
 //! | [`cell`] | the cell file and the model it describes |
-//! | [`sim`] | the programs of a cell in simulated time under the monitor; whether the laws exclude entry |
-//! | [`analysis`] | collision, distance, maps and paths of a cell that does not run |
+//! | [`sim`] | simulation of the programs of a cell under the monitors; analysis of whether the laws exclude entry |
+//! | [`analysis`] | collision and distance queries, joint-space maps and planned paths of a cell at its initial state |
 //! | [`inspect`] | the contents of a robot model or mesh file |
-//! | [`report`] | HTML reports, plots, pictures, and the summary for a terminal |
+//! | [`report`] | HTML reports, plots, images, and the text summary of a run |
 //!
 //! # A guarded controller
 //!

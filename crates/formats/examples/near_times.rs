@@ -8,6 +8,7 @@ use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{Robot, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, LevelOfDetail, Object, Scene, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 fn main() {
     let mut words = std::env::args().skip(1);
@@ -106,7 +107,6 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 }

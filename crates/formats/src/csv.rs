@@ -12,6 +12,9 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// Longest line that is read, bytes.
 const MAX_LINE: usize = 1 << 20;
 
+/// Largest file that is read where all of it is kept, bytes.
+pub(crate) const MAX_BYTES: u64 = 1 << 30;
+
 /// Lines of a CSV file that are not blank, with their numbers; a byte order mark and white space at both ends are
 /// removed.
 pub(crate) struct CsvLines<'a, R> {
@@ -22,15 +25,20 @@ pub(crate) struct CsvLines<'a, R> {
 }
 
 impl<'a> CsvLines<'a, BufReader<File>> {
-    /// The lines of a file. Pipes are read too.
-    pub(crate) fn open(path: &'a Path) -> Result<Self> {
+    /// The lines of a file of at most `max_bytes`. Pipes, which have no size, are read too.
+    pub(crate) fn open(path: &'a Path, max_bytes: u64) -> Result<Self> {
         let unreadable = |e: std::io::Error| {
             FormatError::new(path, None, format!("cannot be read: {e}"))
                 .hint("a CSV file: a header of column names, then rows of numbers")
         };
         let file = File::open(path).map_err(unreadable)?;
-        if file.metadata().map_err(unreadable)?.is_dir() {
+        let metadata = file.metadata().map_err(unreadable)?;
+        if metadata.is_dir() {
             return Err(FormatError::new(path, None, "is a folder").hint("a CSV file"));
+        }
+        if metadata.len() > max_bytes {
+            let what = format!("has {} bytes; at most {max_bytes} are read", metadata.len());
+            return Err(FormatError::new(path, None, what).hint("a file with fewer rows or columns"));
         }
         Ok(Self::new(BufReader::with_capacity(1 << 16, file), path))
     }
@@ -85,7 +93,7 @@ pub(crate) fn finite(cell: &str, column: &str, (file, line): (&Path, usize), ins
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => {
-            let what = format!("column `{column}` holds \"{}\", which is no finite number", shortened(cell));
+            let what = format!("column `{column}` holds \"{}\", which is not a finite number", shortened(cell));
             Err(FormatError::new(file, line, what).hint(instead))
         }
     }

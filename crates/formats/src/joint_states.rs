@@ -67,21 +67,31 @@ pub struct JointStateOptions<'a> {
     pub extra_columns: ExtraColumns,
     /// What happens with values beyond limits.
     pub limits: LimitCheck,
+    /// Larger files are refused, bytes.
+    pub max_bytes: u64,
 }
 
 impl<'a> JointStateOptions<'a> {
-    /// States of robots: no times, no other columns, limits not checked.
+    /// States of robots, in a file of any size: no times, no other columns, limits not checked.
     pub fn states(robots: Vec<JointStateRobot<'a>>) -> Self {
-        Self { robots, time: TimeColumn::Ignored, extra_columns: ExtraColumns::Refused, limits: LimitCheck::None }
+        Self {
+            robots,
+            time: TimeColumn::Ignored,
+            extra_columns: ExtraColumns::Refused,
+            limits: LimitCheck::None,
+            max_bytes: u64::MAX,
+        }
     }
 
-    /// A trajectory of one robot: times are required, values beyond limits are errors, other columns are skipped.
+    /// A trajectory of one robot, of at most 1 GiB: times are required, values beyond limits are errors, other columns
+    /// are skipped.
     pub fn trajectory(name: &'a str, chain: &'a Chain) -> Self {
         Self {
             robots: vec![JointStateRobot { name, chain, default_q: None }],
             time: TimeColumn::Required,
             extra_columns: ExtraColumns::Skipped,
             limits: LimitCheck::Refuse,
+            max_bytes: csv::MAX_BYTES,
         }
     }
 }
@@ -133,7 +143,7 @@ impl JointStates {
     /// # Errors
     /// [`FormatError`] names the line and the column.
     pub fn read(path: &Path, options: &JointStateOptions<'_>) -> Result<Self> {
-        Self::from_lines(path, CsvLines::open(path)?, options)
+        Self::from_lines(path, CsvLines::open(path, options.max_bytes)?, options)
     }
 
     /// Parses text; `path` is named in messages.
@@ -214,7 +224,7 @@ impl JointStates {
         if let Some(mut first) = first_beyond {
             let what = &first.what;
             first.what =
-                format!("{what}; {beyond} of {} states are beyond limits and answered as they are", states.rows);
+                format!("{what}; {beyond} of {} states are beyond limits and are evaluated unchanged", states.rows);
             states.warnings.push(first);
         }
         if states.rows == 0 {
@@ -305,7 +315,7 @@ impl<'a> Joints<'a> {
         let Some(i) = self.beyond(values, REFUSE_TOLERANCE) else { return Ok(()) };
         let joint = &self.list[i];
         let what = format!("joint `{}` is at {}, outside its limits", self.shown(joint), values[i]);
-        let hint = format!("radians (metres where sliding) from {} to {}", joint.lower, joint.upper);
+        let hint = format!("radians (metres for a prismatic joint) from {} to {}", joint.lower, joint.upper);
         Err(FormatError::new(file, line, what).hint(hint))
     }
 
@@ -329,9 +339,9 @@ impl<'a> Joints<'a> {
                 let source = &r.chain.joints()[source.joint.0].name;
                 return format!("is a mimic joint: it follows `{source}` and has no column");
             }
-            return format!("must say which robot: `{}.{name}`", r.name);
+            return format!("must name the robot: `{}.{name}`", r.name);
         }
-        "is no joint".into()
+        "is not a joint".into()
     }
 }
 
@@ -412,7 +422,7 @@ impl Header {
             }
             ExtraColumns::Skipped => {
                 let of = joints.options.robots.first().map_or("", |r| r.chain.name());
-                let what = format!("column `{name}` is no joint of \"{of}\": ignored");
+                let what = format!("column `{name}` is not a joint of \"{of}\": ignored");
                 warnings.push(Warning::new(file, line, what).hint(hint));
                 Ok(())
             }
@@ -429,7 +439,7 @@ impl Header {
                 Column::Skipped => {}
                 Column::Time => time = Some(csv::finite(cell, name, at, "seconds: 0.25")?),
                 Column::Joint(i) => {
-                    values[i] = csv::finite(cell, name, at, "radians, metres for a sliding joint: 0.25")?;
+                    values[i] = csv::finite(cell, name, at, "radians, metres for a prismatic joint: 0.25")?;
                 }
             }
         }

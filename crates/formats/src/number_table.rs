@@ -8,9 +8,6 @@ use crate::csv::{self, CsvLines};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Largest file that is read, bytes.
-const MAX_BYTES: u64 = 1 << 30;
-
 /// A CSV file of finite numbers with a header of column names.
 ///
 /// ```
@@ -43,18 +40,13 @@ pub struct TimedRow {
 }
 
 impl NumberTable {
-    /// Reads a file; blank lines are skipped.
+    /// Reads a file of at most 1 GiB; blank lines are skipped.
     ///
     /// # Errors
-    /// [`FormatError`] with the line of a cell that is no finite number, of a row with another number of cells than the
+    /// [`FormatError`] with the line of a cell that is not a finite number, of a row with another number of cells than the
     /// header, or of a header that repeats a name.
     pub fn read(path: &Path) -> Result<Self> {
-        let size =
-            std::fs::metadata(path).map_err(|e| FormatError::new(path, None, format!("cannot be read: {e}")))?.len();
-        if size > MAX_BYTES {
-            return Err(FormatError::new(path, None, format!("has {size} bytes; at most {MAX_BYTES} are read")));
-        }
-        Self::from_lines(path, CsvLines::open(path)?)
+        Self::from_lines(path, CsvLines::open(path, csv::MAX_BYTES)?)
     }
 
     /// Parses the text of such a file; `path` is named in messages.
@@ -142,7 +134,7 @@ mod tests {
             ("a,b\n1\n", "a.csv:2: has 1 values for 2 columns"),
             ("a,b\n1,2,3\n", "a.csv:2: has 3 values for 2 columns"),
             ("a\n\"1\n", "a.csv:2: column `a` holds \"\"1\""),
-            ("a\n\nnan\n", "a.csv:3: column `a` holds \"nan\", which is no finite number"),
+            ("a\n\nnan\n", "a.csv:3: column `a` holds \"nan\", which is not a finite number"),
             ("a,b\n,1\n", "a.csv:2: column `a` holds \"\""),
         ] {
             let message = message(text);

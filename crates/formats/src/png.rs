@@ -106,6 +106,7 @@ fn invalid_input(error: png::EncodingError) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use elbowroom_testkit::random::xorshift;
     use proptest::prelude::*;
 
     const FORMATS: [PixelFormat; 8] = [
@@ -234,7 +235,7 @@ mod tests {
         fn written_files_are_read_back(width in 1_usize..20, height in 1_usize..20, format in 0_usize..8, seed: u64) {
             let header = ImageHeader { width, height, format: FORMATS[format] };
             let mut state = seed | 1;
-            let mut byte = || { state ^= state << 13; state ^= state >> 7; state ^= state << 17; (state >> 32) as u8 };
+            let mut byte = || (xorshift(&mut state) >> 32) as u8;
             let pixels: Vec<u8> = (0..header.byte_count()).map(|_| byte()).collect();
             let mut back = Vec::new();
             prop_assert_eq!(read(&encoded(&header, &pixels), "a.png".as_ref(), &mut back).unwrap(), header);

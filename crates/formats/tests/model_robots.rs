@@ -11,6 +11,7 @@ use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{unit, xorshift};
 
 fn box_mesh(name: &str) -> MeshData {
     let corner = |i: u32| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.2;
@@ -291,10 +292,7 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        2.0 * unit(xorshift(&mut self.0)) - 1.0
     }
 
     fn q(&mut self, chain: &Chain) -> Vec<f64> {

@@ -50,8 +50,8 @@ pub(super) fn bound(mesh: &TriMesh, simple: &Simplified) -> f64 {
     worst + 1e-12 * size
 }
 
-/// The faces that the corners of a face collapsed to, and their neighbours: they contain the nearest one, but any face
-/// gives a bound.
+/// The faces at the vertices that the corners of a face collapsed to. The nearest face is usually among them; any face
+/// gives a valid bound.
 fn around(t: &[u32; 3], simple: &Simplified, faces_of: &[Vec<u32>], near: &mut Vec<[Vec3; 3]>) {
     let once = |mut list: Vec<u32>| {
         list.sort_unstable();

@@ -12,9 +12,9 @@ use elbowroom_spatial::units::LengthUnit;
 use serde::Serialize;
 
 use crate::dh::{self, ClassicalDh, DhConvention, DhRow, DirectDh, ModifiedDh};
-use crate::levels::{self, EnclosingVolume};
+use crate::enclosing_volume::{self, EnclosingVolume};
 use crate::pairs::{self, PairRow};
-use crate::resolution::{self, LinkLevels};
+use crate::resolution_levels::{self, LinkLevels};
 use crate::rows::{JointRow, MeshRow, joint_row, mesh_row, mesh_rows};
 use crate::units::{self, SuspectUnit, suspect_units};
 
@@ -33,7 +33,7 @@ pub struct InspectOptions {
     pub tip: Option<String>,
     /// The DH tables in the text output, in this order; empty: the generalized one. JSON has all of them.
     pub dh: Vec<DhConvention>,
-    /// Omits what takes time: resolution levels, pairs, and visual meshes.
+    /// Omits what is slow to compute: resolution levels, pairs, and visual meshes.
     pub brief: bool,
 }
 
@@ -138,9 +138,9 @@ impl Inspection {
         inspection.add_suspect_units(suspect_units(&loaded.robot));
         inspection.warn_of_meshes();
         if !options.brief {
-            inspection.levels = levels::of_robot(&loaded.robot);
+            inspection.levels = enclosing_volume::of_robot(&loaded.robot);
             let links = chain.links().iter().cloned().zip(loaded.robot.colliders.iter().cloned());
-            inspection.resolution = resolution::of_links(&links.collect::<Vec<_>>());
+            inspection.resolution = resolution_levels::of_links(&links.collect::<Vec<_>>());
             inspection.pairs = pairs::of_robot(path, &loaded.robot)?;
             inspection.warn_of_pairs();
         }
@@ -163,13 +163,13 @@ impl Inspection {
             let solid = object.into_trimesh(path)?;
             inspection.meshes.push(mesh_row(&name, &name, &solid));
             inspection.add_suspect_units(units::of_mesh(&name, solid.aabb().extent(), format));
-            let body = Collider { name: name.clone(), shape: Shape::Mesh(solid.into()), in_link: Pose::IDENTITY };
-            solids.push((name.clone(), vec![body]));
+            let collider = Collider { name: name.clone(), shape: Shape::Mesh(solid.into()), in_link: Pose::IDENTITY };
+            solids.push((name.clone(), vec![collider]));
             inspection.links.push(name);
         }
         if !options.brief {
-            inspection.levels = solids.iter().map(|(name, s)| levels::of_solid(name, &s[0].shape)).collect();
-            inspection.resolution = resolution::of_links(&solids);
+            inspection.levels = solids.iter().map(|(name, s)| enclosing_volume::of_solid(name, &s[0].shape)).collect();
+            inspection.resolution = resolution_levels::of_links(&solids);
         }
         inspection.solids = solids;
         inspection.warn_of_meshes();
@@ -265,7 +265,7 @@ fn is_mesh(path: &Path) -> bool {
     !(head.contains("<robot ") || head.contains("<robot>") || is_robot_tree(&bytes, path))
 }
 
-/// Whole scenes are not robots.
+/// True for a node tree that is a robot; whole scenes are not.
 fn is_robot_tree(bytes: &[u8], path: &Path) -> bool {
     robot::tree_format(bytes, path).is_some_and(|format| {
         robot::parse_tree(bytes, format, path, None).is_ok_and(|t| t.nodes.len() <= robot::MAX_LINKS)

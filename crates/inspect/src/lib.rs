@@ -1,5 +1,5 @@
-//! Contents of a robot model or mesh file: joints and limits, meshes and their faults, DH tables, resolution levels, the
-//! allowed collision matrix, and suspected unit errors. No cell is needed; `elbowroom_report` renders the images.
+//! Contents of a robot model or mesh file: joints and limits, meshes and their faults, DH tables, resolution levels,
+//! the allowed collision matrix, and suspected unit errors. No cell is needed; `elbowroom_report` renders the images.
 //!
 //! ```
 //! use elbowroom_inspect::{InspectOptions, Inspection};
@@ -18,11 +18,11 @@
 mod deviation;
 mod dh;
 mod edges;
+mod enclosing_volume;
 mod inspection;
-mod levels;
 mod pairs;
 mod quadric;
-mod resolution;
+mod resolution_levels;
 mod rows;
 mod simplify;
 mod table;
@@ -30,9 +30,9 @@ mod text;
 mod units;
 
 pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
+pub use enclosing_volume::EnclosingVolume;
 pub use inspection::{InspectOptions, Inspection, ModelKind};
-pub use levels::EnclosingVolume;
 pub use pairs::PairRow;
-pub use resolution::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
+pub use resolution_levels::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
 pub use rows::{JointRow, MeshRow};
 pub use units::{SuspectQuantity, SuspectUnit, UnitLabel, suspect_units};

@@ -96,12 +96,12 @@ fn kind_name(kind: JointKind) -> &'static str {
 }
 
 pub(super) fn mesh_rows(robot: &Robot) -> Vec<MeshRow> {
-    let bodies = robot.chain.links().iter().zip(&robot.colliders);
-    let row = |link: &String, body: &Collider| match &body.shape {
-        Shape::Mesh(solid) => Some(mesh_row(link, &body.name, solid)),
+    let colliders = robot.chain.links().iter().zip(&robot.colliders);
+    let row = |link: &String, collider: &Collider| match &collider.shape {
+        Shape::Mesh(solid) => Some(mesh_row(link, &collider.name, solid)),
         _ => None,
     };
-    bodies.flat_map(|(link, bodies)| bodies.iter().filter_map(|b| row(link, b)).collect::<Vec<_>>()).collect()
+    colliders.flat_map(|(link, colliders)| colliders.iter().filter_map(|b| row(link, b)).collect::<Vec<_>>()).collect()
 }
 
 pub(super) fn mesh_row(link: &str, name: &str, solid: &TriMesh) -> MeshRow {

@@ -6,7 +6,7 @@ use elbowroom_kinematics::JointKind;
 
 use crate::dh::{self, DhConvention};
 use crate::inspection::{Inspection, ModelKind};
-use crate::resolution::TrianglesRow;
+use crate::resolution_levels::TrianglesRow;
 use crate::text::shortened;
 
 impl fmt::Display for Inspection {

@@ -46,11 +46,11 @@ fn robots() -> Vec<(PathBuf, Robot)> {
 }
 
 fn boxed(mut robot: Robot) -> Robot {
-    for body in robot.colliders.iter_mut().flatten() {
-        let bounds = body.shape.aabb(&body.in_link);
+    for collider in robot.colliders.iter_mut().flatten() {
+        let bounds = collider.shape.aabb(&collider.in_link);
         let half_extents = bounds.extent() * 0.5;
-        *body = Collider {
-            name: body.name.clone(),
+        *collider = Collider {
+            name: collider.name.clone(),
             shape: Shape::Cuboid(Cuboid { half_extents }),
             in_link: Pose::from_translation((bounds.min + bounds.max) * 0.5),
         };
@@ -61,11 +61,11 @@ fn boxed(mut robot: Robot) -> Robot {
 /// Scales the solids of one link, or of all, by `factor`.
 fn scaled(robot: &Robot, link: Option<usize>, factor: f64) -> Robot {
     let mut robot = robot.clone();
-    for (_, bodies) in robot.colliders.iter_mut().enumerate().filter(|(l, _)| link.is_none_or(|only| only == *l)) {
-        for body in bodies {
-            let Shape::Cuboid(c) = &body.shape else { panic!("a box") };
-            body.shape = Shape::Cuboid(Cuboid { half_extents: c.half_extents * factor });
-            body.in_link = Pose::from_translation(body.in_link.translation * factor);
+    for (_, colliders) in robot.colliders.iter_mut().enumerate().filter(|(l, _)| link.is_none_or(|only| only == *l)) {
+        for collider in colliders {
+            let Shape::Cuboid(c) = &collider.shape else { panic!("a box") };
+            collider.shape = Shape::Cuboid(Cuboid { half_extents: c.half_extents * factor });
+            collider.in_link = Pose::from_translation(collider.in_link.translation * factor);
         }
     }
     robot

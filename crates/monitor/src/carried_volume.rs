@@ -1,6 +1,7 @@
 //! A guarded volume and the joints that move it: how far and how fast they can move its points.
 
-use elbowroom_kinematics::{Chain, ChainState, LinkId};
+use elbowroom_kinematics::motion_bound::{JointReach, joint_reaches, max_stroke_m};
+use elbowroom_kinematics::{Chain, ChainState, JointCoupling, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::point_motion::LinkPoint;
@@ -72,24 +73,9 @@ impl CarriedVolume {
     pub(crate) fn new(chain: &Chain, volume: &Volume) -> Self {
         let bounds = volume.shape.aabb(&Pose::IDENTITY);
         let (center_in_shape, radius) = (bounds.center(), 0.5 * bounds.extent().length());
-        let mut reach = radius + volume.in_link.transform_point(center_in_shape).length();
-        let mut influences = Vec::new();
-        for id in chain.path(volume.link).iter().rev() {
-            let joint = &chain.joints()[id.0];
-            let mimic = chain.mimic_source(*id);
-            let (source, scale, offset) =
-                mimic.map_or((*id, 1.0, 0.0), |m| (m.joint, m.multiplier.abs(), m.offset.abs()));
-            if let Some(index) = chain.q_index(source).filter(|_| joint.kind.moves()) {
-                let turns = joint.kind.turns();
-                let max_radius = if turns { reach } else { 1.0 };
-                influences.push(JointInfluence { axis: id.0, joint: index, scale, turns, max_radius });
-            }
-            reach += joint.origin.translation.length();
-            if !joint.kind.turns() && joint.kind.moves() {
-                let stroke = chain.joints()[source.0].limits;
-                reach += stroke.lower.abs().max(stroke.upper.abs()) * scale + offset;
-            }
-        }
+        let reach_m = radius + volume.in_link.transform_point(center_in_shape).length();
+        let reaches = joint_reaches(chain, volume.link, reach_m, |id| max_stroke_m(chain, id));
+        let mut influences: Vec<_> = reaches.filter_map(|r| JointInfluence::new(&r)).collect();
         influences.reverse();
         let any_direction = Approach::default();
         Self { link: volume.link, center_in_shape, radius, influences, center: Vec3::ZERO, any_direction }
@@ -166,6 +152,14 @@ pub(crate) struct VolumeMotion<'a> {
 }
 
 impl JointInfluence {
+    /// `None` for a fixed joint.
+    fn new(reach: &JointReach) -> Option<Self> {
+        let JointReach { joint, kind, coupling, .. } = *reach;
+        let JointCoupling { index, multiplier, .. } = coupling?;
+        let (scale, turns) = (multiplier.abs(), kind.turns());
+        Some(Self { axis: joint.0, joint: index, scale, turns, max_radius: reach.lever() })
+    }
+
     /// Largest travel of a point of the sphere along the unit vector `towards` per unit of the joint, m.
     #[inline]
     fn lever_along(&self, axes: &[WorldAxis], center: Vec3, radius: f64, towards: Vec3) -> f64 {

@@ -1,7 +1,7 @@
 //! The override law: the override that each pair of volume and region requests.
 
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::{Aabb, Vec3};
+use elbowroom_spatial::Vec3;
 
 use crate::laws::{speed_zone, warning_factor};
 use crate::placement::{DynamicRegion, Placement};
@@ -209,13 +209,8 @@ pub(crate) fn max_region_speed(now: &Placement, sources: &[SourceState]) -> f64 
     let max_speed = |dynamic: &DynamicRegion| {
         let SourceState { pose, motion, .. } = &sources[dynamic.source.0];
         let angular_speed = motion.angular_velocity.length();
-        let lever = || max_distance(&now.region_box[dynamic.region], pose.translation);
+        let lever = || now.region_box[dynamic.region].max_distance(pose.translation);
         motion.velocity.length() + if angular_speed > 0.0 { angular_speed * lever() } else { 0.0 }
     };
     now.dynamic_regions.iter().map(max_speed).fold(0.0, f64::max)
-}
-
-/// Distance of a point from the farthest corner of a box, m.
-fn max_distance(bounds: &Aabb, from: Vec3) -> f64 {
-    (bounds.min - from).abs().max((bounds.max - from).abs()).length()
 }

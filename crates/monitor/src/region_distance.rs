@@ -126,8 +126,7 @@ fn guarded_links(config: &Configuration, regions: &[RegionId]) -> Vec<GuardedLin
     let mut links: Vec<GuardedLink> = Vec::new();
     let counts = |v: &Volume| regions.iter().any(|r| v.part.counts_for(config.regions[r.0].guards));
     for volume in config.volumes.iter().filter(|v| counts(v)) {
-        let bounds = volume.shape.aabb(&volume.in_link);
-        let radius_m = bounds.min.abs().max(bounds.max.abs()).length();
+        let radius_m = volume.radius_in_link();
         match links.iter_mut().find(|l| l.link == volume.link) {
             Some(known) => known.radius_m = known.radius_m.max(radius_m),
             None => links.push(GuardedLink { link: volume.link, radius_m }),

@@ -1,11 +1,11 @@
 //! Continuous check between two snapshots: regions that a volume passes from one to the next.
 //!
 //! Joints and regions are assumed to move straight from one snapshot to the next. No point of a volume then travels farther
-//! than `T`, the sum over the joints of lever times change; so while the distances at two instants sum to more than the
+//! than `T`, the sum over the joints of motion bound times change; so while the distances at two instants sum to more than the
 //! travel between them, the volume cannot have touched in between. Where they do not, the interval is halved.
 
-use elbowroom_kinematics::motion_bound::motion_bound;
-use elbowroom_spatial::Pose;
+use elbowroom_kinematics::motion_bound::max_motion_bounds;
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::guarded_distance::{BoundedDistance, guarded_distance};
 use crate::placement::Placement;
@@ -49,8 +49,8 @@ pub struct RegionSweep {
     to: Vec<f64>,
     /// The motions of the dynamic regions, in the order of [`Placement::dynamic_regions`].
     region_motions: Vec<RegionMotion>,
-    /// Per joint the largest lever of any point of any volume, m per rad or m.
-    levers: Vec<f64>,
+    /// Per joint the motion bound of all volumes, m per rad or m.
+    motion_bounds: Vec<f64>,
     travel_m: f64,
     /// Number of known snapshots, up to two.
     known: u8,
@@ -104,7 +104,10 @@ impl RegionSweep {
             fraction: None,
             from: vec![0.0; dof],
             to: vec![0.0; dof],
-            levers: max_levers(config),
+            motion_bounds: max_motion_bounds(
+                &config.chain,
+                config.volumes.iter().map(|v| (v.link, v.radius_in_link())),
+            ),
             travel_m: 0.0,
             known: 0,
             at,
@@ -140,15 +143,15 @@ impl RegionSweep {
         self.to.copy_from_slice(q);
         self.fraction = None;
         self.known = (self.known + 1).min(2);
-        let moved = self.from.iter().zip(&self.to).zip(&self.levers);
-        let travel: f64 = moved.map(|((a, b), lever)| if a == b { 0.0 } else { lever * (b - a).abs() }).sum();
+        let moved = self.from.iter().zip(&self.to).zip(&self.motion_bounds);
+        let travel: f64 = moved.map(|((a, b), bound)| if a == b { 0.0 } else { bound * (b - a).abs() }).sum();
         self.travel_m = travel + ROUNDING_M;
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
             let shift = (motion.to.translation - motion.from.translation).length();
             let reported = sources[dynamic.source.0].motion.velocity.length() * dt_s;
             let turned = (motion.from.rotation.inverse() * motion.to.rotation).angle().abs();
             let bounds = config.regions[dynamic.region].shape.aabb(&Pose::IDENTITY);
-            let lever = bounds.min.abs().max(bounds.max.abs()).length().min(UNBOUNDED_SIZE_M);
+            let lever = bounds.max_distance(Vec3::ZERO).min(UNBOUNDED_SIZE_M);
             let jumped = shift > 2.0 * (reported + turned * lever.max(motion.to.translation.length())) + JUMP_M;
             motion.travel_m = if jumped { f64::INFINITY } else { shift + turned * lever };
         }
@@ -308,21 +311,4 @@ impl Bisection<'_> {
         self.halve(a, middle, depth - 1);
         self.halve(middle, b, depth - 1);
     }
-}
-
-/// Per joint the largest travel of any point of any volume per unit, m per rad or m.
-fn max_levers(config: &Configuration) -> Vec<f64> {
-    let mut levers = vec![0.0; config.chain.dof()];
-    for volume in &config.volumes {
-        let bounds = volume.shape.aabb(&volume.in_link);
-        let radius = bounds.min.abs().max(bounds.max.abs()).length();
-        let mut own = vec![0.0; levers.len()];
-        let path = config.chain.path(volume.link);
-        // Mimic joints share the index of their source; their levers add up.
-        for (joint, lever) in motion_bound(&config.chain, volume.link, radius, &path) {
-            own[joint] += lever;
-        }
-        levers.iter_mut().zip(own).for_each(|(max, own): (&mut f64, f64)| *max = max.max(own));
-    }
-    levers
 }

@@ -1,6 +1,6 @@
 //! Guarded volumes of the robot.
 
-use elbowroom_kinematics::{JointKind, LinkId};
+use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::{ConvexHull, Cuboid, Shape, Sphere, fit};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Obb, Pose, Vec3};
@@ -60,6 +60,11 @@ impl Volume {
         let shape = Shape::Cuboid(Cuboid { half_extents: obb_in_link.half_extents });
         Self { name: "tool".into(), part: Part::Tool, link, shape, in_link: obb_in_link.pose }
     }
+
+    /// Radius (m) of a sphere around the link's origin that holds the volume, for motion bounds of the link.
+    pub fn radius_in_link(&self) -> f64 {
+        self.shape.aabb(&self.in_link).max_distance(Vec3::ZERO)
+    }
 }
 
 /// The volume that replaces the solid of a link (S1.10).
@@ -105,7 +110,6 @@ impl VolumeModel {
 /// The volumes of all links that a joint moves. Solids fixed to the root link do not move and get no volume.
 pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
-    let moves = |link: LinkId| chain.path(link).iter().any(|j| chain.joints()[j.0].kind != JointKind::Fixed);
     let volume = |link: usize, body: &Collider| {
         let (shape, in_link) = model.of(&body.shape, body.in_link);
         Volume { name: chain.links()[link].clone(), part: Part::Arm, link: LinkId(link), shape, in_link }
@@ -114,7 +118,7 @@ pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
         .colliders
         .iter()
         .enumerate()
-        .filter(|(link, _)| moves(LinkId(*link)))
+        .filter(|(link, _)| chain.is_movable(LinkId(*link)))
         .flat_map(|(link, bodies)| bodies.iter().map(move |body| volume(link, body)))
         .collect()
 }

@@ -6,16 +6,17 @@ use elbowroom_cspace::{Grid, MapReader};
 use elbowroom_planner::{
     GridPlanner, GridPlannerError, GridPlannerSettings, Path, PathEnd, PathProgress, PathStatus, ReplanKind,
 };
+use elbowroom_vision::Stopwatch;
 
-use crate::arm::MappedArm;
-use crate::doing::{ExecutorState, HoldReason};
-use crate::exact::ExactPathChecker;
-use crate::motion::{PathExecution, RemainingPath, distance};
-use crate::settings::{ExecutorError, ExecutorSettings, check, three};
-use crate::step::{ExecutorStep, ReplanResult};
-use crate::switch::{RerouteSettings, reroute};
-use crate::times::Stopwatch;
-use crate::update::{ObstacleUpdate, Prism};
+use crate::exact_path_checker::ExactPathChecker;
+use crate::executor_settings::{ExecutorError, ExecutorSettings, check, three};
+use crate::executor_state::{ExecutorState, HoldReason};
+use crate::executor_step::ExecutorStep;
+use crate::mapped_arm::MappedArm;
+use crate::obstacle_update::{ObstacleUpdate, Prism};
+use crate::path_execution::{PathExecution, RemainingPath, distance};
+use crate::replan_in_motion::{InMotionSettings, replan_in_motion};
+use crate::replan_result::ReplanResult;
 
 /// Executes and replans the motion of one arm.
 #[derive(Debug)]
@@ -189,15 +190,17 @@ impl ReplanningExecutor {
             self.plan_from_rest(result);
             return;
         }
-        let settings = RerouteSettings { limits: &self.settings.limits, options: &self.options(0.0), grid: &self.grid };
-        let outcome = if is_stop_requested { None } else { Some(reroute(&mut self.planner, &motion, &settings)) };
-        let Some(rerouted) = outcome else {
+        let settings =
+            InMotionSettings { limits: &self.settings.limits, options: &self.options(0.0), grid: &self.grid };
+        let outcome =
+            if is_stop_requested { None } else { Some(replan_in_motion(&mut self.planner, &motion, &settings)) };
+        let Some(replan) = outcome else {
             self.motion = Some(motion);
             return;
         };
-        (result.times.replan, result.times.timing) = (rerouted.replan, rerouted.timing);
+        (result.times.replan, result.times.timing) = (replan.replan, replan.timing);
         stopwatch.lap();
-        let checked = rerouted.found.filter(|(next, _)| {
+        let checked = replan.found.filter(|(next, _)| {
             let is_free = self.check_exactly(&next.points(f64::INFINITY, self.settings.check_chord_rad)).is_ok();
             result.times.exact += stopwatch.lap();
             is_free
@@ -214,8 +217,8 @@ impl ReplanningExecutor {
     /// Validates the rest of the path: the curve point by point, its straight segments cell by cell.
     fn remaining_path(&self, motion: &PathExecution) -> RemainingPath {
         let curve = motion.remaining_path(self.planner.occupancy(), &self.grid);
-        let (RemainingPath::Free, Some(leg)) = (curve, motion.leg()) else { return curve };
-        let here = PathProgress { segment: leg, q: motion.state().q };
+        let (RemainingPath::Free, Some(segment)) = (curve, motion.segment()) else { return curve };
+        let here = PathProgress { segment, q: motion.state().q };
         match self.planner.path_status(&motion.path, here, &GridPlannerSettings::default()) {
             Ok(PathStatus::Clear) => RemainingPath::Free,
             Ok(PathStatus::Blocked { free_rad, .. }) => {

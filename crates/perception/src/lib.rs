@@ -64,32 +64,34 @@
 //!
 //! An obstacle that moves into a stopped arm is not prevented from doing so. This is not a certified safety device.
 
-mod arm;
-mod doing;
 mod error;
-mod exact;
+mod exact_path_checker;
 mod executor;
-mod known;
-mod log;
-mod motion;
+mod executor_settings;
+mod executor_state;
+mod executor_step;
+mod map_updater;
+mod mapped_arm;
+mod obstacle_update;
+mod path_execution;
+mod perception_log;
 pub mod picture;
 mod pipeline;
-mod settings;
-mod step;
-mod switch;
+mod replan_in_motion;
+mod replan_result;
 mod times;
-mod update;
 mod worker;
 
-pub use arm::MappedArm;
-pub use doing::{ExecutorState, HoldReason};
 pub use error::PerceptionError;
-pub use exact::ExactPathChecker;
+pub use exact_path_checker::ExactPathChecker;
 pub use executor::ReplanningExecutor;
-pub use log::{FrameEntry, GroundTruth, PerceptionLog, ReportImage, TickEntry};
+pub use executor_settings::{ExecutorError, ExecutorSettings};
+pub use executor_state::{ExecutorState, HoldReason};
+pub use executor_step::ExecutorStep;
+pub use mapped_arm::MappedArm;
+pub use obstacle_update::{ObstacleUpdate, Prism};
+pub use perception_log::{FrameEntry, GroundTruth, PerceptionLog, ReportImage, TickEntry};
 pub use pipeline::{PerceptionPipeline, PerceptionSettings};
-pub use settings::{ExecutorError, ExecutorSettings};
-pub use step::{ExecutorStep, ReplanResult};
+pub use replan_result::ReplanResult;
 pub use times::{PerceptionTimes, ReplanTimes};
-pub use update::{ObstacleUpdate, Prism};
 pub use worker::{CapturedImage, PerceptionWorker};

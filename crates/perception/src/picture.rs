@@ -5,8 +5,8 @@ use elbowroom_cspace::{Grid, OccupancyBitmap};
 use elbowroom_planner::Path;
 use elbowroom_vision::{Channels, Frame, Point2, VisionError};
 
+use crate::obstacle_update::Prism;
 use crate::pipeline::PerceptionPipeline;
-use crate::update::Prism;
 
 const OBSERVED: [u8; 3] = [40, 220, 90];
 const PREDICTED: [u8; 3] = [250, 200, 40];
@@ -65,10 +65,14 @@ pub struct MapOverlay<'a> {
 ///
 /// # Errors
 /// None for a valid grid.
-pub fn map_along_elbow(table: &OccupancyBitmap, grid: &Grid, overlay: &MapOverlay<'_>) -> Result<Frame, VisionError> {
+pub fn map_along_elbow(
+    occupancy: &OccupancyBitmap,
+    grid: &Grid,
+    overlay: &MapOverlay<'_>,
+) -> Result<Frame, VisionError> {
     let [columns, rows, _] = grid.shape();
     let share = |i: usize, j: usize| {
-        let ones: u32 = table.row(i * rows + j).iter().map(|word| word.count_ones()).sum();
+        let ones: u32 = occupancy.row(i * rows + j).iter().map(|word| word.count_ones()).sum();
         f64::from(ones) / grid.shape()[2] as f64
     };
     draw_map(grid, &Projection { right: 0, up: 1, columns, rows, share: &share }, overlay)
@@ -78,11 +82,11 @@ pub fn map_along_elbow(table: &OccupancyBitmap, grid: &Grid, overlay: &MapOverla
 ///
 /// # Errors
 /// None for a valid grid.
-pub fn fullest_slice(table: &OccupancyBitmap, grid: &Grid, overlay: &MapOverlay<'_>) -> Result<Frame, VisionError> {
+pub fn fullest_slice(occupancy: &OccupancyBitmap, grid: &Grid, overlay: &MapOverlay<'_>) -> Result<Frame, VisionError> {
     let [planes, rows, columns] = grid.shape();
-    let blocked = |plane: &usize| table.plane(*plane).iter().map(|word| word.count_ones()).sum::<u32>();
+    let blocked = |plane: &usize| occupancy.plane(*plane).iter().map(|word| word.count_ones()).sum::<u32>();
     let plane = (0..planes).max_by_key(blocked).unwrap_or(0) as u16;
-    let share = |i: usize, j: usize| f64::from(u8::from(table.is_blocked([plane, j as u16, i as u16])));
+    let share = |i: usize, j: usize| f64::from(u8::from(occupancy.is_blocked([plane, j as u16, i as u16])));
     draw_map(grid, &Projection { right: 2, up: 1, columns, rows, share: &share }, overlay)
 }
 

@@ -7,14 +7,14 @@ use elbowroom_cspace::{JointMap, MapReader};
 use elbowroom_kinematics::ChainState;
 use elbowroom_vision::{
     self as vision, ArmPart, Calibration, CameraTracker, CameraTrackerSettings, Frame, FrameStatus, PixelMask,
-    RawLayout,
+    RawLayout, Stopwatch,
 };
 
-use crate::arm::MappedArm;
 use crate::error::PerceptionError;
-use crate::known::{MapUpdater, PrismSettings};
-use crate::times::{PerceptionTimes, Stopwatch};
-use crate::update::ObstacleUpdate;
+use crate::map_updater::{MapUpdater, PrismSettings};
+use crate::mapped_arm::MappedArm;
+use crate::obstacle_update::ObstacleUpdate;
+use crate::times::PerceptionTimes;
 
 /// Settings of a [`PerceptionPipeline`], beside the [`CameraTrackerSettings`] of the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +47,7 @@ pub struct PerceptionPipeline {
     mask: PixelMask,
     parts: Vec<ArmPart>,
     chain: ChainState,
-    known: MapUpdater,
+    map_updater: MapUpdater,
 }
 
 impl PerceptionPipeline {
@@ -59,7 +59,7 @@ impl PerceptionPipeline {
         arm: Arc<MappedArm>,
         step_rad: f64,
         camera: Calibration,
-        seeing: CameraTrackerSettings,
+        tracker_settings: CameraTrackerSettings,
         settings: PerceptionSettings,
     ) -> Result<Self, PerceptionError> {
         for (name, value) in [("prediction_s", settings.prediction_s), ("mask_margin_m", settings.mask_margin_m)] {
@@ -71,13 +71,13 @@ impl PerceptionPipeline {
         let (width, height) = camera.size()?;
         Ok(Self {
             settings,
-            vision: CameraTracker::new(camera, seeing)?,
+            vision: CameraTracker::new(camera, tracker_settings)?,
             map: JointMap::new(arm.planar, &arm.grid(step_rad)?)?,
             frame: Frame::default(),
             mask: PixelMask::new(width, height),
             parts: Vec::new(),
             chain: ChainState::new(&arm.robot.chain),
-            known: MapUpdater::default(),
+            map_updater: MapUpdater::default(),
             arm,
         })
     }
@@ -122,8 +122,8 @@ impl PerceptionPipeline {
     ///
     /// # Errors
     /// An image that cannot be decoded, has the wrong size or is out of order; joint values that do not match the
-    /// robot. The map is unchanged: unknown is not free. With an obstacle that has no valid hull, that obstacle
-    /// keeps its place, the other obstacles are updated, and readers see the change after the next valid frame.
+    /// robot. The map is unchanged: unknown is not free. Where an obstacle has no valid hull, its cells are unchanged,
+    /// the other obstacles are updated, and readers see the change after the next valid frame.
     pub fn process_image(
         &mut self,
         bytes: &[u8],
@@ -136,9 +136,9 @@ impl PerceptionPipeline {
         let decoded = vision::decode(bytes, name, self.settings.raw, &mut frame);
         frame.stamp_s = stamp_s;
         let decode = stopwatch.lap();
-        let seen = decoded.map_err(PerceptionError::from).and_then(|()| self.process_frame(&frame, q));
+        let processed = decoded.map_err(PerceptionError::from).and_then(|()| self.process_frame(&frame, q));
         self.frame = frame;
-        let mut update = seen?;
+        let mut update = processed?;
         update.times.decode = decode;
         Ok(update)
     }
@@ -173,17 +173,17 @@ impl PerceptionPipeline {
             times,
         };
         if update.status == FrameStatus::Valid {
-            let sweep = PrismSettings {
+            let settings = PrismSettings {
                 world_in_base: self.arm.base_in_world.inverse(),
                 prediction_s: self.settings.prediction_s,
                 slack_m: self.vision.settings().hysteresis_m,
             };
-            self.known.follow(&self.vision.report().obstacles, &sweep, &mut self.map, &mut update)?;
+            self.map_updater.update(&self.vision.report().obstacles, &settings, &mut self.map, &mut update)?;
             update.times.fill = stopwatch.lap();
             self.map.publish();
             update.times.publish = stopwatch.lap();
         }
-        update.prisms.clone_from(self.known.prisms());
+        update.prisms.clone_from(self.map_updater.prisms());
         Ok(update)
     }
 }

@@ -1,6 +1,6 @@
 //! Wall-clock time per stage.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// From the bytes of a frame to the published map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,19 +68,5 @@ impl ReplanTimes {
     /// Sum of all stages.
     pub fn total(&self) -> Duration {
         self.stages().iter().map(|(_, time)| *time).sum()
-    }
-}
-
-/// Measures consecutive intervals of wall-clock time.
-pub(super) struct Stopwatch(Instant);
-
-impl Stopwatch {
-    pub fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    pub fn lap(&mut self) -> Duration {
-        let now = Instant::now();
-        now - std::mem::replace(&mut self.0, now)
     }
 }

@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel}
 use std::thread::{Builder, JoinHandle};
 
 use crate::error::PerceptionError;
+use crate::obstacle_update::ObstacleUpdate;
 use crate::pipeline::PerceptionPipeline;
-use crate::update::ObstacleUpdate;
 
 /// A frame for a [`PerceptionWorker`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -45,8 +45,8 @@ impl PerceptionWorker {
         let (outgoing, updates) = channel();
         let work = move || {
             for image in incoming {
-                let seen = pipeline.process_image(&image.bytes, &image.name, image.stamp_s, &image.q);
-                if outgoing.send(seen).is_err() {
+                let result = pipeline.process_image(&image.bytes, &image.name, image.stamp_s, &image.q);
+                if outgoing.send(result).is_err() {
                     break;
                 }
             }

@@ -21,9 +21,9 @@ fn kr125() -> Robot {
 
 /// Corners of all solids of a link, in its frame.
 fn corners(robot: &Robot, link: usize) -> Vec<Vec3> {
-    let of = |body: &elbowroom_robot::Collider| -> Vec<Vec3> {
-        let (corners, _) = tessellate(&body.shape, CHORD_M);
-        corners.into_iter().map(|p| body.in_link.transform_point(p)).collect()
+    let of = |collider: &elbowroom_robot::Collider| -> Vec<Vec3> {
+        let (corners, _) = tessellate(&collider.shape, CHORD_M);
+        corners.into_iter().map(|p| collider.in_link.transform_point(p)).collect()
     };
     robot.colliders[link].iter().flat_map(of).collect()
 }
@@ -118,14 +118,14 @@ fn links_lie_within_the_planar_arm_whatever_the_wrist_does() {
 fn rotating_geometry_outside_the_upper_arm_is_enclosed_by_solids_of_revolution_about_axis_1() {
     let (robot, arm) = (kr125(), PlanarArm::KR125);
     let shoulder = Vec3::new(arm.offset_m, 0.0, arm.height_m - 0.35);
-    for body in &robot.colliders[robot.chain.link("link_1").unwrap().0] {
-        let (corners, _) = tessellate(&body.shape, CHORD_M);
-        let far = |p: &Vec3| body.in_link.transform_point(*p).distance(shoulder) + CHORD_M;
+    for collider in &robot.colliders[robot.chain.link("link_1").unwrap().0] {
+        let (corners, _) = tessellate(&collider.shape, CHORD_M);
+        let far = |p: &Vec3| collider.in_link.transform_point(*p).distance(shoulder) + CHORD_M;
         let is_within = corners.iter().all(|p| far(p) <= arm.upper_radius_m);
-        let axis = body.in_link.transform_vector(Vec3::Z);
-        let on_axis = body.in_link.translation.x.hypot(body.in_link.translation.y) < 1e-12;
-        let is_round = matches!(body.shape, Shape::Cylinder(_)) && on_axis && (axis - Vec3::Z).length() < 1e-12;
-        assert!(is_within || is_round, "{body:?}");
+        let axis = collider.in_link.transform_vector(Vec3::Z);
+        let on_axis = collider.in_link.translation.x.hypot(collider.in_link.translation.y) < 1e-12;
+        let is_round = matches!(collider.shape, Shape::Cylinder(_)) && on_axis && (axis - Vec3::Z).length() < 1e-12;
+        assert!(is_within || is_round, "{collider:?}");
     }
 }
 

@@ -38,14 +38,14 @@ pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
     };
     let links = ["foot", "column", "upper", "fore"].map(String::from).to_vec();
     let mut robot = Robot::new(Chain::new("arm", links, (0..3).map(joint).collect())?);
-    let body = |shape, in_link| Collider { name: String::new(), shape, in_link };
+    let collider = |shape, in_link| Collider { name: String::new(), shape, in_link };
     let capsule = |length: f64, radius| Shape::Capsule(Capsule { half_length: 0.5 * length, radius });
     let along_x = Pose::from_xyz_rpy([0.5 * ARM.fore_length_m, 0.0, 0.0], [0.0, std::f64::consts::FRAC_PI_2, 0.0]);
     let along_z = Pose::from_translation(Vec3::Z * 0.5 * ARM.upper_length_m);
     let wrist = Pose::from_translation(Vec3::X * ARM.fore_length_m);
-    robot.colliders[2].push(body(capsule(ARM.upper_length_m, ARM.upper_radius_m), along_z));
-    robot.colliders[3].push(body(capsule(ARM.fore_length_m, ARM.fore_radius_m), along_x));
-    robot.colliders[3].push(body(Shape::Sphere(Sphere { radius: ARM.wrist_radius_m }), wrist));
+    robot.colliders[2].push(collider(capsule(ARM.upper_length_m, ARM.upper_radius_m), along_z));
+    robot.colliders[3].push(collider(capsule(ARM.fore_length_m, ARM.fore_radius_m), along_x));
+    robot.colliders[3].push(collider(Shape::Sphere(Sphere { radius: ARM.wrist_radius_m }), wrist));
     Ok(robot)
 }
 

@@ -5,6 +5,7 @@ use elbowroom_proximity::advanced::{
 };
 use elbowroom_proximity::{DistanceSettings, Separation, Shape, TriMesh, WarmStart, Workspace, collides, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 use fearless_simd::Level;
 
 /// A generator of numbers in [0, 1) by integer arithmetic, the same on every machine.
@@ -12,8 +13,7 @@ struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     fn signed(&mut self) -> f64 {

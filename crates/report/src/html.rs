@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use elbowroom_sim::Recording;
-use plotly::Plot;
 use serde_json::{Value, json};
 
 use crate::scene::ReportScene;
 use crate::summary::duration;
 use crate::tables::{self, escape, json_in_script};
-use crate::{plots, view};
+use crate::{plots, scene_data};
 
+const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
 const THREE: &str = include_str!("../assets/three/three.bundle.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
@@ -50,7 +50,7 @@ pub fn write_html(out: impl Write, scene: &ReportScene, runs: &[(&str, &Recordin
         options: options(runs),
         figures: &plots::all(scene, runs),
         tables: run_tables(runs),
-        scene: view::data(scene, runs),
+        scene: scene_data::data(scene, runs),
     };
     write_page(out, &content)
 }
@@ -70,7 +70,7 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "tables" => out.write_all(content.tables.as_bytes())?,
             "plot_data" => out.write_all(json_in_script(&plot_data.to_string()).as_bytes())?,
             "scene_data" => out.write_all(json_in_script(&content.scene.to_string()).as_bytes())?,
-            "plotly" => out.write_all(plotly_script(&Plot::offline_js_sources()).as_bytes())?,
+            "plotly" => out.write_all(PLOTLY.as_bytes())?,
             "three" => out.write_all(THREE.as_bytes())?,
             "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
             unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
@@ -80,16 +80,8 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
     out.flush()
 }
 
-/// plotly.js only: the crate also embeds a formula renderer of 2 MB, which no plot uses.
-fn plotly_script(sources: &str) -> &str {
-    let from = sources.find('>').map_or(0, |i| i + 1);
-    let to = sources[from..].find("</script>").map_or(sources.len(), |i| from + i);
-    &sources[from..to]
-}
-
 fn figure_data(figure: &plots::Figure) -> Value {
-    let plot: Value = serde_json::from_str(&figure.plot.to_json()).unwrap_or_default();
-    json!({ "data": plot["data"], "layout": plot["layout"], "time": figure.over_time })
+    json!({ "data": figure.plot.traces, "layout": figure.plot.layout, "time": figure.over_time })
 }
 
 fn placeholders(figures: &[plots::Figure]) -> String {

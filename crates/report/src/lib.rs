@@ -4,7 +4,7 @@
 //! override with the governing region, a timing chart, the events, and an animated 3-D scene. Nothing is loaded from a
 //! network: plotly.js and three.js are embedded. [`summary`] is the text summary.
 //!
-//! **Size.** 5.3 MB are scripts. Plots have at most 2,000 points per trace and the 3-D scene at most 1,500 frames, so a
+//! **Size.** 2.4 MB are scripts. Plots have at most 2,000 points per trace and the 3-D scene at most 1,500 frames, so a
 //! run adds at most about 60 kB per trace and 56 kB per moving link, however long it is; meshes add 16 bytes per
 //! vertex and triangle.
 //!
@@ -33,23 +33,23 @@
 //! ```
 
 mod downsample;
+mod explanation;
 mod html;
 pub mod map_pictures;
 pub mod model_picture;
-mod outline;
 mod palette;
+mod perception_page;
 mod plots;
 mod png;
+mod region_surface;
 mod scene;
+mod scene_data;
 mod spans;
-mod spark;
+mod sparkline;
 mod summary;
 mod tables;
-mod view;
-mod watched;
-mod why;
 
 pub use html::write_html;
+pub use perception_page::{stage_table, write_perception_html};
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
 pub use summary::{TextSummary, summary};
-pub use watched::{stage_table, write_perception_html};

@@ -13,10 +13,11 @@ use crate::{palette, png};
 const SMALLEST: usize = 180;
 const FREE: [u8; 3] = [246, 246, 242];
 /// Largest number of images; more slices are thinned out.
-const MOST: usize = 200;
+const MAX_IMAGES: usize = 200;
 
 /// Writes images of slices and a page with them, `index.html`, to a folder; returns the number of images. One image per
-/// cell of the first axis: the last axis to the right, the one before it upwards, any others at the middle of their range.
+/// cell of the first axis: the last axis to the right, the one before it upwards, any others at the middle of their
+/// range.
 ///
 /// # Errors
 /// Errors of the file system.
@@ -25,7 +26,7 @@ pub fn write(map: &CellMap, folder: &Path) -> io::Result<usize> {
     let axes = &map.axes;
     let (right, up) = (axes.len() - 1, axes.len().checked_sub(2));
     let planes = if axes.len() > 2 { axes[0].count() } else { 1 };
-    let every = planes.div_ceil(MOST);
+    let every = planes.div_ceil(MAX_IMAGES);
     let mut figures = String::new();
     let mut count = 0;
     for plane in (0..planes).step_by(every) {
@@ -81,7 +82,7 @@ fn color(index: usize) -> [u8; 3] {
 
 fn value(map: &CellMap, axis: usize, value: f64) -> String {
     let name = escape(map.axes[axis].joint());
-    if map.turns[axis] { format!("{name} {:.1}°", value.to_degrees()) } else { format!("{name} {value:.3} m") }
+    if map.is_angle[axis] { format!("{name} {:.1}°", value.to_degrees()) } else { format!("{name} {value:.3} m") }
 }
 
 fn escape(text: &str) -> String {

@@ -26,22 +26,22 @@ struct ColoredTriangle {
     layer: u8,
 }
 
-/// Writes a PNG of the model from the front left and above, every joint at zero or at the limit nearest to it, each
-/// link in a colour of its own. The axis of a joint is drawn through everything, in the colour of the link that it
-/// moves and edged with black; the arrow points in its positive sense.
+/// Writes a PNG of the model, seen from the front left and above, with every joint at zero or at the limit nearest to
+/// it and each link in a colour of its own. The axis of a joint is drawn in front of everything, in the colour of the
+/// link that it moves, with a black edge; the arrow points in its positive direction.
 ///
 /// # Errors
 /// Errors of the writer.
 pub fn write_png(inspection: &Inspection, out: impl Write) -> io::Result<()> {
-    png::write(out, WIDTH, HEIGHT, &render(&colored(inspection), -35.0, 25.0))
+    png::write(out, WIDTH, HEIGHT, &render(&colored_triangles(inspection), -35.0, 25.0))
 }
 
-/// Writes a page with four such pictures: askew, from the front, from the side, from above.
+/// Writes a page with four such images: oblique, from the front, from the side, from above.
 ///
 /// # Errors
 /// Errors of the writer.
 pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()> {
-    let colored = colored(inspection);
+    let colored_triangles = colored_triangles(inspection);
     let escape = |t: &str| t.replace('&', "&amp;").replace('<', "&lt;");
     let name = escape(&inspection.name);
     writeln!(out, "<!DOCTYPE html><meta charset=\"utf-8\"><title>{name}</title><h1>{name}</h1>")?;
@@ -49,7 +49,7 @@ pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()
         [("oblique", -35.0, 25.0), ("from x", 0.0, 0.0), ("from y", 90.0, 0.0), ("from above", 0.0, 90.0)]
     {
         let mut file = Vec::new();
-        png::write(&mut file, WIDTH, HEIGHT, &render(&colored, turn, tilt))?;
+        png::write(&mut file, WIDTH, HEIGHT, &render(&colored_triangles, turn, tilt))?;
         let data = base64::engine::general_purpose::STANDARD.encode(file);
         writeln!(
             out,
@@ -69,13 +69,13 @@ pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()
     out.flush()
 }
 
-fn colored(inspection: &Inspection) -> Vec<ColoredTriangle> {
+fn colored_triangles(inspection: &Inspection) -> Vec<ColoredTriangle> {
     let mut all = Vec::new();
-    for (i, (bodies, in_world)) in shown(inspection).into_iter().enumerate() {
+    for (i, (colliders, in_world)) in shown(inspection).into_iter().enumerate() {
         let color = color(i);
-        for body in bodies.iter().filter(|b| !matches!(b.shape, Shape::HalfSpace(_))) {
-            let (vertices, triangles) = tessellate(&body.shape, CHORD_M);
-            let place = in_world * body.in_link;
+        for collider in colliders.iter().filter(|b| !matches!(b.shape, Shape::HalfSpace(_))) {
+            let (vertices, triangles) = tessellate(&collider.shape, CHORD_M);
+            let place = in_world * collider.in_link;
             let corners = |t: [u32; 3]| t.map(|v| place.transform_point(vertices[v as usize]));
             all.extend(triangles.into_iter().map(|t| ColoredTriangle { corners: corners(t), color, layer: 0 }));
         }
@@ -92,7 +92,7 @@ fn add_axes(inspection: &Inspection, all: &mut Vec<ColoredTriangle>) {
     let size = if size.max_element() > 0.0 { size.max_element() } else { 1.0 };
     for (i, joint) in robot.chain.joints().iter().filter(|j| j.kind.moves()).enumerate() {
         let place = state.link_in_root(joint.child) * Pose::new(Rotation::from_z(joint.axis), Vec3::ZERO);
-        // Lengths differ, so that two axes on one line are both visible. Black below for the edge.
+        // Lengths differ, so that two axes on one line are both visible. A black arrow below forms the edge.
         let length = size * (0.2 + 0.035 * (i % 3) as f64);
         for (layer, color, edge) in [(1, [0.05; 3], 0.0), (2, color(joint.child.0), size * 0.0015)] {
             let triangles = arrow(length, size * 0.0045, edge).into_iter();
@@ -125,7 +125,7 @@ fn shown(inspection: &Inspection) -> Vec<(&[Collider], Pose)> {
         return inspection.solids().iter().map(|s| (&s.1[..], Pose::IDENTITY)).collect();
     };
     let state = at_rest(robot);
-    (0..robot.colliders.len()).map(|l| (bodies(robot, l), state.link_in_root(LinkId(l)))).collect()
+    (0..robot.colliders.len()).map(|l| (visuals_or_colliders(robot, l), state.link_in_root(LinkId(l)))).collect()
 }
 
 /// The state with every joint at zero, or at the limit nearest to it.
@@ -138,7 +138,7 @@ fn at_rest(robot: &Robot) -> ChainState {
 }
 
 /// The visual meshes of a link, or its collision geometry where it has none.
-fn bodies(robot: &Robot, link: usize) -> &[Collider] {
+fn visuals_or_colliders(robot: &Robot, link: usize) -> &[Collider] {
     if robot.visuals[link].is_empty() { &robot.colliders[link] } else { &robot.visuals[link] }
 }
 
@@ -176,11 +176,11 @@ fn color(i: usize) -> [f64; 3] {
 }
 
 /// Renders along -x after rotations about z and y (degrees); red, green, blue per pixel.
-fn render(colored: &[ColoredTriangle], turn: f64, tilt: f64) -> Vec<u8> {
+fn render(colored_triangles: &[ColoredTriangle], turn: f64, tilt: f64) -> Vec<u8> {
     let turned =
         Rotation::from_axis_angle(Vec3::Y, tilt.to_radians()) * Rotation::from_axis_angle(Vec3::Z, turn.to_radians());
     let seen: Vec<([Vec3; 3], [f64; 3], u8)> =
-        colored.iter().map(|p| (p.corners.map(|c| turned * c), p.color, p.layer)).collect();
+        colored_triangles.iter().map(|p| (p.corners.map(|c| turned * c), p.color, p.layer)).collect();
     let around = Aabb::from_points(seen.iter().flat_map(|s| s.0).filter(|p| p.is_finite()));
     let nearer = 2.0 * around.extent().x + 1.0;
     let (width, height) = (WIDTH * FINE, HEIGHT * FINE);

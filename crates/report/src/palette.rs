@@ -24,15 +24,15 @@ pub fn of_run(robot: usize, monitored: bool) -> &'static str {
 
 /// Colour by index.
 pub fn of_index(i: usize) -> &'static str {
-    const MANY: [&str; 10] =
+    const COLORS: [&str; 10] =
         ["#4c78a8", "#f58518", "#54a24b", "#e45756", "#72b7b2", "#b279a2", "#eeca3b", "#ff9da6", "#9d755d", "#8a8f98"];
-    MANY[i % MANY.len()]
+    COLORS[i % COLORS.len()]
 }
 
 /// Colour of a robot's links.
 pub fn of_robot(i: usize) -> &'static str {
-    const BODIES: [&str; 4] = ["#e2833b", "#b9c0c9", "#e0c34a", "#8f9fd6"];
-    BODIES[i % BODIES.len()]
+    const LINKS: [&str; 4] = ["#e2833b", "#b9c0c9", "#e0c34a", "#8f9fd6"];
+    LINKS[i % LINKS.len()]
 }
 
 /// Colour of tools.

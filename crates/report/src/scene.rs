@@ -75,8 +75,8 @@ impl ReportScene {
     /// The geometry of a cell.
     pub fn of_cell(cell: &Cell) -> Self {
         let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
-            let carried: Vec<Collider> = r.payload().cloned().collect();
-            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &carried)
+            let payload: Vec<Collider> = r.payload().cloned().collect();
+            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
         });
         cell.objects.iter().fold(scene, Self::object)
     }
@@ -117,7 +117,7 @@ impl ReportScene {
 }
 
 fn shown(robot: &Robot, link: usize) -> &[Collider] {
-    let of = |list: &'_ [Vec<Collider>]| list.get(link).is_some_and(|bodies| !bodies.is_empty());
+    let of = |list: &'_ [Vec<Collider>]| list.get(link).is_some_and(|colliders| !colliders.is_empty());
     if of(&robot.visuals) {
         &robot.visuals[link]
     } else if of(&robot.colliders) {
@@ -127,13 +127,13 @@ fn shown(robot: &Robot, link: usize) -> &[Collider] {
     }
 }
 
-fn meshes(bodies: &[Collider], color: [u8; 3]) -> Vec<ReportMesh> {
-    bodies
+fn meshes(colliders: &[Collider], color: [u8; 3]) -> Vec<ReportMesh> {
+    colliders
         .iter()
-        .filter(|body| !matches!(body.shape, Shape::HalfSpace(_)))
-        .map(|body| {
-            let (vertices, triangles) = tessellate(&body.shape, CHORD_ERROR_M);
-            ReportMesh { vertices, triangles, in_link: body.in_link, color }
+        .filter(|collider| !matches!(collider.shape, Shape::HalfSpace(_)))
+        .map(|collider| {
+            let (vertices, triangles) = tessellate(&collider.shape, CHORD_ERROR_M);
+            ReportMesh { vertices, triangles, in_link: collider.in_link, color }
         })
         .collect()
 }

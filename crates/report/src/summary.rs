@@ -4,8 +4,8 @@ use std::fmt;
 
 use elbowroom_sim::{AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotTrack};
 
-use crate::spark::sparkline;
-use crate::why::explanation;
+use crate::explanation::explanation;
+use crate::sparkline::sparkline;
 
 /// Largest number of listed regions; the rest is counted.
 const MAX_REGIONS: usize = 12;

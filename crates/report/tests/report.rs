@@ -58,6 +58,30 @@ fn names_are_text_and_data_is_json() {
     assert!(names.contains("&lt;img") && !names.contains("<img"), "plotly reads markup in names");
 }
 
+/// plotly.js ignores attributes that it does not know.
+#[test]
+fn plots_use_attributes_of_plotly_alone() {
+    const KNOWN: &str = "anchor autorange automargin b color colorscale connectgaps dash data domain fill fillcolor \
+        hoverinfo hovermode hovertemplate hovertext l layout legend legendgroup line margin marker mode name opacity \
+        orientation r range rangemode scaleanchor scaleratio scene showgrid showlegend showscale showticklabels size \
+        symbol t text textposition ticktext tickvals time title type width x xaxis y yanchor yaxis yaxis2 yaxis3 z zaxis \
+        zeroline";
+    fn check(value: &Value) {
+        match value {
+            Value::Array(items) => items.iter().for_each(check),
+            Value::Object(fields) => {
+                for (name, value) in fields {
+                    assert!(KNOWN.split_whitespace().any(|known| known == name), "{name}");
+                    check(value);
+                }
+            }
+            _ => {}
+        }
+    }
+    let html = page(&report_demo::recording(true, 500, "column"), &report_demo::recording(false, 500, "column"));
+    check(&block(&html, "plot-data"));
+}
+
 #[test]
 fn a_long_run_is_bounded() {
     let ticks = 60_000;

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::{Aabb, Pose};
+use elbowroom_spatial::{Pose, Vec3};
 
 /// One shape of a link.
 #[derive(Debug, Clone)]
@@ -45,7 +45,6 @@ impl Robot {
     /// Upper bound (m) of the distance between the link's origin and any point of its colliders; 0 without colliders.
     /// Infinite or NaN where a collider is unbounded.
     pub fn link_radius(&self, link: LinkId) -> f64 {
-        let farthest_corner = |b: &Aabb| b.min.abs().max(b.max.abs()).length();
-        self.colliders[link.0].iter().map(|c| farthest_corner(&c.shape.aabb(&c.in_link))).fold(0.0, f64::max)
+        self.colliders[link.0].iter().map(|c| c.shape.aabb(&c.in_link).max_distance(Vec3::ZERO)).fold(0.0, f64::max)
     }
 }

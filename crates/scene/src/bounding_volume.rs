@@ -56,14 +56,12 @@ fn size(points: &[Vec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use elbowroom_testkit::random::{linear_congruential, unit};
 
     #[test]
     fn all_points_are_contained_in_little_more_than_their_own_volume() {
         let mut seed = 5_u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = || unit(linear_congruential(&mut seed));
         let turn = Pose::from_xyz_rpy([3.0, -1.0, 0.2], [0.3, 0.7, -1.1]);
         let mut point = || turn.transform_point(Vec3::new(random(), 0.3 * random(), 0.2 * random()));
         let points: Vec<Vec3> = (0..20_000).map(|_| point()).collect();

@@ -5,7 +5,7 @@ use elbowroom_kinematics::motion_bound::motion_bound;
 use elbowroom_proximity::ccd::RigidMotion;
 use elbowroom_proximity::{Shape, collides, separation_within};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
-use elbowroom_spatial::{Aabb, Pose};
+use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::Object;
 
@@ -117,7 +117,7 @@ impl<'a> FirstContacts<'a> {
                     self.pairs.push(TrackedPair::new(&self.robots, link, GeometryId::Object(o)));
                 }
             }
-            let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.min.abs().max(b.max.abs()).length());
+            let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.max_distance(Vec3::ZERO));
             let object = GeometryId::Object(o);
             for pair in self.pairs.iter_mut().filter(|p| p.a == object || p.b == object) {
                 pair.moving_object = Some((o, radius));

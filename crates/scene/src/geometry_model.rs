@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use elbowroom_proximity::{Capsule, Cuboid, Shape};
 use elbowroom_robot::GeometryId;
-use elbowroom_spatial::{Aabb, Obb, Vec3};
+use elbowroom_spatial::{Obb, Vec3};
 
 use crate::Level;
 use crate::bounding_volume;
@@ -77,8 +77,7 @@ impl GeometryModel {
 
     /// Upper bound (m) on the distance of any point from the origin; infinite or NaN where the geometry is unbounded.
     pub fn radius(&self) -> f64 {
-        let farthest_corner = |b: &Aabb| b.min.abs().max(b.max.abs()).length();
-        self.exact.iter().map(|s| farthest_corner(&s.bounds)).fold(0.0, f64::max)
+        self.exact.iter().map(|s| s.bounds.max_distance(Vec3::ZERO)).fold(0.0, f64::max)
     }
 }
 

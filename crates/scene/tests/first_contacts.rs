@@ -7,6 +7,7 @@ use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_
 
 use elbowroom_scene::{FirstContacts, Object, ObjectPath};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::linear_congruential;
 
 /// Five links in a row, joints about y and z in turn; link 2 has no collider.
 fn snake() -> Robot {
@@ -121,10 +122,7 @@ impl Setup {
 fn every_first_contact_is_found_with_its_time() {
     let setup = Setup::new();
     let mut seed = 7_u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 40) as f64 / (1_u64 << 23) as f64 - 1.0
-    };
+    let mut random = || (linear_congruential(&mut seed) >> 40) as f64 / (1_u64 << 23) as f64 - 1.0;
     let (mut contacts, mut with_ball, mut passed) = (0, 0, 0);
     for run in 0..120 {
         let robots = setup.base.map(|base| (&setup.robot, base)).to_vec();

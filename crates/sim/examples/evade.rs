@@ -24,7 +24,7 @@ use random::Random;
 /// Smallest distance of the obstacle to the axis of the base, m: a pedestal cannot move away.
 const PEDESTAL_M: f64 = 1.0;
 /// Smallest initial distance of the obstacle to the robot, m.
-const LEAST_START_DISTANCE_M: f64 = 0.8;
+const MIN_START_DISTANCE_M: f64 = 0.8;
 /// Below this share of its speed a joint counts as stationary.
 const STATIONARY_SHARE: f64 = 1e-4;
 
@@ -152,7 +152,7 @@ fn crossing(
     let mut checker = Checker::new(scene, CheckerOptions::default());
     let near = checker
         .between(Selection::Robot(RobotId(0)), Selection::Object(ObjectId(0)))
-        .within(&state, LEAST_START_DISTANCE_M);
+        .within(&state, MIN_START_DISTANCE_M);
     Ok(near.is_none().then_some(path))
 }
 

@@ -1,8 +1,9 @@
-//! The programs of a cell in simulated time, under the monitor.
+//! Simulation of the programs of a cell under the interference-region monitors.
 //!
 //! [`simulate`] runs the programs of a [`Cell`](elbowroom_cell::Cell) on one clock and returns a [`Recording`], which
 //! [`Summary`] and [`csv`] turn into what scripts read and `elbowroom_report` into what people read. [`check`](check::check)
-//! says, without a run, which regions the laws that are on keep free in these programs; [`motion`] times the programs for both.
+//! decides, without a run, which regions the active laws keep the robots out of; [`motion`] times the programs for
+//! both.
 //!
 //! ```
 //! use elbowroom_cell::Cell;

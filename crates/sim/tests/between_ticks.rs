@@ -1,4 +1,4 @@
-//! Regions that a robot passes between two ticks: entered, reported, and the outputs pulse.
+//! Regions that a robot passes through between two ticks count as entered, are reported, and pulse their outputs.
 
 mod common;
 
@@ -106,13 +106,13 @@ fn a_belt_that_restarts_passes_no_robot() {
          [region.blade]\nshape = \"box\"\nbase = [-700, 0, -500]\nsize = [2, 1000, 1000]\nkind = \"monitored\"\n\
          guards = [\"tcp\"]\nfollow = {{ encoder = \"belt\" }}\n[encoder.back]\nspeed = 1\n"
     );
-    // Its travel runs from -700 to -100 and wraps: the TCP at 0 is never passed; nor is it at -300 by the wrap, only by
-    // the forward motion.
+    // The region moves from x = -700 to -100 and jumps back: it never passes a TCP at 0, and passes one at -300 only
+    // while it moves forward, not when it jumps back.
     assert_eq!(events(&run(&text).recording, "blade"), []);
     let shifted = text.replace("[robot.a]\n", "[robot.a]\nbase = { at = [-300, 0, 0], rpy = [0, 0, 0] }\n");
     let found = events(&run(&shifted).recording, "blade");
     let times = found.iter().filter(|e| e.0 == "inside_in").count();
-    // Three seconds of 1.2 s each, from 0.8 s on.
+    // It passes at 0.8 s and then every 1.2 s: twice in 3 s.
     assert_eq!(times, 2, "{found:?}");
 }
 

@@ -94,6 +94,18 @@ impl Aabb {
         self.gap(o).length_squared()
     }
 
+    /// Distance (m) between a point and the farthest point of the box; infinite or NaN where the box is unbounded or empty.
+    ///
+    /// ```
+    /// use elbowroom_spatial::{Aabb, Vec3};
+    /// let slab = Aabb { min: Vec3::new(-3.0, 0.0, 0.0), max: Vec3::new(1.0, 4.0, 0.0) };
+    /// assert_eq!(slab.max_distance(Vec3::ZERO), 5.0);
+    /// ```
+    #[inline]
+    pub fn max_distance(&self, from: Vec3) -> f64 {
+        (self.min - from).abs().max((self.max - from).abs()).length()
+    }
+
     #[inline]
     fn gap(&self, o: &Self) -> Vec3 {
         (o.min - self.max).max(self.min - o.max).max(Vec3::ZERO)

@@ -1,7 +1,5 @@
 //! Camera frames to obstacles.
 
-use std::time::{Duration, Instant};
-
 use elbowroom_spatial::Vec3;
 
 use crate::background::{BackgroundPlane, FOREGROUND, PixelClassifier, RowSubset, Thresholds};
@@ -10,6 +8,7 @@ use crate::illumination_estimator::IlluminationEstimator;
 use crate::morphology::Morphology;
 use crate::object_tracker::ObjectTracker;
 use crate::report::{FrameReport, FrameStatus, RejectReason, StageTimings};
+use crate::stopwatch::Stopwatch;
 use crate::{
     Calibration, CameraTrackerSettings, Channels, ConnectedComponents, Frame, Illumination, PixelMask, Point2,
     VisionError,
@@ -383,18 +382,5 @@ fn clear_masked(plane: &mut [u8], mask: &PixelMask) {
         for (pixel, &masked) in plane.iter_mut().zip(mask.plane()) {
             *pixel &= masked.wrapping_sub(1);
         }
-    }
-}
-
-struct Stopwatch(Instant);
-
-impl Stopwatch {
-    fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    fn lap(&mut self) -> Duration {
-        let now = Instant::now();
-        now - std::mem::replace(&mut self.0, now)
     }
 }

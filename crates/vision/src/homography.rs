@@ -3,6 +3,7 @@
 //! Hartley and Zisserman, Multiple View Geometry, 2nd edition, algorithm 4.2.
 
 use elbowroom_spatial::Vec3;
+use elbowroom_spatial::linalg::symmetric_eigen;
 
 use crate::{Point2, VisionError};
 
@@ -171,39 +172,6 @@ fn direct_linear_transform(from: &[Point2], to: &[Point2]) -> Result<Matrix, Vis
         return Err(collinear_points());
     }
     Ok(matrix)
-}
-
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix by cyclic Jacobi rotations (Golub and Van Loan, 8.5).
-fn symmetric_eigen(mut a: [[f64; 9]; 9]) -> ([f64; 9], [[f64; 9]; 9]) {
-    let mut v = [[0.0; 9]; 9];
-    for i in 0..9 {
-        v[i][i] = 1.0;
-    }
-    for _sweep in 0..30 {
-        for p in 0..9 {
-            for q in p + 1..9 {
-                rotate(&mut a, &mut v, p, q);
-            }
-        }
-    }
-    (std::array::from_fn(|i| a[i][i]), v)
-}
-
-fn rotate(a: &mut [[f64; 9]; 9], v: &mut [[f64; 9]; 9], p: usize, q: usize) {
-    if a[p][q].abs() < 1e-300 {
-        return;
-    }
-    let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = tau.signum() / (tau.abs() + tau.hypot(1.0));
-    let c = 1.0 / t.hypot(1.0);
-    let s = t * c;
-    for k in 0..9 {
-        (a[k][p], a[k][q]) = (c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]);
-        (v[k][p], v[k][q]) = (c * v[k][p] - s * v[k][q], s * v[k][p] + c * v[k][q]);
-    }
-    for k in 0..9 {
-        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-    }
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {

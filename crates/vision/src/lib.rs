@@ -82,6 +82,7 @@ pub mod render;
 mod report;
 mod settings;
 mod shadow;
+mod stopwatch;
 mod template;
 mod track;
 
@@ -101,4 +102,5 @@ pub use obstacle::{Obstacle, ObstacleChange, ObstacleId};
 pub use point::Point2;
 pub use report::{FrameReport, FrameStatus, RejectReason, StageTimings};
 pub use settings::{CameraTrackerSettings, ShadowSettings};
+pub use stopwatch::Stopwatch;
 pub use template::Template;

@@ -107,16 +107,6 @@ impl PixelMask {
         x < self.width && self.plane.get(y * self.width + x).is_some_and(|&pixel| pixel != 0)
     }
 
-    /// Masks one pixel; pixels outside the image are ignored.
-    pub fn mask_pixel(&mut self, x: usize, y: usize) {
-        if x < self.width
-            && let Some(pixel) = self.plane.get_mut(y * self.width + x)
-        {
-            *pixel = 1;
-            self.is_empty = false;
-        }
-    }
-
     /// Masks every pixel that the convex hull of the points, inflated by a margin, touches (all in pixels).
     pub fn mask_polygon(&mut self, points_px: &[Point2], margin_px: f64) {
         polygon::inflate(points_px, margin_px.max(0.0), &mut self.outline, &mut self.workspace);

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use elbowroom_proximity::{ConvexHull, HullError};
 use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::Point2;
@@ -65,14 +64,6 @@ impl Obstacle {
         [self.z_from_m, self.z_to_m]
             .into_iter()
             .flat_map(|z| self.footprint_m.iter().map(move |p| Vec3::new(p.x, p.y, z)))
-    }
-
-    /// The prism as a convex hull in the world.
-    ///
-    /// # Errors
-    /// A footprint without area or a prism without height, which no obstacle of this crate has.
-    pub fn to_hull(&self) -> Result<ConvexHull, HullError> {
-        ConvexHull::from_points(&self.corners().collect::<Vec<_>>())
     }
 
     /// The bounding box of the prism, world frame.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use elbowroom_formats::image::{ImageHeader, PixelFormat};
 use elbowroom_formats::png;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{unit, xorshift};
 use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, PointCloud};
 use elbowroom_vision::{ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, polygon, read_grey16};
 use proptest::prelude::*;
@@ -14,10 +15,7 @@ struct Random(u64);
 
 impl Random {
     fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        unit(xorshift(&mut self.0))
     }
 
     fn between(&mut self, from: f64, to: f64) -> f64 {

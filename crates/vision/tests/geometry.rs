@@ -1,6 +1,7 @@
 //! Calibration, polygons, blobs and masks against naive implementations.
 
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::random::xorshift;
 use elbowroom_vision::{
     ArmPart, Calibration, Camera, ConnectedComponents, FloorHomography, Intrinsics, PixelMask, Point2, polygon,
 };
@@ -117,7 +118,7 @@ proptest! {
     #[test]
     fn components_agree_with_a_flood_fill(width in 1_usize..40, height in 1_usize..25, share in 1_u64..5, seed in any::<u64>()) {
         let mut state = seed | 1;
-        let mut random = || { state ^= state << 13; state ^= state >> 7; state ^= state << 17; state };
+        let mut random = || xorshift(&mut state);
         let plane: Vec<u8> = (0..width * height).map(|_| u8::from(random() % 5 < share)).collect();
         let mut components = ConnectedComponents::default();
         components.label(&[1; 50], 10, 1); // memory of another image must not matter

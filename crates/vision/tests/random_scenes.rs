@@ -3,6 +3,7 @@
 mod synthetic;
 
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::random::{unit, xorshift};
 use elbowroom_vision::render::RenderedSolid;
 use elbowroom_vision::{CameraTrackerSettings, ObstacleChange, Point2, ShadowSettings};
 use synthetic::{SyntheticScene, cover_together};
@@ -11,10 +12,7 @@ struct Random(u64);
 
 impl Random {
     fn between(&mut self, from: f64, to: f64) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        from + (to - from) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+        from + (to - from) * unit(xorshift(&mut self.0))
     }
 }
 

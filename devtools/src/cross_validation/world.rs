@@ -11,6 +11,7 @@ use elbowroom_robot::collision_pairs;
 use elbowroom_robot::{Collider, GeometryId, Robot};
 use elbowroom_scene::{Object, Scene, SceneState};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
+use elbowroom_testkit::random::{split_mix, unit};
 
 /// A robot's files.
 pub struct Files {
@@ -119,13 +120,7 @@ pub fn link_name(scene: &Scene, member: GeometryId) -> String {
 pub fn states(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let chain = &robot.chain;
     let mut seed = 20_261_120_u64;
-    let mut random = move || {
-        // SplitMix64 (Steele, Lea, Flood 2014).
-        seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (seed ^ (seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = move || unit(split_mix(&mut seed));
     let range = |joint: &elbowroom_kinematics::Joint| {
         let wide = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
         let or = |v: f64, other| if v.is_finite() { v } else { other };

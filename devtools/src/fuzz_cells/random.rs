@@ -1,5 +1,7 @@
 //! Random numbers from a seed, the same on every machine (`SplitMix64`).
 
+use elbowroom_testkit::random::{split_mix, unit};
+
 /// A stream of random numbers.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
@@ -13,16 +15,12 @@ impl Random {
     }
 
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        split_mix(&mut self.0)
     }
 
     /// In 0..1.
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        unit(self.bits())
     }
 
     /// In `low..high`, with four digits behind the point, so that cells can be read.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use elbowroom_scene::Scene;
+use elbowroom_testkit::random::{split_mix, unit};
 
 /// A path: a time (or length) and joint values, linear between.
 pub type Polyline = Vec<(f64, Vec<f64>)>;
@@ -120,9 +121,6 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        unit(split_mix(&mut self.0))
     }
 }

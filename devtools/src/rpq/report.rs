@@ -110,7 +110,10 @@ pub fn figures(spacings: &[Spacing]) -> Vec<(&'static str, String)> {
         ("L1+L2+L3, all on", 2, Dash::Dashed, Setting::FULL),
     ];
     vec![
-        ("rpq-matrix.svg", plot("Collision query: with and without collision matrix", spacings, &matrix).svg()),
+        (
+            "rpq-matrix.svg",
+            plot("Collision query: with and without the allowed collision matrix", spacings, &matrix).svg(),
+        ),
         ("rpq-levels.svg", plot("Collision query: resolution levels", spacings, &levels).svg()),
     ]
 }

@@ -13,6 +13,7 @@ use toml::{Table, Value};
 
 /// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
 const LAYERS: [&str; 25] = [
+    "testkit",
     "spatial",
     "proximity",
     "kinematics",
@@ -34,7 +35,6 @@ const LAYERS: [&str; 25] = [
     "inspect",
     "report",
     "live",
-    "testkit",
     "elbowroom",
     "cli",
     "python",

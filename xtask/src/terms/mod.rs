@@ -1,11 +1,12 @@
 //! What the documents and the code are written in: no retired word, no line too long for a reader, no link that leads
-//! nowhere.
+//! nowhere, no name that nothing has.
 //!
 //! `docs/retired-terms.toml` lists the words that have a standard term in their place; `docs/glossary.md` defines the
 //! terms.
 
 mod lines;
 mod links;
+mod names;
 mod retired;
 
 use std::path::{Path, PathBuf};
@@ -14,18 +15,29 @@ use std::path::{Path, PathBuf};
 pub fn run(root: &Path) -> Result<(), String> {
     let terms = retired::read(&root.join(retired::LIST))?;
     let files = files(root)?;
-    let mut problems = Vec::new();
+    let mut known = names::KnownNames::default();
+    let mut texts = Vec::new();
     for path in &files {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
         let name = path.strip_prefix(root).unwrap_or(path).display().to_string();
-        problems.extend(retired::problems(&terms, &name, &text));
-        if path.extension().is_some_and(|e| e == "md") {
-            problems.extend(lines::problems(&name, &text));
-            problems.extend(links::problems(root, &name, &text));
+        known.add(&name, &text);
+        texts.push((name, text));
+    }
+    let mut problems = Vec::new();
+    for (name, text) in &texts {
+        problems.extend(retired::problems(&terms, name, text));
+        if is_document(name) {
+            problems.extend(lines::problems(name, text));
+            problems.extend(links::problems(root, name, text));
+            problems.extend(known.problems(root, name, text));
         }
     }
     if problems.is_empty() {
-        println!("terms: {} retired words in none of {} files; no long line, no broken link", terms.len(), files.len());
+        println!(
+            "terms: {} retired words in none of {} files; no long line, no broken link, no unknown name",
+            terms.len(),
+            files.len()
+        );
         return Ok(());
     }
     Err(format!("{} places\n  {}", problems.len(), problems.join("\n  ")))
@@ -50,7 +62,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), String> {
     const ENDINGS: [&str; 7] = ["rs", "md", "toml", "py", "cpp", "hpp", "js"];
     // Programs of others, as they were published.
-    const FOREIGN: [&str; 2] = ["three", "target"];
+    const FOREIGN: [&str; 3] = ["plotly", "three", "target"];
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     for entry in entries {
         let path = entry.map_err(|e| format!("{}: {e}", folder.display()))?.path();
@@ -64,4 +76,8 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+fn is_document(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "md")
 }

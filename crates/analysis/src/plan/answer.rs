@@ -1,4 +1,4 @@
-//! The output of `elbowroom plan`.
+//! Result of planning: the output of `elbowroom plan`.
 
 use std::io::{self, Write};
 use std::time::Duration;
@@ -7,8 +7,8 @@ use elbowroom_cell::CellRobot;
 use elbowroom_planner::{PlannedPath, Trajectory};
 use serde::{Serialize, Serializer};
 
-/// The result. Serialized as one flat document in SI units, without the rows; without a path `waypoints` is empty, and
-/// the other properties of a path are null.
+/// Result of planning. Serialized as one flat document in SI units, without the rows. Where no path was found,
+/// `waypoints` is empty, and the other properties of a path are null.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathAnswer {
     /// True where a path was found.
@@ -58,12 +58,7 @@ impl PathAnswer {
         }
     }
 
-    pub(super) fn found(
-        robot: &CellRobot,
-        route: PlannedPath,
-        motion: &Trajectory,
-        rows: Vec<(f64, Vec<f64>)>,
-    ) -> Self {
+    pub(super) fn found(robot: &CellRobot, path: PlannedPath, motion: &Trajectory, rows: Vec<(f64, Vec<f64>)>) -> Self {
         let (duration_s, stops) = (motion.seconds(), motion.stops());
         Self {
             found: true,
@@ -71,9 +66,9 @@ impl PathAnswer {
             joints: robot.joint_names(),
             regions: Vec::new(),
             reason: None,
-            planning_us: micros(route.planning_time),
-            simplify_us: micros(route.simplification_time),
-            motion: Some(TimedPath { waypoints: route.waypoints, cost_rad: route.length_rad, duration_s, stops, rows }),
+            planning_us: micros(path.planning_time),
+            simplify_us: micros(path.simplification_time),
+            motion: Some(TimedPath { waypoints: path.waypoints, cost_rad: path.length_rad, duration_s, stops, rows }),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded volumes.
 
 mod answer;
-pub(crate) mod subject;
+pub(crate) mod request_validation;
 
 use std::time::Instant;
 
@@ -17,7 +17,7 @@ use elbowroom_scene::{Scene, SceneState};
 
 pub use answer::{PathAnswer, TimedPath};
 
-/// A request.
+/// A request for a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PathRequest {
     /// Name of the robot; optional where there is only one.
@@ -56,28 +56,28 @@ pub struct PathRequest {
 /// ```
 ///
 /// # Errors
-/// An unknown robot, one without speed limits, an invalid start or goal: beyond limits, in collision, wrong number of
-/// values; a goal in a region, or a start in one that no straight path leaves.
+/// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
+/// number of values; a goal in a region; a start in a region that no straight path leaves.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
-    let (index, robot) = subject::robot(cell, request.robot.as_deref())?;
-    let limits = subject::limits(cell, robot)?;
+    let (index, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
+    let limits = request_validation::kinematic_limits(cell, robot)?;
     let from = request.from.as_ref().unwrap_or(&robot.start);
     for (end, q) in [("start", from), ("goal", &request.to)] {
-        subject::count(cell, robot, end, q)?;
+        request_validation::check_joint_values(cell, robot, end, q)?;
     }
     let scene = elbowroom_cell::QueryModel::of_cell(cell).scene(false)?;
-    let refused = |e: RrtConnectError| subject::refused(cell, robot, &e);
+    let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, index, from).map_err(|e| refused(e.into()))?;
-    let least_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
-    region_constraint::at_start(cell, index, from, least_m, |constraint| {
+    let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
+    region_constraint::at_start(cell, index, from, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
-        let mut connect = RrtConnect::new(&scene, RobotId(index)).map_err(|e| refused(e.into()))?;
+        let mut planner = RrtConnect::new(&scene, RobotId(index)).map_err(|e| refused(e.into()))?;
         if let Some(constraint) = constraint {
-            connect = connect.with_constraint(constraint);
+            planner = planner.with_constraint(constraint);
         }
         let begin = Instant::now();
-        let route = match connect.plan(&state, &request.to, &request.options) {
-            Ok(route) => route,
+        let path = match planner.plan(&state, &request.to, &request.options) {
+            Ok(path) => path,
             Err(e @ RrtConnectError::NotFound { .. }) => {
                 let answer = PathAnswer::none(robot, begin.elapsed(), e.to_string());
                 return Ok(PathAnswer { regions, ..answer });
@@ -85,9 +85,9 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
             Err(e) => return Err(refused(e)),
         };
         let period = request.period_s.unwrap_or(cell.tick_s);
-        let motion = connect.time_parametrize(&state, &route, &limits, period, &request.options).map_err(refused)?;
-        let rows = motion.samples(period).map_err(|e| refused(e.into()))?;
-        Ok(PathAnswer { regions, ..PathAnswer::found(robot, route, &motion, rows) })
+        let trajectory = planner.time_parametrize(&state, &path, &limits, period, &request.options).map_err(refused)?;
+        let rows = trajectory.samples(period).map_err(|e| refused(e.into()))?;
+        Ok(PathAnswer { regions, ..PathAnswer::found(robot, path, &trajectory, rows) })
     })
 }
 

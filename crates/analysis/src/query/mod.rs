@@ -1,8 +1,8 @@
 //! Collision, distance and tolerance queries for many states of a cell or of one robot (`elbowroom query`).
 //!
 //! A [`QueryModel`](elbowroom_cell::QueryModel) holds the robots and objects, [`JointStates`] the joint values;
-//! [`evaluate`] computes one [`QueryRow`] per state, in order, in parallel. A row depends only on its state and the rows
-//! before it in its block of [`BLOCK`], so the results are independent of the number of threads.
+//! [`evaluate`] computes one [`QueryRow`] per state, in order, in parallel. A row depends only on its state and the
+//! rows before it in its block of [`BLOCK`], so the results are independent of the number of threads.
 //!
 //! ```
 //! use elbowroom_analysis::query::{JointStates, Level, QueryKind, evaluate};
@@ -30,13 +30,13 @@
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
 
+mod evaluate;
 mod kind;
 mod row;
 mod states;
-mod threads;
 
 pub use elbowroom_scene::Level;
+pub use evaluate::{BLOCK, evaluate};
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use row::{QueryRecord, QueryRow};
 pub use states::JointStates;
-pub use threads::{BLOCK, evaluate};

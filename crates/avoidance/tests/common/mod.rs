@@ -10,6 +10,7 @@ use elbowroom_proximity::{Cuboid, Shape, Sphere};
 use elbowroom_robot::{ObjectId, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection, SweepMove, SweepOptions};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 pub const DT: f64 = 0.004;
 /// Radius of a ball, m.
@@ -176,7 +177,6 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+        low + (high - low) * unit(linear_congruential(&mut self.0))
     }
 }

@@ -16,7 +16,7 @@ const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
 /// Range of the clearance, m; rules limit it further.
 const CLEARANCES_M: (f64, f64) = (1e-4, 5.0);
 /// Smallest return speed, as a share of the joints' speeds.
-const LEAST_RETURN: f64 = 0.01;
+const MIN_RETURN: f64 = 0.01;
 /// Range of the stall timeout, s.
 const STALL_TIMEOUTS_S: (f64, f64) = (0.01, 60.0);
 
@@ -41,7 +41,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
     }
     if let Some(v) = t.get("return_speed") {
         settings.return_speed_fraction = v.percent()?;
-        if settings.return_speed_fraction < LEAST_RETURN {
+        if settings.return_speed_fraction < MIN_RETURN {
             let what = "is less than 1 percent: the robot would hardly return";
             return Err(v.error(what).hint("return_speed = 50   (percent)"));
         }

@@ -9,7 +9,7 @@ use super::node;
 type Result<T> = std::result::Result<T, FormatError>;
 
 /// Largest cell file, bytes.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// A parsed cell file, not yet resolved: every key and value with its line.
 #[derive(Debug, Clone)]
@@ -31,8 +31,8 @@ impl CellFile {
             FormatError::new(path, None, format!("cannot be read: {e}"))
                 .hint("the path of a cell file (see docs/cell-file.md)")
         };
-        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
-            return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
+        if std::fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
+            return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
         }
         let bytes = std::fs::read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes).map_err(|e| {

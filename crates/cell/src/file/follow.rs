@@ -84,29 +84,29 @@ pub(super) fn read(
 }
 
 /// Larger limits of a source would permit every jump, m/s and rad/s.
-const MOST_SPEED_M_S: f64 = 1000.0;
-const MOST_TURN_RAD_S: f64 = 500.0;
+const MAX_SPEED_M_S: f64 = 1000.0;
+const MAX_TURN_RAD_S: f64 = 500.0;
 
 /// `max_speed` and `max_turn`, where given.
 fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     if let Some(v) = t.get("max_speed") {
         limits.speed_m_s = units.positive_length(&v)?;
-        if limits.speed_m_s > MOST_SPEED_M_S {
+        if limits.speed_m_s > MAX_SPEED_M_S {
             let what = format!(
                 "is {}/s: no source in a cell is that fast, so no jump would be noticed",
                 units.show_length(limits.speed_m_s)
             );
-            return Err(v.error(what).hint(format!("at most {}/s", units.show_length(MOST_SPEED_M_S))));
+            return Err(v.error(what).hint(format!("at most {}/s", units.show_length(MAX_SPEED_M_S))));
         }
     }
     if let Some(v) = t.get("max_turn") {
         limits.turn_rad_s = units.angle.to_radians(v.positive()?);
-        if limits.turn_rad_s > MOST_TURN_RAD_S {
+        if limits.turn_rad_s > MAX_TURN_RAD_S {
             let what = format!(
                 "is {:.0} rad/s: no source in a cell turns that fast, so no jump would be noticed",
                 limits.turn_rad_s
             );
-            return Err(v.error(what).hint(format!("at most {MOST_TURN_RAD_S} rad/s, or 28647 deg/s")));
+            return Err(v.error(what).hint(format!("at most {MAX_TURN_RAD_S} rad/s, or 28647 deg/s")));
         }
     }
     Ok(())

@@ -8,14 +8,14 @@ mod guarding;
 mod models;
 pub(crate) mod node;
 mod object;
-mod plausible;
+mod plausibility;
 mod poses;
 mod program;
 pub(crate) mod read;
 mod region;
 mod renamed;
 mod robot;
-mod words;
+mod units;
 
 use std::path::Path;
 
@@ -23,7 +23,6 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
 
 pub use document::CellFile;
-pub use models::NumberTable;
 use read::{Table, Value};
 use robot::robot_of;
 
@@ -100,7 +99,7 @@ impl CellFile {
             cell.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
-        plausible::check(&root, &cell, &mut warnings)?;
+        plausibility::check(&root, &cell, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }

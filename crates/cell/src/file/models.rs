@@ -1,9 +1,10 @@
 //! Files named by a cell file: models, meshes, tables.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::{FormatError, LoadOptions, MeshData, Warning, mesh as mesh_file, robot as robot_file};
+use elbowroom_formats::{
+    FormatError, LoadOptions, MeshData, NumberTable, Warning, mesh as mesh_file, robot as robot_file,
+};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::units::LengthUnit;
@@ -12,11 +13,8 @@ use super::read::{Table, Value};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Largest table, bytes.
-const MOST_BYTES: u64 = 1 << 30;
-
 /// The file that a value names, relative to the cell file; it must exist.
-fn path(v: &Value<'_>) -> Result<PathBuf> {
+pub(super) fn path(v: &Value<'_>) -> Result<PathBuf> {
     let name = v.text()?;
     let path = v.file.parent().unwrap_or(Path::new("")).join(name);
     if name.is_empty() || name.contains('\0') {
@@ -84,105 +82,7 @@ pub(super) fn mesh(v: &Value<'_>, unit: LengthUnit) -> Result<Shape> {
     whole.into_trimesh(&path).map(|m| Shape::Mesh(m.into()))
 }
 
-/// A CSV file of numbers with a header.
-pub struct NumberTable {
-    /// The file.
-    pub file: PathBuf,
-    /// Names of the columns.
-    pub columns: Vec<String>,
-    /// The rows and their lines.
-    pub rows: Vec<(usize, Vec<f64>)>,
-}
-
-impl NumberTable {
-    /// Reads the file; empty lines are skipped.
-    ///
-    /// # Errors
-    /// [`FormatError`] with the line of a cell that is not a number, a row of another length, or a header with a
-    /// repeated name.
-    pub fn read(path: &Path) -> Result<Self> {
-        let size = fs::metadata(path).map_err(|e| FormatError::new(path, None, format!("cannot be read: {e}")))?.len();
-        if size > MOST_BYTES {
-            return Err(FormatError::new(path, None, format!("has {size} bytes; at most {MOST_BYTES} are read")));
-        }
-        let bytes = fs::read(path).map_err(|e| FormatError::new(path, None, format!("cannot be read: {e}")))?;
-        let text = String::from_utf8(bytes).map_err(|_| FormatError::new(path, None, "is not UTF-8 text"))?;
-        Self::parse(path, &text)
-    }
-
-    /// Parses the text of such a file.
-    ///
-    /// # Errors
-    /// As for [`Self::read`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let text = text.trim_start_matches('\u{feff}');
-        let mut lines = text.lines().enumerate().map(|(i, l)| (i + 1, l)).filter(|l| !l.1.trim().is_empty());
-        let Some((first, header)) = lines.next() else {
-            return Err(FormatError::new(path, 1, "is empty").hint("a header of column names, then rows of numbers"));
-        };
-        let columns: Vec<String> = header.split(',').map(|c| c.trim().trim_matches('"').to_owned()).collect();
-        if let Some(c) = columns.iter().enumerate().find(|(i, c)| columns[..*i].contains(c)) {
-            return Err(
-                FormatError::new(path, first, format!("two columns are named `{}`", c.1)).hint("each name once")
-            );
-        }
-        let mut rows = Vec::new();
-        for (line, text) in lines {
-            rows.push((line, Self::row(path, line, text, &columns)?));
-        }
-        Ok(Self { file: path.to_owned(), columns, rows })
-    }
-
-    fn row(path: &Path, line: usize, text: &str, columns: &[String]) -> Result<Vec<f64>> {
-        let cells: Vec<&str> = text.split(',').map(str::trim).collect();
-        if cells.len() != columns.len() {
-            let what = format!("has {} values for {} columns", cells.len(), columns.len());
-            return Err(FormatError::new(path, line, what).hint(columns.join(",")));
-        }
-        let number = |(i, cell): (usize, &&str)| match unquoted(cell).parse::<f64>() {
-            Ok(v) if v.is_finite() => Ok(v),
-            _ => Err(FormatError::new(
-                path,
-                line,
-                format!("column `{}` holds \"{cell}\", which is not a finite number", columns[i]),
-            )
-            .hint("a number such as 0.25")),
-        };
-        cells.iter().enumerate().map(number).collect()
-    }
-
-    /// Index of a column.
-    ///
-    /// # Errors
-    /// [`FormatError`] with the list of columns.
-    pub fn column(&self, name: &str) -> Result<usize> {
-        self.columns.iter().position(|c| c == name).ok_or_else(|| {
-            let what = format!("has no column `{name}`; its columns are {}", self.columns.join(", "));
-            FormatError::new(&self.file, 1, what).hint(name)
-        })
-    }
-
-    /// The rows with increasing times.
-    pub(super) fn timed(&self, columns: &[usize]) -> Result<Vec<(usize, f64, Vec<f64>)>> {
-        let time = self.column("t_s")?;
-        let mut last = f64::NEG_INFINITY;
-        let mut rows = Vec::with_capacity(self.rows.len());
-        for (line, row) in &self.rows {
-            let t = row[time];
-            if t <= last {
-                let what = format!("t_s is {t} after {last}");
-                return Err(FormatError::new(&self.file, *line, what).hint("times that rise from row to row"));
-            }
-            last = t;
-            rows.push((*line, t, columns.iter().map(|c| row[*c]).collect()));
-        }
-        if rows.is_empty() {
-            return Err(FormatError::new(&self.file, 1, "has no rows").hint("rows of numbers below the header"));
-        }
-        Ok(rows)
-    }
-}
-
+/// The table that a value names.
 pub(super) fn number_table(v: &Value<'_>) -> Result<NumberTable> {
     NumberTable::read(&path(v)?)
 }
@@ -191,10 +91,5 @@ pub(super) fn number_table(v: &Value<'_>) -> Result<NumberTable> {
 pub(super) fn travel(v: &Value<'_>) -> Result<Vec<(f64, f64)>> {
     let table = number_table(v)?;
     let column = table.column("travel_m")?;
-    Ok(table.timed(&[column])?.into_iter().map(|(_, t, row)| (t, row[0])).collect())
-}
-
-/// Removes the quotation marks that some programs put around every cell.
-fn unquoted(cell: &str) -> &str {
-    cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')).map_or(cell, str::trim)
+    Ok(table.timed(&[column])?.into_iter().map(|row| (row.t_s, row.values[0])).collect())
 }

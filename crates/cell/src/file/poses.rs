@@ -1,10 +1,10 @@
 //! CSV files of poses over time: `follow = { poses = "cart.csv" }`.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, NumberTable, TimedRow};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::models::{self, NumberTable};
+use super::models;
 use super::read::Value;
 use crate::{PoseTrack, Units, suggest};
 
@@ -34,7 +34,7 @@ pub(super) fn read(v: &Value<'_>, units: Units) -> Result<PoseTrack> {
     let table = models::number_table(v)?;
     let columns = Columns::of(&table, units)?;
     let all: Vec<usize> = (0..table.columns.len()).collect();
-    let row = |(line, t_s, row): (usize, f64, Vec<f64>)| Ok((t_s, columns.pose(&table, line, &row)?));
+    let row = |row: TimedRow| Ok((row.t_s, columns.pose(&table, row.line, &row.values)?));
     let rows = table.timed(&all)?.into_iter().map(row).collect::<Result<Vec<_>>>()?;
     PoseTrack::new(table.file.clone(), rows).ok_or_else(|| v.error("names a file without rows").hint(EXAMPLE))
 }

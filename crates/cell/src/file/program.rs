@@ -1,7 +1,6 @@
 //! `[program.NAME]`: steps or a recorded trajectory.
 
-use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::Chain;
+use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
 use elbowroom_monitor::Life;
 
 use super::models;
@@ -32,7 +31,7 @@ pub(super) fn read(
             let list = steps.list("steps = [{ move = \"joint\", to = [0, 0, 0, 0, 0, 0] }]")?;
             ProgramBody::Steps(list.iter().map(|s| step(s, units, robot, regions)).collect::<Result<_>>()?)
         }
-        (None, Some(file)) => ProgramBody::Trajectory(trajectory(&file, &robot.robot.chain, warnings)?),
+        (None, Some(file)) => ProgramBody::Trajectory(trajectory(&file, robot, warnings)?),
         (None, None) => {
             let example = "steps = [{ move = \"joint\", to = [0, -20, 90, 0, 40, 0], speed = 50 }]   (or: trajectory = \"recorded.csv\")";
             return Err(t.error(format!("`{}` has neither `steps` nor `trajectory`", t.name)).hint(example));
@@ -113,22 +112,11 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
     Ok(StepAction::Switch { region, active })
 }
 
-fn trajectory(v: &Value<'_>, chain: &Chain, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {
-    let table = models::number_table(v)?;
-    let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
-    let columns = names.iter().map(|n| table.column(n)).collect::<Result<Vec<_>>>()?;
-    if let Some(extra) = table.columns.iter().find(|c| *c != "t_s" && !names.contains(&c.as_str())) {
-        let what = format!("column `{extra}` is no joint of \"{}\": ignored", chain.name());
-        warnings.push(Warning::new(&table.file, 1, what).hint(names.join(", ")));
-    }
-    let (lower, upper) = (chain.lower(), chain.upper());
-    let rows = table.timed(&columns)?;
-    for (line, _, q) in &rows {
-        if let Some(j) = (0..q.len()).find(|j| q[*j] < lower[*j] - 1e-6 || q[*j] > upper[*j] + 1e-6) {
-            let what = format!("joint `{}` is at {}, outside its limits", names[j], q[j]);
-            return Err(FormatError::new(&table.file, *line, what)
-                .hint(format!("radians (metres where sliding) from {} to {}", lower[j], upper[j])));
-        }
-    }
-    Ok(rows.into_iter().map(|(_, t_s, q)| TrajectoryRow { t_s, q }).collect())
+fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {
+    let options = JointStateOptions::trajectory(&robot.name, &robot.robot.chain);
+    let states = JointStates::read(&models::path(v)?, &options)?;
+    let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, 0).to_vec() };
+    let rows = states.times_s().iter().enumerate().map(row).collect();
+    warnings.extend(states.warnings);
+    Ok(rows)
 }

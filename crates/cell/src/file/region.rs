@@ -29,11 +29,11 @@ const COMMON: &[&str] = &[
 ];
 
 /// Largest warning zone and hysteresis, m.
-const MOST_M: f64 = 10_000.0;
+const MAX_M: f64 = 10_000.0;
 /// Thicker warning zones cause a warning, m.
 const LARGE_WARNING_M: f64 = 10.0;
 /// The thinnest warning zone of an exchange region, m.
-const LEAST_EXCHANGE_WARNING_M: f64 = 1e-3;
+const MIN_EXCHANGE_WARNING_M: f64 = 1e-3;
 /// A larger hysteresis causes a warning, m.
 const LARGE_HYSTERESIS_M: f64 = 1.0;
 
@@ -64,16 +64,16 @@ pub(super) fn read(
     Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
 }
 
-/// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MOST_M`] an error.
+/// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MAX_M`] an error.
 fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Warning>) -> Result<f64> {
     let metres = units.not_negative_length(v)?;
     let shown = units.show_length(metres);
-    if metres > MOST_M {
+    if metres > MAX_M {
         let what = format!("is {shown}: no cell is that large");
         return Err(v.error(what).hint(format!("a length up to {}", units.show_length(plausible))));
     }
     if metres > plausible {
-        let meant = if units.length == LengthUnit::Metre && metres < MOST_M {
+        let meant = if units.length == LengthUnit::Metre && metres < MAX_M {
             format!("; in mm it would be {} m", metres / 1000.0)
         } else {
             String::new()
@@ -88,7 +88,7 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<War
 fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
     match region.kind {
         // A robot without the grant stops half a millimetre before the border: there it must already have requested it.
-        RegionKind::Exchange { .. } if region.warning_m < LEAST_EXCHANGE_WARNING_M => Err(t
+        RegionKind::Exchange { .. } if region.warning_m < MIN_EXCHANGE_WARNING_M => Err(t
             .error(format!(
                 "region \"{name}\" is an exchange region: robots request it in its warning zone, so it needs one of 1 mm \
                  or more"

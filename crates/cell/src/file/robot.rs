@@ -10,7 +10,7 @@ use elbowroom_spatial::Pose;
 
 use super::models;
 use super::read::{Table, Value};
-use crate::{CellRobot, JointLimits, Units, resting, suggest};
+use crate::{CellRobot, JointLimits, Units, rest_pose_contacts, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -35,9 +35,9 @@ const KEYS: &[&str] = &[
 ];
 
 /// Longest stop time, s.
-const MOST_STOP_TIME_S: f64 = 60.0;
+const MAX_STOP_TIME_S: f64 = 60.0;
 /// Largest speeds, accelerations and jerks, in the file's units.
-const MOST_RATE: f64 = 1e9;
+const MAX_RATE: f64 = 1e9;
 
 /// Default time from full speed to rest.
 pub(crate) const STOP_TIME_S: f64 = 0.1;
@@ -61,7 +61,8 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
     warnings.extend(
-        resting::warnings(&robot, &start, Some(name)).map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
+        rest_pose_contacts::warnings(&robot, &start, Some(name))
+            .map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
     );
     if t.get("speed").is_some() {
         robot.chain = with_speeds(t, &robot.chain, &limits)?;
@@ -221,11 +222,11 @@ fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
             .hint("box = { at = [0, 0, 125], size = [80, 80, 250] }"));
     }
     let tcp = t.get("tcp").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
-    let body = |(shape, in_link)| Some(Collider { name: "tool".into(), shape, in_link });
+    let collider = |(shape, in_link)| Some(Collider { name: "tool".into(), shape, in_link });
     match (t.get("box"), t.get("mesh")) {
         (Some(_), Some(mesh)) => Err(mesh.error("contradicts `box`").hint("one of the two: box or mesh")),
-        (Some(cuboid), None) => Ok((tcp, body(named_solid("box", &cuboid, &t, units)?))),
-        (None, Some(mesh)) => Ok((tcp, body(named_solid("mesh", &mesh, &t, units)?))),
+        (Some(cuboid), None) => Ok((tcp, collider(named_solid("box", &cuboid, &t, units)?))),
+        (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, &t, units)?))),
         (None, None) => Ok((tcp, None)),
     }
 }
@@ -296,9 +297,9 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
 /// Time from full speed to rest, s.
 fn stop_time(v: &Value<'_>) -> Result<f64> {
     let time_s = v.positive()?;
-    if time_s > MOST_STOP_TIME_S {
+    if time_s > MAX_STOP_TIME_S {
         let what = format!("is {time_s} s: no robot brakes for that long");
-        return Err(v.error(what).hint(format!("stop_time = 0.5   (at most {MOST_STOP_TIME_S})")));
+        return Err(v.error(what).hint(format!("stop_time = 0.5   (at most {MAX_STOP_TIME_S})")));
     }
     Ok(time_s)
 }
@@ -314,8 +315,8 @@ fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
         let what = format!("has {} values for {} joints", values.len(), chain.dof());
         return Err(v.error(what).hint("one number for all joints, or a list with one per joint"));
     }
-    if let Some(value) = values.iter().find(|x| **x > MOST_RATE) {
-        return Err(v.error(format!("has {value:e}: no joint is that fast")).hint(format!("at most {MOST_RATE:e}")));
+    if let Some(value) = values.iter().find(|x| **x > MAX_RATE) {
+        return Err(v.error(format!("has {value:e}: no joint is that fast")).hint(format!("at most {MAX_RATE:e}")));
     }
     let prismatic = |j: &elbowroom_kinematics::JointId| chain.joints()[j.0].kind == JointKind::Prismatic;
     Ok(values.iter().zip(chain.active_joints()).map(|(x, j)| units.joint(prismatic(j), *x)).collect())

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::{FrameMotion, Pose};
 
-use super::belt::Encoder;
+use super::encoder::Encoder;
 use super::path::ObjectPath;
 
 /// A moving object: its pose and velocity at any time.
@@ -23,8 +23,8 @@ use super::path::ObjectPath;
 /// assert_eq!(cart.motion(1.5).velocity, Vec3::Y * 0.5);
 /// assert!((cart.pose(1.5).translation - Vec3::new(2.0, 0.5, 0.1)).length() < 1e-12);
 /// // The motion from one tick to the next, for `Checker::sweep`:
-/// let leg: ObjectMotion = cart.motion_between(1.5, 1.504);
-/// # let _ = leg;
+/// let motion: ObjectMotion = cart.motion_between(1.5, 1.504);
+/// # let _ = motion;
 /// # Ok::<(), elbowroom_formats::FormatError>(())
 /// ```
 #[derive(Debug, Clone)]

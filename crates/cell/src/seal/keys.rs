@@ -61,7 +61,7 @@ impl PrivateKey {
     /// # Errors
     /// [`FormatError`] where it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
-        kept_to_oneself(path)?;
+        check_private_permissions(path)?;
         let text = text::read(path)?;
         let entries = node::parse(path, &text)?;
         let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
@@ -136,7 +136,7 @@ fn create(path: &Path) -> io::Result<File> {
 }
 
 #[cfg(unix)]
-fn kept_to_oneself(path: &Path) -> Result<()> {
+fn check_private_permissions(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
     let mode = about.permissions().mode() & 0o777;
@@ -148,7 +148,7 @@ fn kept_to_oneself(path: &Path) -> Result<()> {
 }
 
 #[cfg(not(unix))]
-fn kept_to_oneself(_: &Path) -> Result<()> {
+fn check_private_permissions(_: &Path) -> Result<()> {
     Ok(())
 }
 

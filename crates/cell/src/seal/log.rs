@@ -6,8 +6,8 @@ use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
 use super::entry::LogEntry;
+use super::last_seal::Seal;
 use super::result::Result;
-use super::signatory::Seal;
 use super::state::{SealedState, least_class};
 use super::trust::{self, TrustedKey, TrustedKeys};
 use super::{hex, text};

@@ -14,9 +14,9 @@ mod edit;
 mod entry;
 mod hex;
 mod keys;
+mod last_seal;
 mod log;
 mod result;
-mod signatory;
 mod source;
 mod state;
 mod text;
@@ -33,8 +33,8 @@ pub use change::Change;
 pub use edit::{CellEdit, Signer, edit, seal};
 pub use entry::LogEntry;
 pub use keys::{PrivateKey, PublicKey};
+pub use last_seal::Seal;
 pub use log::log_of;
-pub use signatory::Seal;
 pub use trust::{TrustedKey, TrustedKeys};
 
 use crate::{Cell, CellFile};
@@ -83,7 +83,7 @@ pub fn history(cell: &Path) -> Result<History> {
     let log = Log::read(&path, &trusted)?;
     let text = text::read(cell)?;
     let mut file = CellFile::parse(cell, &text)?;
-    // A wrong checksum is not part of the question.
+    // The history is shown even where the `checksum` key is wrong.
     file.entries.retain(|e| e.key != "checksum");
     let now = SealedState::of(&file, &file.resolve()?)?;
     let unsealed = log.state.changes_to(&now);

@@ -8,12 +8,12 @@ use elbowroom_formats::FormatError;
 use super::result::Result;
 
 /// Largest file, bytes.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 pub(super) fn read(path: &Path) -> Result<String> {
     let unreadable = |e: std::io::Error| FormatError::new(path, None, format!("cannot be read: {e}"));
-    if fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
-        return Err(FormatError::new(path, None, format!("is larger than {MOST_BYTES} bytes")));
+    if fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
+        return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
     }
     fs::read_to_string(path).map_err(unreadable)
 }

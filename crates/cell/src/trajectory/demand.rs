@@ -2,7 +2,7 @@
 
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::Chain;
-use elbowroom_kinematics::motion_bound::motion_bound;
+use elbowroom_kinematics::motion_bound::max_motion_bounds;
 use elbowroom_monitor::Volume;
 
 use super::playback::Playback;
@@ -133,16 +133,5 @@ pub fn motion_bounds(robot: &CellRobot) -> Vec<f64> {
 
 /// Per joint the motion bound of these volumes, m per rad or m.
 pub fn volume_motion_bounds(chain: &Chain, volumes: &[Volume]) -> Vec<f64> {
-    let mut motion_bounds = vec![0.0_f64; chain.dof()];
-    for volume in volumes {
-        let box_in_link = volume.shape.aabb(&volume.in_link);
-        let radius = box_in_link.min.abs().max(box_in_link.max.abs()).length();
-        let mut own = vec![0.0; motion_bounds.len()];
-        // Mimic joints have the index of their source and add up.
-        for (joint, bound) in motion_bound(chain, volume.link, radius, &chain.path(volume.link)) {
-            own[joint] += bound;
-        }
-        motion_bounds.iter_mut().zip(own).for_each(|(most, bound)| *most = most.max(bound));
-    }
-    motion_bounds
+    max_motion_bounds(chain, volumes.iter().map(|v| (v.link, v.radius_in_link())))
 }

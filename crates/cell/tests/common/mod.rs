@@ -56,7 +56,7 @@ warning = 20
 "#;
 
 /// A valid cell that uses every kind of table; each case of `errors.rs` breaks one line of it.
-pub fn sound() -> String {
+pub fn valid_cell() -> String {
     format!(
         "{HEAD}name = \"test\"\nmax_s = 20\n{}{}\
          [robot.c]\n{ARM}base = {{ at = [0, 3000, 0] }}\nstart = [0, 0, 0, 0, 40, 0]\nvolumes = \"capsule\"\n\

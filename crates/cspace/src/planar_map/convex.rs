@@ -43,12 +43,8 @@ pub(super) fn build<B: PlaneSolid>(
                 continue;
             }
             full_rows.fill(0);
-            match outlines.set_upper(&context, solid, side) {
-                Directions::Nowhere => {}
-                Directions::Everywhere => upper_arm::mark_rows(shoulder, -PI - UPPER_MARGIN, PI + UPPER_MARGIN, full_rows),
-                Directions::Between(lo, hi) => {
-                    upper_arm::mark_rows(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, full_rows);
-                }
+            if let Some((lo, hi)) = outlines.set_upper(&context, solid, side).range_from(-PI) {
+                upper_arm::mark_rows(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, full_rows);
             }
             let rows = PlaneRows {
                 first: i * shoulder.count(),
@@ -109,10 +105,7 @@ impl Outlines {
         if !(self.fore.exists || self.wrist.exists) {
             return write_plane(context, self, rows, true, layer);
         }
-        let (lo, hi) = match self.set_rotated(context, solid, lean, None) {
-            Directions::Between(lo, hi) => (lo, hi),
-            Directions::Nowhere | Directions::Everywhere => (0.0, TAU),
-        };
+        let (lo, hi) = self.set_rotated(context, solid, lean, None).range_from(0.0).unwrap_or((0.0, TAU));
         if hi - lo < context.sectors.whole_rad {
             return write_plane(context, self, rows, true, layer);
         }

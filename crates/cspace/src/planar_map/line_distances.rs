@@ -11,12 +11,12 @@ use super::wedge_support::support_distance;
 /// Radius from which on the grown solid intersects the wedge, metres; negative where the solid itself does.
 pub(super) fn reaching_radius<B: PlaneSolid>(context: &ConvexContext, solid: &B, lean: f32, side: f32) -> f32 {
     let offset = context.arm.offset_m as f32;
-    dispatch!(context.level, simd => reaching_radius_lanes(simd, solid, [lean, side, offset]))
+    dispatch!(context.level, simd => reaching_radius_lanes(simd, solid, lean, side, offset))
 }
 
 /// Three directions in three lanes: across the right and the left side of the wedge, and ahead.
 #[inline(always)]
-fn reaching_radius_lanes<S: Simd, B: PlaneSolid>(simd: S, solid: &B, [lean, side, offset]: [f32; 3]) -> f32 {
+fn reaching_radius_lanes<S: Simd, B: PlaneSolid>(simd: S, solid: &B, lean: f32, side: f32, offset: f32) -> f32 {
     let lanes = |first: [f32; 3]| {
         let mut all = [0.0; WIDTH];
         all[..3].copy_from_slice(&first);
@@ -44,7 +44,7 @@ pub(super) fn line_distances<B: PlaneSolid>(
     radius: f32,
     out: &mut [f32; PADDED_NORMALS],
 ) {
-    dispatch!(context.level, simd => line_distances_lanes(simd, context, solid, normals, [lean, radius], out));
+    dispatch!(context.level, simd => line_distances_lanes(simd, context, solid, normals, lean, radius, out));
 }
 
 #[inline(always)]
@@ -53,7 +53,8 @@ fn line_distances_lanes<S: Simd, B: PlaneSolid>(
     context: &ConvexContext,
     solid: &B,
     normals: &OutlineNormals,
-    [lean, radius]: [f32; 2],
+    lean: f32,
+    radius: f32,
     out: &mut [f32; PADDED_NORMALS],
 ) {
     let radius = radius + context.margin;

@@ -1,5 +1,7 @@
 //! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
 
+use std::f64::consts::TAU;
+
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16};
 
 use super::half_planes;
@@ -179,6 +181,15 @@ pub(super) enum Directions {
 }
 
 impl Directions {
+    /// Lowest and highest angle, radians; for all directions one turn that starts at `start`.
+    pub fn range_from(self, start: f64) -> Option<(f64, f64)> {
+        match self {
+            Self::Nowhere => None,
+            Self::Everywhere => Some((start, start + TAU)),
+            Self::Between(lo, hi) => Some((lo, hi)),
+        }
+    }
+
     /// The smallest range that contains both.
     pub fn union(self, other: Self) -> Self {
         match (self, other) {

@@ -61,16 +61,14 @@ mod tests {
 
     use super::*;
     use crate::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, PlanarArm};
+    use elbowroom_testkit::random::{unit, xorshift};
 
     /// Numbers of 0..1 that are the same everywhere.
     struct Random(u64);
 
     impl Random {
         fn within(&mut self, lo: f64, hi: f64) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            lo + (hi - lo) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
+            lo + (hi - lo) * unit(xorshift(&mut self.0))
         }
 
         fn vector(&mut self, half: f64) -> Vec3 {

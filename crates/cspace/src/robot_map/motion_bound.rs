@@ -10,9 +10,10 @@
 //! `sweep/README.md`; Lⱼ bounds the distance from axis j), which adds half of it. No point moves farther than Σ hⱼ·Lⱼ, either.
 
 use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::motion_bound::{JointRate, SpeedBound};
 use elbowroom_spatial::Vec3;
 
-use super::driven_chain::DrivenChain;
+use super::driven_chain::{DrivenChain, DrivingJoint};
 use super::robot_pieces::RobotPiece;
 use super::settings::MAX_JOINTS;
 
@@ -60,9 +61,8 @@ impl MotionBound {
     /// Bound of the displacement of one point of the piece (in the world) within a box of these half widths, metres.
     pub fn max_point_displacement(&self, piece: &RobotPiece, half: &[f64], p: Vec3) -> f64 {
         let mut linear = self.linear;
-        let by = p - self.center;
-        for (v, w) in linear.iter_mut().zip(&self.angular).take(self.depth) {
-            *v += w.cross(by);
+        for (axis, v) in linear.iter_mut().enumerate().take(self.depth) {
+            *v = self.point_velocity(axis, p);
         }
         let (cap, growth) = path_length_and_growth(piece, half);
         cap.min(max_weighted_sum(&linear, half, self.depth) + 0.5 * growth) * (1.0 + 1e-9) + DISTANCE_TOLERANCE_M
@@ -81,19 +81,13 @@ impl MotionBound {
 
 /// Bound of the path length of any point of a piece, and the growth.
 fn path_length_and_growth(piece: &RobotPiece, half: &[f64]) -> (f64, f64) {
-    let (mut cap, mut growth, mut before) = (0.0, 0.0, 0.0);
-    for (joint, lever_arm) in piece.joints.iter().zip(&piece.lever_arms) {
+    let joint_rate = |(joint, lever_m): (&DrivingJoint, &f64)| {
         let rate = half[joint.axis] * joint.multiplier.abs();
-        if joint.turns {
-            cap += rate * lever_arm;
-            growth += (rate + 2.0 * before) * rate * lever_arm;
-            before += rate;
-        } else {
-            cap += rate;
-            growth += 2.0 * before * rate;
-        }
-    }
-    (cap, growth)
+        if joint.turns { JointRate::Revolute { rate, lever_m: *lever_m } } else { JointRate::Prismatic { rate } }
+    };
+    // In a unit of time the path is as long as the speed, and the velocity changes by the acceleration.
+    let bound = SpeedBound::of_joints(piece.joints.iter().zip(&piece.lever_arms).map(joint_rate));
+    (bound.speed, bound.acceleration)
 }
 
 /// Bound of |Σ δᵢ·uᵢ| over all |δᵢ| ≤ hᵢ.

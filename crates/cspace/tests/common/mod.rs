@@ -7,16 +7,14 @@ use elbowroom_cspace::{
 };
 use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{unit, xorshift};
 
 /// Reproducible random numbers (xorshift).
 pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(xorshift(&mut self.0))
     }
 
     pub fn within(&mut self, lo: f64, hi: f64) -> f64 {

@@ -9,14 +9,14 @@ use elbowroom_proximity::{Cuboid, Cylinder, Shape, TriMesh, collides, separation
 use elbowroom_robot::example;
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 /// Reproducible random numbers.
 pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {

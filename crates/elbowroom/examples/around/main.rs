@@ -5,9 +5,9 @@
 //! and put into the map, and paths are planned and timed. Only the ground-truth check knows the true poses.
 #![expect(clippy::print_stdout, reason = "a program for people")]
 
-mod album;
 mod ground_truth;
 mod obstacles;
+mod report_images;
 mod run;
 mod station;
 
@@ -26,10 +26,10 @@ const END_S: f64 = 37.0;
 fn main() -> Result<(), Failure> {
     let out = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "elbowroom-out/around".into()));
     let mut station = station::build()?;
-    let mut images = album::Images::new(out.join("frames"))?;
+    let mut images = report_images::ReportImages::new(out.join("frames"))?;
     let obstacles = obstacles::obstacles();
     let mut record = run::run(&mut station, &obstacles, END_S, &mut images)?;
-    record.log.images = images.of_report;
+    record.log.images = images.images;
     record.log.facts = facts(&record, &station);
     let page = out.join("report.html");
     write_perception_html(BufWriter::new(File::create(&page)?), &station.arm, &record.log)?;
@@ -39,7 +39,7 @@ fn main() -> Result<(), Failure> {
     if record.hits.is_empty() { Ok(()) } else { Err(format!("a collision occurred: {:?}", record.hits.first()).into()) }
 }
 
-fn facts(record: &run::Record, station: &station::Station) -> Vec<String> {
+fn facts(record: &run::RunResult, station: &station::Station) -> Vec<String> {
     let log = &record.log;
     let accepted = || log.frames.iter().filter_map(|f| f.result.as_ref().ok());
     let changed = accepted().filter(|(_, o)| o.in_motion).count();

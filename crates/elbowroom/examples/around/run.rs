@@ -12,13 +12,13 @@ use elbowroom::spatial::Pose;
 use elbowroom::vision::render::{RenderConditions, Renderer};
 use elbowroom::vision::{ArmPart, Channels, Frame, Point2, encode_png};
 
-use crate::album::Images;
 use crate::ground_truth::GroundTruthChecker;
 use crate::obstacles::MovingBox;
+use crate::report_images::ReportImages;
 use crate::station::{Failure, LATENCY_S, PERIOD_S, STATIONS, Station, TICK_S, radians};
 
-/// Results of a run.
-pub struct Record {
+/// Result of a run.
+pub struct RunResult {
     pub log: PerceptionLog,
     /// Collisions: time and names.
     pub hits: Vec<(f64, String)>,
@@ -35,8 +35,8 @@ pub struct Coverage {
     pub contained: usize,
 }
 
-/// The bytes of the frame at a time, with camera faults.
-fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
+/// The frame as the camera sends it, with simulated faults: a lost connection, a truncated image.
+fn encode_frame(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
     if (6.6..7.1).contains(&t) {
         return Ok(None); // connection lost
     }
@@ -48,7 +48,12 @@ fn bytes_at(t: f64, frame: &Frame) -> Result<Option<Vec<u8>>, Failure> {
 }
 
 /// Runs the cell; images go to `images`.
-pub fn run(station: &mut Station, obstacles: &[MovingBox], end_s: f64, images: &mut Images) -> Result<Record, Failure> {
+pub fn run(
+    station: &mut Station,
+    obstacles: &[MovingBox],
+    end_s: f64,
+    images: &mut ReportImages,
+) -> Result<RunResult, Failure> {
     let mut builder = Scene::builder();
     builder.robot("kr125", station.arm.robot.clone(), Pose::IDENTITY);
     for obstacle in obstacles {
@@ -57,17 +62,17 @@ pub fn run(station: &mut Station, obstacles: &[MovingBox], end_s: f64, images: &
     let scene = builder.build()?;
     let mut q = radians(STATIONS[0]);
     let mut ground_truth = GroundTruthChecker::new(&scene, &q)?;
-    let mut stage = Stage::new(station);
-    let mut record = Record { log: log(obstacles), hits: vec![], arrivals: 0, coverage: Coverage::default() };
+    let mut camera = CameraRenderer::new(station);
+    let mut record = RunResult { log: log(obstacles), hits: vec![], arrivals: 0, coverage: Coverage::default() };
     let learning_s = f64::from(station.pipeline.vision().settings().learning_frames) * PERIOD_S;
     let period_ticks = (PERIOD_S / TICK_S).round() as usize;
     let latency_ticks = (LATENCY_S / TICK_S).round() as usize;
-    let mut sent: Option<Sent> = None;
+    let mut sent: Option<SentFrame> = None;
     let mut next = 1;
     for tick in 0..(end_s / TICK_S) as usize {
         let t = tick as f64 * TICK_S;
         if tick.is_multiple_of(period_ticks) {
-            sent = stage.render(station, obstacles, t, &q)?;
+            sent = camera.render(station, obstacles, t, &q)?;
         }
         if tick % period_ticks == latency_ticks
             && let Some(sent) = sent.take()
@@ -75,12 +80,12 @@ pub fn run(station: &mut Station, obstacles: &[MovingBox], end_s: f64, images: &
             let entry = process(station, &sent);
             if let Ok((update, result)) = &entry.result {
                 count_contained(update, obstacles, &mut record.coverage);
-                images.keep(station, &sent.bytes, update, result)?;
+                images.save(station, &sent.bytes, update, result)?;
             }
             record.log.frames.push(entry);
         }
         let step = if t < learning_s {
-            wave(t / learning_s)
+            learning_motion(t / learning_s)
         } else {
             if t < learning_s + TICK_S {
                 station.executor.set_goal(&radians(STATIONS[next]))?;
@@ -121,21 +126,21 @@ fn is_at(q: &[f64], station: [f64; 6]) -> bool {
 }
 
 /// A frame in transmission.
-struct Sent {
+struct SentFrame {
     t_s: f64,
     q: Vec<f64>,
     bytes: Vec<u8>,
 }
 
 /// Renders the images of the camera.
-struct Stage {
+struct CameraRenderer {
     renderer: Renderer,
     chain: ChainState,
     parts: Vec<ArmPart>,
     frame: Frame,
 }
 
-impl Stage {
+impl CameraRenderer {
     fn new(station: &Station) -> Self {
         Self {
             renderer: Renderer::new(station.camera.clone(), Channels::Grey, 4),
@@ -151,21 +156,21 @@ impl Stage {
         obstacles: &[MovingBox],
         t: f64,
         q: &[f64],
-    ) -> Result<Option<Sent>, Failure> {
+    ) -> Result<Option<SentFrame>, Failure> {
         station.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
         let solids: Vec<_> = obstacles.iter().map(|obstacle| obstacle.solid(t)).collect();
         let painted: Vec<_> = self.parts.iter().map(|part| (part.clone(), 235)).collect();
         let conditions = RenderConditions { seed: (t / TICK_S) as u64 + 1, ..RenderConditions::default() };
         self.frame.name = format!("frame at {t:.2} s");
         self.renderer.render(&solids, &painted, &conditions, &mut self.frame)?;
-        Ok(bytes_at(t, &self.frame)?.map(|bytes| Sent { t_s: t, q: q.to_vec(), bytes }))
+        Ok(encode_frame(t, &self.frame)?.map(|bytes| SentFrame { t_s: t, q: q.to_vec(), bytes }))
     }
 }
 
-fn process(station: &mut Station, sent: &Sent) -> FrameEntry {
+fn process(station: &mut Station, sent: &SentFrame) -> FrameEntry {
     let began = Instant::now();
-    let seen = station.pipeline.process_image(&sent.bytes, Path::new("camera.png"), sent.t_s, &sent.q);
-    let result = seen.map(|update| {
+    let processed = station.pipeline.process_image(&sent.bytes, Path::new("camera.png"), sent.t_s, &sent.q);
+    let result = processed.map(|update| {
         let result = station.executor.update(&update);
         (update, result)
     });
@@ -187,9 +192,9 @@ fn count_contained(update: &ObstacleUpdate, obstacles: &[MovingBox], coverage: &
     }
 }
 
-/// While the empty cell is learned the arm moves to the other station and back, so that all of the floor is visible
-/// once.
-fn wave(share: f64) -> ExecutorStep {
+/// Motion while the empty cell is learned: to the other station and back, so that every part of the floor is visible at
+/// some time.
+fn learning_motion(share: f64) -> ExecutorStep {
     let [a, b] = [radians(STATIONS[0]), radians(STATIONS[1])];
     let t = 0.5 - 0.5 * (share * std::f64::consts::TAU).cos();
     let q = a.iter().zip(&b).map(|(a, b)| a + (b - a) * t).collect();

@@ -3,17 +3,14 @@
 use elbowroom_proximity::tessellate::tessellate;
 use elbowroom_robot::Collider;
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::random::{split_mix, unit};
 
 /// A small reproducible generator (`SplitMix64`).
 pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        unit(split_mix(&mut self.0))
     }
 
     pub fn range(&mut self, lower: f64, upper: f64) -> f64 {

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A turning joint `turn`, a sliding joint `slide`, a fixed one and one that follows `turn`.
+/// A revolute joint `turn`, a prismatic joint `slide`, a fixed one and one that follows `turn`.
 fn chain() -> Chain {
     let joint = |i: usize, name: &str, kind: JointKind, limits: Limits, mimic: Option<Mimic>| Joint {
         name: name.into(),
@@ -68,7 +68,7 @@ fn errors_name_line_column_and_remedy() {
         ("turn,slide,turn\n0,0,0\n", "q.csv:1: two columns are named `turn`"),
         ("turn,turn\n0,0\n", "q.csv:1: two columns are named `turn`"),
         ("0,0\n1,1\n", "q.csv:1: has numbers where the joint names should be"),
-        ("turn,slide,elbow\n0,0,0\n", "q.csv:1: column `elbow` is no joint"),
+        ("turn,slide,elbow\n0,0,0\n", "q.csv:1: column `elbow` is not a joint"),
         ("turn,slide,plate\n0,0,0\n", "q.csv:1: column `plate` is a fixed joint: it has no value"),
         (
             "turn,slide,finger\n0,0,0\n",
@@ -76,7 +76,7 @@ fn errors_name_line_column_and_remedy() {
         ),
         (
             "turn,slide\n0,0\nNaN,0\n",
-            "q.csv:3: column `turn` holds \"NaN\", which is no finite number\n  write: radians",
+            "q.csv:3: column `turn` holds \"NaN\", which is not a finite number\n  write: radians",
         ),
         ("turn,slide\n0,inf\n", "q.csv:2: column `slide` holds \"inf\""),
         ("turn,slide\n0,\n", "q.csv:2: column `slide` holds \"\""),
@@ -101,7 +101,7 @@ fn several_robots_need_their_prefixes_and_may_stay_at_their_defaults() {
     assert!(message(only_left, &both).contains("has no column `right.turn`, `right.slide`"));
     assert!(
         message("left.turn,left.slide,right.turn,right.slide,turn\n0,0,0,0,0\n", &both)
-            .contains("column `turn` must say which robot: `left.turn`")
+            .contains("column `turn` must name the robot: `left.turn`")
     );
     let start = [0.5, 0.25];
     let defaults = [left, right].map(|r| JointStateRobot { default_q: Some(&start), ..r });
@@ -126,13 +126,13 @@ fn limit_violations_are_one_warning_or_an_error() {
     assert_eq!(
         states.warnings[0].to_string(),
         "q.csv:3: `turn` is 90, beyond its limits -3.0000 to 3.0000; are these degrees?; 2 of 4 states are beyond limits \
-         and answered as they are"
+         and are evaluated unchanged"
     );
     options.limits = LimitCheck::Refuse;
     let message = parse(text, &options).unwrap_err().to_string();
     assert_eq!(
         message,
-        "q.csv:3: joint `turn` is at 90, outside its limits\n  write: radians (metres where sliding) from -3 to 3"
+        "q.csv:3: joint `turn` is at 90, outside its limits\n  write: radians (metres for a prismatic joint) from -3 to 3"
     );
     assert!(parse("turn,slide\n3.0000001,0\n", &options).is_ok());
 }
@@ -144,7 +144,7 @@ fn trajectories_need_increasing_times() {
     let states = parse("turn,t_s,slide,note\n0,0,0.1,x\n1,0.5,0.2,y\n", &options).unwrap();
     assert_eq!((states.times_s(), states.q(1, 0)), (&[0.0, 0.5][..], &[1.0, 0.2][..]));
     assert_eq!(states.warnings.len(), 1);
-    assert_eq!(states.warnings[0].what, "column `note` is no joint of \"gripper\": ignored");
+    assert_eq!(states.warnings[0].what, "column `note` is not a joint of \"gripper\": ignored");
     for (text, part) in [
         (
             "turn,slide\n0,0\n",
@@ -168,6 +168,17 @@ fn a_file_without_states_is_warned_of_and_a_single_state_needs_no_file() {
     assert!(states.is_empty() && states.warnings[0].what.contains("no state below the header"));
     let single = JointStates::single("cell.toml".as_ref(), [&[1.0, 2.0][..], &[3.0]]);
     assert_eq!((single.len(), single.q(0, 0), single.q(0, 1)), (1, &[1.0, 2.0][..], &[3.0][..]));
+}
+
+#[test]
+fn files_beyond_the_largest_size_are_refused() {
+    let chain = chain();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), "turn,slide\n0,0\n").unwrap();
+    let states = JointStateOptions::states(vec![robot("", &chain)]);
+    assert_eq!(JointStates::read(file.path(), &states).unwrap().len(), 1);
+    let error = JointStates::read(file.path(), &JointStateOptions { max_bytes: 14, ..states }).unwrap_err();
+    assert_eq!(error.what, "has 15 bytes; at most 14 are read");
 }
 
 proptest! {

@@ -9,6 +9,7 @@ use elbowroom_formats::mesh::{self, UpAxis};
 use elbowroom_formats::nodetree::{Node, NodeTree};
 use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::random::xorshift;
 /// All readers; `mesh` detects the format.
 pub const PARSERS: [&str; 10] = ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "mesh"];
 
@@ -153,10 +154,7 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
+        xorshift(&mut self.0)
     }
 
     /// Below `n`; 0 for 0.

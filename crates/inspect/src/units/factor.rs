@@ -45,8 +45,7 @@ const ALL: [UnitConfusion; 9] = [
 /// Sizes beyond this factor are suspect: the geometric mean of 1 and the smallest factor.
 const SUSPECT_FACTOR: f64 = 3.162;
 
-/// The confusion that best explains a size `times` too large, on a logarithmic scale; `None` where there is none to
-/// explain.
+/// The confusion whose factor is closest to `times` on a logarithmic scale; `None` where `times` is not suspect.
 pub(super) fn nearest(times: f64) -> Option<UnitConfusion> {
     if !(times > 0.0 && times.is_finite()) || (1.0 / SUSPECT_FACTOR..=SUSPECT_FACTOR).contains(&times) {
         return None;

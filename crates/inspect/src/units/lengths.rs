@@ -1,9 +1,9 @@
-//! Lengths: solids against the chain that carries them, and the chain against a workshop.
+//! Lengths: solids are compared with the chain that carries them, and the chain with the size of a workshop.
 //!
 //! The chain's own dimensions are the reference `R`: the longest distance from the root to a leaf through the origins
 //! and strokes of its joints. For 35 published arms the sum of the largest box edges of all moved links is 1.0 to 1.65
-//! times that distance without strokes: close enough to distinguish factors of 2.5. A chain of few links has no such
-//! rule; there only extreme sizes are suspect.
+//! times that distance without strokes, which is close enough to distinguish factors of 2.5. For a chain of few links
+//! there is no such rule: only extreme sizes are suspect.
 
 use elbowroom_kinematics::{Chain, JointId, JointKind, LinkId};
 use elbowroom_robot::Robot;
@@ -12,15 +12,15 @@ use elbowroom_spatial::Aabb;
 use super::factor::{self, UnitConfusion};
 use super::{SuspectQuantity, SuspectUnit, UnitLabel};
 
-/// Sum over all moved links, relative to the longest distance through the chain, where the units are right.
-const TOGETHER: f64 = 1.3;
-/// Number of moved links with solids from which on the rule for arms applies.
+/// Typical sum of the sizes of all moved links, relative to the longest distance through the chain.
+const LINK_SUM: f64 = 1.3;
+/// Smallest number of moved links with solids for which the rule for arms applies.
 const ARM: usize = 4;
-/// A link this many times larger than the chain is suspect,
+/// A link this many times larger than the chain is suspect.
 const LARGE: f64 = 10.0;
-/// or this many times where the other links of an arm are plausible.
+/// The same for a link of an arm whose other links are plausible.
 const LARGE_IN_ARM: f64 = 3.2;
-/// Likewise a fixed link, which may be a building.
+/// The same for a fixed link, which may be a building.
 const LARGE_AND_FIXED: f64 = 100.0;
 /// In a chain of few links, nothing smaller than this (m) is suspected of being too large.
 const LARGE_M: f64 = 5.0;
@@ -28,8 +28,9 @@ const LARGE_M: f64 = 5.0;
 const LINK: f64 = 0.35;
 /// A model whose largest solid is smaller than the chain divided by this is suspect.
 const SMALL: f64 = 200.0;
-/// A longer chain (m) or stroke (m) is suspect; a typical arm has 1.5 m.
+/// A longer chain (m) or stroke (m) is suspect.
 const FAR_M: f64 = 50.0;
+/// Length of a typical arm, m.
 const ARM_M: f64 = 1.5;
 
 /// Size of a link with solids.
@@ -90,7 +91,7 @@ impl<'r> Sizes<'r> {
     /// Factor by which moved links of `extents` (m) are too large in sum; `whole` is the number of moved links.
     fn times(&self, extents: &[f64], whole: usize) -> f64 {
         let together = extents.iter().sum::<f64>() * whole as f64 / extents.len() as f64;
-        together / (TOGETHER * self.arm)
+        together / (LINK_SUM * self.arm)
     }
 
     /// The moved links that are not far larger than the chain, m.
@@ -104,7 +105,7 @@ impl<'r> Sizes<'r> {
     }
 
     /// True where the moved links are those of an arm, except for some that are far too large.
-    fn is_arm_but_for_some(&self) -> bool {
+    fn is_arm_with_outliers(&self) -> bool {
         let (ordinary, moved) = (self.ordinary(), self.moved().count());
         self.is_arm() && 2 * ordinary.len() >= moved && factor::nearest(self.times(&ordinary, moved)).is_none()
     }
@@ -112,13 +113,13 @@ impl<'r> Sizes<'r> {
     /// All meshes of an arm by the same factor, or all of its joints.
     fn all_links(&self) -> Option<SuspectUnit> {
         let moved: Vec<f64> = self.moved().collect();
-        if !self.is_arm() || self.is_arm_but_for_some() {
+        if !self.is_arm() || self.is_arm_with_outliers() {
             return None;
         }
         let confusion = factor::nearest(self.times(&moved, moved.len()))?;
         let (largest, reference) = (self.largest(), self.arm);
         if confusion.factor < 1.0 && reference > FAR_M {
-            let times = reference / (moved.iter().sum::<f64>() / TOGETHER);
+            let times = reference / (moved.iter().sum::<f64>() / LINK_SUM);
             return Some(self.joints(factor::nearest(times)?));
         }
         let reason = format!(
@@ -135,7 +136,7 @@ impl<'r> Sizes<'r> {
     /// One link that is far larger than the chain.
     fn single(&self, size: LinkSize) -> Option<SuspectUnit> {
         let LinkSize { link, extent_m, is_moved } = size;
-        let in_arm = is_moved && self.is_arm_but_for_some();
+        let in_arm = is_moved && self.is_arm_with_outliers();
         let bound = match (is_moved, in_arm) {
             (true, true) => LARGE_IN_ARM,
             (true, false) => LARGE,
@@ -174,7 +175,7 @@ impl<'r> Sizes<'r> {
         Some(self.suspect(SuspectQuantity::Meshes, None, Some(largest), confusion, reason))
     }
 
-    /// Solids match the chain, but both are too large for a workshop; or there are no solids.
+    /// The solids match the chain, but both are too large for a workshop; or there are no solids.
     fn far(&self) -> Option<SuspectUnit> {
         if self.reference <= FAR_M {
             return None;

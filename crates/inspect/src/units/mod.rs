@@ -1,5 +1,5 @@
-//! Suspected unit errors: solids against the chain that carries them, joints and strokes against a workshop, limits
-//! against turns. One decision gives the JSON entry and the message.
+//! Suspected unit errors: sizes of solids are compared with the chain that carries them, joint offsets and strokes with
+//! the size of a workshop, limits of revolute joints with full turns. The JSON entry and the message have one source.
 
 mod factor;
 mod lengths;

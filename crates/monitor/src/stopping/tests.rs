@@ -3,6 +3,7 @@
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 use super::{StopPhases, StoppingInput, StoppingLaw};
 use crate::{Configuration, ConfigurationParts, Laws, Part, Stopping, Volume};
@@ -11,8 +12,7 @@ struct Random(u64);
 
 impl Random {
     fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {

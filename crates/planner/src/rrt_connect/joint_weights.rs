@@ -42,11 +42,11 @@ pub(super) fn joint_weights(robot: &Robot, bounds: &JointBounds) -> Vec<f64> {
 
 /// Corners of the bounding boxes of each link's solids, in the link's frame.
 fn corners(robot: &Robot) -> Vec<(LinkId, Vec<Vec3>)> {
-    let corners = |bodies: &Vec<elbowroom_robot::Collider>| {
-        let boxes = bodies.iter().map(|b| box_corners(&b.shape, b.in_link));
+    let corners = |colliders: &Vec<elbowroom_robot::Collider>| {
+        let boxes = colliders.iter().map(|b| box_corners(&b.shape, b.in_link));
         boxes.flatten().filter(|p| p.length().is_finite()).collect()
     };
-    robot.colliders.iter().enumerate().map(|(i, bodies)| (LinkId(i), corners(bodies))).collect()
+    robot.colliders.iter().enumerate().map(|(i, colliders)| (LinkId(i), corners(colliders))).collect()
 }
 
 fn box_corners(shape: &Shape, in_link: Pose) -> [Vec3; 8] {

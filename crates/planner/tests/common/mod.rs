@@ -5,13 +5,13 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use elbowroom_cspace::{CellIndex, Grid, GridAxis, OccupancyBitmap, RowSpan};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     pub fn below(&mut self, n: usize) -> usize {

@@ -5,13 +5,13 @@ use elbowroom_proximity::{Capsule, Cuboid, Shape};
 use elbowroom_robot::{Collider, Robot, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 
 pub struct Random(pub u64);
 
 impl Random {
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     /// Joint values at which the robot is free.
@@ -68,9 +68,13 @@ fn serial(joints: &[(JointKind, Vec3, f64, f64)], length: f64, mimic: Option<(us
     let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
     let joints = joints.iter().enumerate().map(joint).collect();
     let mut robot = Robot::new(Chain::new("serial", links, joints).unwrap());
-    for bodies in robot.colliders.iter_mut().skip(1) {
+    for colliders in robot.colliders.iter_mut().skip(1) {
         let shape = Shape::Capsule(Capsule { half_length: 0.4 * length, radius: 0.03 });
-        bodies.push(Collider { name: String::new(), shape, in_link: Pose::from_translation(Vec3::Z * 0.5 * length) });
+        colliders.push(Collider {
+            name: String::new(),
+            shape,
+            in_link: Pose::from_translation(Vec3::Z * 0.5 * length),
+        });
     }
     robot
 }

@@ -1,21 +1,19 @@
 //! Random numbers, the same on every machine.
 
 use elbowroom_spatial::{Rotation, Vec3};
+use elbowroom_testkit::random::{split_mix, unit};
 
 /// `SplitMix64` (Steele, Lea, Flood 2014): small, and good enough to place meshes.
 pub struct Random(pub u64);
 
 impl Random {
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        split_mix(&mut self.0)
     }
 
     /// Uniform in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * unit(self.bits())
     }
 
     /// Log-uniform in `low..high`.

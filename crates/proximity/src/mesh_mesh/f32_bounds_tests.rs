@@ -1,6 +1,7 @@
 //! Every decision in f32 is checked in f64: no box excludes its triangles, and no pair within the cutoff is left out.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{linear_congruential, unit};
 use fearless_simd::Level;
 
 use super::cutoff::{Cutoff, WitnessFrame};
@@ -19,8 +20,7 @@ struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        unit(linear_congruential(&mut self.0))
     }
 
     fn vector(&mut self) -> Vec3 {

@@ -1,10 +1,9 @@
 //! Parts shared by all plots.
 
 use elbowroom_sim::{Recording, RobotTrack};
-use plotly::common::{Anchor, HoverInfo, Line, Mode, Orientation};
-use plotly::layout::{Axis, HoverMode, Legend, Margin};
-use plotly::{Layout, Plot, Scatter};
+use serde_json::{Value, json};
 
+use super::plot::{Plot, line, stroke, with};
 use crate::tables::escape;
 
 /// One plot of the page.
@@ -30,36 +29,12 @@ pub fn round(v: f64) -> Option<f64> {
     v.is_finite().then(|| (v * 1e6).round() / 1e6)
 }
 
-pub type Trace = Box<Scatter<Option<f64>, Option<f64>>>;
-
-/// A curve.
-pub fn line(x: Vec<Option<f64>>, y: Vec<Option<f64>>, name: &str, style: Line) -> Trace {
-    Scatter::new(x, y).name(name).mode(Mode::Lines).line(style).connect_gaps(false)
-}
-
 /// Horizontal bars at `row`, one per interval, with a hover text.
-pub fn bars(spans: &[(f64, f64)], row: f64, width: f64, name: &str, color: &'static str, text: &str) -> Trace {
+pub fn bars(spans: &[(f64, f64)], row: f64, width: f64, name: &str, color: &str, text: &str) -> Value {
     let x = spans.iter().flat_map(|&(from, to)| [round(from), round(to), None]).collect();
     let y = spans.iter().flat_map(|_| [Some(row), Some(row), None]).collect();
-    Scatter::new(x, y)
-        .name(name)
-        .mode(Mode::Lines)
-        .line(Line::new().color(color).width(width))
-        .connect_gaps(false)
-        .hover_info(HoverInfo::All)
-        .hover_template(format!("{text}<br>t = %{{x:.3f}} s<extra></extra>"))
-}
-
-pub fn axis(title: &str) -> Axis {
-    Axis::new().title(title).auto_margin(true).zero_line(false)
-}
-
-/// Layout with the legend above, and hover on the nearest point.
-pub fn layout() -> Layout {
-    Layout::new()
-        .margin(Margin::new().left(60).right(16).top(40).bottom(48))
-        .hover_mode(HoverMode::Closest)
-        .legend(Legend::new().orientation(Orientation::Horizontal).x(0.0).y(1.02).y_anchor(Anchor::Bottom))
+    let hover = format!("{text}<br>t = %{{x:.3f}} s<extra></extra>");
+    with(line(x, y, name, stroke(color, width)), json!({ "hoverinfo": "all", "hovertemplate": hover }))
 }
 
 /// Each robot of each run: label, recording, index of the robot, robot. Runs with control come last, so that their

@@ -2,14 +2,13 @@
 
 use elbowroom_sim::{Recording, RegionPoses, RegionTrack, RobotTrack, Sample};
 use elbowroom_spatial::{Pose, Vec3};
-use plotly::common::{DashType, Fill, HoverInfo, Line, Marker, MarkerSymbol, Mode, Position};
-use plotly::layout::HoverMode;
-use plotly::{Plot, Scatter};
+use serde_json::{Value, json};
 
-use super::figure::{Figure, axis, curve_name, layout, line, plain, round, tracks};
+use super::figure::{Figure, curve_name, plain, round, tracks};
+use super::plot::{Plot, axis, layout, line, markers, stroke, with};
 use crate::downsample::{MAX_POINTS, pick};
 use crate::scene::ReportScene;
-use crate::{outline, palette};
+use crate::{palette, region_surface};
 
 pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
     let mut figures = vec![path(runs)];
@@ -35,8 +34,13 @@ fn closest_moment(runs: &[(&str, &Recording)]) -> Option<(usize, f64)> {
     nearest.map(|(_, i, z)| (i, z)).or_else(|| samples.map(|(i, s)| (i, s.tcp.z)).next())
 }
 
+/// Seen from above, with one scale for both axes.
+pub fn top_view() -> Value {
+    layout(axis("x (m)"), with(axis("y (m)"), json!({ "scaleanchor": "x", "scaleratio": 1.0 })))
+}
+
 fn path(runs: &[(&str, &Recording)]) -> Figure {
-    let mut plot = Plot::new();
+    let mut plot = Plot::new(top_view());
     let mut note = String::from("Tool centre point seen from above.");
     if let (Some((tick, height)), Some((_, recording))) = (closest_moment(runs), runs.first()) {
         note =
@@ -49,7 +53,6 @@ fn path(runs: &[(&str, &Recording)]) -> Figure {
         let name = curve_name(label, recording, track);
         add_path(&mut plot, &name, palette::of_run(robot, recording.monitored), track);
     }
-    plot.set_layout(layout().x_axis(axis("x (m)")).y_axis(axis("y (m)").scale_anchor("x").scale_ratio(1.0)));
     Figure { title: "Path in the X-Y plane".into(), note, over_time: false, run: None, height: 460, wide: false, plot }
 }
 
@@ -59,20 +62,20 @@ fn add_region(plot: &mut Plot, region: &RegionTrack, tick: usize, height: f64) {
         RegionPoses::Moving(poses) => poses.get(tick).or(poses.last()).copied().unwrap_or(Pose::IDENTITY),
     };
     let name = plain(&region.name);
-    if let Some(shell) = outline::warning(&region.shape, region.warning_m) {
+    if let Some(shell) = region_surface::warning(&region.shape, region.warning_m) {
         add_section(
             plot,
-            &outline::section(&shell, &pose, height),
+            &region_surface::section(&shell, &pose, height),
             &format!("warning zone of {name}"),
             palette::WARNING,
             0.28,
         );
     }
-    let solid = outline::section(&outline::solid(&region.shape), &pose, height);
+    let solid = region_surface::section(&region_surface::solid(&region.shape), &pose, height);
     add_section(plot, &solid, &format!("{name} ({})", region.kind.name()), palette::of_kind(region.kind), 0.45);
 }
 
-fn add_section(plot: &mut Plot, curves: &[Vec<[f64; 2]>], name: &str, color: &'static str, alpha: f64) {
+fn add_section(plot: &mut Plot, curves: &[Vec<[f64; 2]>], name: &str, color: &str, alpha: f64) {
     if curves.is_empty() {
         return;
     }
@@ -81,38 +84,26 @@ fn add_section(plot: &mut Plot, curves: &[Vec<[f64; 2]>], name: &str, color: &'s
     };
     let value = u32::from_str_radix(color.trim_start_matches('#'), 16).unwrap_or(0);
     let [_, r, g, b] = value.to_be_bytes();
-    plot.add_trace(
-        Scatter::new(corners(0), corners(1))
-            .name(name)
-            .mode(Mode::Lines)
-            .line(Line::new().color(color).width(1.5))
-            .fill(Fill::ToSelf)
-            .fill_color(format!("rgba({r},{g},{b},{alpha})"))
-            .hover_info(HoverInfo::Name),
-    );
+    let fill = json!({ "fill": "toself", "fillcolor": format!("rgba({r},{g},{b},{alpha})"), "hoverinfo": "name" });
+    plot.add(with(line(corners(0), corners(1), name, stroke(color, 1.5)), fill));
 }
 
-fn add_path(plot: &mut Plot, name: &str, color: &'static str, track: &RobotTrack) {
+fn add_path(plot: &mut Plot, name: &str, color: &str, track: &RobotTrack) {
     let samples = &track.samples;
     let (x, y) = (|i: usize| samples[i].tcp.x, |i: usize| samples[i].tcp.y);
     let kept = pick(samples.len(), MAX_POINTS, &[&x, &y]);
     let column = |f: &dyn Fn(usize) -> f64| kept.iter().map(|&i| round(f(i))).collect::<Vec<_>>();
-    let curve = line(column(&x), column(&y), name, Line::new().color(color).width(2.5)).legend_group(name);
-    plot.add_trace(curve);
+    let curve = line(column(&x), column(&y), name, stroke(color, 2.5));
+    plot.add(with(curve, json!({ "legendgroup": name })));
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return };
-    let (end, symbol) = if track.finished { ("end", MarkerSymbol::Square) } else { ("stopped", MarkerSymbol::X) };
-    let ends = [(first, "start", MarkerSymbol::Circle, Position::BottomRight), (last, end, symbol, Position::TopLeft)];
-    for (sample, text, symbol, position) in ends {
-        plot.add_trace(
-            Scatter::new(vec![round(sample.tcp.x)], vec![round(sample.tcp.y)])
-                .name(name)
-                .legend_group(name)
-                .show_legend(false)
-                .mode(Mode::MarkersText)
-                .marker(Marker::new().color(color).size(10).symbol(symbol))
-                .text_array(vec![text])
-                .text_position(position),
-        );
+    let (end, symbol) = if track.finished { ("end", "square") } else { ("stopped", "x") };
+    for (sample, text, symbol, position) in
+        [(first, "start", "circle", "bottom right"), (last, end, symbol, "top left")]
+    {
+        let style = json!({ "color": color, "size": 10, "symbol": symbol });
+        let point = markers(vec![round(sample.tcp.x)], vec![round(sample.tcp.y)], name, style);
+        let label = json!({ "mode": "markers+text", "text": [text], "textposition": position });
+        plot.add(with(with(point, label), json!({ "legendgroup": name, "showlegend": false })));
     }
 }
 
@@ -124,16 +115,15 @@ fn over_time(
     runs: &[(&str, &Recording)],
     value: impl Fn(usize, &Sample) -> f64,
 ) -> Figure {
-    let mut plot = Plot::new();
+    let mut plot = Plot::new(with(layout(axis("time (s)"), axis(unit)), json!({ "hovermode": "x" })));
     for (label, recording, robot, track) in tracks(runs) {
         let at = |i: usize| value(robot, &track.samples[i]);
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(at(i))).collect();
-        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
-        plot.add_trace(line(t, y, &curve_name(label, recording, track), style));
+        let style = stroke(palette::of_run(robot, recording.monitored), 2.0);
+        plot.add(line(t, y, &curve_name(label, recording, track), style));
     }
-    plot.set_layout(layout().hover_mode(HoverMode::X).x_axis(axis("time (s)")).y_axis(axis(unit)));
     Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, plot }
 }
 
@@ -145,9 +135,9 @@ fn speed(runs: &[(&str, &Recording)]) -> Figure {
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(at(i))).collect();
-        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(1.2).dash(DashType::Dash);
+        let style = with(stroke(palette::of_run(robot, recording.monitored), 1.2), json!({ "dash": "dash" }));
         let name = format!("{}: programmed × override", curve_name(label, recording, track));
-        figure.plot.add_trace(line(t, y, &name, style));
+        figure.plot.add(line(t, y, &name, style));
     }
     figure
 }

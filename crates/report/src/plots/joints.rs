@@ -2,10 +2,9 @@
 
 use elbowroom_kinematics::JointKind;
 use elbowroom_sim::Recording;
-use plotly::Plot;
-use plotly::common::Line;
 
-use super::figure::{Figure, axis, layout, line, plain, round};
+use super::figure::{Figure, plain, round};
+use super::plot::{Plot, axis, layout, line, stroke};
 use super::timing;
 use crate::downsample::{MAX_POINTS, pick};
 use crate::palette;
@@ -13,7 +12,7 @@ use crate::scene::ReportScene;
 
 pub fn chart(scene: &ReportScene, runs: &[(&str, &Recording)], run: usize) -> Option<Figure> {
     let (label, recording) = runs.get(run)?;
-    let mut plot = Plot::new();
+    let mut plot = Plot::default();
     let mut lengths = false;
     for (robot, track) in recording.robots.iter().enumerate() {
         let prefix = if recording.robots.len() > 1 { format!("{} · ", track.name) } else { String::new() };
@@ -25,15 +24,15 @@ pub fn chart(scene: &ReportScene, runs: &[(&str, &Recording)], run: usize) -> Op
             let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
             let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
             let y = kept.iter().map(|&i| round(at(i))).collect();
-            let style = Line::new().color(palette::of_index(k + 3 * robot)).width(1.6);
-            plot.add_trace(line(t, y, &plain(&format!("{prefix}{joint}")), style));
+            let style = stroke(palette::of_index(k + 3 * robot), 1.6);
+            plot.add(line(t, y, &plain(&format!("{prefix}{joint}")), style));
         }
     }
-    if plot.data().is_empty() {
+    if plot.traces.is_empty() {
         return None;
     }
     let unit = if lengths { "joint position (° or mm)" } else { "joint position (°)" };
-    plot.set_layout(layout().x_axis(axis("time (s)")).y_axis(axis(unit)));
+    plot.layout = layout(axis("time (s)"), axis(unit));
     Some(Figure {
         title: timing::title("Joints", label, runs.len()),
         note: String::new(),

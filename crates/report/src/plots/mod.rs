@@ -5,15 +5,16 @@ mod figure;
 mod figure12;
 mod joints;
 mod overrides;
+mod perception;
+mod plot;
 mod timing;
-mod watched;
 
 use elbowroom_sim::Recording;
 
 use crate::scene::ReportScene;
 
 pub use figure::Figure;
-pub use watched::all as watched;
+pub use perception::all as perception;
 
 /// All plots, in the order of the page.
 pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {

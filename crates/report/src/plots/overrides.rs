@@ -2,14 +2,14 @@
 
 use elbowroom_monitor::OverrideReason;
 use elbowroom_sim::{Recording, RobotTrack, Sample};
-use plotly::Plot;
-use plotly::common::Line;
+use serde_json::json;
 
-use super::figure::{Figure, axis, bars, curve_name, layout, line, plain, round, tracks};
+use super::figure::{Figure, bars, curve_name, plain, round, tracks};
+use super::plot::{Plot, axis, layout, line, stroke, with};
 use crate::downsample::{MAX_POINTS, pick};
+use crate::explanation::{collision_text, explanation, reason_text};
 use crate::palette;
 use crate::spans::runs as equal_runs;
-use crate::why::{collision_text, explanation, reason_text};
 
 /// Largest number of bands, which bounds the size of the file.
 const MAX_BANDS: usize = 1000;
@@ -19,7 +19,7 @@ pub fn all(runs: &[(&str, &Recording)]) -> Vec<Figure> {
 }
 
 fn overrides(runs: &[(&str, &Recording)]) -> Figure {
-    let mut plot = Plot::new();
+    let mut plot = Plot::default();
     let mut rows = Vec::new();
     for (label, recording, robot, track) in tracks(runs) {
         let name = curve_name(label, recording, track);
@@ -27,27 +27,24 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(at(i))).collect();
-        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
-        plot.add_trace(line(t, y, &name, style));
+        let style = stroke(palette::of_run(robot, recording.monitored), 2.0);
+        plot.add(line(t, y, &name, style));
         add_bands(&mut plot, recording, &track.samples, rows.len(), &name);
         add_collisions(&mut plot, recording, track, rows.len(), &name);
         rows.push(name);
     }
     let strip = (0.06 * rows.len() as f64).clamp(0.08, 0.4);
-    let ticks = (0..rows.len()).map(|i| i as f64).collect();
+    let ticks: Vec<usize> = (0..rows.len()).collect();
     let last = rows.len().max(1) as f64 - 0.5;
-    plot.set_layout(
-        layout()
-            .x_axis(axis("time (s)").anchor("y2"))
-            .y_axis(axis("override (%)").domain(&[strip + 0.05, 1.0]).range(vec![-4.0, 104.0]))
-            .y_axis2(
-                axis("")
-                    .domain(&[0.0, strip])
-                    .range(vec![last, -0.5])
-                    .tick_values(ticks)
-                    .tick_text(rows)
-                    .show_grid(false),
-            ),
+    let names = json!({
+        "domain": [0.0, strip], "range": [last, -0.5], "tickvals": ticks, "ticktext": rows, "showgrid": false,
+    });
+    plot.layout = with(
+        layout(
+            with(axis("time (s)"), json!({ "anchor": "y2" })),
+            with(axis("override (%)"), json!({ "domain": [strip + 0.05, 1.0], "range": [-4, 104] })),
+        ),
+        json!({ "yaxis2": with(axis(""), names) }),
     );
     Figure {
         title: "Override and the region that governs".into(),
@@ -92,7 +89,7 @@ fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: us
         };
         let text = plain(&text);
         let band = bars(&spans, row as f64, 10.0, &text, color, &format!("{who}<br>governed by {text}"));
-        plot.add_trace(band.y_axis("y2").show_legend(row == 0).legend_group(text));
+        plot.add(with(band, json!({ "yaxis": "y2", "showlegend": row == 0, "legendgroup": text })));
     }
 }
 
@@ -103,25 +100,22 @@ fn add_collisions(plot: &mut Plot, recording: &Recording, track: &RobotTrack, ro
         let text = plain(&collision_text(collision, track));
         let span = [(collision.t_s, collision.t_s + wide)];
         let mark = bars(&span, row as f64, 18.0, &text, "#d62728", &format!("{who}<br>{text}"));
-        plot.add_trace(mark.y_axis("y2").show_legend(false));
+        plot.add(with(mark, json!({ "yaxis": "y2", "showlegend": false })));
     }
 }
 
 fn distance(runs: &[(&str, &Recording)]) -> Figure {
-    let mut plot = Plot::new();
+    let mut plot = Plot::new(layout(axis("time (s)"), with(axis("distance (mm)"), json!({ "rangemode": "tozero" }))));
     for (label, recording, robot, track) in tracks(runs) {
         let at = |i: usize| track.samples[i].distance_m.unwrap_or(f64::NAN);
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(1e3 * at(i))).collect();
-        let texts = kept.iter().map(|&i| plain(&explanation(track, i, recording))).collect();
-        let style = Line::new().color(palette::of_run(robot, recording.monitored)).width(2.0);
+        let texts: Vec<String> = kept.iter().map(|&i| plain(&explanation(track, i, recording))).collect();
+        let style = stroke(palette::of_run(robot, recording.monitored), 2.0);
         let curve = line(t, y, &curve_name(label, recording, track), style);
-        plot.add_trace(curve.hover_text_array(texts));
+        plot.add(with(curve, json!({ "hovertext": texts })));
     }
-    plot.set_layout(
-        layout().x_axis(axis("time (s)")).y_axis(axis("distance (mm)").range_mode(plotly::layout::RangeMode::ToZero)),
-    );
     Figure {
         title: "Distance to the governing region".into(),
         note: "From the governing point of the robot; a gap where nothing governs.".into(),

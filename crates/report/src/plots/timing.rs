@@ -2,9 +2,10 @@
 
 use elbowroom_monitor::Life;
 use elbowroom_sim::{Recording, RegionTrack, Span};
-use plotly::Plot;
+use serde_json::json;
 
-use super::figure::{Figure, axis, bars, layout, plain};
+use super::figure::{Figure, bars, plain};
+use super::plot::{Plot, axis, layout, with};
 use crate::palette;
 use crate::spans::pair;
 
@@ -32,16 +33,18 @@ pub fn chart(runs: &[(&str, &Recording)], run: usize) -> Option<Figure> {
     if all > rows.len() {
         note = format!("{note} The first {MAX_ROWS} of {all} rows.");
     }
-    let mut plot = Plot::new();
+    let labels: Vec<&str> = rows.iter().map(|r| r.label.as_str()).collect();
+    let ticks: Vec<usize> = (0..rows.len()).collect();
+    let last = rows.len() as f64 - 0.5;
+    let mut plot = Plot::new(layout(
+        with(axis("time (s)"), json!({ "range": [0.0, recording.duration_s.max(recording.tick_s)] })),
+        with(axis(""), json!({ "tickvals": ticks, "ticktext": labels, "range": [last, -0.5] })),
+    ));
     for (i, row) in rows.iter().enumerate() {
         let shown = &row.spans[..row.spans.len().min(MAX_SPANS)];
-        plot.add_trace(bars(shown, i as f64, 12.0, &row.label, row.color, &row.text).show_legend(false));
+        let bars = bars(shown, i as f64, 12.0, &row.label, row.color, &row.text);
+        plot.add(with(bars, json!({ "showlegend": false })));
     }
-    let ticks = (0..rows.len()).map(|i| i as f64).collect();
-    let labels = rows.iter().map(|r| r.label.clone()).collect();
-    let y = axis("").tick_values(ticks).tick_text(labels).range(vec![rows.len() as f64 - 0.5, -0.5]);
-    let x = axis("time (s)").range(vec![0.0, recording.duration_s.max(recording.tick_s)]);
-    plot.set_layout(layout().x_axis(x).y_axis(y));
     Some(Figure {
         title: title("Timing", label, runs.len()),
         note,

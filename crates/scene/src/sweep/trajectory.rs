@@ -288,13 +288,13 @@ mod tests {
     use elbowroom_proximity::{Cuboid, Shape};
     use elbowroom_robot::{Collider, Robot};
     use elbowroom_spatial::{Pose, Rotation};
+    use elbowroom_testkit::random::{linear_congruential, unit};
 
     struct Random(u64);
 
     impl Random {
         fn between(&mut self, low: f64, high: f64) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+            low + (high - low) * unit(linear_congruential(&mut self.0))
         }
 
         fn vec3(&mut self, size: f64) -> Vec3 {

@@ -1,4 +1,4 @@
-//! Which regions the active laws keep free, and what is missing where they do not (`elbowroom check`).
+//! Decides which regions the active laws keep robots out of, and what is missing where they do not (`elbowroom check`).
 //!
 //! For each region and each robot that it guards, [`check`] decides whether entry is excluded, and why. The thickness
 //! that the warning zone needs without the stopping-distance law is computed from the cell: v²/2a + v·t
@@ -31,24 +31,26 @@
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
 
-mod decide;
-mod entry;
-mod outline;
-mod profile;
+mod entry_analysis;
+mod entry_check;
+mod initial_overlaps;
 mod program;
-mod start;
+mod region_speed;
+mod sphere_swept_hull;
+mod stopping_profile;
 mod table;
 mod thickness;
-mod travel;
 
 use elbowroom_cell::trajectory::recording_warnings;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_formats::{FormatError, Warning};
 
-use decide::{EntryAnalysis, EntryDecision};
+use entry_analysis::{EntryAnalysis, EntryDecision};
+use initial_overlaps::initial_overlaps;
 use program::programs;
+use region_speed::max_region_speed_m_s;
 
-pub use entry::EntryCheck;
+pub use entry_check::EntryCheck;
 pub use table::table;
 
 /// Analyses every region for every robot that it guards; regions in file order.
@@ -58,10 +60,10 @@ pub use table::table;
 pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
     let programs = programs(cell)?;
     let slots = configure::slots(cell);
-    let inside = start::inside(cell, &programs);
+    let overlaps = initial_overlaps(cell, &programs);
     let mut checks = Vec::new();
     for (index, region) in cell.regions.iter().enumerate() {
-        let travel_m_s = travel::fastest(cell, region)?;
+        let region_speed_m_s = max_region_speed_m_s(cell, region)?;
         for robot in &region.robots {
             let shares = |other: &usize| slots[*other].is_some() && slots[*other] == slots[index];
             let analysis = EntryAnalysis {
@@ -69,9 +71,9 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
                 region: index,
                 robot: *robot,
                 program: &programs[*robot],
-                travel_m_s,
-                starts_inside: inside.contains(&(index, *robot)),
-                shared_at_start: inside.iter().any(|(r, other)| other != robot && shares(r)),
+                region_speed_m_s,
+                starts_inside: overlaps.contains(&(index, *robot)),
+                shared_at_start: overlaps.iter().any(|(r, other)| other != robot && shares(r)),
             };
             let EntryDecision { excluded, reason, write_instead, needed_warning_m } = analysis.decide();
             let overrun = analysis.overrun();

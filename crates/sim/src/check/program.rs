@@ -1,20 +1,20 @@
-//! What each robot's program does to what its monitor guards.
+//! The guarded volumes of each robot, and their speeds in its program.
 
 use elbowroom_cell::Cell;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{Guards, Volume};
 
-use super::outline::SphereSweptHull;
-use super::profile::{LinkSolid, Profile, StoppingProfile};
+use super::sphere_swept_hull::SphereSweptHull;
+use super::stopping_profile::{LinkSolid, Profile, StoppingProfile};
 
-/// A robot's program and the guarded volumes that it moves.
+/// The guarded volumes of a robot, and the motion profile of its program.
 pub(super) struct RobotProgram {
     pub volumes: Vec<Volume>,
     pub profile: Profile,
 }
 
 impl RobotProgram {
-    /// The paces of the volumes that count for these guards.
+    /// The stopping profiles of the volumes that count for these guards.
     pub fn stopping_profiles(&self, guards: Guards) -> impl Iterator<Item = &StoppingProfile> {
         self.volumes
             .iter()

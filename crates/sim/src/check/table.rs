@@ -5,8 +5,8 @@ use std::fmt::Write;
 use elbowroom_cell::Cell;
 use elbowroom_monitor::RegionKind;
 
-use super::decide::round_up;
-use super::entry::EntryCheck;
+use super::entry_analysis::round_up;
+use super::entry_check::EntryCheck;
 
 const WIDTH: usize = 100;
 /// Width of names.

@@ -1,13 +1,13 @@
 //! Thickness of a warning zone for a robot with bounded deceleration and a delay.
 //!
-//! `docs/laws.md`, section 2, derives it. A robot that moves v·τ before it starts to brake stays outside as long as its
-//! speed is at most its distance over τ. It exceeds the speed of the law only while it brakes. So each braking course
-//! from the last moment below that speed to rest is tested: from the full override, and from each fraction of it.
+//! `docs/laws.md`, section 2, derives it. A robot that moves v·τ before it starts to brake stays outside while its
+//! speed is at most its distance divided by τ. It exceeds the speed of the law only while it brakes. So the braking
+//! from the last moment below that speed to rest is tested, from the full override and from fractions of it.
 
 use std::f64::consts::E;
 
 /// Fractions of the full override from which braking is tested.
-const PARTS: u32 = 128;
+const FRACTIONS: u32 = 128;
 /// Relative reserve for the finite number of fractions and samples.
 const MARGIN: f64 = 0.002;
 /// Relative tolerance of comparisons.
@@ -42,15 +42,15 @@ pub(super) struct Braking {
     pub peak_m: f64,
 }
 
-/// Sufficient thickness (m) for one braking course, at least `least_m`; `fastest_m_s` is the largest speed of the point
+/// Sufficient thickness (m) for one braking motion, at least `least_m`; `fastest_m_s` is the largest speed of the point
 /// anywhere.
 pub(super) fn thickness(least_m: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> f64 {
-    let fits = |zone: f64| enough(zone, braking, fastest_m_s, response_delay);
+    let fits = |zone: f64| is_sufficient(zone, braking, fastest_m_s, response_delay);
     if least_m > 0.0 && fits(least_m / (1.0 + MARGIN)) {
         return least_m;
     }
     let delay_m = fastest_m_s * response_delay.headway_s();
-    // From here on every fraction fits, for any course.
+    // From this thickness on every fraction fits, for any braking motion.
     let (mut low, mut high) = (0.0, E * (delay_m + braking.distance_m.max(braking.peak_m)));
     for _ in 0..40 {
         let middle = f64::midpoint(low, high);
@@ -59,19 +59,19 @@ pub(super) fn thickness(least_m: f64, braking: &Braking, fastest_m_s: f64, respo
     least_m.max(high * (1.0 + MARGIN))
 }
 
-fn enough(zone: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> bool {
+fn is_sufficient(zone: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> bool {
     let headway_s = response_delay.headway_s();
-    let part = |i: u32| f64::from(i) / f64::from(PARTS);
+    let fraction = |i: u32| f64::from(i) / f64::from(FRACTIONS);
     let fits = |x: f64| {
-        left(x * zone, fastest_m_s * response_delay.delay_s) * (1.0 + ROUNDING)
+        remaining_distance(x * zone, fastest_m_s * response_delay.delay_s) * (1.0 + ROUNDING)
             >= needed(braking, fastest_m_s, headway_s, x)
     };
-    zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s && (1..=PARTS).map(part).all(fits)
+    zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s && (1..=FRACTIONS).map(fraction).all(fits)
 }
 
 /// The remaining distance (m) after the delay, in which the robot moves at most `delay_m` and its speed is at most its
 /// distance over the delay.
-fn left(distance: f64, delay_m: f64) -> f64 {
+fn remaining_distance(distance: f64, delay_m: f64) -> f64 {
     let times = distance / delay_m.max(f64::MIN_POSITIVE);
     if times >= 2.0 {
         distance - delay_m
@@ -82,7 +82,7 @@ fn left(distance: f64, delay_m: f64) -> f64 {
     }
 }
 
-/// Needed distance of a course from the fraction x of the full override, m: the maximum of
+/// Needed distance of a braking motion from the fraction x of the full override, m: the maximum of
 /// `W·(x² − s²) + τ·min(v·x, V·s)` for s in [0, x].
 fn needed(braking: &Braking, fastest_m_s: f64, headway_s: f64, x: f64) -> f64 {
     let (distance, steep, flat) = (braking.distance_m, braking.speed_m_s * headway_s, fastest_m_s * headway_s);
@@ -90,14 +90,14 @@ fn needed(braking: &Braking, fastest_m_s: f64, headway_s: f64, x: f64) -> f64 {
         return (steep.min(flat) * x).min(braking.peak_m);
     }
     let top = steep / (2.0 * distance);
-    let course = if steep <= flat {
+    let distance_m = if steep <= flat {
         if x >= top { distance * x * x + steep * top / 2.0 } else { steep * x }
     } else if x <= steep * top / flat {
         flat * x + distance * x * x * (1.0 - (flat / steep).powi(2))
     } else {
         distance * x * x + steep * top / 2.0
     };
-    course.min(braking.peak_m)
+    distance_m.min(braking.peak_m)
 }
 
 #[cfg(test)]
@@ -118,8 +118,11 @@ mod tests {
             let response_delay = ResponseDelay { delay_s: reaction_s + 0.002, tick_s: 0.002 };
             let (delay, headway) = (2.0 * response_delay.delay_s, 2.0 * response_delay.headway_s());
             let formula = (0.25 + delay + headway * headway / 1.0).max(E * headway);
-            let named = steady(0.25, 2.0, response_delay);
-            assert!(named >= formula && named < 1.022 * formula, "{reaction_s} s: {named} m, formula {formula} m");
+            let computed = steady(0.25, 2.0, response_delay);
+            assert!(
+                computed >= formula && computed < 1.022 * formula,
+                "{reaction_s} s: {computed} m, formula {formula} m"
+            );
         }
     }
 

@@ -9,8 +9,8 @@ use super::{Geometry, PlanStep, ProgramPlan};
 const RESERVE: f64 = 0.1;
 /// Iterations for the state at the end of a braking tick.
 const SAMPLES: u32 = 4;
-/// At the start of a move the intended velocity is taken from this time, s: at rest there is none.
-const AHEAD_S: f64 = 0.05;
+/// At the start of a move, from rest, the intended velocity is taken from this time ahead, s.
+const LOOKAHEAD_S: f64 = 0.05;
 
 /// A program switches a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl ProgramClock {
             switches: Vec::new(),
             held: false,
         };
-        clock.pass_instants();
+        clock.execute_instant_steps();
         clock.update_point();
         // A program starts at full rate: its own time law starts from rest.
         clock.rate = clock.programmed;
@@ -145,8 +145,11 @@ impl ProgramClock {
     /// Advances by `dt` seconds under the override `target`.
     pub fn advance(&mut self, dt: f64, target: f64) {
         let target = target.clamp(0.0, 1.0);
-        let next =
-            if target < self.rate { self.braked(dt, target) } else { target.min(self.rate + self.largest_rise() * dt) };
+        let next = if target < self.rate {
+            self.braked_rate(dt, target)
+        } else {
+            target.min(self.rate + self.max_rate_increase() * dt)
+        };
         let mean = f64::midpoint(self.rate, next);
         self.rate_change = (next - self.rate) / dt;
         self.rate = next;
@@ -181,13 +184,13 @@ impl ProgramClock {
         self.held = held;
     }
 
-    /// The end is met exactly: steps meet at rest.
+    /// Ends the step exactly at its end: consecutive steps join at rest.
     fn end_step(&mut self, duration: f64) {
         self.time = duration;
         self.update_point();
         self.step += 1;
         self.time = 0.0;
-        self.pass_instants();
+        self.execute_instant_steps();
     }
 
     /// The rate after braking for `dt` seconds, at least `target`.
@@ -195,7 +198,7 @@ impl ProgramClock {
     /// The robot brakes along its path: its stop time, the longest stop time of any joint, falls by one second per
     /// second. Where the program accelerates meanwhile, the rate falls faster; where it decelerates harder by itself,
     /// the program is followed.
-    fn braked(&self, dt: f64, target: f64) -> f64 {
+    fn braked_rate(&self, dt: f64, target: f64) -> f64 {
         let left = self.stop_time(&self.here.first) * self.rate - dt;
         if left <= 0.0 {
             return target;
@@ -230,7 +233,7 @@ impl ProgramClock {
     /// Upper bound of the rise of the rate, 1/s.
     ///
     /// With `q̇ = q′σ` and `q̈ = q″σ² + q′σ̇`, `|q̈| ≤ a` leaves `σ̇ ≤ (a − |q″|σ²) / |q′|` per joint.
-    fn largest_rise(&self) -> f64 {
+    fn max_rate_increase(&self) -> f64 {
         let square = self.rate * self.rate;
         let mut rise = f64::INFINITY;
         for ((first, second), l) in self.here.first.iter().zip(&self.here.second).zip(&self.limits) {
@@ -244,7 +247,7 @@ impl ProgramClock {
     }
 
     /// Executes the steps without duration.
-    fn pass_instants(&mut self) {
+    fn execute_instant_steps(&mut self) {
         loop {
             match self.plan.steps.get(self.step) {
                 Some(PlanStep::Switch { region, active }) => {
@@ -274,7 +277,7 @@ impl ProgramClock {
             Some(PlanStep::Play(p)) => p.duration(),
             _ => 0.0,
         };
-        let ahead = AHEAD_S.min(duration / 2.0);
+        let ahead = LOOKAHEAD_S.min(duration / 2.0);
         if moves && self.time < ahead {
             self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.first);
         }

@@ -32,7 +32,7 @@ impl Geometry {
     }
 
     /// Samples of the joint motion along the path: one for a joint move, whose derivatives are constant.
-    pub fn probes(&self) -> Vec<PathPoint> {
+    pub fn samples(&self) -> Vec<PathPoint> {
         match self {
             Self::Joint { .. } => vec![self.at(0.0)],
             Self::TcpLine(line) => (0..=line.cells()).map(|i| self.at(i as f64 / line.cells() as f64)).collect(),

@@ -13,17 +13,17 @@ const KNOT_M: f64 = 0.01;
 /// Largest rotation between two knots, rad.
 const KNOT_RAD: f64 = 0.03;
 /// Largest number of knots.
-const MOST_KNOTS: f64 = 4000.0;
+const MAX_KNOTS: f64 = 4000.0;
 /// Half width of the difference stencil, as a share of the line.
 const STENCIL: f64 = 5e-4;
 /// A larger joint motion (rad, m) between two knots means a change of branch.
 const JUMP: f64 = 0.5;
 
-/// Samples between two knots. A joint that moves more than `FLIP_SHARE` of its travel, and more than `FLIP` (rad, m),
-/// from one sample to the next changes its branch there.
+/// Samples between two knots. A joint that moves more than `BRANCH_CHANGE_SHARE` of its travel, and more than
+/// `BRANCH_CHANGE` (rad, m), from one sample to the next changes its branch there.
 const SAMPLES: usize = 8;
-const FLIP_SHARE: f64 = 0.6;
-const FLIP: f64 = 0.01;
+const BRANCH_CHANGE_SHARE: f64 = 0.6;
+const BRANCH_CHANGE: f64 = 0.01;
 
 /// A straight line of the TCP in the root frame.
 #[derive(Debug)]
@@ -78,7 +78,7 @@ impl TcpLine {
             keeps_orientation: task == IkTask::Pose,
         };
         let turn = if line.keeps_orientation { (from.rotation.inverse() * to.rotation).angle() } else { 0.0 };
-        let cells = (line.length() / KNOT_M).max(turn / KNOT_RAD).ceil().clamp(4.0, MOST_KNOTS) as usize;
+        let cells = (line.length() / KNOT_M).max(turn / KNOT_RAD).ceil().clamp(4.0, MAX_KNOTS) as usize;
         for i in 1..=cells {
             let s = i as f64 / cells as f64;
             let next = line.step(chain, s, i).map_err(|why| LineError {
@@ -89,7 +89,7 @@ impl TcpLine {
             line.knots.push(next);
         }
         for i in 0..cells {
-            if let Some((s, joint)) = line.flip(i) {
+            if let Some((s, joint)) = line.branch_change(i) {
                 let name = &chain.joints()[chain.active_joints()[joint].0].name;
                 let why = format!("joint \"{name}\" would have to jump: the line passes a singularity");
                 return Err(LineError { at_m: s * line.length(), length_m: line.length(), why });
@@ -100,13 +100,13 @@ impl TcpLine {
 
     /// A change of branch between two knots, and the joint that shows it: two branches may be so close that the knots
     /// alone do not reveal it.
-    fn flip(&self, cell: usize) -> Option<(f64, usize)> {
+    fn branch_change(&self, cell: usize) -> Option<(f64, usize)> {
         let s = |k: usize| (cell as f64 + k as f64 / SAMPLES as f64) / self.cells() as f64;
         let samples: Vec<Vec<f64>> = (0..=SAMPLES).map(|k| self.q(s(k))).collect();
         let step = |k: usize, j: usize| (samples[k + 1][j] - samples[k][j]).abs();
         (0..samples[0].len()).find_map(|j| {
             let travel: f64 = (0..SAMPLES).map(|k| step(k, j)).sum();
-            let jumps = |k: &usize| step(*k, j) > FLIP && step(*k, j) > FLIP_SHARE * travel;
+            let jumps = |k: &usize| step(*k, j) > BRANCH_CHANGE && step(*k, j) > BRANCH_CHANGE_SHARE * travel;
             (0..SAMPLES).find(jumps).map(|k| (s(k), j))
         })
     }

@@ -11,7 +11,7 @@ use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use super::{Geometry, Segment, TcpLine};
 
 /// Largest number of steps of a plan, including repetitions.
-const MOST_STEPS: u64 = 1_000_000;
+const MAX_STEPS: u64 = 1_000_000;
 
 /// A planned program.
 #[derive(Debug, Clone, Default)]
@@ -54,12 +54,12 @@ pub fn plan(cell: &Cell, robot: usize, repeat: u32, notes: &mut Vec<Warning>) ->
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
-    let mut planner = ProgramPlanner { cell, robot: at, q: at.start.clone(), notes, known: Vec::new() };
+    let mut planner = ProgramPlanner { cell, robot: at, q: at.start.clone(), notes, planned_moves: Vec::new() };
     match &program.body {
-        ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MOST_STEPS / steps.len().max(1) as u64)),
+        ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
         ProgramBody::Trajectory(rows) => {
             planner.notes.extend(recording_warnings(cell, robot));
-            planner.playback(program, rows, passes.min(MOST_STEPS))
+            planner.playback(program, rows, passes.min(MAX_STEPS))
         }
     }
 }
@@ -71,7 +71,7 @@ struct ProgramPlanner<'a> {
     q: Vec<f64>,
     notes: &'a mut Vec<Warning>,
     /// Moves of earlier passes.
-    known: Vec<(usize, Vec<f64>, Rc<Segment>)>,
+    planned_moves: Vec<(usize, Vec<f64>, Rc<Segment>)>,
 }
 
 impl ProgramPlanner<'_> {
@@ -94,12 +94,12 @@ impl ProgramPlanner<'_> {
     }
 
     fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Rc<Segment>, FormatError> {
-        let known = self.known.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
-        let segment = if let Some(segment) = known {
+        let planned = self.planned_moves.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let segment = if let Some(segment) = planned {
             segment
         } else {
             let segment = Rc::new(self.timed(index, step)?);
-            self.known.push((index, self.q.clone(), segment.clone()));
+            self.planned_moves.push((index, self.q.clone(), segment.clone()));
             segment
         };
         self.q = segment.end();
@@ -136,8 +136,8 @@ impl ProgramPlanner<'_> {
             }
             StepAction::Joint { to, speed } => {
                 let to = self.joint_target(index, step, to)?;
-                let course = Geometry::Joint { from: self.q.clone(), to };
-                Segment::new(course, limits, *speed, f64::INFINITY).map_err(|e| self.error(index, step, &e))
+                let path = Geometry::Joint { from: self.q.clone(), to };
+                Segment::new(path, limits, *speed, f64::INFINITY).map_err(|e| self.error(index, step, &e))
             }
             _ => Err(self.error(index, step, "is not a move")),
         }

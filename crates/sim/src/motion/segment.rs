@@ -39,8 +39,8 @@ impl Segment {
     /// # Errors
     /// Message of the time law's library.
     pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, String> {
-        let probes = geometry.probes();
-        let Some((bounds, share)) = bounds(&probes, limits, speed, path_rate) else {
+        let samples = geometry.samples();
+        let Some((bounds, share)) = bounds(&samples, limits, speed, path_rate) else {
             return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0 });
         };
         let mut otg = Ruckig::<1, ThrowErrorHandler>::new(None, 0.001);
@@ -106,13 +106,13 @@ impl MapStack for ([f64; 1], [f64; 1], [f64; 1]) {
 }
 
 /// The limits of s, and the share of the programmed rate that remains; `None` without motion.
-fn bounds(probes: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
+fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
     let joints = limits.len();
     let largest =
-        |f: &dyn Fn(&PathPoint, usize) -> f64, j: usize| probes.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()));
+        |f: &dyn Fn(&PathPoint, usize) -> f64, j: usize| samples.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()));
     let first: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.first[j], j)).collect();
     let second: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.second[j], j)).collect();
-    let third: Vec<f64> = (0..joints).map(|j| largest_change(probes, j)).collect();
+    let third: Vec<f64> = (0..joints).map(|j| largest_change(samples, j)).collect();
     if first.iter().all(|f| *f < 1e-12) {
         return None;
     }
@@ -133,7 +133,7 @@ fn bounds(probes: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f
 }
 
 /// |q‴| from the change of q″ between samples at equal steps of s.
-fn largest_change(probes: &[PathPoint], j: usize) -> f64 {
-    let steps = (probes.len() - 1) as f64;
-    probes.windows(2).fold(0.0_f64, |m, w| m.max((w[1].second[j] - w[0].second[j]).abs() * steps))
+fn largest_change(samples: &[PathPoint], j: usize) -> f64 {
+    let steps = (samples.len() - 1) as f64;
+    samples.windows(2).fold(0.0_f64, |m, w| m.max((w[1].second[j] - w[0].second[j]).abs() * steps))
 }

@@ -1,14 +1,15 @@
 //! Simulation of a cell: programs on one clock, under the monitor.
 
-mod avoid;
-mod deadlock;
-mod delay;
-mod ending;
-mod faults;
-mod needs;
+mod avoiding_robot;
+mod deadlock_detector;
+mod fault_injection;
+mod idle_detector;
 mod outcome;
-mod regions;
-mod waits;
+mod override_delay;
+mod region_recorder;
+mod stop_state;
+mod wait_for_graph;
+mod zone_claims;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,14 +29,15 @@ use crate::motion::{ProgramClock, RegionSwitch, plan};
 use crate::recording::{
     Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEvent, Sample, TickTimes,
 };
-use avoid::AvoidingRobot;
-use deadlock::DeadlockDetector;
-use delay::OverrideDelay;
-use ending::{IdleDetector, StopState};
-pub use faults::{InputFault, InputFaultKind};
-use needs::ZoneClaims;
-use regions::RegionRecorder;
-use waits::WaitForGraph;
+use avoiding_robot::AvoidingRobot;
+use deadlock_detector::DeadlockDetector;
+pub use fault_injection::{InputFault, InputFaultKind};
+use idle_detector::IdleDetector;
+use override_delay::OverrideDelay;
+use region_recorder::RegionRecorder;
+use stop_state::StopState;
+use wait_for_graph::WaitForGraph;
+use zone_claims::ZoneClaims;
 
 /// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,17 +132,17 @@ pub fn simulate_with(
     (run.arbiter, run.claims) = (arbiter, claims);
     let mut tick = 0_u64;
     loop {
-        let t_s = instant(tick, cell.tick_s);
+        let t_s = tick_time_s(tick, cell.tick_s);
         if tick.is_multiple_of(256) {
             let finished = run.clocks.iter().filter(|c| c.finished()).count();
             progress(RunProgress { t_s, finished, robots: run.clocks.len() });
         }
         if tick == 0 {
-            run.announce();
+            run.publish_initial_occupancy();
         }
         run.tick(t_s);
         if run.ended(t_s) {
-            notes.extend(run.avoiding.iter().flatten().filter_map(|e| e.fault_warning(cell)));
+            notes.extend(run.avoiding.iter().flatten().filter_map(|a| a.fault_warning(cell)));
             return Ok(RunOutcome { recording: run.finish(t_s), notes });
         }
         run.advance();
@@ -166,7 +168,7 @@ struct Simulation<'a> {
     states: Vec<ChainState>,
     scratch: Vec<ChainState>,
     frames: Frames<'a>,
-    inputs: faults::FaultInjector<'a>,
+    fault_injector: fault_injection::FaultInjector<'a>,
     regions: RegionRecorder<'a>,
     checker: FirstContacts<'a>,
     tracks: Vec<RobotTrack>,
@@ -214,7 +216,7 @@ impl<'a> Simulation<'a> {
             scratch: states.clone(),
             states,
             frames: Frames::new(cell),
-            inputs: faults::FaultInjector::new(&options.faults, cell.robots.len()),
+            fault_injector: fault_injection::FaultInjector::new(&options.faults, cell.robots.len()),
             regions: RegionRecorder::new(cell, setups),
             checker: FirstContacts::new(
                 cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
@@ -246,9 +248,9 @@ impl<'a> Simulation<'a> {
         self.events.push(EventRow { t_s, robot, region: region.to_owned(), event });
     }
 
-    /// Publishes the state of every robot before the first tick of a cell with exchange regions: a robot that starts
-    /// inside would otherwise wait for robots without a status, and count as having entered.
-    fn announce(&mut self) {
+    /// Publishes the occupancy of every robot before the first tick of a cell with exchange regions: a robot that
+    /// starts inside would otherwise wait for robots without a status, and count as having entered.
+    fn publish_initial_occupancy(&mut self) {
         if !self.cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. })) {
             return;
         }
@@ -289,7 +291,7 @@ impl<'a> Simulation<'a> {
         if let Some(arbiter) = &self.arbiter {
             self.deadlocks.observe(t_s, arbiter, &self.stop_states);
         }
-        self.collide(t_s);
+        self.check_collisions(t_s);
     }
 
     fn declare_claims(&mut self) {
@@ -310,7 +312,7 @@ impl<'a> Simulation<'a> {
             let scale = if is_silent { 0.0 } else { 1.0 };
             state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
             state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
-            if let Some(avoiding) = self.avoiding[i].as_ref().filter(|e| !e.is_on_path()) {
+            if let Some(avoiding) = self.avoiding[i].as_ref().filter(|a| !a.is_on_path()) {
                 avoiding.write_state(state);
                 state.qd.iter_mut().chain(&mut state.qdd).for_each(|v| *v *= scale);
             }
@@ -351,17 +353,17 @@ impl<'a> Simulation<'a> {
             qd: &state.qd,
             qdd: &state.qdd,
             programmed_override: clock.programmed_override(),
-            intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |e| e.intent(clock))),
+            intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |a| a.intent(clock))),
             sources: &sources,
         };
-        let Some(snapshot) = self.inputs.pass(i, &snapshot) else { return self.record_without_input(i, t_s) };
+        let Some(snapshot) = self.fault_injector.apply(i, &snapshot) else { return self.record_without_input(i, t_s) };
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
         let applied = if self.options.monitored { report.speed_override } else { clock.programmed_override() };
         self.applied[i] = applied;
         self.log_events(i, t_s);
-        // A region governs where it makes the robot slower than its program.
+        // A region governs where it makes the robot slower than programmed.
         let governs = self.options.monitored.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
@@ -397,7 +399,7 @@ impl<'a> Simulation<'a> {
 
     /// Records a tick without input of the monitor.
     fn record_without_input(&mut self, i: usize, t_s: f64) {
-        if self.options.monitored && !self.inputs.keeps_last_override(i, t_s) {
+        if self.options.monitored && !self.fault_injector.keeps_last_override(i, t_s) {
             self.applied[i] = 0.0;
         }
         self.record(i, t_s, self.applied[i], None, None, OverrideReason::Fault(elbowroom_monitor::Fault::Stale));
@@ -407,14 +409,14 @@ impl<'a> Simulation<'a> {
         &mut self,
         i: usize,
         t_s: f64,
-        o: f64,
+        speed_override: f64,
         region: Option<usize>,
         distance_m: Option<f64>,
         reason: OverrideReason,
     ) {
         let (tcp, tcp_speed) = self.frames.tcp(i, &self.states[i]);
         // Off its path a robot does not move by its program's time.
-        let off_path = self.avoiding[i].as_ref().is_some_and(|e| !e.is_on_path());
+        let off_path = self.avoiding[i].as_ref().is_some_and(|a| !a.is_on_path());
         let rate = if off_path { 1.0 } else { self.clocks[i].rate() };
         if let Some(avoiding) = &mut self.avoiding[i] {
             avoiding.record();
@@ -429,7 +431,7 @@ impl<'a> Simulation<'a> {
             self.frames.tcp(i, &self.scratch[i]).1
         };
         let track = &mut self.tracks[i];
-        track.min_override = track.min_override.min(o);
+        track.min_override = track.min_override.min(speed_override);
         let q = self.states[i].q.clone();
         track.samples.push(Sample {
             t_s,
@@ -437,14 +439,14 @@ impl<'a> Simulation<'a> {
             tcp,
             tcp_speed,
             programmed_speed,
-            speed_override: o,
+            speed_override,
             region,
             distance_m,
             reason,
         });
     }
 
-    fn collide(&mut self, t_s: f64) {
+    fn check_collisions(&mut self, t_s: f64) {
         let Self { checker, states, tracks, objects, cell, checked_s, .. } = self;
         let states: Vec<&ChainState> = states.iter().collect();
         let before = std::mem::replace(checked_s, t_s);
@@ -465,7 +467,7 @@ impl<'a> Simulation<'a> {
             }
         };
         checker.check(&states, &steps, |FirstContact { a, b, fraction }| {
-            // Exactly the time of the tick where the contact is at its end.
+            // A contact at the end of the step has exactly the time of the tick.
             let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
             let collision = Collision { t_s, a: name(a), b: name(b) };
             let robot = |m: GeometryId| if let GeometryId::Link { robot, .. } = m { Some(robot.0) } else { None };
@@ -529,7 +531,7 @@ impl<'a> Simulation<'a> {
                 .cycles(&deadlocks),
         );
         for (i, track) in robots.iter_mut().enumerate() {
-            // Collisions of one tick come in the order of the pairs.
+            // Collisions within one tick are found in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
             let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
             let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
@@ -560,6 +562,6 @@ fn object_track(cell: &Cell, moving_object: &MovingObject) -> ObjectTrack {
 }
 
 /// Time of a tick, s, rounded to nanoseconds.
-fn instant(tick: u64, tick_s: f64) -> f64 {
+fn tick_time_s(tick: u64, tick_s: f64) -> f64 {
     (tick as f64 * tick_s * 1e9).round() / 1e9
 }

@@ -5,7 +5,7 @@ use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp};
 use crate::recording::{Outcome, RobotEnding, RobotTrack};
 
 /// Joints that differ by less than this (rad, m) from their final values have reached them.
-const THERE: f64 = 1e-5;
+const SETTLED: f64 = 1e-5;
 
 /// Outcome of a robot with the recording `track`; `governing` is the point with the smallest requested override of the
 /// last tick, `region` the name of the governing region.
@@ -30,8 +30,8 @@ pub(super) fn ending(
     if track.finished {
         return RobotEnding::default();
     }
-    let waits = matches!(track.samples.last().map(|s| s.reason), Some(OverrideReason::Waiting(_)));
-    let outcome = match (deadlocked, waits) {
+    let is_waiting = matches!(track.samples.last().map(|s| s.reason), Some(OverrideReason::Waiting(_)));
+    let outcome = match (deadlocked, is_waiting) {
         (true, _) => Outcome::Deadlock,
         (false, true) => Outcome::Held,
         (false, false) => Outcome::Stopped,
@@ -49,8 +49,8 @@ pub(super) fn ending(
 /// Since when the robot is at its final configuration, s; `None` where it was still moving.
 pub(super) fn stopped_at(track: &RobotTrack) -> Option<f64> {
     let last = track.samples.last()?;
-    let elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > THERE);
-    let moving = track.samples.iter().rposition(|s| elsewhere(&s.q));
+    let is_elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > SETTLED);
+    let moving = track.samples.iter().rposition(|s| is_elsewhere(&s.q));
     let first = moving.map_or(0, |i| i + 1);
     (first + 1 < track.samples.len()).then(|| track.samples[first].t_s)
 }

@@ -1,0 +1,109 @@
+//! Validation of a request: selection of the robot, joint values, limits.
+
+use elbowroom_cell::{Cell, CellRobot, suggest};
+use elbowroom_formats::FormatError;
+use elbowroom_kinematics::JointKind;
+use elbowroom_planner::{KinematicLimits, PathEnd, RrtConnectError};
+
+/// The robot of this name; the only one where none is named.
+pub(crate) fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(usize, &'c CellRobot), FormatError> {
+    let names = || cell.robots.iter().map(|r| r.name.as_str());
+    let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
+    match (name, &cell.robots[..]) {
+        (None, [only]) => Ok((0, only)),
+        (None, _) => wrong(format!("has {} robots: name one", cell.robots.len()), suggest::hint("", names())),
+        (Some(name), robots) => match robots.iter().position(|r| r.name == name) {
+            Some(i) => Ok((i, &robots[i])),
+            None => wrong(format!("has no robot \"{name}\""), suggest::hint(name, names())),
+        },
+    }
+}
+
+/// Motion limits of the robot's joints. Speeds must be given: a guess would be unsafe.
+pub(super) fn kinematic_limits(cell: &Cell, robot: &CellRobot) -> Result<KinematicLimits, FormatError> {
+    let chain = &robot.robot.chain;
+    let joints = || chain.active_joints().iter().map(|id| &chain.joints()[id.0]);
+    let known = |v: Option<f64>| v.is_some_and(|v| v > 0.0 && v.is_finite());
+    let unknown: Vec<&str> = joints().filter(|j| !known(j.limits.velocity)).map(|j| j.name.as_str()).collect();
+    if !unknown.is_empty() {
+        let what = format!(
+            "robot \"{}\" has no largest speed for {}: time parametrization needs one for each joint",
+            robot.name,
+            unknown.join(", ")
+        );
+        let each = joints().map(|j| {
+            let is_prismatic = j.kind == JointKind::Prismatic;
+            let guess = if is_prismatic { 1.0 } else { std::f64::consts::PI };
+            let speed =
+                cell.units.show_joint(is_prismatic, j.limits.velocity.filter(|v| known(Some(*v))).unwrap_or(guess));
+            speed.split(' ').next().unwrap_or_default().to_owned()
+        });
+        let hint = format!(
+            "speed = [{}]   (in [robot.{}]: per joint, in {} or, where it slides, {} per second)",
+            each.collect::<Vec<_>>().join(", "),
+            robot.name,
+            cell.units.angle.symbol(),
+            cell.units.length.symbol(),
+        );
+        return Err(FormatError::new(&cell.file, robot.line, what).hint(hint));
+    }
+    Ok(KinematicLimits {
+        velocity: robot.limits.iter().map(|l| l.velocity).collect(),
+        acceleration: robot.limits.iter().map(|l| l.acceleration).collect(),
+        jerk: robot.limits.iter().map(|l| l.jerk).collect(),
+    })
+}
+
+/// Checks that there is one finite value per joint.
+pub(super) fn check_joint_values(cell: &Cell, robot: &CellRobot, end: &str, q: &[f64]) -> Result<(), FormatError> {
+    let names = robot.joint_names();
+    let order = || format!("one value per joint in this order, rad (m for prismatic joints): {}", names.join(","));
+    let wrong = |what: String| FormatError::new(&cell.file, robot.line, what).hint(order());
+    if q.len() != names.len() {
+        let joints = names.len();
+        return Err(wrong(format!(
+            "the {end} of robot \"{}\" has {} value{} for {joints} joint{}",
+            robot.name,
+            q.len(),
+            if q.len() == 1 { "" } else { "s" },
+            if joints == 1 { "" } else { "s" },
+        )));
+    }
+    match q.iter().position(|v| !v.is_finite()) {
+        Some(i) => Err(wrong(format!("the {end} of robot \"{}\" has {} for `{}`", robot.name, q[i], names[i]))),
+        None => Ok(()),
+    }
+}
+
+/// The error where the planner rejects the request.
+pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError) -> FormatError {
+    let error = |what: String| FormatError::new(&cell.file, robot.line, what);
+    let of = |end: &PathEnd| format!("the {end} of robot \"{}\"", robot.name);
+    match e {
+        RrtConnectError::OutOfLimits { end, joint, value, lower, upper, unit } => {
+            let degrees = if *unit == elbowroom_planner::JointUnit::Radians && value.abs() > 6.3 && *upper < 6.3 {
+                "; are these degrees?"
+            } else {
+                ""
+            };
+            error(format!("{}: `{joint}` is {value} {unit}, outside its limits{degrees}", of(end)))
+                .hint(format!("a value from {lower} to {upper} {unit} for `{joint}`"))
+        }
+        RrtConnectError::InCollision { end, a, b, metres, clearance_m } => {
+            let near = if *clearance_m > 0.0 && *metres > 0.0 {
+                format!("are {metres} m apart, nearer than the clearance of {clearance_m} m")
+            } else {
+                "are in collision".into()
+            };
+            error(format!("{}: `{a}` and `{b}` {near}", of(end))).hint(format!(
+                "joint values at which they are apart (`elbowroom query` computes the distance): another {end}"
+            ))
+        }
+        RrtConnectError::ConstraintViolated { end, what, .. } => {
+            let no_exit = if *end == PathEnd::Start { ", and no straight path out of it was found" } else { "" };
+            error(format!("{}: in {what}{no_exit}", of(end)))
+                .hint(format!("joint values with all guarded volumes outside of it: another {end}"))
+        }
+        other => error(other.to_string()),
+    }
+}

@@ -1,0 +1,257 @@
+//! Plausibility of sizes and positions: a length in millimetres that is read in metres is a thousand times too large.
+
+use elbowroom_formats::Warning;
+use elbowroom_kinematics::{ChainState, JointKind, LinkId};
+use elbowroom_proximity::{Shape, Sphere, separation, within};
+use elbowroom_robot::Collider;
+use elbowroom_spatial::units::LengthUnit;
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::read::Table;
+use crate::frames::Frames;
+use crate::{Cell, CellRegion, CellRobot, Follow};
+
+type Result<T> = std::result::Result<T, elbowroom_formats::FormatError>;
+
+/// Solid objects thinner than this (m) are implausible.
+const THIN_M: f64 = 1e-3;
+/// Objects larger than this (m) are implausible.
+const LARGE_M: f64 = 100.0;
+/// An object out of reach may be a wall or a fence; beyond this multiple of the reach it is implausible.
+const FAR_OBJECT: f64 = 5.0;
+/// Moving objects are sampled over this time (s), at this number of instants.
+const SAMPLED_S: f64 = 120.0;
+const SAMPLES: usize = 240;
+
+/// Warns of every region, object and tool that no robot can reach, or that is thinner than 1 mm or larger than 100 m,
+/// with the unit in which it would be plausible.
+pub(super) fn check(root: &Table<'_>, cell: &Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+    let plausible = PlausibilityCheck { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
+    for (robot, (_, t)) in cell.robots.iter().zip(root.named("robot")?) {
+        plausible.tool(&t, robot, warnings);
+    }
+    for (index, (_, t)) in root.named("object")?.iter().enumerate() {
+        plausible.object(t, index, warnings);
+    }
+    for (region, (_, t)) in cell.regions.iter().zip(root.named("region")?) {
+        plausible.region(&t, region, warnings);
+    }
+    Ok(())
+}
+
+/// A ball that contains every guarded or solid point of a robot, at any joint values.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    base: Vec3,
+    radius_m: f64,
+}
+
+impl Reach {
+    /// Sum of offsets, strokes and solids along the chain, with or without tool and load.
+    fn of(robot: &CellRobot, with_tool: bool) -> Self {
+        let chain = &robot.robot.chain;
+        let without_payload = robot.without_payload();
+        let colliders = if with_tool { &robot.robot.colliders } else { &without_payload.colliders };
+        let along = |link: LinkId| {
+            let joint = |j: &elbowroom_kinematics::JointId| {
+                let joint = &chain.joints()[j.0];
+                let slides = joint.kind == JointKind::Prismatic;
+                let stroke = if slides { joint.limits.lower.abs().max(joint.limits.upper.abs()) } else { 0.0 };
+                joint.origin.translation.length() + stroke
+            };
+            chain.path(link).iter().map(joint).sum::<f64>()
+        };
+        let radius = |b: &Collider| {
+            let boxed = b.shape.aabb(&b.in_link);
+            boxed.min.abs().max(boxed.max.abs()).length()
+        };
+        let link = |(i, colliders): (usize, &Vec<Collider>)| {
+            along(LinkId(i)) + colliders.iter().map(radius).fold(0.0, f64::max)
+        };
+        let tcp = if with_tool { robot.tcp_in_flange.translation.length() } else { 0.0 };
+        let solids = colliders.iter().enumerate().map(link).fold(0.0, f64::max);
+        Self { base: robot.base_in_world.translation, radius_m: solids.max(along(robot.flange) + tcp) }
+    }
+
+    /// Distance (m) of a solid from the base.
+    fn distance_m(&self, shape: &Shape, in_world: &Pose) -> f64 {
+        separation(&POINT, &Pose::from_translation(self.base), shape, in_world).distance
+    }
+
+    fn meets(&self, shape: &Shape, in_world: &Pose, more_m: f64) -> bool {
+        let limit = self.radius_m + more_m;
+        // An unbounded reach contains everything.
+        !limit.is_finite() || within(&POINT, &Pose::from_translation(self.base), shape, in_world, limit)
+    }
+}
+
+const POINT: Shape = Shape::Sphere(Sphere { radius: 0.0 });
+
+/// An implausible solid.
+enum Implausibility {
+    /// Out of reach: its distance from the nearest base, and the reach of that robot, m.
+    Far { distance_m: f64, reach_m: f64 },
+    /// Its smallest extent, m.
+    Thin(f64),
+    /// Its largest extent, m.
+    Large(f64),
+}
+
+struct PlausibilityCheck<'a> {
+    cell: &'a Cell,
+    /// Per robot.
+    reaches: Vec<Reach>,
+}
+
+impl PlausibilityCheck<'_> {
+    fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Warning>) {
+        let region = &r.region;
+        let implausibility = size(&region.shape).or_else(|| {
+            let in_source = region.anchor * region.shape_in_anchor;
+            let more_m = region.warning_m;
+            match r.follow {
+                Some(Follow::Robot { robot, .. }) => {
+                    let at_frame = Reach { base: Vec3::ZERO, ..self.reaches[robot] };
+                    beyond(&[at_frame], &region.shape, &[in_source], more_m)
+                }
+                follow => {
+                    let concerned: Vec<Reach> = r.robots.iter().map(|i| self.reaches[*i]).collect();
+                    beyond(&concerned, &region.shape, &self.poses(follow, in_source), more_m)
+                }
+            }
+        });
+        let what = format!("region \"{}\"", region.name);
+        self.warn(t, &what, implausibility, warnings);
+    }
+
+    fn object(&self, t: &Table<'_>, index: usize, warnings: &mut Vec<Warning>) {
+        let object = &self.cell.objects[index];
+        let implausibility = size(&object.shape).or_else(|| {
+            let moving_object = self.cell.moving_objects.iter().find(|m| m.object == index);
+            let poses: Vec<Pose> = match moving_object {
+                Some(moving_object) => sample_times(self.cell).map(|t_s| moving_object.pose(t_s)).collect(),
+                None => vec![object.in_world],
+            };
+            let far = |r: &Reach| Reach { radius_m: r.radius_m * FAR_OBJECT, ..*r };
+            beyond(&self.reaches.iter().map(far).collect::<Vec<_>>(), &object.shape, &poses, 0.0)?;
+            beyond(&self.reaches, &object.shape, &poses, 0.0)
+        });
+        let what = format!("object \"{}\"", object.name);
+        self.warn(t, &what, implausibility, warnings);
+    }
+
+    /// Checks that TCP, tool and load are no farther from the flange than the arm is long.
+    fn tool(&self, t: &Table<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) {
+        let arm = Reach { base: Vec3::ZERO, ..Reach::of(robot, false) };
+        // A chain without length may carry a tool of any plausible size.
+        let arm = Reach { radius_m: arm.radius_m.max(1.0), ..arm };
+        for (key, collider) in [("tool", &robot.tool), ("load", &robot.load)] {
+            let Some(collider) = collider else { continue };
+            let implausibility =
+                size(&collider.shape).or_else(|| beyond(&[arm], &collider.shape, &[collider.in_link], 0.0));
+            let what = format!("the {key} of robot \"{}\"", robot.name);
+            self.warn(&at(t, key), &what, implausibility, warnings);
+        }
+        let length_m = robot.tcp_in_flange.translation.length();
+        let implausibility = if length_m > arm.radius_m {
+            Some(Implausibility::Far { distance_m: length_m, reach_m: arm.radius_m })
+        } else if length_m > 1e-9 && length_m < THIN_M {
+            Some(Implausibility::Thin(length_m))
+        } else {
+            None
+        };
+        self.warn(
+            &at(t, "tool"),
+            &format!("the tool centre point of robot \"{}\"", robot.name),
+            implausibility,
+            warnings,
+        );
+    }
+
+    /// Poses of a region while its source moves.
+    fn poses(&self, follow: Option<Follow>, in_source: Pose) -> Vec<Pose> {
+        let Some(follow) = follow else { return vec![in_source] };
+        let frames = Frames::new(self.cell);
+        let states: Vec<ChainState> = self.cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
+        sample_times(self.cell).map(|t_s| frames.source(&follow, &states, t_s).pose * in_source).collect()
+    }
+
+    fn warn(&self, t: &Table<'_>, what: &str, implausibility: Option<Implausibility>, warnings: &mut Vec<Warning>) {
+        let Some(implausibility) = implausibility else { return };
+        let units = self.cell.units;
+        let show = |m: f64| units.show_length(round_to_four_digits(m));
+        let text = match implausibility {
+            Implausibility::Far { distance_m, reach_m } => {
+                format!("is beyond reach: {} away, where {} can be reached", show(distance_m), show(reach_m))
+            }
+            Implausibility::Thin(m) => format!("is only {} thick or long", show(m)),
+            Implausibility::Large(m) => format!("is {} large", show(m)),
+        };
+        let other = if units.length == LengthUnit::Metre { LengthUnit::Millimetre } else { LengthUnit::Metre };
+        let factor = other.to_metres(1.0) / units.length.to_metres(1.0);
+        let (value, sensible) = match implausibility {
+            Implausibility::Far { distance_m, reach_m } => (distance_m, distance_m * factor <= FAR_OBJECT * reach_m),
+            Implausibility::Thin(m) | Implausibility::Large(m) => (m, (THIN_M..=LARGE_M).contains(&(m * factor))),
+        };
+        let (unit, angle) = (other.symbol(), units.angle.symbol());
+        let warning = if sensible {
+            let meant = round_to_four_digits(value * factor);
+            Warning::new(t.file, t.line, format!("{what} {text}; were its numbers in {unit}, it would be {meant} m"))
+                .hint(format!(
+                    "units = {{ length = \"{unit}\", angle = \"{angle}\" }}, or these numbers in {}",
+                    units.length.symbol()
+                ))
+        } else {
+            let hint = "a place within reach and a size from 1 mm to 100 m; no change if it is intended";
+            Warning::new(t.file, t.line, format!("{what} {text}")).hint(hint)
+        };
+        warnings.push(warning);
+    }
+}
+
+/// The table at the line of a key; at its own line where the key is missing.
+fn at<'a>(t: &Table<'a>, key: &str) -> Table<'a> {
+    let line = t.get(key).map_or(t.line, |v| v.line);
+    t.clone().at_line(line)
+}
+
+fn sample_times(cell: &Cell) -> impl Iterator<Item = f64> {
+    let end_s = cell.max_s.min(SAMPLED_S);
+    (0..=SAMPLES).map(move |i| end_s * i as f64 / SAMPLES as f64)
+}
+
+/// `Far`, where the solid is out of reach of all robots at all poses; never without robots.
+fn beyond(reaches: &[Reach], shape: &Shape, poses: &[Pose], more_m: f64) -> Option<Implausibility> {
+    if reaches.iter().any(|r| poses.iter().any(|p| r.meets(shape, p, more_m))) {
+        return None;
+    }
+    let pose = poses.first()?;
+    let distances = reaches.iter().map(|r| (r.distance_m(shape, pose), r.radius_m));
+    let (distance_m, reach_m) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Implausibility::Far { distance_m, reach_m })
+}
+
+/// `Thin` or `Large`; never for planes. A mesh may be flat.
+fn size(shape: &Shape) -> Option<Implausibility> {
+    if matches!(shape, Shape::HalfSpace(_)) {
+        return None;
+    }
+    let extent = shape.aabb(&Pose::IDENTITY).extent();
+    let least = match shape {
+        Shape::Mesh(_) | Shape::Hull(_) => extent.max_element(),
+        _ => extent.min_element(),
+    };
+    if extent.max_element() > LARGE_M {
+        return Some(Implausibility::Large(extent.max_element()));
+    }
+    (least < THIN_M).then_some(Implausibility::Thin(least))
+}
+
+/// Rounded to four digits.
+fn round_to_four_digits(v: f64) -> f64 {
+    if v == 0.0 || !v.is_finite() {
+        return v;
+    }
+    let scale = 10_f64.powi(3 - v.abs().log10().floor() as i32);
+    (v * scale).round() / scale
+}

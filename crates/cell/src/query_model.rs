@@ -1,0 +1,133 @@
+//! The model that queries are evaluated on: a cell, or a single robot.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_robot::{GeometryId, Robot};
+use elbowroom_scene::{Object, Scene};
+use elbowroom_spatial::Pose;
+
+use crate::{Cell, rest_pose_contacts};
+
+/// Robots and objects with their default states.
+#[derive(Debug, Clone)]
+pub struct QueryModel {
+    /// The file, for messages.
+    pub file: PathBuf,
+    /// In the order of the file.
+    pub robots: Vec<QueryRobot>,
+    /// Objects.
+    pub objects: Vec<Object>,
+    /// True for a single robot: its links are named without prefix, and its states must have all joints.
+    pub is_single_robot: bool,
+}
+
+/// A robot of the model.
+#[derive(Debug, Clone)]
+pub struct QueryRobot {
+    /// Its name; empty for a single robot.
+    pub name: String,
+    /// Links, joints, colliders, with tool and load.
+    pub robot: Robot,
+    /// Pose of the root link.
+    pub base_in_world: Pose,
+    /// Default joint values, rad or m.
+    pub start: Vec<f64>,
+}
+
+impl QueryModel {
+    /// The model of a cell; tools and loads are colliders of the links that carry them.
+    pub fn of_cell(cell: &Cell) -> Self {
+        let robot = |r: &crate::CellRobot| QueryRobot {
+            name: r.name.clone(),
+            robot: r.robot.clone(),
+            base_in_world: r.base_in_world,
+            start: r.start.clone(),
+        };
+        Self {
+            file: cell.file.clone(),
+            robots: cell.robots.iter().map(robot).collect(),
+            objects: cell.objects.clone(),
+            is_single_robot: false,
+        }
+    }
+
+    /// A single robot whose root link is the world frame. Its default state is zero, or the limits nearest to zero.
+    pub fn of_robot(file: &Path, robot: Robot) -> Self {
+        let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
+        let start = lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
+        let only = QueryRobot { name: String::new(), robot, base_in_world: Pose::IDENTITY, start };
+        Self { file: file.to_owned(), robots: vec![only], objects: Vec::new(), is_single_robot: true }
+    }
+
+    /// A single robot of a cell, at its pose; its states may name it.
+    pub fn of_robot_in_cell(cell: &Cell, robot: &crate::CellRobot) -> Self {
+        let only = QueryRobot {
+            name: robot.name.clone(),
+            robot: robot.robot.clone(),
+            base_in_world: robot.base_in_world,
+            start: robot.start.clone(),
+        };
+        Self { file: cell.file.clone(), robots: vec![only], objects: Vec::new(), is_single_robot: true }
+    }
+
+    /// Builds the scene. `prune_unreachable` finds pairs that no joint values bring into contact, which takes a moment
+    /// and makes queries faster, with the same results.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the scene refuses the model.
+    pub fn scene(&self, prune_unreachable: bool) -> Result<Scene, FormatError> {
+        let mut builder = Scene::builder();
+        builder.prove_out_of_reach(prune_unreachable);
+        for r in &self.robots {
+            builder.robot(&r.name, r.robot.clone(), r.base_in_world);
+        }
+        for o in &self.objects {
+            builder.object(o.clone());
+        }
+        builder.build().map_err(|e| FormatError::new(&self.file, None, e.to_string()))
+    }
+
+    /// Warnings for links that touch in the default state without a collider in between, with the SRDF entry for robots
+    /// that are built so. Reading a cell gives the same warnings.
+    ///
+    /// ```
+    /// # use elbowroom_cell::QueryModel;
+    /// # use elbowroom_formats::robot::{LoadOptions, load};
+    /// # let dir = tempfile::tempdir()?;
+    /// # let path = dir.path().join("grip.urdf");
+    /// # let finger = |name: &str| format!("<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>\
+    /// #   <joint name=\"to_{name}\" type=\"prismatic\"><parent link=\"palm\"/><child link=\"{name}\"/><limit lower=\"0\" upper=\"1\" \
+    /// #   velocity=\"1\" effort=\"1\"/></joint>");
+    /// # std::fs::write(&path, format!("<robot name=\"g\"><link name=\"palm\"/>{}{}</robot>", finger("left"), finger("right")))?;
+    /// let robot = load(&path, &LoadOptions::default())?.robot;
+    /// let warnings = QueryModel::of_robot(&path, robot).touching_at_rest();
+    /// assert!(warnings[0].what.contains("`left` and `right` touch"));
+    /// assert!(warnings[0].write_instead.as_ref().unwrap().contains("<disable_collisions link1=\"left\" link2=\"right\""));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn touching_at_rest(&self) -> Vec<Warning> {
+        let of_robot = |r: &QueryRobot| {
+            let name = (!self.is_single_robot).then_some(r.name.as_str());
+            let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, name);
+            warnings.map(|(what, hint)| Warning::new(&self.file, None, what).hint(hint)).collect::<Vec<_>>()
+        };
+        self.robots.iter().flat_map(of_robot).collect()
+    }
+
+    /// `robot/link` or the object's name; the link's name only for a single robot.
+    pub fn geometry_name(&self, id: GeometryId) -> String {
+        match id {
+            GeometryId::Object(o) => self.objects.get(o.0).map_or_else(String::new, |o| o.name.clone()),
+            GeometryId::Link { robot, link } => self.robots.get(robot.0).map_or_else(String::new, |r| {
+                let link = r.robot.chain.links().get(link.0).map_or("", String::as_str);
+                if self.is_single_robot { link.to_owned() } else { format!("{}/{link}", r.name) }
+            }),
+        }
+    }
+
+    /// Number of joint values of one state, over all robots.
+    pub fn values(&self) -> usize {
+        self.robots.iter().map(|r| r.start.len()).sum()
+    }
+}

@@ -1,0 +1,34 @@
+//! Contacts in the rest pose: warnings of links that touch without a collider between them, with the SRDF entry that
+//! disables such a pair.
+
+use elbowroom_robot::Robot;
+use elbowroom_robot::rest_pose_contacts;
+
+/// The warning and the hint for each such pair at the joint values `rest` (rad or m). `name` is the robot's name in its
+/// cell; `None` for a single model.
+pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl Iterator<Item = (String, String)> {
+    let links = robot.chain.links().to_vec();
+    let of_robot = name.map_or_else(String::new, |n| format!("robot \"{n}\": "));
+    let (whose, file) = if name.is_some() { ("at its `start`", "srdf = \"FILE\"") } else { ("at rest", "--srdf FILE") };
+    rest_pose_contacts(robot, rest).into_iter().map(move |found| {
+        let (a, b) = (&links[found.a.0], &links[found.b.0]);
+        let often = if found.always() {
+            format!("in all {} states sampled in the joint space", found.samples)
+        } else {
+            format!("in {} of {} states sampled in the joint space", found.contacts, found.samples)
+        };
+        let what = format!(
+            "{of_robot}links `{a}` and `{b}` touch {whose}, and {often}, with no link with collision geometry between them: every such state \
+             counts as a collision (in `run` once they have been apart)"
+        );
+        (what, srdf_entry(a, b, file))
+    })
+}
+
+/// The SRDF entry that disables a pair of links.
+pub(crate) fn srdf_entry(a: &str, b: &str, file: &str) -> String {
+    format!(
+        "<disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"Default\"/> in an SRDF, and {file}, if they are \
+         built so"
+    )
+}

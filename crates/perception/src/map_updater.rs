@@ -1,0 +1,235 @@
+//! Updates the obstacles of the joint-space map from the reports of the camera tracker.
+
+use std::sync::Arc;
+
+use elbowroom_cspace::{ConvexObstacle, JointMap};
+use elbowroom_proximity::{ConvexHull, HullError};
+use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polygon};
+
+use crate::error::PerceptionError;
+use crate::obstacle_update::{ObstacleUpdate, Prism};
+
+/// Settings of the conversion of a reported obstacle to a prism.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PrismSettings {
+    pub world_in_base: Pose,
+    /// Prediction horizon: an obstacle also blocks its predicted positions until this time after the frame, seconds.
+    pub prediction_s: f64,
+    /// Smaller changes are ignored, metres.
+    pub slack_m: f64,
+}
+
+/// The obstacles in the map, as they were last inserted.
+#[derive(Debug, Default)]
+pub(super) struct MapUpdater {
+    prisms: Vec<Prism>,
+}
+
+impl MapUpdater {
+    pub fn prisms(&self) -> &Vec<Prism> {
+        &self.prisms
+    }
+
+    /// Adds and updates reported obstacles in the map, and removes those that left.
+    ///
+    /// # Errors
+    /// The first obstacle without a valid hull; its cells in the map stay as they are, and it is tried again with the
+    /// next frame. All others are updated nonetheless: the tracker reports each change once.
+    pub fn update(
+        &mut self,
+        reported: &[vision::Obstacle],
+        settings: &PrismSettings,
+        map: &mut JointMap,
+        update: &mut ObstacleUpdate,
+    ) -> Result<(), PerceptionError> {
+        let mut result = Ok(());
+        for observed in reported {
+            let updated = if observed.change == ObstacleChange::Left {
+                self.remove(observed.id, map, update);
+                Ok(())
+            } else {
+                self.update_one(observed, settings, map, update)
+            };
+            result = result.and(updated);
+        }
+        result
+    }
+
+    fn remove(&mut self, id: ObstacleId, map: &mut JointMap, update: &mut ObstacleUpdate) {
+        self.prisms.retain(|p| p.id != id);
+        update.left.push(id);
+        if let Some(changes) = map.remove(&name_of(id)) {
+            update.freed += changes.freed();
+        }
+    }
+
+    fn update_one(
+        &mut self,
+        observed: &vision::Obstacle,
+        settings: &PrismSettings,
+        map: &mut JointMap,
+        update: &mut ObstacleUpdate,
+    ) -> Result<(), PerceptionError> {
+        let index = self.prisms.iter().position(|p| p.id == observed.id);
+        if index.is_none() {
+            update.entered.push(observed.id);
+        }
+        let mut prism = prism(observed, settings.prediction_s);
+        if let Some(old) = index.map(|i| &mut self.prisms[i]) {
+            let drift_m = (prism.velocity_mps - old.velocity_mps).length() * settings.prediction_s;
+            if observed.change == ObstacleChange::Unchanged && is_same_solid(&prism, old) && drift_m <= settings.slack_m
+            {
+                // Noise of the velocity alone changes nothing.
+                (prism.swept_m, prism.velocity_mps) = (std::mem::take(&mut old.swept_m), old.velocity_mps);
+                *old = prism;
+                return Ok(());
+            }
+        }
+        let hull = prism_hull(&prism.swept_m, [prism.z_from_m, prism.z_to_m])?;
+        let changes = map.set(&name_of(observed.id), &ConvexObstacle::hull(settings.world_in_base, Arc::new(hull))?);
+        update.blocked += changes.blocked();
+        update.freed += changes.freed();
+        match index {
+            Some(i) => self.prisms[i] = prism,
+            None => self.prisms.push(prism),
+        }
+        Ok(())
+    }
+}
+
+/// The tracker reports an obstacle as unchanged relative to its last report, which may never have reached the map.
+fn is_same_solid(a: &Prism, b: &Prism) -> bool {
+    a.footprint_m == b.footprint_m && [a.z_from_m, a.z_to_m] == [b.z_from_m, b.z_to_m]
+}
+
+fn name_of(id: ObstacleId) -> String {
+    id.to_string()
+}
+
+fn prism(observed: &vision::Obstacle, prediction_s: f64) -> Prism {
+    let displacement = observed.velocity_mps * prediction_s;
+    let mut points: Vec<Point2> = observed.footprint_m.iter().flat_map(|&p| [p, p + displacement]).collect();
+    let mut swept_m = Vec::new();
+    polygon::convex_hull(&mut points, &mut swept_m);
+    Prism {
+        id: observed.id,
+        kind: observed.kind.as_deref().map(str::to_owned),
+        footprint_m: observed.footprint_m.clone(),
+        swept_m,
+        z_from_m: observed.z_from_m,
+        z_to_m: observed.z_to_m,
+        centre_m: observed.centre_m,
+        velocity_mps: observed.velocity_mps,
+        is_unobserved: observed.is_unobserved,
+    }
+}
+
+/// The convex hull of an upright prism.
+pub(super) fn prism_hull(footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<ConvexHull, HullError> {
+    let at = |z: f64| footprint_m.iter().map(move |p| Vec3::new(p.x, p.y, z));
+    let points: Vec<Vec3> = heights_m.into_iter().flat_map(at).collect();
+    ConvexHull::from_points(&points)
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_cspace::{Grid, GridAxis, PlanarArm};
+    use elbowroom_vision::FrameStatus;
+
+    use super::*;
+    use crate::times::PerceptionTimes;
+
+    const SETTINGS: PrismSettings = PrismSettings { world_in_base: Pose::IDENTITY, prediction_s: 0.5, slack_m: 0.02 };
+
+    fn map() -> JointMap {
+        let axis = |min: f64, max: f64| GridAxis::new("joint", min, max, 0.1).unwrap();
+        let grid = Grid::new([axis(-3.0, 3.0), axis(-2.0, 0.2), axis(-1.0, 2.5)]).unwrap();
+        JointMap::new(PlanarArm::KR125, &grid).unwrap()
+    }
+
+    fn obstacle(id: u64, change: ObstacleChange, at: [f64; 2]) -> vision::Obstacle {
+        let corner = |x: f64, y: f64| Point2::new(at[0] + x, at[1] + y);
+        vision::Obstacle {
+            id: ObstacleId(id),
+            change,
+            footprint_m: vec![corner(-0.2, -0.2), corner(0.2, -0.2), corner(0.2, 0.2), corner(-0.2, 0.2)],
+            z_to_m: 1.5,
+            ..vision::Obstacle::default()
+        }
+    }
+
+    fn apply(
+        updater: &mut MapUpdater,
+        map: &mut JointMap,
+        reported: &[vision::Obstacle],
+    ) -> Result<(), PerceptionError> {
+        let mut update = ObstacleUpdate {
+            stamp_s: 0.0,
+            status: FrameStatus::Valid,
+            prisms: Vec::new(),
+            entered: Vec::new(),
+            left: Vec::new(),
+            blocked: 0,
+            freed: 0,
+            times: PerceptionTimes::default(),
+        };
+        updater.update(reported, &SETTINGS, map, &mut update)
+    }
+
+    /// A map with exactly these obstacles.
+    fn map_of(reported: &[vision::Obstacle]) -> JointMap {
+        let mut map = map();
+        apply(&mut MapUpdater::default(), &mut map, reported).unwrap();
+        map
+    }
+
+    fn is_equal(a: &JointMap, b: &JointMap) -> bool {
+        let planes = a.grid().shape()[0];
+        (0..planes).all(|n| a.occupancy().plane(n) == b.occupancy().plane(n))
+    }
+
+    #[test]
+    fn an_obstacle_without_a_valid_hull_does_not_prevent_updates_of_the_others() {
+        let (mut map, mut updater) = (map(), MapUpdater::default());
+        let first = [1, 2, 3].map(|id| obstacle(id, ObstacleChange::Entered, [1.8, id as f64 - 2.0]));
+        apply(&mut updater, &mut map, &first).unwrap();
+        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [1.8, -1.0]) };
+        let also_flat = vision::Obstacle { footprint_m: Vec::new(), ..obstacle(5, ObstacleChange::Entered, [0.0; 2]) };
+        let second = [
+            flat,
+            obstacle(2, ObstacleChange::Moved, [1.4, 0.3]),
+            obstacle(3, ObstacleChange::Left, [1.8, 1.0]),
+            also_flat,
+        ];
+        let error = apply(&mut updater, &mut map, &second).unwrap_err();
+        assert!(error.to_string().contains("plane"), "the first error is returned: {error}");
+        // The cells of the rejected obstacle are unchanged.
+        let expected = map_of(&[
+            obstacle(1, ObstacleChange::Entered, [1.8, -1.0]),
+            obstacle(2, ObstacleChange::Entered, [1.4, 0.3]),
+        ]);
+        assert!(is_equal(&map, &expected));
+        assert_eq!(updater.prisms().iter().map(|p| p.id.0).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn an_obstacle_reported_as_stationary_is_compared_with_the_map() {
+        let (mut map, mut updater) = (map(), MapUpdater::default());
+        apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Entered, [1.8, 0.0])]).unwrap();
+        // It moved in a frame that was rejected, and is stationary since.
+        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [1.4, 0.6]) };
+        apply(&mut updater, &mut map, std::slice::from_ref(&flat)).unwrap_err();
+        apply(&mut updater, &mut map, &[vision::Obstacle { change: ObstacleChange::Unchanged, ..flat }]).unwrap_err();
+        assert!(is_equal(&map, &map_of(&[obstacle(1, ObstacleChange::Entered, [1.8, 0.0])])));
+        for position in [[1.4, 0.6], [1.8, -0.4]] {
+            apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Unchanged, position)]).unwrap();
+            let expected = map_of(&[obstacle(1, ObstacleChange::Entered, position)]);
+            assert!(expected.occupancy().blocked() > 0 && is_equal(&map, &expected));
+        }
+        // A different height is a change, too.
+        let high = vision::Obstacle { z_to_m: 2.5, ..obstacle(1, ObstacleChange::Unchanged, [1.8, -0.4]) };
+        apply(&mut updater, &mut map, std::slice::from_ref(&high)).unwrap();
+        assert!(is_equal(&map, &map_of(&[high])));
+    }
+}

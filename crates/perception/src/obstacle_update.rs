@@ -1,0 +1,64 @@
+//! Obstacle update: the result of one frame.
+
+use elbowroom_vision::{FrameStatus, ObstacleId, Point2, polygon};
+
+use crate::times::PerceptionTimes;
+
+/// One observed obstacle, as it is in the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prism {
+    /// Its id.
+    pub id: ObstacleId,
+    /// The template that it matches.
+    pub kind: Option<String>,
+    /// Corners of its footprint at the time of the frame, dilated by the uncertainty, world x and y, metres.
+    pub footprint_m: Vec<Point2>,
+    /// The footprint together with the predicted one
+    /// [`PerceptionSettings::prediction_s`](crate::PerceptionSettings::prediction_s) later.
+    pub swept_m: Vec<Point2>,
+    /// Lower end, world z, metres.
+    pub z_from_m: f64,
+    /// Upper end, world z, metres.
+    pub z_to_m: f64,
+    /// Estimated centre, world x and y, metres.
+    pub centre_m: Point2,
+    /// Velocity of the centre, metres per second.
+    pub velocity_mps: Point2,
+    /// True where it was not visible in this frame and keeps its last position.
+    pub is_unobserved: bool,
+}
+
+impl Prism {
+    /// True where a convex footprint (world x and y, metres) lies within the observed one.
+    pub fn contains(&self, footprint_m: &[Point2]) -> bool {
+        footprint_m.iter().all(|&p| polygon::convex_contains(&self.footprint_m, p))
+    }
+}
+
+/// What one frame changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObstacleUpdate {
+    /// Time stamp of the frame, seconds.
+    pub stamp_s: f64,
+    /// Whether the frame was accepted.
+    pub status: FrameStatus,
+    /// All obstacles in the map.
+    pub prisms: Vec<Prism>,
+    /// Obstacles that entered.
+    pub entered: Vec<ObstacleId>,
+    /// Obstacles that left.
+    pub left: Vec<ObstacleId>,
+    /// Cells that became blocked, summed over the obstacles.
+    pub blocked: usize,
+    /// Cells that became free, summed over the obstacles.
+    pub freed: usize,
+    /// Wall-clock time per stage.
+    pub times: PerceptionTimes,
+}
+
+impl ObstacleUpdate {
+    /// True where the frame was accepted and the map is up to date.
+    pub fn is_accepted(&self) -> bool {
+        self.status == FrameStatus::Valid
+    }
+}

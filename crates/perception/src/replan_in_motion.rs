@@ -1,0 +1,170 @@
+//! Replanning while the arm moves: change of path without a stop.
+//!
+//! A trajectory starts at rest. The new one therefore starts on the current straight segment *behind* the arm, so far
+//! back that it is at least as fast as the arm where it passes the arm's configuration. It leaves the segment so far
+//! ahead that the arm could stop before. Execution enters it at the arm's configuration, at the rate at which both
+//! speeds are equal: position, direction and speed are continuous.
+
+use std::time::Duration;
+
+use elbowroom_cspace::Grid;
+use elbowroom_planner::{
+    GridPlanner, GridPlannerSettings, KinematicLimits, Path, PathProgress, PathStatus, ReplanKind, Trajectory,
+};
+use elbowroom_vision::Stopwatch;
+
+use crate::path_execution::{PathExecution, distance, state_at};
+
+/// Settings of [`replan_in_motion`].
+pub(super) struct InMotionSettings<'a> {
+    pub limits: &'a KinematicLimits,
+    pub options: &'a GridPlannerSettings,
+    pub grid: &'a Grid,
+}
+
+/// Result of [`replan_in_motion`].
+#[derive(Default)]
+pub(super) struct InMotionReplan {
+    /// The motion that continues from the old one, and how its path was found; `None` where the arm must stop first.
+    pub found: Option<(PathExecution, ReplanKind)>,
+    /// Wall-clock time of repairing and replanning.
+    pub replan: Duration,
+    /// Wall-clock time of the time parametrization.
+    pub timing: Duration,
+}
+
+/// A timed path that the arm can enter in motion.
+struct Candidate {
+    /// Time from the entry to the end, seconds.
+    remaining_s: f64,
+    /// Time of the trajectory at the entry, seconds.
+    entry_s: f64,
+    path: Path,
+    trajectory: Trajectory,
+    kind: ReplanKind,
+}
+
+/// Replaces the path of an arm in motion. The times are measured in either case.
+pub(super) fn replan_in_motion(
+    planner: &mut GridPlanner,
+    old: &PathExecution,
+    settings: &InMotionSettings<'_>,
+) -> InMotionReplan {
+    let mut result = InMotionReplan::default();
+    let found = find_replacement(planner, old, settings, &mut result);
+    InMotionReplan { found, ..result }
+}
+
+fn find_replacement(
+    planner: &mut GridPlanner,
+    old: &PathExecution,
+    settings: &InMotionSettings<'_>,
+    times: &mut InMotionReplan,
+) -> Option<(PathExecution, ReplanKind)> {
+    let mut stopwatch = Stopwatch::start();
+    let state = old.state();
+    let segment = old.segment()?;
+    let speed = norm(state.qd) * old.rate;
+    let along = unit(state.qd)?;
+    let back_rad = acceleration_distance(speed, along, settings.limits);
+    let here = PathProgress { segment, q: state.q };
+    if let PathStatus::Blocked { free_rad, .. } = planner.path_status(&old.path, here, settings.options).ok()?
+        && free_rad <= back_rad
+    {
+        return None;
+    }
+    let (ahead, branch) = advance_along(&old.path, here, back_rad)?;
+    let repaired = planner.replan(&old.path, branch, settings.options);
+    let goal = old.path.waypoints.last().copied()?;
+    let replanned = planner.plan(branch.q, goal, settings.options).map(|path| (path, ReplanKind::Replanned));
+    times.replan = stopwatch.lap();
+    let behind = [0, 1, 2].map(|i| state.q[i] - along[i] * back_rad);
+    // A path that is repaired repeatedly degrades, and a new one often branches off slowly: take the faster one.
+    let mut best: Option<Candidate> = None;
+    for (rest, kind) in [repaired, replanned].into_iter().flatten() {
+        if rest.start_moved_rad > 0.0 || rest.goal_moved_rad > 0.0 {
+            continue;
+        }
+        let waypoints = std::iter::once(behind).chain(ahead.iter().copied()).chain(rest.waypoints).collect();
+        let path = Path { waypoints, ..rest };
+        let Ok(trajectory) = planner.time_parametrize(&path, settings.limits) else { continue };
+        let reached = |tau: f64| dot(sub(state_at(&trajectory, tau).q, behind), along) - back_rad;
+        let Some(entry_s) = first_root(reached, trajectory.seconds()) else { continue };
+        let remaining_s = trajectory.seconds() - entry_s;
+        if best.as_ref().is_none_or(|best| remaining_s < best.remaining_s) {
+            best = Some(Candidate { remaining_s, entry_s, path, trajectory, kind });
+        }
+    }
+    times.timing = stopwatch.lap();
+    let Candidate { entry_s, path, trajectory, kind, .. } = best?;
+    let entry = state_at(&trajectory, entry_s);
+    let rate = speed / norm(entry.qd);
+    let is_smooth = distance(entry.q, state.q) < 1e-6 && rate <= 1.0 + 1e-6 && dot(entry.qd, along) > 0.0;
+    let execution = || PathExecution::new(path, trajectory, entry_s, rate.min(1.0), settings.grid, settings.limits);
+    is_smooth.then(|| (execution(), kind))
+}
+
+/// Distance in which a speed along a direction is reached from rest, which is also the distance to stop from it, with a
+/// reserve.
+fn acceleration_distance(speed: f64, along: [f64; 3], limits: &KinematicLimits) -> f64 {
+    let least = |of: &[f64]| (0..3).map(|i| of[i] / along[i].abs().max(1e-12)).fold(f64::INFINITY, f64::min);
+    let (a, j) = (least(&limits.acceleration), least(&limits.jerk));
+    let seconds = if speed >= a * a / j { speed / a + a / j } else { 2.0 * (speed / j).sqrt() };
+    0.5 * speed * seconds * 1.05 + 1e-3
+}
+
+/// Moves `left` rad along a path: the waypoints passed, and the point reached.
+fn advance_along(path: &Path, here: PathProgress, mut left: f64) -> Option<(Vec<[f64; 3]>, PathProgress)> {
+    let (mut corners, mut at) = (Vec::new(), here.q);
+    for segment in here.segment..path.waypoints.len().saturating_sub(1) {
+        let to = path.waypoints[segment + 1];
+        let length = distance(at, to);
+        if length > left {
+            let t = left / length;
+            return Some((corners, PathProgress { segment, q: [0, 1, 2].map(|i| at[i] + (to[i] - at[i]) * t) }));
+        }
+        left -= length;
+        corners.push(to);
+        at = to;
+    }
+    None
+}
+
+/// First zero of a function that rises from below 0: steps of 4 ms, then bisection.
+fn first_root(value: impl Fn(f64) -> f64, end: f64) -> Option<f64> {
+    let mut low = 0.0;
+    let mut high = low;
+    while value(high) < 0.0 {
+        low = high;
+        high += 0.004;
+        if low > end {
+            return None;
+        }
+    }
+    for _ in 0..50 {
+        let middle = f64::midpoint(low, high);
+        if value(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(high)
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let length = norm(a);
+    (length > 1e-9).then(|| a.map(|x| x / length))
+}

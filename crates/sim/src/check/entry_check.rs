@@ -1,0 +1,33 @@
+//! Result of `check` for one region and one robot.
+
+use elbowroom_cell::Cell;
+use elbowroom_formats::Warning;
+use elbowroom_monitor::RegionKind;
+
+/// Result of [`check`](super::check) for one region and one robot that it guards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EntryCheck {
+    /// Index of the region in the cell.
+    pub region: usize,
+    /// Index of the robot in the cell.
+    pub robot: usize,
+    /// True where the active laws keep the robot out, under the assumptions in `reason`. False for a monitored region,
+    /// which does not exclude entry.
+    pub excluded: bool,
+    /// Why, in words.
+    pub reason: String,
+    /// What to write into the cell file instead; `None` where entry is excluded or no remedy is known.
+    pub write_instead: Option<String>,
+    /// Thickness (m) of the warning zone with which the robot stops in time without the stopping-distance law; `None`
+    /// for a monitored region, and where no thickness is enough.
+    pub needed_warning_m: Option<f64>,
+    /// The warning before a run where the robot can overrun the border.
+    pub overrun: Option<Warning>,
+}
+
+impl EntryCheck {
+    /// True where a robot can enter a region that forbids it.
+    pub fn is_bad(&self, cell: &Cell) -> bool {
+        !self.excluded && !matches!(cell.regions[self.region].region.kind, RegionKind::Monitored { .. })
+    }
+}

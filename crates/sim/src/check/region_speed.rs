@@ -1,0 +1,40 @@
+//! Largest speed of a dynamic region.
+
+use elbowroom_cell::{Cell, CellRegion, Drive, Follow, PoseRate};
+use elbowroom_formats::FormatError;
+
+use super::sphere_swept_hull::SphereSweptHull;
+use super::stopping_profile::{LinkSolid, Profile};
+
+/// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region.
+pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f64, FormatError> {
+    let Some(follow) = region.follow else { return Ok(0.0) };
+    let in_source = region.region.anchor * region.region.shape_in_anchor;
+    match follow {
+        Follow::Encoder(e) => Ok(cell.encoders[e].fastest(0.0, cell.max_s)),
+        Follow::Object(o) => {
+            let drive = cell.moving_objects.iter().find(|m| m.object == o).map(|m| &m.drive);
+            let hull = SphereSweptHull::new(&region.region.shape, &in_source);
+            Ok(match drive {
+                None => 0.0,
+                Some(Drive::Belt(encoder)) => encoder.fastest(0.0, cell.max_s),
+                Some(Drive::Path(path)) => path.fastest(hull.farthest_m()),
+            })
+        }
+        Follow::Poses(p) => {
+            let hull = SphereSweptHull::new(&region.region.shape, &in_source);
+            let rates = cell.pose_tracks[p].rates();
+            // A half-space in pure translation has one velocity everywhere.
+            let fastest = |rate: PoseRate| {
+                let PoseRate { speed_m_s, turn_rad_s, .. } = rate;
+                if turn_rad_s > 0.0 { speed_m_s + turn_rad_s * hull.farthest_m() } else { speed_m_s }
+            };
+            Ok(rates.map(fastest).fold(0.0, f64::max))
+        }
+        Follow::Robot { robot, link, in_link } => {
+            let hull = SphereSweptHull::new(&region.region.shape, &(in_link * in_source));
+            let profile = Profile::of(cell, robot, &[LinkSolid { link, hull }])?;
+            Ok(profile.stopping_profiles[0].fastest_m_s)
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! A robot with `[avoidance]` in a run: it follows its path as far as dynamic obstacles permit.
+
+use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_avoidance::{
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
+    PathKind, Reference,
+};
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_cell::{AvoidanceSpec, Cell};
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_planner::{PathConstraint, RrtConnectSettings};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Scene;
+use elbowroom_spatial::FrameMotion;
+
+use crate::motion::ProgramClock;
+use crate::recording::{AvoidanceSample, AvoidanceTrack, ReplanRecord, RunEvent, TickTimes};
+
+/// Settings of the replanning of a robot that is off its path or blocked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ReplanSettings {
+    /// Largest number of validated states per attempt: it bounds the planning time independently of the machine.
+    max_states: u64,
+    /// Wall-clock limit per attempt; never reached in practice.
+    time_limit: std::time::Duration,
+    /// Attempts, in order.
+    attempts: [ReplanAttempt; 3],
+    /// Time between plans, s.
+    interval_s: f64,
+    /// After this many failed plans in a row …
+    max_failures: u64,
+    /// … the time between plans is this, s.
+    failed_interval_s: f64,
+    /// A robot off its path with less than this share of the programmed override counts as at the border of a region.
+    /// Any closer, it would take too long to leave.
+    border_override: f64,
+}
+
+/// One attempt of replanning.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ReplanAttempt {
+    /// Security margin to obstacles, m.
+    clearance_m: f64,
+    /// Share of each warning zone that the path keeps from a region: this much of the override remains.
+    warning_share: f64,
+}
+
+const REPLANNING: ReplanSettings = ReplanSettings {
+    max_states: 40_000,
+    time_limit: std::time::Duration::from_mins(1),
+    attempts: [
+        ReplanAttempt { clearance_m: 0.06, warning_share: 0.25 },
+        ReplanAttempt { clearance_m: 0.02, warning_share: 0.1 },
+        ReplanAttempt { clearance_m: 0.0, warning_share: 0.0 },
+    ],
+    interval_s: 0.5,
+    max_failures: 8,
+    failed_interval_s: 4.0,
+    border_override: 1e-3,
+};
+/// Samples per input of the recorded control surfaces.
+const SURFACE_SAMPLES: usize = 33;
+
+/// A robot with avoidance.
+#[derive(Debug)]
+pub(super) struct AvoidingRobot<'s> {
+    avoider: Avoider<'s>,
+    spec: &'s AvoidanceSpec,
+    robot: usize,
+    output: AvoiderOutput,
+    /// Zero velocity of every joint.
+    rest: Vec<f64>,
+    not_before_s: f64,
+    /// Failed plans in a row.
+    failed: u64,
+    step_ns: Vec<u64>,
+    track: AvoidanceTrack,
+    /// The first tick that failed, and why.
+    fault: Option<(f64, String)>,
+}
+
+impl<'s> AvoidingRobot<'s> {
+    /// One entry per robot of the cell; `None` for a robot without avoidance.
+    pub fn of_cell(
+        cell: &'s Cell,
+        scene: &'s Scene,
+        clocks: &[ProgramClock],
+    ) -> Result<Vec<Option<Self>>, FormatError> {
+        let each = cell.avoidance.iter().enumerate();
+        each.map(|(robot, spec)| spec.as_ref().map(|s| Self::new(cell, scene, robot, s, &clocks[robot])).transpose())
+            .collect()
+    }
+
+    fn new(
+        cell: &Cell,
+        scene: &'s Scene,
+        robot: usize,
+        spec: &'s AvoidanceSpec,
+        clock: &ProgramClock,
+    ) -> Result<Self, FormatError> {
+        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
+        let (q, limits) = (&clock.point().q, limits(cell, robot));
+        let avoider =
+            Avoider::new(scene, RobotId(robot), q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
+        Ok(Self {
+            avoider,
+            spec,
+            robot,
+            output: AvoiderOutput { rate: 1.0, nearest_m: f64::INFINITY, ..AvoiderOutput::default() },
+            rest: vec![0.0; q.len()],
+            not_before_s: 0.0,
+            failed: 0,
+            step_ns: Vec::new(),
+            track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
+            fault: None,
+        })
+    }
+
+    /// Writes the robot's joint values, velocities and accelerations.
+    pub fn write_state(&self, state: &mut ChainState) {
+        state.q.copy_from_slice(self.avoider.q());
+        state.qd.copy_from_slice(self.avoider.qd());
+        state.qdd.copy_from_slice(self.avoider.qdd());
+    }
+
+    /// Joint velocities at override 1; zero while it is stopped by an obstacle.
+    pub fn intent<'a>(&'a self, clock: &'a ProgramClock) -> &'a [f64] {
+        match (self.is_on_path(), self.output.rate == 0.0) {
+            (true, true) => &self.rest,
+            (true, false) => clock.intent(),
+            (false, _) => self.avoider.intent(),
+        }
+    }
+
+    /// True where the robot is on its programmed path.
+    pub fn is_on_path(&self) -> bool {
+        self.output.path_deviation_s == 0.0
+    }
+
+    /// Records the current tick.
+    pub fn record(&mut self) {
+        let a = &self.output;
+        self.track.samples.push(AvoidanceSample {
+            state: a.state,
+            nearest_m: a.nearest_m,
+            size: a.reaction.size,
+            path_deviation_s: a.path_deviation_s,
+            rate: a.rate,
+        });
+    }
+
+    /// A warning where a tick failed and the robot was stopped; `None` where all succeeded.
+    pub fn fault_warning(&self, cell: &Cell) -> Option<Warning> {
+        let (t_s, why) = self.fault.as_ref()?;
+        let robot = &cell.robots[self.robot];
+        Some(Warning {
+            file: cell.file.clone(),
+            line: Some(robot.line),
+            what: format!("avoidance of '{}' failed at {t_s:.3} s, and it was stopped: {why}", robot.name),
+            write_instead: None,
+        })
+    }
+
+    /// The recording.
+    pub fn finish(mut self) -> AvoidanceTrack {
+        self.track.step_ns = TickTimes::of(self.step_ns);
+        self.track
+    }
+
+    /// Advances from `t_s` to the next tick under the override of the monitor. Returns an event where the state
+    /// changed.
+    pub fn advance<'f>(
+        &mut self,
+        cell: &Cell,
+        clock: &mut ProgramClock,
+        states: &[ChainState],
+        t_s: f64,
+        allowed: f64,
+        regions: impl FnMut(f64) -> Option<RegionConstraint<'f>>,
+    ) -> Option<RunEvent> {
+        let before = self.output.state;
+        let at_border = self.at_border(clock, allowed);
+        let needs_path = self.output.requests_detour || (at_border && self.avoider.is_stationary());
+        if self.spec.replan && needs_path && t_s >= self.not_before_s {
+            self.plan(clock, t_s, regions);
+        }
+        // No closer to a border than a planned path can leave in time.
+        let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
+        clock.hold(!self.is_on_path());
+        // Off the path the time of a wait does not run.
+        if !(clock.waiting() && self.output.rate == 0.0) {
+            clock.advance(cell.tick_s, allowed * self.output.rate);
+        }
+        self.step(cell, clock, states, t_s, allowed);
+        let now = self.output.state;
+        (now != before).then_some(RunEvent::Avoidance(now))
+    }
+
+    /// True where the monitor almost stops the robot off its path: evasion has moved it to the border of a region. A
+    /// planned path leads away; after repeated failures to find one, the avoider returns the robot to its path.
+    fn at_border(&self, clock: &ProgramClock, allowed: f64) -> bool {
+        let free = self.is_on_path()
+            || self.avoider.has_detour()
+            || allowed >= REPLANNING.border_override * clock.programmed_override();
+        !free && self.spec.replan && self.failed < REPLANNING.max_failures
+    }
+
+    fn step(&mut self, cell: &Cell, clock: &ProgramClock, states: &[ChainState], t_s: f64, allowed: f64) {
+        let evaded = |object: usize| self.spec.objects.contains(&object);
+        let moving = cell.moving_objects.iter().map(|m| ObservedObject {
+            object: ObjectId(m.object),
+            in_world: m.pose(t_s),
+            motion: m.motion(t_s),
+            known: !evaded(m.object),
+        });
+        let is_fixed = |o: &&usize| !cell.moving_objects.iter().any(|m| m.object == **o);
+        let fixed = self.spec.objects.iter().filter(is_fixed).map(|&object| ObservedObject {
+            object: ObjectId(object),
+            in_world: cell.objects[object].in_world,
+            motion: FrameMotion::REST,
+            known: false,
+        });
+        let objects: Vec<ObservedObject> = moving.chain(fixed).collect();
+        let others = states.iter().enumerate().filter(|(i, _)| *i != self.robot);
+        let known = |robot: usize| !self.spec.robots.contains(&robot);
+        let robots: Vec<Neighbour<'_>> = others
+            .map(|(robot, s)| Neighbour { robot: RobotId(robot), q: &s.q, qd: &s.qd, known: known(robot) })
+            .collect();
+        let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
+        let reference = Reference { q: &clock.point().q, qd: &clock.point().first, path };
+        let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
+        match self.avoider.tick(cell.tick_s, &reference, &obstacles, allowed) {
+            Ok(output) => {
+                self.output = output;
+                self.step_ns.push(output.times.total().as_nanos() as u64);
+            }
+            // Nothing was commanded: the robot is stopped off its path.
+            Err(why) => {
+                self.output = AvoiderOutput {
+                    rate: 0.0,
+                    state: AvoiderState::Halted,
+                    path_deviation_s: f64::INFINITY,
+                    ..self.output
+                };
+                self.fault.get_or_insert_with(|| (t_s, why.to_string()));
+            }
+        }
+    }
+
+    /// Replans: to the end of a joint move, else back to the path.
+    fn plan<'f>(
+        &mut self,
+        clock: &mut ProgramClock,
+        t_s: f64,
+        mut regions: impl FnMut(f64) -> Option<RegionConstraint<'f>>,
+    ) {
+        let end = clock.end_of_joint_move();
+        let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
+        let begin = std::time::Instant::now();
+        let settings = REPLANNING;
+        let found = settings.attempts.into_iter().any(|ReplanAttempt { clearance_m, warning_share }| {
+            // Another seed may find a path where the last one did not.
+            let seed = 1 + self.failed;
+            let options = RrtConnectSettings {
+                time_limit: settings.time_limit,
+                max_states: settings.max_states,
+                clearance_m,
+                seed,
+                ..RrtConnectSettings::default()
+            };
+            let mut constraint = regions(warning_share);
+            self.avoider
+                .plan_to_constrained(&goal, &options, constraint.as_mut().map(|f| f as &mut dyn PathConstraint))
+                .is_ok()
+        });
+        self.failed = if found { 0 } else { self.failed + 1 };
+        // For a trapped robot, planning is not repeated in every tick.
+        let interval_s =
+            if self.failed < settings.max_failures { settings.interval_s } else { settings.failed_interval_s };
+        self.not_before_s = t_s + interval_s;
+        let search_s = found.then(|| begin.elapsed().as_secs_f64());
+        self.track.plans.push(ReplanRecord { t_s, search_s });
+        if found && end.is_some() {
+            clock.skip_move();
+        }
+    }
+}
+
+fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
+    (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE_SAMPLES)).collect()
+}
+
+fn limits(cell: &Cell, robot: usize) -> Vec<JointLimit> {
+    let robot = &cell.robots[robot];
+    let chain = &robot.robot.chain;
+    let bounds = chain.lower().into_iter().zip(chain.upper());
+    let limit = |((lower, upper), l): ((f64, f64), &elbowroom_cell::JointLimits)| JointLimit {
+        lower,
+        upper,
+        speed: l.velocity,
+        acceleration: l.acceleration,
+        stop: l.stop.max(l.acceleration),
+    };
+    bounds.zip(&robot.limits).map(limit).collect()
+}

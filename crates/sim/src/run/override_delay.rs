@@ -1,0 +1,46 @@
+//! Reaction time of controllers: an override takes effect with this delay.
+
+use std::collections::VecDeque;
+
+use crate::motion::ProgramClock;
+
+/// An override that was sent.
+#[derive(Debug, Clone, Copy)]
+struct PendingOverride {
+    /// When it takes effect, s.
+    from_s: f64,
+    speed_override: f64,
+}
+
+/// The overrides sent to one robot that have not taken effect yet.
+#[derive(Debug)]
+pub(super) struct OverrideDelay {
+    reaction_s: f64,
+    pending: VecDeque<PendingOverride>,
+    applied: f64,
+}
+
+impl OverrideDelay {
+    pub fn new(reaction_s: f64) -> Self {
+        Self { reaction_s, pending: VecDeque::new(), applied: 0.0 }
+    }
+
+    /// Sends an override at `t_s`.
+    pub fn send(&mut self, t_s: f64, speed_override: f64) {
+        self.pending.push_back(PendingOverride { from_s: t_s + self.reaction_s, speed_override });
+    }
+
+    /// Advances the clock from `t_s` by `dt` seconds, with the override in effect at each moment.
+    pub fn advance(&mut self, clock: &mut ProgramClock, t_s: f64, dt: f64) {
+        let (mut at_s, end_s) = (t_s, t_s + dt);
+        while let Some(next) = self.pending.front().copied().filter(|next| next.from_s < end_s) {
+            if next.from_s > at_s + 1e-9 {
+                clock.advance(next.from_s - at_s, self.applied);
+                at_s = next.from_s;
+            }
+            self.applied = next.speed_override;
+            self.pending.pop_front();
+        }
+        clock.advance(end_s - at_s, self.applied);
+    }
+}

@@ -1,0 +1,227 @@
+//! Recording of the regions during a run.
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::trajectory::volume_motion_bounds;
+use elbowroom_cell::{Cell, Frames};
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep};
+use elbowroom_spatial::Pose;
+
+use crate::recording::{RegionPoses, RegionTrack, Span};
+
+/// Distances are measured up to this (m) beyond the needed limit, so that the next measurements can be skipped.
+const MARGIN_M: f64 = 0.1;
+/// Between ticks, a region counts as passed through where it is penetrated by more than this, m.
+const RESOLUTION_M: f64 = 1e-6;
+
+pub(super) struct RegionRecorder<'a> {
+    cell: &'a Cell,
+    setups: &'a [MonitorSetup],
+    tracks: Vec<RegionTrack>,
+    /// Per robot its sweep from the last tick: the true one, not that of the monitor's input.
+    sweeps: Vec<RegionSweep>,
+    observers: Vec<RegionObserver>,
+    /// Per region of the current tick: true where any robot is in its warning zone.
+    warned: Vec<bool>,
+    /// Time of the last tick, s.
+    before_s: f64,
+}
+
+/// Observes one robot at one region.
+struct RegionObserver {
+    robot: usize,
+    local: RegionId,
+    region: usize,
+    /// The last measured distance; `None` where there is none.
+    measured: Option<MeasuredDistance>,
+    /// A proven distance at the last tick, m; `None` where the region was inactive or there was no tick.
+    before_m: Option<f64>,
+    warned_since: Option<f64>,
+    inside_since: Option<f64>,
+}
+
+/// A measured distance, and the motion since.
+#[derive(Debug, Clone, Copy)]
+struct MeasuredDistance {
+    distance_m: f64,
+    /// Upper bound of the motion since the measurement, m.
+    travelled_m: f64,
+}
+
+/// Distances at one tick and since the last one.
+#[derive(Default)]
+struct TickDistances {
+    /// Distance at the tick, where it could matter, m.
+    distance_m: Option<f64>,
+    /// Smallest distance since the last tick, where the robot passed through the region or its warning zone and is in
+    /// it at neither tick, m.
+    passed_m: Option<f64>,
+}
+
+impl<'a> RegionRecorder<'a> {
+    pub fn new(cell: &'a Cell, setups: &'a [MonitorSetup]) -> Self {
+        let tracks = cell.regions.iter().map(|r| track(&r.region, r.follow.is_some())).collect();
+        let observers = setups
+            .iter()
+            .enumerate()
+            .flat_map(|(robot, setup)| {
+                setup.regions.iter().enumerate().map(move |(local, region)| RegionObserver {
+                    robot,
+                    local: RegionId(local),
+                    region: *region,
+                    measured: None,
+                    before_m: None,
+                    warned_since: None,
+                    inside_since: None,
+                })
+            })
+            .collect();
+        let sweeps = setups.iter().map(|s| RegionSweep::new(&s.configuration)).collect();
+        Self { cell, setups, tracks, sweeps, observers, warned: vec![false; cell.regions.len()], before_s: 0.0 }
+    }
+
+    /// Switches a region; false where it had this state already.
+    pub fn switch(&mut self, region: usize, t_s: f64, active: bool) -> bool {
+        let list = &mut self.tracks[region].active;
+        if list.last().is_some_and(|last| last.1 == active) {
+            return false;
+        }
+        list.push((t_s, active));
+        let of_region = self.observers.iter_mut().filter(|o| o.region == region);
+        of_region.for_each(|o| (o.measured, o.before_m) = (None, None));
+        true
+    }
+
+    /// Observes one tick and the motion to it, after the monitors' ticks.
+    pub fn observe(&mut self, t_s: f64, monitors: &[Monitor], states: &[ChainState], frames: &Frames<'_>) {
+        for (r, track) in self.cell.regions.iter().zip(&mut self.tracks) {
+            if let (RegionPoses::Moving(poses), Some(follow)) = (&mut track.poses, &r.follow) {
+                let anchor = frames.source(follow, states, t_s).pose * r.region.anchor;
+                poses.push(anchor * r.region.shape_in_anchor);
+            }
+        }
+        let before_s = std::mem::replace(&mut self.before_s, t_s);
+        for ((sweep, setup), state) in self.sweeps.iter_mut().zip(self.setups).zip(states) {
+            sweep.advance(&setup.configuration, &state.q, &frames.sources(&setup.sources, states, t_s), t_s - before_s);
+        }
+        self.warned.fill(false);
+        for observer in &mut self.observers {
+            let track = &mut self.tracks[observer.region];
+            let region = &self.cell.regions[observer.region];
+            let (sweep, config) = (&mut self.sweeps[observer.robot], &self.setups[observer.robot].configuration);
+            let distances = if monitors[observer.robot].is_active(observer.local) {
+                observer.measure(sweep, config, track, region.follow.is_some())
+            } else {
+                observer.before_m = None;
+                TickDistances::default()
+            };
+            let inside = distances.distance_m.is_some_and(|d| d <= 0.0);
+            let warned = inside || distances.distance_m.is_some_and(|d| d < track.warning_m);
+            let passed = distances.passed_m.is_some_and(|d| d <= 0.0) && !inside;
+            for d in [distances.distance_m, distances.passed_m].into_iter().flatten() {
+                track.min_distance_m = Some(track.min_distance_m.map_or(d, |m| m.min(d)));
+            }
+            let exchange = matches!(region.region.kind, RegionKind::Exchange { .. });
+            track.entered |= (inside || passed) && !(exchange && monitors[observer.robot].holds(observer.local));
+            self.warned[observer.region] |= warned || distances.passed_m.is_some();
+            // A region that was passed through was occupied for a part of the tick; the recording has the whole tick.
+            let tick_span = Span { robot: observer.robot, from_s: before_s, to_s: t_s };
+            if distances.passed_m.is_some() && !warned && observer.warned_since.is_none() {
+                track.warning_spans.push(tick_span);
+            }
+            if passed && observer.inside_since.is_none() {
+                track.inside_spans.push(tick_span);
+            }
+            span(&mut observer.warned_since, warned, t_s, observer.robot, &mut track.warning_spans);
+            span(&mut observer.inside_since, inside, t_s, observer.robot, &mut track.inside_spans);
+        }
+        for (track, _) in self.tracks.iter_mut().zip(&self.warned).filter(|w| *w.1) {
+            track.warned_s += self.cell.tick_s;
+        }
+    }
+
+    pub fn finish(mut self, t_s: f64) -> Vec<RegionTrack> {
+        for observer in &mut self.observers {
+            let track = &mut self.tracks[observer.region];
+            span(&mut observer.warned_since, false, t_s, observer.robot, &mut track.warning_spans);
+            span(&mut observer.inside_since, false, t_s, observer.robot, &mut track.inside_spans);
+        }
+        self.tracks
+    }
+}
+
+impl RegionObserver {
+    /// Measures the distance where it could be below the smallest one so far or within the warning zone, and detects a
+    /// passage since the last tick.
+    fn measure(
+        &mut self,
+        sweep: &mut RegionSweep,
+        config: &Configuration,
+        track: &RegionTrack,
+        moves: bool,
+    ) -> TickDistances {
+        let limit = track.min_distance_m.unwrap_or(f64::INFINITY).max(track.warning_m);
+        let travel = sweep.motion_bound(self.local);
+        let before = self.before_m.replace(0.0);
+        if let (false, Some(measured)) = (moves, &mut self.measured) {
+            measured.travelled_m += travel;
+            let proven = measured.distance_m - measured.travelled_m;
+            if proven > limit {
+                self.before_m = Some(proven);
+                return TickDistances::default();
+            }
+        }
+        let distance_m = sweep.distance(config, self.local, limit + MARGIN_M);
+        let now = distance_m.unwrap_or(limit + MARGIN_M);
+        self.measured = Some(MeasuredDistance { distance_m: now, travelled_m: 0.0 });
+        self.before_m = Some(now);
+        let passed_m = before.and_then(|before| {
+            let warned = now.min(before) < track.warning_m;
+            let below = if warned { 0.0 } else { track.warning_m };
+            if now.min(before) <= 0.0 || before + now - 2.0 * below > travel {
+                return None;
+            }
+            let mut closest = |below| sweep.closest_approach(config, self.local, below, RESOLUTION_M);
+            // A passage through the zone need not lead through the region.
+            let zone = closest(below)?;
+            if below > 0.0 && zone.distance_m > 0.0 { closest(0.0).or(Some(zone)) } else { Some(zone) }
+        });
+        TickDistances { distance_m, passed_m: passed_m.map(|c| c.distance_m) }
+    }
+}
+
+fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: usize, spans: &mut Vec<Span>) {
+    match (*since, now) {
+        (None, true) => *since = Some(t_s),
+        (Some(from_s), false) => {
+            spans.push(Span { robot, from_s, to_s: t_s });
+            *since = None;
+        }
+        _ => {}
+    }
+}
+
+/// Per joint the motion bound of all guarded volumes; joints without influence are left out.
+pub(super) fn motion_bounds(setup: &MonitorSetup) -> Vec<(usize, f64)> {
+    let motion_bounds = volume_motion_bounds(setup.configuration.chain(), setup.configuration.volumes());
+    motion_bounds.into_iter().enumerate().filter(|(_, bound)| *bound != 0.0).collect()
+}
+
+fn track(r: &elbowroom_monitor::Region, moves: bool) -> RegionTrack {
+    let pose: Pose = r.anchor * r.shape_in_anchor;
+    RegionTrack {
+        name: r.name.clone(),
+        kind: r.kind.into(),
+        life: r.life,
+        guards: r.guards,
+        warning_m: r.warning_m,
+        shape: r.shape.clone(),
+        poses: if moves { RegionPoses::Moving(Vec::new()) } else { RegionPoses::Fixed(pose) },
+        active: vec![(0.0, r.life == Life::Permanent)],
+        min_distance_m: None,
+        entered: false,
+        warned_s: 0.0,
+        warning_spans: Vec::new(),
+        inside_spans: Vec::new(),
+    }
+}

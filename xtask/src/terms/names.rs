@@ -1,0 +1,115 @@
+//! Names that a document gives: types, functions, crates, examples, tests and files must exist.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Names of other libraries and standards.
+const FOREIGN: [&str; 5] =
+    ["BVHModelOBBRSS", "DistanceResult", "OrbitControls", "computeCollisions", "computeDistances"];
+
+/// The glossary lists names that were replaced below this heading.
+const FORMER: &str = "## Former names";
+
+/// Every word of the sources, and the names of the files.
+#[derive(Debug, Default)]
+pub struct KnownNames {
+    words: HashSet<String>,
+    paths: Vec<String>,
+}
+
+impl KnownNames {
+    /// Adds the words of a file's path, and of its text if it is a source.
+    pub fn add(&mut self, path: &str, text: &str) {
+        self.words.extend(words(path).map(str::to_owned));
+        if [".rs", ".toml", ".py"].iter().any(|ending| path.ends_with(ending)) {
+            self.words.extend(words(text).map(str::to_owned));
+        }
+        self.paths.push(path.to_owned());
+    }
+
+    /// Every name in a document that nothing has.
+    pub fn problems(&self, root: &Path, document: &str, text: &str) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut in_code = false;
+        for (i, line) in text.split(FORMER).next().unwrap_or_default().lines().enumerate() {
+            let mut report = |what: String| found.push(format!("{document}:{}: {what}", i + 1));
+            self.command_names(line).for_each(&mut report);
+            if line.trim_start().starts_with("```") {
+                in_code = !in_code;
+            } else if !in_code {
+                line.split('`').skip(1).step_by(2).filter_map(|code| self.unknown(root, code)).for_each(&mut report);
+            }
+        }
+        found
+    }
+
+    /// Crates, examples and tests that a command names and that do not exist.
+    fn command_names<'a>(&'a self, line: &'a str) -> impl Iterator<Item = String> + 'a {
+        let after = |option: &'static str| line.split(option).skip(1).filter_map(|rest| words(rest).next());
+        let crates = after("-p elbowroom-").map(|name| (format!("crates/{name}/"), format!("crate {name}")));
+        let examples = after("--example ").map(|name| (format!("/examples/{name}"), format!("example {name}")));
+        let tests = after("--test ").map(|name| (format!("/tests/{name}"), format!("test {name}")));
+        let exists = |part: &str| self.paths.iter().any(|path| path.contains(part));
+        crates
+            .chain(examples)
+            .chain(tests)
+            .filter(move |(part, _)| !exists(part))
+            .map(|(_, name)| format!("there is no {name}"))
+    }
+
+    /// What is wrong with a piece of code in a sentence.
+    fn unknown(&self, root: &Path, code: &str) -> Option<String> {
+        if is_path(code) {
+            return (!root.join(code).exists()).then(|| format!("there is no file `{code}`"));
+        }
+        if !is_rust(code) {
+            return None;
+        }
+        let is_known = |word: &&str| self.words.contains(*word) || FOREIGN.contains(word);
+        let starts_with_letter =
+            |word: &&str| word.len() > 2 && word.is_ascii() && word.starts_with(char::is_alphabetic);
+        let unknown = words(code).filter(starts_with_letter).find(|word| !is_known(word))?;
+        Some(format!("`{code}`: no source has the name {unknown}"))
+    }
+}
+
+/// Runs of letters, digits and underscores.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+}
+
+/// A file or folder of the workspace.
+fn is_path(code: &str) -> bool {
+    const FOLDERS: [&str; 5] = ["crates/", "devtools/", "docs/", "examples/", "xtask/"];
+    // `NAME` in a path stands for any name.
+    FOLDERS.iter().any(|folder| code.starts_with(folder))
+        && !code.contains([' ', '*', '…', '{', '<', ':', '#'])
+        && !code.contains("NAME")
+}
+
+/// A path of Rust (`mesh::distance`), or a type with or without what follows it (`Scene`, `Scene.step()`).
+fn is_rust(code: &str) -> bool {
+    let mut start = code.chars();
+    let is_type = start.next().is_some_and(char::is_uppercase) && start.next().is_some_and(char::is_lowercase);
+    let name = code.split('(').next().unwrap_or_default();
+    code.contains("::") || is_type && words(name).count() <= 2 && !name.contains([' ', '-', '/'])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_documents_are_those_of_the_sources() {
+        let mut known = KnownNames::default();
+        known.add("crates/scene/src/scene.rs", "pub struct Scene { step: u32 }");
+        known.add("crates/scene/examples/sweep.rs", "");
+        let problems = |text: &str| known.problems(Path::new("/nowhere"), "a.md", text);
+        assert!(problems("`Scene`, `Scene::step(1)` and `run it`\n```\nScenery::walk\n```").is_empty());
+        assert!(problems("cargo run -p elbowroom-scene --example sweep").is_empty());
+        assert_eq!(problems("text\n`Scenery`"), ["a.md:2: `Scenery`: no source has the name Scenery"]);
+        assert_eq!(problems("cargo test -p elbowroom-plan"), ["a.md:1: there is no crate plan"]);
+        assert_eq!(problems("see `crates/scene/src/gone.rs`"), ["a.md:1: there is no file `crates/scene/src/gone.rs`"]);
+        assert!(problems("## Former names\n`Scenery`").is_empty());
+    }
+}
