@@ -222,8 +222,8 @@ fn a_pipeline_on_its_own_thread_reports_the_same_and_ends_cleanly() {
     moved.set_goal(&radians(B)).unwrap();
     assert_eq!(moved.update(&update).reason, None);
     // Many at once: frames that are not accepted are dropped, and nothing blocks.
-    let taken = (0..20).filter(|n| worker.send(image(&bytes[..9], t + 1.0 + f64::from(*n)))).count();
-    assert!((1..20).contains(&taken), "{taken}");
+    let mut sent = (0..10_000).map(|n| worker.send(image(&bytes[..9], t + 1.0 + f64::from(n))));
+    assert!(sent.any(|is_taken| is_taken) && sent.any(|is_taken| !is_taken));
     let pipeline = worker.stop().unwrap();
     assert_eq!(pipeline.map().occupancy().blocked(), update.blocked);
     drop(PerceptionWorker::spawn(pipeline).unwrap());

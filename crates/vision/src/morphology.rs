@@ -99,7 +99,7 @@ mod tests {
         #[test]
         fn opening_and_closing_are_as_defined(width in 1_usize..40, height in 1_usize..12, seed in any::<u64>()) {
             let mut state = seed | 1;
-            let mut bit = || u8::from(xorshift(&mut state) % 3 > 0);
+            let mut bit = || u8::from(!xorshift(&mut state).is_multiple_of(3));
             let plane: Vec<u8> = (0..width * height).map(|_| bit()).collect();
             let (mut opened, mut closed) = (plane.clone(), plane.clone());
             let mut morphology = Morphology::default();
