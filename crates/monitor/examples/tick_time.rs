@@ -58,7 +58,11 @@ fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
     (0..count).map(one).collect()
 }
 
+/// Prints one row, if its name contains the command's argument.
 fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
+    if std::env::args().nth(1).is_some_and(|part| !name.contains(&part)) {
+        return;
+    }
     let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
     let mut m = Monitor::new(Configuration::new(parts).expect("valid"), None).expect("a valid configuration");
     let (mut times, mut pairs) = (Vec::with_capacity(TICKS as usize), 0_u64);

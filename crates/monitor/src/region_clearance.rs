@@ -101,6 +101,8 @@ impl RegionClearances {
     }
 
     /// Measures every active region against the volumes that it guards against, as far as `law` or `travel` need it.
+    // Inlined into the tick, the loop would not keep its bounds in registers.
+    #[inline(never)]
     pub(crate) fn measure(
         &mut self,
         config: &Configuration,

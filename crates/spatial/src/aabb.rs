@@ -27,6 +27,7 @@ impl Aabb {
     pub const EVERYTHING: Self = Self { min: Vec3::splat(f64::NEG_INFINITY), max: Vec3::splat(f64::INFINITY) };
 
     /// The smallest box around the points; [`Aabb::EMPTY`] where there are none.
+    #[inline]
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
     }
@@ -52,6 +53,7 @@ impl Aabb {
     }
 
     /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`.
+    #[inline]
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         if self.is_empty() || !self.extent().is_finite() {
@@ -63,12 +65,13 @@ impl Aabb {
     /// True where the boxes share a point (touching counts).
     #[inline]
     pub fn overlaps(&self, o: &Self) -> bool {
-        self.min.x <= o.max.x
-            && o.min.x <= self.max.x
-            && self.min.y <= o.max.y
-            && o.min.y <= self.max.y
-            && self.min.z <= o.max.z
-            && o.min.z <= self.max.z
+        // Without branches: which comparison fails is not predictable.
+        (self.min.x <= o.max.x)
+            & (o.min.x <= self.max.x)
+            & (self.min.y <= o.max.y)
+            & (o.min.y <= self.max.y)
+            & (self.min.z <= o.max.z)
+            & (o.min.z <= self.max.z)
     }
 
     /// True where the point is in the box or on it.

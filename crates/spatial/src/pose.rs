@@ -82,6 +82,7 @@ impl Pose {
     }
 
     /// The pose at the fraction `t` of the interpolation to `other`: straight line, shortest rotation.
+    #[inline]
     #[must_use]
     pub fn interpolate(&self, other: &Self, t: f64) -> Self {
         Self {
@@ -91,6 +92,7 @@ impl Pose {
     }
 
     /// Row-major 3×4 matrix `[R | t]`.
+    #[inline]
     pub fn to_rows(self) -> [[f64; 4]; 3] {
         let r = self.rotation.rows();
         let t = self.translation.to_array();
@@ -98,6 +100,7 @@ impl Pose {
     }
 
     /// True where no entry is NaN or infinite.
+    #[inline]
     pub fn is_finite(&self) -> bool {
         self.rotation.is_finite() && self.translation.is_finite()
     }
