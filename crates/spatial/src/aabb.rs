@@ -63,9 +63,9 @@ impl Aabb {
     }
 
     /// True where the boxes share a point (touching counts).
+    #[allow(clippy::needless_bitwise_bool, reason = "without branches: which comparison fails is not predictable")]
     #[inline]
     pub fn overlaps(&self, o: &Self) -> bool {
-        // Without branches: which comparison fails is not predictable.
         (self.min.x <= o.max.x)
             & (o.min.x <= self.max.x)
             & (self.min.y <= o.max.y)
