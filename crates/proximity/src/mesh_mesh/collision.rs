@@ -32,6 +32,7 @@ use crate::triangle::triangles_cross;
 /// assert!(colliding_triangles(&mesh, &Pose::IDENTITY, &mesh, &far, &mut workspace).is_none());
 /// # Ok::<(), elbowroom_proximity::MeshError>(())
 /// ```
+#[inline]
 pub fn colliding_triangles(
     a: &TriMesh,
     a_in_world: &Pose,
