@@ -1,4 +1,4 @@
-//! How the cost of a mesh grows with its triangles, measured and drawn: the figures of `docs/benchmarks.md`.
+//! How the cost of a mesh grows with its triangles, measured and drawn: the figures of `docs/measurements/benchmarks.md`.
 
 use std::path::Path;
 

@@ -43,7 +43,7 @@ cargo xtask COMMAND
         runs one cell file under the same oracle; lines `# fault: …` in it are injected
   rpq [--states N] [--out DIR] [--json]
         the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
-        resolution level, collision matrix and weight matrix; --out writes the figures of docs/rpq.md
+        resolution level, allowed collision matrix and weight matrix; --out writes the figures of docs/measurements/rpq.md
   cross-validate [--data DIR] [--states N] [--only NAME] [--json]
         every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the allowed collision matrix beside the SRDF
@@ -58,7 +58,7 @@ cargo xtask COMMAND
         prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
         (default 0.5); ONLY: part of `lib|set|query`
   scaling [--out DIR]
-        time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/benchmarks.md
+        time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/measurements/benchmarks.md
   bench [ARGS…]
         cargo bench, with ARGS
 
@@ -90,6 +90,10 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
         ["terms"] => Ok(terms::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
+        ["judge", options @ ..] => {
+            eprintln!("warning: `judge` is now called `cross-validate`; the former name goes with the next version");
+            dispatch(&[&["cross-validate"], options].concat())
+        }
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),

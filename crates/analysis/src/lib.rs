@@ -4,8 +4,8 @@
 //! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
 //!
 //! ```
-//! use elbowroom_analysis::query::{JointStates, Level, QueryKind, evaluate};
-//! use elbowroom_cell::{Cell, QueryModel};
+//! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};
+//! use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 //! let cell = Cell::parse("c.toml", r#"
 //! version = 1
 //! units = { length = "m", angle = "rad" }
@@ -18,9 +18,9 @@
 //! radius = 0.5
 //! "#)?;
 //! let model = QueryModel::of_cell(&cell);
-//! let states = JointStates::parse("s.csv".as_ref(), "joint_1\n0\n1.5\n", &model)?;
+//! let states = QueryStates::parse("s.csv".as_ref(), "joint_1\n0\n1.5\n", &model)?;
 //! let mut hits = Vec::new();
-//! evaluate(&model.scene(false)?, &states, QueryKind::Collision, Level::Auto, &mut |rows| {
+//! evaluate(&model.scene(OutOfReachProofs::Omit)?, &states, QueryKind::Collision, Level::Auto, &mut |rows| {
 //!     hits.extend(rows.iter().map(|row| row.collides));
 //!     true
 //! })?;

@@ -20,9 +20,9 @@ fn only_fixed_objects_count_as_static_in_a_map() {
             ball(100.0, [-500.0, 200.0, 0.0], motion)
         ))
     };
-    let still = map(&cell(""), &MapRequest::default()).unwrap();
+    let stationary = map(&cell(""), &MapRequest::default()).unwrap();
     let moving = map(&cell("motion = { via = [[0, 900, 0]], speed = 100 }"), &MapRequest::default()).unwrap();
-    assert_eq!((still.blocked, still.static_blocked), (moving.blocked, still.blocked));
+    assert_eq!((stationary.blocked, stationary.static_blocked), (moving.blocked, stationary.blocked));
     assert_eq!(moving.static_blocked, moving.obstacles[0].blocks.blocked());
     assert!(moving.static_blocked < moving.blocked && moving.warnings.iter().any(|w| w.to_string().contains("ball")));
 }

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use common::{ARM, HEAD, parse, rail};
 use elbowroom_analysis::plan::{PathAnswer, PathRequest, plan};
-use elbowroom_analysis::query::JointStates;
-use elbowroom_cell::{Cell, QueryModel};
+use elbowroom_analysis::query::QueryStates;
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_robot::RobotId;
@@ -23,7 +23,7 @@ fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
 /// Checks every row and some points in between by exact geometry; and the speeds between rows.
 fn check(cell: &Cell, answer: &PathAnswer, request: &PathRequest) {
     let robot = cell.robots.iter().position(|r| Some(&r.name) == request.robot.as_ref()).unwrap();
-    let scene = QueryModel::of_cell(cell).scene(false).unwrap();
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit).unwrap();
     let options = CheckerOptions { level: Level::L3, weights: false, matrix: false, ..CheckerOptions::default() };
     let (mut checker, mut state) = (Checker::new(&scene, options), SceneState::new(&scene));
     for (i, r) in cell.robots.iter().enumerate() {
@@ -95,7 +95,7 @@ fn the_rows_are_a_file_that_a_cell_reads_back() {
     let mut text = Vec::new();
     motion.write_csv(&answer.joints, &mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
-    let read = JointStates::parse("path.csv".as_ref(), &text, &QueryModel::of_cell(&cell)).unwrap();
+    let read = QueryStates::parse("path.csv".as_ref(), &text, &QueryModel::of_cell(&cell)).unwrap();
     assert_eq!(read.len(), motion.rows.len());
     assert!(motion.rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((0, &row.1[..]))));
     assert!((motion.rows[motion.rows.len() - 1].0 - motion.duration_s).abs() < 1e-9);

@@ -4,8 +4,8 @@ mod common;
 
 use std::fmt::Write as _;
 
-use elbowroom_analysis::query::{BLOCK, JointStates, Level, QueryKind, QueryRecord, QueryRow, evaluate};
-use elbowroom_cell::{Cell, QueryModel};
+use elbowroom_analysis::query::{BLOCK, Level, QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{Shape, collides, separation};
 use elbowroom_robot::RobotId;
@@ -76,13 +76,13 @@ fn naive(model: &QueryModel, q: &[Vec<f64>]) -> Vec<(GeometryId, GeometryId, f64
 
 fn rows(
     model: &QueryModel,
-    states: &JointStates,
+    states: &QueryStates,
     kind: QueryKind,
     level: Level,
-    prune_unreachable: bool,
+    proofs: OutOfReachProofs,
 ) -> Vec<QueryRow> {
     let mut all = Vec::new();
-    let scene = model.scene(prune_unreachable).unwrap();
+    let scene = model.scene(proofs).unwrap();
     evaluate(&scene, states, kind, level, &mut |block| {
         all.extend_from_slice(block);
         true
@@ -108,9 +108,10 @@ proptest! {
         tolerance in 0.0..0.3_f64,
     ) {
         let model = QueryModel::of_cell(&Cell::parse("c.toml", CELL).unwrap());
-        let states = JointStates::parse("s.csv".as_ref(), &csv(&values), &model).unwrap();
+        let states = QueryStates::parse("s.csv".as_ref(), &csv(&values), &model).unwrap();
         prop_assert_eq!(states.len(), values.len());
-        let query = |a, l| rows(&model, &states, a, l, values.len() % 2 == 0);
+        let proofs = if values.len() % 2 == 0 { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
+        let query = |a, l| rows(&model, &states, a, l, proofs);
         let distances = query(QueryKind::Distance, Level::Auto);
         let collisions = query(QueryKind::Collision, Level::Auto);
         let near = query(QueryKind::Tolerance(tolerance), Level::Auto);
@@ -158,10 +159,10 @@ fn a_row_depends_only_on_its_block() {
     let model = QueryModel::of_cell(&Cell::parse("c.toml", CELL).unwrap());
     let spread = |i: usize, k: usize| ((i * 7919 + k * 104_729) % 5600) as f64 / 1000.0 - 2.8;
     let values: Vec<Vec<f64>> = (0..3 * BLOCK).map(|i| (0..5).map(|k| spread(i, k)).collect()).collect();
-    let states = |v: &[Vec<f64>]| JointStates::parse("s.csv".as_ref(), &csv(v), &model).unwrap();
+    let states = |v: &[Vec<f64>]| QueryStates::parse("s.csv".as_ref(), &csv(v), &model).unwrap();
     for kind in [QueryKind::Collision, QueryKind::Distance, QueryKind::Tolerance(0.1)] {
-        let all = rows(&model, &states(&values), kind, Level::Auto, true);
-        let third = rows(&model, &states(&values[2 * BLOCK..]), kind, Level::Auto, true);
+        let all = rows(&model, &states(&values), kind, Level::Auto, OutOfReachProofs::Compute);
+        let third = rows(&model, &states(&values[2 * BLOCK..]), kind, Level::Auto, OutOfReachProofs::Compute);
         for (one, other) in all[2 * BLOCK..].iter().zip(&third) {
             assert_eq!(QueryRow { index: 0, ..*one }, QueryRow { index: 0, ..*other });
         }
@@ -172,9 +173,9 @@ fn a_row_depends_only_on_its_block() {
 #[test]
 fn evaluation_ends_where_the_receiver_stops() {
     let model = QueryModel::of_cell(&Cell::parse("c.toml", CELL).unwrap());
-    let states = JointStates::parse("s.csv".as_ref(), &csv(&vec![vec![0.5; 5]; 20 * BLOCK]), &model).unwrap();
+    let states = QueryStates::parse("s.csv".as_ref(), &csv(&vec![vec![0.5; 5]; 20 * BLOCK]), &model).unwrap();
     let mut blocks = 0;
-    let scene = model.scene(false).unwrap();
+    let scene = model.scene(OutOfReachProofs::Omit).unwrap();
     evaluate(&scene, &states, QueryKind::Collision, Level::Auto, &mut |_| {
         blocks += 1;
         blocks < 2
@@ -187,13 +188,13 @@ fn evaluation_ends_where_the_receiver_stops() {
 fn a_robot_without_columns_stays_at_its_start() {
     let model = QueryModel::of_cell(&Cell::parse("c.toml", CELL).unwrap());
     let text = "left.joint_2,left.joint_1,left.joint_3\n0.1,0.2,0.3\n";
-    let states = JointStates::parse("s.csv".as_ref(), text, &model).unwrap();
+    let states = QueryStates::parse("s.csv".as_ref(), text, &model).unwrap();
     let q: Vec<&[f64]> = states.of(0).map(|s| s.1).collect();
     assert_eq!(q[0], [0.2, 0.1, 0.3]);
     assert_eq!(q[1], model.robots[1].start);
     assert!(states.warnings[0].what.contains("robot `right`"));
     assert_eq!(
-        JointStates::start(&model).of(0).map(|s| s.1.to_vec()).collect::<Vec<_>>(),
+        QueryStates::start(&model).of(0).map(|s| s.1.to_vec()).collect::<Vec<_>>(),
         [model.robots[0].start.clone(), model.robots[1].start.clone()]
     );
 }
@@ -203,12 +204,12 @@ fn names_are_those_of_the_cell() {
     let model = QueryModel::of_cell(&Cell::parse("c.toml", CELL).unwrap());
     // The left arm is over the ball.
     let text = "left.joint_1,left.joint_2,left.joint_3\n0.785,0.35,0\n";
-    let states = JointStates::parse("s.csv".as_ref(), text, &model).unwrap();
-    let row = rows(&model, &states, QueryKind::Collision, Level::Auto, false)[0];
+    let states = QueryStates::parse("s.csv".as_ref(), text, &model).unwrap();
+    let row = rows(&model, &states, QueryKind::Collision, Level::Auto, OutOfReachProofs::Omit)[0];
     let written = QueryRecord::of(&row, &model);
     assert_eq!((written.a.as_deref(), written.b.as_deref()), (Some("left/link_3"), Some("ball")));
     let link = model.robots[0].robot.chain.link("link_3").unwrap();
-    let member = GeometryId::Link { robot: RobotId(0), link };
-    assert_eq!(model.geometry_name(member), "left/link_3");
+    let geometry = GeometryId::Link { robot: RobotId(0), link };
+    assert_eq!(model.geometry_name(geometry), "left/link_3");
     assert!(written.csv().starts_with("0,1,0.0,left/link_3,ball,"), "{}", written.csv());
 }

@@ -3,8 +3,8 @@
 #[path = "../../sim/tests/common/random.rs"]
 mod random;
 
-use elbowroom_analysis::query::{JointStates, Level, QueryKind, QueryRow, evaluate};
-use elbowroom_cell::{Cell, QueryModel};
+use elbowroom_analysis::query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, Scene, SceneState};
 use random::Random;
@@ -51,7 +51,7 @@ links = [
     Cell::parse("c.toml", &[head, &arm("left", 0.0), &arm("right", 700.0), &objects].concat()).unwrap()
 }
 
-fn states(model: &QueryModel, count: usize) -> JointStates {
+fn states(model: &QueryModel, count: usize) -> QueryStates {
     let names = ["left", "right"].map(|r| (1..=6).map(|j| format!("{r}.joint_{j}")).collect::<Vec<_>>()).concat();
     let chain = |robot: usize| &model.robots[robot].robot.chain;
     let bounds: Vec<(f64, f64)> = (0..2).flat_map(|r| chain(r).lower().into_iter().zip(chain(r).upper())).collect();
@@ -61,10 +61,10 @@ fn states(model: &QueryModel, count: usize) -> JointStates {
         let q = bounds.iter().map(|(lower, upper)| random.range(*lower, *upper).to_string());
         text += &(q.collect::<Vec<_>>().join(",") + "\n");
     }
-    JointStates::parse("q.csv".as_ref(), &text, model).unwrap()
+    QueryStates::parse("q.csv".as_ref(), &text, model).unwrap()
 }
 
-fn evaluate_all(scene: &Scene, states: &JointStates, kind: QueryKind, level: Level) -> (Vec<QueryRow>, CheckerStats) {
+fn evaluate_all(scene: &Scene, states: &QueryStates, kind: QueryKind, level: Level) -> (Vec<QueryRow>, CheckerStats) {
     let mut all = Vec::new();
     let counts = evaluate(scene, states, kind, level, &mut |rows| {
         all.extend_from_slice(rows);
@@ -74,7 +74,7 @@ fn evaluate_all(scene: &Scene, states: &JointStates, kind: QueryKind, level: Lev
 }
 
 /// Whether each state collides, with pairs tested in the order of the hierarchy, without weights.
-fn in_order_of_the_hierarchy(scene: &Scene, states: &JointStates, level: Level) -> (Vec<bool>, CheckerStats) {
+fn in_order_of_the_hierarchy(scene: &Scene, states: &QueryStates, level: Level) -> (Vec<bool>, CheckerStats) {
     let mut checker = Checker::new(scene, CheckerOptions { level, weights: false, ..CheckerOptions::default() });
     let mut state = SceneState::new(scene);
     let collides = (0..states.len()).map(|i| {
@@ -88,7 +88,7 @@ fn in_order_of_the_hierarchy(scene: &Scene, states: &JointStates, level: Level) 
 fn testing_likely_pairs_first_does_not_change_the_results() {
     let model = QueryModel::of_cell(&cell());
     let states = states(&model, 1000);
-    let scene = model.scene(false).unwrap();
+    let scene = model.scene(OutOfReachProofs::Omit).unwrap();
     // Exact solids only: boxes dismiss most pairs before their order matters.
     let (collides, plain) = in_order_of_the_hierarchy(&scene, &states, Level::L3);
     let (exact, weighed) = evaluate_all(&scene, &states, QueryKind::Collision, Level::L3);

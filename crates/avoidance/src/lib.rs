@@ -46,5 +46,5 @@ pub use reactive_controller::{Mode, Reaction, ReactiveController, ReactiveSettin
 pub use reference::{PathKind, Reference};
 pub use rules::{Correction, DEFAULT_RULES, Rules};
 pub use settings::AvoiderSettings;
-pub use state::State as AvoiderState;
+pub use state::AvoiderState;
 pub use velocity_bounds::VelocityBounds;

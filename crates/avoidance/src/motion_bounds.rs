@@ -25,16 +25,16 @@ impl MotionBounds {
         let radius = |l: usize| robot.link_radius(LinkId(l));
         for a in 0..links {
             let path = chain.path(LinkId(a));
-            for (joint, lever) in motion_bound(chain, LinkId(a), radius(a), &path) {
-                bounds.of_link[a * joints + joint] += lever;
+            for (joint, lever_arm) in motion_bound(chain, LinkId(a), radius(a), &path) {
+                bounds.of_link[a * joints + joint] += lever_arm;
             }
             for b in 0..links {
                 let other = chain.path(LinkId(b));
                 let between: Vec<_> = path.iter().copied().filter(|j| !other.contains(j)).collect();
                 // Each link is moved by the joints that are not on the path of the other.
-                for (joint, lever) in motion_bound(chain, LinkId(a), radius(a), &between) {
-                    bounds.of_pair[(a * links + b) * joints + joint] += lever;
-                    bounds.of_pair[(b * links + a) * joints + joint] += lever;
+                for (joint, lever_arm) in motion_bound(chain, LinkId(a), radius(a), &between) {
+                    bounds.of_pair[(a * links + b) * joints + joint] += lever_arm;
+                    bounds.of_pair[(b * links + a) * joints + joint] += lever_arm;
                 }
             }
         }
@@ -43,7 +43,7 @@ impl MotionBounds {
 
     /// Upper bound of the travel of any point of any link in `dt` seconds at joint velocities `qd`, m.
     pub(crate) fn max_travel(&self, qd: &[f64], dt: f64) -> f64 {
-        let of = |row: &[f64]| row.iter().zip(qd).map(|(lever, v)| lever * v.abs()).sum::<f64>();
+        let of = |row: &[f64]| row.iter().zip(qd).map(|(lever_arm, v)| lever_arm * v.abs()).sum::<f64>();
         self.of_link.chunks(self.joints.max(1)).map(of).fold(0.0, f64::max) * dt
     }
 
@@ -54,6 +54,6 @@ impl MotionBounds {
             ObstacleKind::OwnLink(b) => &self.of_pair[(a * self.links + b.0) * self.joints..][..self.joints],
             _ => &self.of_link[a * self.joints..][..self.joints],
         };
-        row.iter().zip(qd).map(|(lever, v)| lever * v.abs()).sum::<f64>() * dt
+        row.iter().zip(qd).map(|(lever_arm, v)| lever_arm * v.abs()).sum::<f64>() * dt
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::Reaction;
-use crate::state::State;
+use crate::state::AvoiderState;
 
 /// Durations of the stages of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,7 +29,7 @@ pub struct AvoiderOutput {
     /// Rate at which the path may advance, as a fraction of its full rate, 0 to 1.
     pub rate: f64,
     /// The reported state.
-    pub state: State,
+    pub state: AvoiderState,
     /// The reaction of the reactive controller.
     pub reaction: Reaction,
     /// Distance to the nearest dynamic obstacle, m; infinite where none is near.

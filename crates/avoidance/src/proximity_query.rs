@@ -12,7 +12,7 @@ use crate::{AvoidanceError, DynamicObstacles, ObservedObject, ObstacleKind, Prox
 /// Witness points closer than this give no direction, m.
 const TOUCHING_M: f64 = 1e-7;
 
-/// A proximity pair and its members in the scene.
+/// A proximity pair and its geometries in the scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ScenePair {
     pub(crate) pair: ProximityPair,
@@ -53,14 +53,14 @@ pub(crate) struct ProximityQuery<'s> {
     pub(crate) excluded: [Option<ProximityPair>; 2],
     /// The pairs, nearest first.
     pub(crate) pairs: Vec<ProximityPair>,
-    /// The same pairs in the same order, with their members.
+    /// The same pairs in the same order, with their geometries.
     pub(crate) scene_pairs: Vec<ScenePair>,
     /// Radius of a sphere about each object's origin that encloses it.
     object_radii: Vec<f64>,
     observed: Vec<Option<Observation>>,
     /// Per robot: whether it is known.
     known_robots: Vec<bool>,
-    /// All members that may move, and the distance within which they are found, m.
+    /// All geometries that may move, and the distance within which they are found, m.
     movable: Vec<(GeometryId, f64)>,
 }
 
@@ -122,12 +122,12 @@ impl<'s> ProximityQuery<'s> {
         &self.motion_bounds[self.robot.0]
     }
 
-    /// Upper bound of the travel (m) of any point of a member by its own motion.
-    pub(crate) fn max_approach(&self, member: GeometryId, obstacles: &DynamicObstacles<'_>, duration_s: f64) -> f64 {
+    /// Upper bound of the travel (m) of any point of a geometry by its own motion.
+    pub(crate) fn max_approach(&self, geometry: GeometryId, obstacles: &DynamicObstacles<'_>, duration_s: f64) -> f64 {
         let speed = |o: &ObservedObject| {
             o.motion.velocity.length() + o.motion.angular_velocity.length() * self.object_radii[o.object.0]
         };
-        match member {
+        match geometry {
             GeometryId::Object(o) => {
                 let same = obstacles.objects.iter().filter(|observed| observed.object == o);
                 same.map(|observed| speed(observed) * duration_s).fold(0.0, f64::max)
@@ -234,7 +234,7 @@ impl PairConverter<'_> {
         })
     }
 
-    /// On contact the witness points give no direction: away from the origin of the other member.
+    /// On contact the witness points give no direction: away from the origin of the other geometry.
     fn away_on_contact(&self, on_link: Vec3, link: LinkId, other: GeometryId) -> Option<Vec3> {
         let origin = self.state.pose(self.scene, other)?.translation;
         let own = self.root_in_world * self.chains[self.robot.0].link_in_root(link);

@@ -2,7 +2,7 @@
 
 /// The reported state of the avoidance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum State {
+pub enum AvoiderState {
     /// On its path.
     #[default]
     Following,
@@ -18,7 +18,7 @@ pub enum State {
     Halted,
 }
 
-impl State {
+impl AvoiderState {
     /// The name for reports.
     pub fn name(self) -> &'static str {
         match self {

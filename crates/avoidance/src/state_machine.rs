@@ -15,7 +15,7 @@
 //! `Holding` with an idle time of the stall timeout or more is `Returning`. `DetourActive` occurs in `Detouring` only.
 
 use crate::detour::Detour;
-use crate::state::State;
+use crate::state::AvoiderState;
 
 /// Time (s) for which a correction counts as recent.
 const RECENT_CORRECTION_S: f64 = 0.1;
@@ -192,19 +192,19 @@ impl StateMachine {
 
     /// The state to report after a tick, in this order of precedence: halted at the override 0, waiting where the robot is
     /// stationary and stalled, then the control state. Off the path, `is_reacting` is reported as evading.
-    pub(crate) fn reported(&self, tick: &TickSummary, is_reacting: bool) -> State {
+    pub(crate) fn reported(&self, tick: &TickSummary, is_reacting: bool) -> AvoiderState {
         if tick.is_halted {
-            return State::Halted;
+            return AvoiderState::Halted;
         }
         if tick.is_stalled && tick.is_stationary && self.stalled_s > REPORT_WAITING_S {
-            return State::Waiting;
+            return AvoiderState::Waiting;
         }
         match &self.state {
-            ControlState::Following => State::Following,
-            ControlState::Detouring(_) => State::Detouring,
-            ControlState::Evading => State::Evading,
-            ControlState::Holding { .. } | ControlState::Returning { .. } if is_reacting => State::Evading,
-            ControlState::Holding { .. } | ControlState::Returning { .. } => State::Returning,
+            ControlState::Following => AvoiderState::Following,
+            ControlState::Detouring(_) => AvoiderState::Detouring,
+            ControlState::Evading => AvoiderState::Evading,
+            ControlState::Holding { .. } | ControlState::Returning { .. } if is_reacting => AvoiderState::Evading,
+            ControlState::Holding { .. } | ControlState::Returning { .. } => AvoiderState::Returning,
         }
     }
 

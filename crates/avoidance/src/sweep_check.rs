@@ -69,14 +69,14 @@ impl SweepCheck {
         let own = SweepMove::Robot { robot: *robot, to: &self.to[robot.0] };
         for &n in &self.near {
             let near = &scene_pairs[n];
-            let members = [near.a, near.b];
+            let geometries = [near.a, near.b];
             let clearance_m = SECURITY_MARGIN_M.min(0.5 * near.pair.distance_m);
             let options = SweepOptions { clearance_m, ..SweepOptions::default() };
             let mut pair = checker.between(near.a.into(), near.b.into());
-            let object = members.into_iter().find_map(|m| observed(obstacles, m));
+            let object = geometries.into_iter().find_map(|m| observed(obstacles, m));
             let path =
                 object.map(|o| (o.object, ConstantTwist::from_motion(o.in_world, &o.motion, segment.duration_s)));
-            let neighbour = members.into_iter().find_map(|m| neighbour(obstacles, m, *robot));
+            let neighbour = geometries.into_iter().find_map(|m| neighbour(obstacles, m, *robot));
             let result = match (&path, neighbour) {
                 (Some((object, path)), _) => {
                     pair.sweep(state, &[own, SweepMove::Object { object: *object, path }], &options)
@@ -120,13 +120,13 @@ fn max_closing_of_any(
     query.own_motion_bounds().max_travel(segment.qd, segment.duration_s) + by_obstacle
 }
 
-fn observed<'a>(obstacles: &'a DynamicObstacles<'_>, member: GeometryId) -> Option<&'a ObservedObject> {
-    obstacles.objects.iter().find(|o| GeometryId::Object(o.object) == member)
+fn observed<'a>(obstacles: &'a DynamicObstacles<'_>, geometry: GeometryId) -> Option<&'a ObservedObject> {
+    obstacles.objects.iter().find(|o| GeometryId::Object(o.object) == geometry)
 }
 
-/// The other robot that a member is a link of, where it reports its motion.
-fn neighbour(obstacles: &DynamicObstacles<'_>, member: GeometryId, robot: RobotId) -> Option<RobotId> {
-    let GeometryId::Link { robot: other, .. } = member else { return None };
+/// The other robot that a geometry is a link of, where it reports its motion.
+fn neighbour(obstacles: &DynamicObstacles<'_>, geometry: GeometryId, robot: RobotId) -> Option<RobotId> {
+    let GeometryId::Link { robot: other, .. } = geometry else { return None };
     (other != robot && obstacles.robots.iter().any(|n| n.robot == other)).then_some(other)
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{
     ConfigError, Configuration, ConfigurationParts, Monitor, Region, RegionKind, RobotSlot, SlotId, SourceId,
-    SourceLimits, SourceSpec, Stopping, ZoneArbiter, group_overlapping,
+    SourceLimits, SourceSpec, StoppingSettings, ZoneArbiter, group_overlapping,
 };
 use sha2::{Digest, Sha256};
 
@@ -126,7 +126,7 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         regions.push(region);
         indices.push(i);
     }
-    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| Stopping {
+    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| StoppingSettings {
         reaction_s,
         // A simulated controller stops by itself where an answer is missing for longer.
         period_s: MISSED_ANSWERS * cell.tick_s,

@@ -48,4 +48,4 @@ pub use file::CellFile;
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use poses::{PoseRate, PoseTrack};
-pub use query_model::{QueryModel, QueryRobot};
+pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};

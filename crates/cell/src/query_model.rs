@@ -35,6 +35,16 @@ pub struct QueryRobot {
     pub start: Vec<f64>,
 }
 
+/// Whether a scene is built with proofs of which pairs no joint values bring into contact. They take a moment and make
+/// queries faster, with the same results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutOfReachProofs {
+    /// Computes them: for many queries.
+    Compute,
+    /// Builds the scene without them: for few queries.
+    Omit,
+}
+
 impl QueryModel {
     /// The model of a cell; tools and loads are colliders of the links that carry them.
     pub fn of_cell(cell: &Cell) -> Self {
@@ -71,14 +81,13 @@ impl QueryModel {
         Self { file: cell.file.clone(), robots: vec![only], objects: Vec::new(), is_single_robot: true }
     }
 
-    /// Builds the scene. `prune_unreachable` finds pairs that no joint values bring into contact, which takes a moment
-    /// and makes queries faster, with the same results.
+    /// Builds the scene.
     ///
     /// # Errors
     /// [`FormatError`] where the scene refuses the model.
-    pub fn scene(&self, prune_unreachable: bool) -> Result<Scene, FormatError> {
+    pub fn scene(&self, proofs: OutOfReachProofs) -> Result<Scene, FormatError> {
         let mut builder = Scene::builder();
-        builder.prove_out_of_reach(prune_unreachable);
+        builder.prove_out_of_reach(proofs == OutOfReachProofs::Compute);
         for r in &self.robots {
             builder.robot(&r.name, r.robot.clone(), r.base_in_world);
         }

@@ -2,7 +2,7 @@
 
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Monitor, RegionDistance, SourceState};
+use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
 use elbowroom_planner::PathConstraint;
 
 use crate::frames::Frames;
@@ -22,7 +22,7 @@ struct ClosedRegion<'m> {
 /// The regions closed to one robot, at their poses of one instant.
 #[derive(Debug)]
 pub struct RegionConstraint<'m> {
-    region_distance: RegionDistance<'m>,
+    region_distance: RegionDistanceQuery<'m>,
     /// Per region of the configuration.
     regions: Vec<ClosedRegion<'m>>,
     /// Largest clearance, m.

@@ -56,9 +56,11 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom rules                             the built-in rules, as a table
-  elbowroom rules --write my_rules.toml       a copy for editing; name it in the cell file: [avoidance.ROBOT] rules = ...
-  elbowroom rules my_rules.toml --picture out size.svg and direction.svg: the control surfaces")]
+  elbowroom rules                              the built-in rules, as a table
+  elbowroom rules --write my_rules.toml        a copy for editing
+  elbowroom rules my_rules.toml --picture out  size.svg and direction.svg: the control surfaces
+
+Name a file of rules in the cell file: [avoidance.ROBOT] rules = ...")]
 pub(crate) struct RulesArgs {
     /// A file of rules; default: the built-in rules
     pub(crate) file: Option<PathBuf>,
@@ -75,9 +77,9 @@ pub(crate) struct RulesArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom run cell.toml                     a summary on the screen
-  elbowroom run cell.toml --out out           and trace.csv, events.csv, report.html in out/
-  elbowroom run cell.toml --out out --compare the report compares the run with one without the monitor
+  elbowroom run cell.toml                      a summary on the screen
+  elbowroom run cell.toml --out out            and trace.csv, events.csv, report.html in out/
+  elbowroom run cell.toml --out out --compare  and a comparison with a run without the monitor
   elbowroom run cell.toml --json | jq .regions")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 pub(crate) struct RunArgs {
@@ -105,10 +107,11 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom check cell.toml                   a table with reasons, and the missing keys where entry is possible
+  elbowroom check cell.toml      a table with reasons, and the missing keys where entry is possible
   elbowroom check cell.toml --json | jq '.regions[] | select(.excluded | not)'
 
-Nothing is simulated: the result follows from the laws, the stopping times and the program speeds (docs/laws.md).
+Nothing is simulated: the result follows from the laws, the stopping times and the program speeds
+(docs/laws.md).
 Exit status: 1 if entry into a forbidden or exchange region is not excluded.")]
 pub(crate) struct CheckArgs {
     /// The cell file
@@ -169,10 +172,10 @@ pub(crate) struct JointArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom convert arm.3ds --out arm                     arm/arm.urdf and arm/meshes/*.stl
-  elbowroom convert arm.urdf --out arm --to 3ds           arm/arm.3ds and arm/arm.joints.toml
+  elbowroom convert arm.3ds --out arm                  arm/arm.urdf and arm/meshes/*.stl
+  elbowroom convert arm.urdf --out arm --to 3ds        arm/arm.3ds and arm/arm.joints.toml
   elbowroom convert arm.glb --out arm --joint \"link_1: axis=z, min=-170, max=170, speed=100\"
-  elbowroom convert cell.toml --robot ns16 --out ns16     the robot of a cell, with its tool and load
+  elbowroom convert cell.toml --robot ns16 --out ns16  the robot of a cell, with its tool and load
 
 Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
@@ -208,12 +211,13 @@ pub(crate) enum Written {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom map cell.toml                                a table of the blocked cells per object
-  elbowroom map cell.toml --out map.npy --json           the cells as NumPy reads them, 0 free, 1 blocked
-  elbowroom map cell.toml --png slices                   pictures, and the page slices/index.html
-  elbowroom map cell.toml --model spheres=8              the obstacle model of the paper, for comparison
+  elbowroom map cell.toml                       a table of the blocked cells per object
+  elbowroom map cell.toml --out map.npy --json  the cells as NumPy reads them, 0 free, 1 blocked
+  elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
+  elbowroom map cell.toml --model spheres=8     the obstacle model of the paper, for comparison
 
-Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees (docs/map.md).
+Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees
+(docs/map.md).
 A cell is blocked if any configuration in it can touch an object.")]
 pub(crate) struct MapArgs {
     /// The cell file
@@ -297,13 +301,15 @@ pub(crate) enum Unit {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0               from the robot's start
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0     from the robot's start
   elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv   with timed samples for the controller
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
 
-Obstacles are the objects, the other robots at their start, and the robot itself with tool and load, by the allowed
-collision matrix of the cell; the volumes that the monitor guards stay out of permanent forbidden regions.
+--out writes timed samples for the controller.
+Obstacles are the objects, the other robots at their start, and the robot itself with tool and
+load, by the allowed collision matrix of the cell; the volumes that the monitor guards stay out of
+permanent forbidden regions.
 Exit status: 1 if no path was found; a path may exist nevertheless (docs/plan.md).")]
 pub(crate) struct PlanArgs {
     /// The cell file
@@ -381,7 +387,7 @@ pub(crate) struct TeachArgs {
     /// Joint states of the taught points, one row per point
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: PathBuf,
-    /// The robot that was taught with; optional if there is only one
+    /// The robot that was moved to the points; optional if there is only one
     #[arg(long)]
     pub(crate) robot: Option<String>,
     /// Teach with the flange instead of the TCP

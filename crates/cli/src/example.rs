@@ -15,7 +15,7 @@ static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
 /// Default output folder.
 const OUT: &str = "elbowroom-out";
 
-/// Runs the cell of the paper's figure 12 (S1.13) with control on and off.
+/// Runs the cell of the paper's figure 12 (S1.13) with the monitor on and off.
 pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let out = PathBuf::from(OUT);
     extract(&out)?;
@@ -24,7 +24,7 @@ pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&file)?;
     warn_of_overruns(&cell)?;
     let on = with_progress(&cell, &RunOptions::default())?;
-    let off = with_progress(&cell, &RunOptions { monitored: false, ..RunOptions::default() })?;
+    let off = with_progress(&cell, &RunOptions { apply_override: false, ..RunOptions::default() })?;
     on.notes.iter().for_each(note);
     write_files(&dir, &cell, &on.recording, Some(&off.recording))?;
     print(&report::summary(&on.recording, width(), color()))?;

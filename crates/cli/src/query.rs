@@ -4,8 +4,8 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use elbowroom::analysis::query::{JointStates, QueryKind, QueryRecord, QueryRow, evaluate};
-use elbowroom::cell::{Cell, QueryModel};
+use elbowroom::analysis::query::{QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
+use elbowroom::cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::spatial::units::LengthUnit;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -17,17 +17,18 @@ use crate::output::{ExitStatus, Failure, note, print};
 const MANY: usize = 1000;
 
 pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
-    let subject = subject(args)?;
+    let model = query_model(args)?;
     let states = match &args.states {
-        Some(path) => JointStates::read(path, &subject)?,
-        None => JointStates::start(&subject),
+        Some(path) => QueryStates::read(path, &model)?,
+        None => QueryStates::start(&model),
     };
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let scene = subject.scene(states.len() >= MANY)?;
+    let proofs = if states.len() >= MANY { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
+    let scene = model.scene(proofs)?;
     if scene.allowed_collision_matrix().tested() == 0 {
-        note(format_args!("warning: {}: there is no pair that could meet", subject.file.display()));
+        note(format_args!("warning: {}: there is no pair that could meet", model.file.display()));
     }
-    let mut writer = Writer::new(args, &subject, states.len());
+    let mut writer = Writer::new(args, &model, states.len());
     writer.begin()?;
     let mut outcome = Ok(());
     evaluate(&scene, &states, args.ask, args.level, &mut |rows| {
@@ -43,7 +44,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     })
 }
 
-fn subject(args: &QueryArgs) -> Result<QueryModel, Failure> {
+fn query_model(args: &QueryArgs) -> Result<QueryModel, Failure> {
     if let Some(urdf) = &args.urdf {
         let unit = args.unit.map(LengthUnit::from);
         let options = LoadOptions {
@@ -55,9 +56,9 @@ fn subject(args: &QueryArgs) -> Result<QueryModel, Failure> {
         };
         let loaded = robot::load(urdf, &options)?;
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        let subject = QueryModel::of_robot(urdf, loaded.robot);
-        subject.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
-        return Ok(subject);
+        let model = QueryModel::of_robot(urdf, loaded.robot);
+        model.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
+        return Ok(model);
     }
     // clap requires one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
@@ -79,7 +80,7 @@ fn subject(args: &QueryArgs) -> Result<QueryModel, Failure> {
 /// Prints rows in order, and the progress on a terminal.
 struct Writer<'a> {
     args: &'a QueryArgs,
-    subject: &'a QueryModel,
+    model: &'a QueryModel,
     states: usize,
     done: usize,
     colliding: usize,
@@ -88,12 +89,12 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(args: &'a QueryArgs, subject: &'a QueryModel, states: usize) -> Self {
+    fn new(args: &'a QueryArgs, model: &'a QueryModel, states: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
             bar.set_style(style);
         }
-        Self { args, subject, states, done: 0, colliding: 0, begin: Instant::now(), bar }
+        Self { args, model, states, done: 0, colliding: 0, begin: Instant::now(), bar }
     }
 
     fn begin(&self) -> Result<(), Failure> {
@@ -105,11 +106,11 @@ impl<'a> Writer<'a> {
             QueryKind::Distance => ("distance", None),
             QueryKind::Tolerance(t) => ("tolerance", Some(t)),
         };
-        let model = json(&self.subject.file.display().to_string())?;
+        let file = json(&self.model.file.display().to_string())?;
         let level = self.args.level;
         let (ask, tolerance, states) = (json(&ask)?, json(&tolerance)?, self.states);
         print(&format!(
-            "{{\n\"model\": {model},\n\"ask\": {ask},\n\"tolerance_m\": {tolerance},\n\"level\": \"{level}\",\n\
+            "{{\n\"model\": {file},\n\"ask\": {ask},\n\"tolerance_m\": {tolerance},\n\"level\": \"{level}\",\n\
              \"states\": {states},\n\"rows\": [\n"
         ))
     }
@@ -117,7 +118,7 @@ impl<'a> Writer<'a> {
     fn rows(&mut self, rows: &[QueryRow]) -> Result<(), Failure> {
         let mut text = String::new();
         for row in rows {
-            let written = QueryRecord::of(row, self.subject);
+            let written = QueryRecord::of(row, self.model);
             if self.args.json {
                 text.push_str(if self.done == 0 { "" } else { ",\n" });
                 text.push_str(&json(&written)?);

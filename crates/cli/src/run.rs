@@ -20,19 +20,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let options = RunOptions {
-        monitored: !args.no_monitor,
+        apply_override: !args.no_monitor,
         avoidance: !args.no_avoidance,
         repeat: args.repeat,
         ..RunOptions::default()
     };
-    if options.monitored {
+    if options.apply_override {
         warn_of_overruns(&cell)?;
     }
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(note);
     if let Some(dir) = &args.out {
         let without = if args.compare {
-            Some(with_progress(&cell, &RunOptions { monitored: false, ..options.clone() })?.recording)
+            Some(with_progress(&cell, &RunOptions { apply_override: false, ..options.clone() })?.recording)
         } else {
             None
         };
@@ -100,8 +100,8 @@ pub(crate) fn write_files(
     csv::write_trace(run, create("trace.csv")?).map_err(cannot_write(dir))?;
     csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
     let scene = ReportScene::of_cell(cell);
-    let label = if run.monitored { "control on" } else { "control off" };
+    let label = if run.monitored { "monitor on" } else { "monitor off" };
     let runs: Vec<(&str, &Recording)> =
-        std::iter::once((label, run)).chain(without.map(|w| ("control off", w))).collect();
+        std::iter::once((label, run)).chain(without.map(|w| ("monitor off", w))).collect();
     report::write_html(create("report.html")?, &scene, &runs).map_err(cannot_write(dir))
 }

@@ -44,7 +44,7 @@ fn run(text: &str) -> Answer {
 }
 
 /// The thickness is the sum and a supplement for the reaction time of the law
-/// (docs/laws.md, section 2: (v·t)²/4 over the way of braking), and 0.3 % for what is sampled.
+/// (docs/laws.md, section 2: (v·t)²/4 over the braking distance), and 0.3 % for what is sampled.
 fn assert_close(needed: f64, sum: f64, late: f64) {
     assert!(needed >= sum && needed <= (sum + late) * 1.003, "{needed} m, the sum is {sum} m");
 }
@@ -56,7 +56,7 @@ fn an_overrun_is_said_before_the_run() {
         assert!(answer.stderr.contains(words), "{words}: {}", answer.stderr);
     }
     assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 255 in [region.wall]"));
-    // Both ways out that are named work, and say nothing more.
+    // Both remedies that are named work, and say nothing more.
     for cured in [format!("{OVERRUN}{STOPPING}"), OVERRUN.replace("warning = 50", "warning = 255")] {
         let answer = run(&cured).expect(0);
         assert!(!answer.stderr.contains("overrun"), "{}", answer.stderr);

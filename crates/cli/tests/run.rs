@@ -140,7 +140,7 @@ fn the_report_needs_no_network() {
             }
         }
     }
-    assert!(html.contains("control off"), "--compare shows the other run");
+    assert!(html.contains("monitor off"), "--compare shows the other run");
     assert!(html.contains("not a certified safety device"));
 }
 
@@ -185,7 +185,7 @@ fn every_example_runs_free_of_trouble() {
 }
 
 #[test]
-fn robots_that_wait_for_each_other_are_bad_news() {
+fn robots_that_wait_for_each_other_are_a_violation() {
     let carriage = |name: &str, x: f64, z: f64, yaw: f64| {
         format!(
             "[robot.{name}]\nbase = {{ at = [{x}, 0, {z}], rpy = [0, 90, {yaw}] }}\n\

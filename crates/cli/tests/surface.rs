@@ -14,7 +14,7 @@ fn without_arguments_figure_12_runs_and_writes_its_report() {
     assert!(answer.stdout.contains("before column"), "{}", answer.stdout);
     assert!(answer.stdout.contains("passes through it"), "{}", answer.stdout);
     let report = std::fs::read_to_string(dir.path().join("elbowroom-out/figure12/report.html")).unwrap();
-    assert!(report.contains("control on") && report.contains("control off"));
+    assert!(report.contains("monitor on") && report.contains("monitor off"));
     // The command that it proposes runs.
     let next = answer.stdout.lines().find_map(|l| l.split_once("elbowroom run ")).expect("says what to type").1;
     let next: Vec<&str> = std::iter::once("run").chain(next.split(' ')).collect();

@@ -17,7 +17,7 @@ use std::time::Duration;
 use clock::best;
 use common::{Random, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
-    ConvexObstacle, Grid, Layer, ObstacleMapBuilder, ObstacleModel, OccupancyBitmap, PlanarArm, expand_from_seeds,
+    ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
 };
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -49,7 +49,7 @@ fn cuboid(at: [f64; 3], yaw: f64, half: [f64; 3]) -> ConvexObstacle {
 fn reproduce(title: &str, arm: &PlanarArm, grid: &Grid, solid: &ConvexObstacle, paper: bool) {
     println!("{title}, {} cells\n", grid.cells());
     println!("| model | ms | blocked | missed | blocked needlessly | paper |\n| --- | --- | --- | --- | --- | --- |");
-    let mut builder = ObstacleMapBuilder::new(*arm, grid).unwrap();
+    let mut builder = PlanarMapBuilder::new(*arm, grid).unwrap();
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     let print = |name: &str, time: Duration, occupancy: &OccupancyBitmap, beside: &str| {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);

@@ -1,8 +1,8 @@
-//! The joint-space obstacle map of a planar arm.
+//! The joint-space map of a planar arm.
 
 use crate::{
-    CellChanges, ConvexObstacle, Grid, Layer, LayerMap, MapReader, ObstacleMapBuilder, ObstacleMapError,
-    OccupancyBitmap, PlanarArm,
+    CellChanges, ConvexObstacle, Grid, Layer, LayerMap, MapReader, OccupancyBitmap, PlanarArm, PlanarMapBuilder,
+    PlanarMapError,
 };
 
 /// Obstacles of a planar arm as blocked cells of joint space, each in a layer of its own.
@@ -16,20 +16,20 @@ use crate::{
 /// let grid = Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?;
 /// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
 /// let mut reader = map.reader();
-/// let entered = map.set("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
+/// let entered = map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
 /// assert!(entered.blocked() > 50_000 && entered.freed() == 0);
-/// let moved = map.set("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.41, 0.9), 0.25)?);
+/// let moved = map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.41, 0.9), 0.25)?);
 /// assert!(moved.blocked() < 4_000 && moved.freed() < 4_000);
 /// assert_eq!(reader.latest().blocked(), 0); // not published yet
 /// map.publish();
 /// assert_eq!(reader.latest().blocked(), map.occupancy().blocked());
-/// assert!(map.remove("head").is_some());
+/// assert!(map.remove_obstacle("head").is_some());
 /// assert_eq!(map.occupancy().blocked(), 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct JointMap {
-    builder: ObstacleMapBuilder,
+    builder: PlanarMapBuilder,
     map: LayerMap,
 }
 
@@ -37,9 +37,9 @@ impl JointMap {
     /// A map without obstacles.
     ///
     /// # Errors
-    /// As [`ObstacleMapBuilder::new`].
-    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, ObstacleMapError> {
-        Ok(Self { builder: ObstacleMapBuilder::new(arm, grid)?, map: LayerMap::new(grid) })
+    /// As [`PlanarMapBuilder::new`].
+    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, PlanarMapError> {
+        Ok(Self { builder: PlanarMapBuilder::new(arm, grid)?, map: LayerMap::new(grid) })
     }
 
     /// The grid.
@@ -63,7 +63,7 @@ impl JointMap {
     }
 
     /// Adds an obstacle, or replaces the one of this name; returns the cells that changed.
-    pub fn set(&mut self, name: &str, obstacle: &ConvexObstacle) -> &CellChanges {
+    pub fn set_obstacle(&mut self, name: &str, obstacle: &ConvexObstacle) -> &CellChanges {
         let mut layer = std::mem::take(&mut self.map.spare);
         self.builder.build_layer(obstacle, &mut layer);
         self.map.set_layer(name, layer)
@@ -75,7 +75,7 @@ impl JointMap {
     }
 
     /// Removes an obstacle; `None` where there is none of this name.
-    pub fn remove(&mut self, name: &str) -> Option<&CellChanges> {
+    pub fn remove_obstacle(&mut self, name: &str) -> Option<&CellChanges> {
         self.map.remove(name)
     }
 

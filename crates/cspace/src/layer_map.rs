@@ -1,4 +1,4 @@
-//! Named layers over one grid, and their union.
+//! Occupancy map: named layers over one grid, and their union.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::map_reader::{MapReader, MapSnapshot, PublishedMap};
 use crate::{CellChanges, CellIndex, Grid, Layer, OccupancyBitmap, RowSpan};
 
 /// Blocked cells of obstacles, each in a layer of its own. Layers come from a [`RobotMapBuilder`](crate::RobotMapBuilder) by
-/// [`BoxTree::to_layer`](crate::BoxTree::to_layer), or from an [`ObstacleMapBuilder`](crate::ObstacleMapBuilder), which a
+/// [`BoxTree::to_layer`](crate::BoxTree::to_layer), or from a [`PlanarMapBuilder`](crate::PlanarMapBuilder), which a
 /// [`JointMap`](crate::JointMap) contains.
 ///
 /// One thread owns the map and changes it; any number of threads read it through a [`MapReader`].

@@ -6,7 +6,7 @@
 //!
 //! Two builders compute blocked cells:
 //!
-//! | | [`ObstacleMapBuilder`], [`JointMap`] | [`RobotMapBuilder`] |
+//! | | [`PlanarMapBuilder`], [`JointMap`] | [`RobotMapBuilder`] |
 //! | --- | --- | --- |
 //! | robot | two capsules and a sphere in a plane ([`PlanarArm`]) | any chain of links, any solids, 1 to 8 joints |
 //! | obstacles | convex | any: meshes, floors |
@@ -44,7 +44,7 @@ pub use map_reader::{MapReader, MapSnapshot};
 pub use obstacle_model::{ObstacleModel, UnknownObstacleModel, spheres_until};
 pub use occupancy_bitmap::OccupancyBitmap;
 pub use planar_arm::{ArmDimension, ArmError, PlanarArm};
-pub use planar_map::{ObstacleMapBuilder, ObstacleMapError};
+pub use planar_map::{PlanarMapBuilder, PlanarMapError};
 pub use robot_map::{
     BoxTree, CellBox, MAX_JOINTS, OccupancyArray, RemainingJoints, RobotMapBuilder, RobotMapError, RobotMapSettings,
     RobotMapStats,

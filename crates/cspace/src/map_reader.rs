@@ -57,7 +57,7 @@ impl PublishedMap {
 /// # let grid = Grid::new([axis("base")?, axis("shoulder")?, axis("elbow")?])?;
 /// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
 /// let mut reader = map.reader();
-/// map.set("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
+/// map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
 /// map.publish();
 /// let thread = std::thread::spawn(move || {
 ///     let changes = reader.refresh(); // all changes since this reader's previous snapshot

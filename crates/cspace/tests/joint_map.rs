@@ -59,11 +59,11 @@ fn updates_agree_with_rebuilding_the_map() {
         let name = random.below(4);
         present.retain(|(other, _)| *other != name);
         let changes = if random.below(4) == 0 {
-            map.remove(&name.to_string()).cloned().unwrap_or_default()
+            map.remove_obstacle(&name.to_string()).cloned().unwrap_or_default()
         } else {
             let obstacle = random_obstacle(&mut random);
             present.push((name, obstacle.clone()));
-            map.set(&name.to_string(), &obstacle).clone()
+            map.set_obstacle(&name.to_string(), &obstacle).clone()
         };
         assert!(*map.occupancy() == rebuilt(&map, &fixed, &present), "step {step}");
         assert_eq!(apply(&before, &changes), map.occupancy().iter().collect::<Vec<_>>(), "step {step}");
@@ -94,7 +94,7 @@ fn readers_on_other_threads_get_complete_states_only() {
             });
         }
         for i in 0..300 {
-            map.set("ball", &balls[i % 2]);
+            map.set_obstacle("ball", &balls[i % 2]);
             map.publish();
         }
         done.store(true, Ordering::Release);

@@ -3,11 +3,11 @@
 mod common;
 
 use common::{Random, grid, grid_of, missed_contacts};
-use elbowroom_cspace::{ConvexObstacle, Grid, Layer, ObstacleMapBuilder, ObstacleModel, OccupancyBitmap, PlanarArm};
+use elbowroom_cspace::{ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder};
 use elbowroom_spatial::{Pose, Vec3};
 
 fn count(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, model: ObstacleModel) -> usize {
-    let mut builder = ObstacleMapBuilder::new(*arm, grid).unwrap();
+    let mut builder = PlanarMapBuilder::new(*arm, grid).unwrap();
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     model.build_layer(&mut builder, obstacle, &mut layer);
     occupancy.add(&layer);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use common::{Random, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
-    ConvexObstacle, Grid, Layer, ObstacleMapBuilder, ObstacleModel, OccupancyBitmap, PlanarArm, expand_from_seeds,
+    ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
     spheres_until,
 };
 use elbowroom_proximity::ConvexHull;
@@ -23,7 +23,7 @@ fn paper_grid(step_deg: f64) -> Grid {
 }
 
 fn build(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, model: ObstacleModel) -> OccupancyBitmap {
-    let mut builder = ObstacleMapBuilder::new(*arm, grid).unwrap();
+    let mut builder = PlanarMapBuilder::new(*arm, grid).unwrap();
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     model.build_layer(&mut builder, obstacle, &mut layer);
     assert!(layer.spans().windows(2).all(|w| w[0].row <= w[1].row), "rows ascend");
@@ -101,7 +101,7 @@ fn more_spheres_never_block_more() {
 #[test]
 fn a_deadline_in_the_past_still_gives_one_sphere() {
     let grid = grid(5.0);
-    let mut builder = ObstacleMapBuilder::new(ARM, &grid).unwrap();
+    let mut builder = PlanarMapBuilder::new(ARM, &grid).unwrap();
     let (mut layer, mut single) = (Layer::new(), Layer::new());
     let obstacle = &obstacles()[0];
     assert_eq!(spheres_until(&mut builder, obstacle, 64, Some(Instant::now()), &mut layer), 1);

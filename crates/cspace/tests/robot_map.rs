@@ -6,8 +6,8 @@ mod robots;
 use std::sync::Arc;
 
 use elbowroom_cspace::{
-    ConvexObstacle, Grid, GridAxis, GridAxisError, Layer, ObstacleMapBuilder, ObstacleModel, OccupancyBitmap,
-    PlanarArm, RemainingJoints, RobotMapBuilder, RobotMapSettings,
+    ConvexObstacle, Grid, GridAxis, GridAxisError, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder,
+    RemainingJoints, RobotMapBuilder, RobotMapSettings,
 };
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, collides};
@@ -62,8 +62,8 @@ fn meshes_floors_and_obstacles_over_the_base_axis() {
 fn obstacles_inside_a_closed_link_are_found() {
     let mut case =
         Case::new(vec![(Shape::Sphere(Sphere { radius: 0.01 }), Pose::from_xyz_rpy([0.5, 0.1, 0.6], [0.0; 3]))]);
-    for bodies in &mut case.robot.colliders {
-        bodies.clear();
+    for colliders in &mut case.robot.colliders {
+        colliders.clear();
     }
     let big = Shape::Mesh(Arc::new(box_mesh(0.25)));
     case.robot.colliders[3].push(Collider {
@@ -184,7 +184,7 @@ fn agrees_with_the_planar_arm() {
     let mut theirs = Layer::new();
     let half_extents = Vec3::new(0.25, 0.2, 0.3);
     let obstacle = ConvexObstacle::cuboid(at, half_extents).unwrap();
-    ObstacleMapBuilder::new(arm, &grid).unwrap().build_layer(&obstacle, &mut theirs);
+    PlanarMapBuilder::new(arm, &grid).unwrap().build_layer(&obstacle, &mut theirs);
     let occupancy = |layer: &Layer| {
         let mut occupancy = OccupancyBitmap::new(grid.shape());
         occupancy.add(layer);
@@ -274,8 +274,8 @@ fn joints_before_those_of_the_map_are_swept() {
 fn an_obstacle_that_nearly_fills_a_closed_link_is_found() {
     let mut case =
         Case::new(vec![(Shape::Mesh(Arc::new(box_mesh(0.3))), Pose::from_xyz_rpy([0.3, 0.0, 0.55], [0.0; 3]))]);
-    for bodies in &mut case.robot.colliders {
-        bodies.clear();
+    for colliders in &mut case.robot.colliders {
+        colliders.clear();
     }
     let big = Shape::Mesh(Arc::new(box_mesh(0.35)));
     // At these joint values the box is inside and touches nothing.

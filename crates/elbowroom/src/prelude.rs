@@ -6,14 +6,14 @@
 //! | a robot | [`load_robot`], [`LoadOptions`], [`Robot`], [`Chain`], [`ChainState`] |
 //! | collision and distance | [`Scene`], [`SceneState`], [`Object`], [`Checker`], [`Shape`] |
 //! | a path | [`RrtConnect`], [`RrtConnectSettings`], [`KinematicLimits`] |
-//! | interference regions in the control loop | [`Monitor`], [`Configuration`], [`ConfigurationParts`], [`Region`], [`Guards`], [`Laws`], [`Stopping`], [`Volume`], [`Snapshot`] |
+//! | interference regions in the control loop | [`Monitor`], [`Configuration`], [`ConfigurationParts`], [`Region`], [`Guards`], [`Laws`], [`StoppingSettings`], [`Volume`], [`Snapshot`] |
 //! | a cell from a file | [`Cell`], [`simulate`], [`RunOptions`], [`Recording`] |
 
 pub use elbowroom_cell::Cell;
 pub use elbowroom_formats::robot::{LoadOptions, load as load_robot};
 pub use elbowroom_kinematics::{Chain, ChainState};
 pub use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, Stopping, TickReport, Volume,
+    Configuration, ConfigurationParts, Guards, Laws, Monitor, Region, Snapshot, StoppingSettings, TickReport, Volume,
 };
 pub use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
 pub use elbowroom_proximity::Shape;

@@ -185,7 +185,7 @@ fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(R
         }
         for solid in visuals_to_load(link, options) {
             match loader.colliders(solid) {
-                Ok(bodies) => robot.visuals[i].extend(bodies),
+                Ok(colliders) => robot.visuals[i].extend(colliders),
                 Err(e) => loader.warnings.push(e.into()),
             }
         }
@@ -255,7 +255,7 @@ impl Loader<'_> {
             Geometry::Capsule { radius, length } => {
                 Shape::Capsule(Capsule { half_length: length * 0.5, radius: *radius })
             }
-            Geometry::Mesh { filename, scale } => return self.mesh_bodies(solid, filename, *scale),
+            Geometry::Mesh { filename, scale } => return self.mesh_colliders(solid, filename, *scale),
         };
         shape.validate().map_err(|e| FormatError::new(self.urdf_path, solid.line, e.to_string()))?;
         self.note_extent(shape.aabb(&Pose::IDENTITY).extent(), solid);
@@ -266,7 +266,12 @@ impl Loader<'_> {
         }])
     }
 
-    fn mesh_bodies(&mut self, solid: &LinkGeometry, filename: &str, scale: Vec3) -> Result<Vec<Collider>, FormatError> {
+    fn mesh_colliders(
+        &mut self,
+        solid: &LinkGeometry,
+        filename: &str,
+        scale: Vec3,
+    ) -> Result<Vec<Collider>, FormatError> {
         let path = self.meshes.path(filename).map(Path::to_owned).map_err(|why| {
             FormatError::new(self.urdf_path, solid.line, format!("the mesh `{filename}` is not found: {why}"))
                 .hint("a path relative to the URDF, or package://NAME/… with a directory NAME beside the URDF or above")
@@ -280,12 +285,12 @@ impl Loader<'_> {
         self.note_extent(extent, solid);
         let stem = solid.name.clone().unwrap_or_else(|| input::stem(&path));
         let many = solids.len() > 1;
-        let body = |(object, mesh): &(String, Arc<TriMesh>)| Collider {
+        let collider = |(object, mesh): &(String, Arc<TriMesh>)| Collider {
             name: if many { format!("{stem}:{object}") } else { stem.clone() },
             shape: Shape::Mesh(Arc::clone(mesh)),
             in_link: solid.in_link,
         };
-        Ok(solids.iter().map(body).collect())
+        Ok(solids.iter().map(collider).collect())
     }
 
     fn note_extent(&mut self, extent: Vec3, solid: &LinkGeometry) {

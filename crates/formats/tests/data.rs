@@ -20,9 +20,11 @@ fn outcome(path: &Path) -> Result<String, String> {
         "urdf" => {
             let loaded =
                 robot::load(path, &LoadOptions { load_visuals: true, ..LoadOptions::default() }).map_err(text)?;
-            let count = |bodies: &[Vec<elbowroom_robot::Collider>]| {
-                let meshes =
-                    bodies.iter().flatten().filter_map(|b| if let Shape::Mesh(m) = &b.shape { Some(m) } else { None });
+            let count = |colliders: &[Vec<elbowroom_robot::Collider>]| {
+                let meshes = colliders
+                    .iter()
+                    .flatten()
+                    .filter_map(|b| if let Shape::Mesh(m) = &b.shape { Some(m) } else { None });
                 meshes.fold((0, 0), |(n, t), m| (n + 1, t + m.triangles().len()))
             };
             let (collision, visual) = (count(&loaded.robot.colliders), count(&loaded.robot.visuals));
@@ -114,8 +116,12 @@ fn urdf_robots_are_complete() {
         let srdf = Some(directory.path().join(format!("{name}.srdf"))).filter(|p| p.exists());
         let options = LoadOptions { load_visuals: true, srdf, ..LoadOptions::default() };
         let loaded = robot::load(&path, &options).unwrap_or_else(|e| panic!("{e}"));
-        let triangles = |bodies: &[Vec<elbowroom_robot::Collider>]| -> usize {
-            bodies.iter().flatten().map(|b| if let Shape::Mesh(m) = &b.shape { m.triangles().len() } else { 0 }).sum()
+        let triangles = |colliders: &[Vec<elbowroom_robot::Collider>]| -> usize {
+            colliders
+                .iter()
+                .flatten()
+                .map(|b| if let Shape::Mesh(m) = &b.shape { m.triangles().len() } else { 0 })
+                .sum()
         };
         let counts = (triangles(&loaded.robot.colliders), triangles(&loaded.robot.visuals));
         if let Some(expected) = counted_elsewhere(&sources, &name) {

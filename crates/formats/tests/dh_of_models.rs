@@ -139,7 +139,7 @@ fn the_kr150_of_the_examples_has_the_published_geometry() {
         let joints: Vec<&str> = direct.table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints.len(), 6);
         assert_eq!(direct.frames[1..7], joints, "base, then a row for every joint");
-        // The lengths of robots.md, in any row.
+        // The lengths of the KUKA KR150, in any row.
         for length in [0.75, 0.35, 1.25, 0.055, 1.1] {
             let found = direct.table.rows.iter().flat_map(|r| [r.a, r.b, r.d]);
             assert!(found.into_iter().any(|v| (v.abs() - length).abs() < 1e-6), "{length} is not in the table");

@@ -98,11 +98,11 @@ fn the_centre_of_a_track_becomes_the_links_origin() {
     state.q[0] = 0.5;
     chain.forward(&mut state);
     let link = chain.link("link").unwrap();
-    let body = &loaded.robot.colliders[link.0][0];
+    let collider = &loaded.robot.colliders[link.0][0];
     let right = about(tree.nodes[1].in_parent, 0.5_f64.to_degrees());
-    let Shape::Mesh(mesh) = &body.shape else { panic!("no mesh") };
+    let Shape::Mesh(mesh) = &collider.shape else { panic!("no mesh") };
     for (v, raw) in mesh.vertices().iter().zip(&tree.nodes[1].meshes[0].vertices) {
-        let here = (state.link_in_root(link) * body.in_link).transform_point(*v);
+        let here = (state.link_in_root(link) * collider.in_link).transform_point(*v);
         assert!(here.distance(right.transform_point(*raw)) < 1e-5);
     }
 }
@@ -325,7 +325,7 @@ fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
     worst
 }
 
-fn corners(bodies: &[Collider]) -> Vec<[Vec3; 3]> {
+fn corners(colliders: &[Collider]) -> Vec<[Vec3; 3]> {
     let of = |b: &Collider| match &b.shape {
         Shape::Mesh(m) => {
             let corner = |i: u32| b.in_link.transform_point(m.vertices()[i as usize]);
@@ -333,7 +333,7 @@ fn corners(bodies: &[Collider]) -> Vec<[Vec3; 3]> {
         }
         _ => Vec::new(),
     };
-    bodies.iter().flat_map(of).collect()
+    colliders.iter().flat_map(of).collect()
 }
 
 /// Largest distance between corners of triangles in the same order.

@@ -41,7 +41,7 @@ pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<Pair
     let mut builder = Scene::builder();
     builder.prove_out_of_reach(true).robot("", robot.clone(), Pose::IDENTITY);
     let scene = builder.build().map_err(|e| FormatError::new(file, None, e.to_string()))?;
-    let name = |member: GeometryId| match member {
+    let name = |id: GeometryId| match id {
         GeometryId::Link { link, .. } => robot.chain.links()[link.0].clone(),
         GeometryId::Object(_) => String::new(),
     };

@@ -6,8 +6,8 @@ mod random;
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_analysis::query::{JointStates, Level, QueryKind, QueryRow, evaluate};
-use elbowroom_cell::QueryModel;
+use elbowroom_analysis::query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
+use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_inspect::{InspectOptions, Inspection};
 use random::Random;
@@ -33,7 +33,7 @@ fn robots() -> Vec<PathBuf> {
 }
 
 /// Fifty states spread over the limits, as CSV.
-fn states(model: &QueryModel) -> JointStates {
+fn states(model: &QueryModel) -> QueryStates {
     let chain = &model.robots[0].robot.chain;
     let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
     let mut text = names.join(",") + "\n";
@@ -44,7 +44,7 @@ fn states(model: &QueryModel) -> JointStates {
         let q = bounds.iter().map(|(lower, upper)| random.range(*lower, *upper).to_string());
         text += &(q.collect::<Vec<_>>().join(",") + "\n");
     }
-    JointStates::parse("q.csv".as_ref(), &text, model).unwrap()
+    QueryStates::parse("q.csv".as_ref(), &text, model).unwrap()
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_levels_agree_on_real_robots() {
         let loaded = robot::load(&urdf, &LoadOptions { srdf, ..LoadOptions::default() }).unwrap();
         let model = QueryModel::of_robot(&urdf, loaded.robot);
         let states = states(&model);
-        let scene = model.scene(false).unwrap();
+        let scene = model.scene(OutOfReachProofs::Omit).unwrap();
         for kind in [QueryKind::Collision, QueryKind::Distance, QueryKind::Tolerance(0.05)] {
             let rows = |level| {
                 let mut all: Vec<QueryRow> = Vec::new();

@@ -1,4 +1,4 @@
-//! Poses, velocities and accelerations of all links, from the root outwards.
+//! Forward kinematics: poses, velocities and accelerations of all links, from the root outwards.
 
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 

@@ -48,7 +48,7 @@ pub struct JointReach {
 
 impl JointReach {
     /// Largest displacement of a point per unit of the joint's own value: the reach (m per rad), or 1 (m per m) for a slide.
-    pub fn lever(&self) -> f64 {
+    pub fn lever_arm(&self) -> f64 {
         if self.kind == JointKind::Prismatic { 1.0 } else { self.reach_m }
     }
 }
@@ -88,7 +88,7 @@ pub fn max_stroke_m(chain: &Chain, joint: JointId) -> f64 {
 pub fn motion_bound(chain: &Chain, link: LinkId, radius_m: f64, joints: &[JointId]) -> Vec<(usize, f64)> {
     joint_reaches(chain, link, radius_m, |id| max_stroke_m(chain, id))
         .filter(|r| joints.contains(&r.joint))
-        .filter_map(|r| r.coupling.map(|c| (c.index, r.lever() * c.multiplier.abs())))
+        .filter_map(|r| r.coupling.map(|c| (c.index, r.lever_arm() * c.multiplier.abs())))
         .collect()
 }
 

@@ -138,7 +138,7 @@ fn a_chain_from_classical_rows_is_their_product() {
     }
 }
 
-/// α = ±π/2 and θ offsets as in robots.md: the KR125 of S2 is recovered with its own lengths.
+/// The Denavit-Hartenberg table of the KUKA KR125, with α = ±π/2 and offsets of θ: its lengths are recovered.
 #[test]
 fn the_table_of_a_known_robot_is_recovered() {
     let table = [

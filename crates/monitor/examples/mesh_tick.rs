@@ -32,8 +32,8 @@ fn joints(t: f64, phase: f64) -> [f64; 6] {
 
 /// Every mesh of the arm as a volume, including the stationary base.
 fn volumes(robot: &Robot) -> Vec<Volume> {
-    let bodies = robot.colliders.iter().enumerate();
-    let each = bodies.flat_map(|(link, bodies)| bodies.iter().map(move |b| (link, b)));
+    let colliders = robot.colliders.iter().enumerate();
+    let each = colliders.flat_map(|(link, of_link)| of_link.iter().map(move |b| (link, b)));
     let volume = |(link, b): (usize, &elbowroom_robot::Collider)| Volume {
         name: b.name.clone(),
         part: Part::Arm,

@@ -10,7 +10,9 @@ mod common;
 use std::time::Instant;
 
 use common::{Random, arm, arm_volumes, configuration, parts};
-use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Monitor, Region, RegionId, Snapshot, Stopping};
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, Laws, Monitor, Region, RegionId, Snapshot, StoppingSettings,
+};
 use elbowroom_spatial::{Rotation, Vec3};
 
 const TICKS: u32 = 50_000;
@@ -86,7 +88,7 @@ fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
 
 fn main() {
     println!("{:46} {:>8} {:>8} {:>8} {:>8} {:>9}", "regions (µs per tick)", "median", "p99", "p99.9", "max", "pairs");
-    let stopping = Stopping {
+    let stopping = StoppingSettings {
         reaction_s: 0.01,
         period_s: 0.002,
         joint_deceleration: vec![30.0; 6],

@@ -5,7 +5,7 @@ use elbowroom_kinematics::{Chain, ChainState, JointCoupling, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::point_motion::LinkPoint;
-use crate::{Configuration, Stopping, Volume};
+use crate::{Configuration, StoppingSettings, Volume};
 
 /// A joint axis in the world.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +86,7 @@ impl CarriedVolume {
         &mut self,
         config: &Configuration,
         axes: &[WorldAxis],
-        stopping: &Stopping,
+        stopping: &StoppingSettings,
         in_world: &Pose,
         motion: &VolumeMotion<'_>,
     ) {
@@ -112,7 +112,7 @@ impl CarriedVolume {
     }
 
     /// Acceleration and deceleration (m/s²) along the unit vector `towards` (world).
-    pub(crate) fn rates_along(&self, axes: &[WorldAxis], stopping: &Stopping, towards: Vec3) -> (f64, f64) {
+    pub(crate) fn rates_along(&self, axes: &[WorldAxis], stopping: &StoppingSettings, towards: Vec3) -> (f64, f64) {
         let (mut acceleration, mut deceleration) = (0.0, 0.0);
         for influence in &self.influences {
             let lever = influence.lever_along(axes, self.center, self.radius, towards);
@@ -157,7 +157,7 @@ impl JointInfluence {
         let JointReach { joint, kind, coupling, .. } = *reach;
         let JointCoupling { index, multiplier, .. } = coupling?;
         let (scale, turns) = (multiplier.abs(), kind.turns());
-        Some(Self { axis: joint.0, joint: index, scale, turns, max_radius: reach.lever() })
+        Some(Self { axis: joint.0, joint: index, scale, turns, max_radius: reach.lever_arm() })
     }
 
     /// Largest travel of a point of the sphere along the unit vector `towards` per unit of the joint, m.

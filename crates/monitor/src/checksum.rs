@@ -1,4 +1,4 @@
-//! Checksum of a configuration (S1.12, W.9).
+//! Checksum of a configuration (S1.12).
 
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_proximity::Shape;

@@ -87,7 +87,7 @@ pub enum ConfigError {
     NoArbiter(String),
 }
 
-/// The per-joint rates of [`Stopping`](crate::Stopping).
+/// The per-joint rates of [`StoppingSettings`](crate::StoppingSettings).
 #[derive(Debug, Clone, Copy)]
 enum JointRate {
     Acceleration,

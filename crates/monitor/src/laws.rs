@@ -1,4 +1,5 @@
-//! The override laws, one function each (S1, eqs. 1-4 and beyond). `docs/laws.md` shows their plots.
+//! The override laws, one function each (S1, eqs. 1-4 and beyond). `override_law.rs` applies them to the pairs of
+//! volume and region of a tick; `docs/laws.md` shows their plots.
 
 /// The laws of a monitor. The default is the law of S1 alone: `v = v₀ · clamp(d / δ, 0, 1)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,7 +10,7 @@ pub struct Laws {
     /// Largest fraction of v₀ while a robot leaves a region from inside, with the direction-aware law.
     pub recovery: f64,
     /// Limits the override so that a stop ends before the border.
-    pub stopping_distance: Option<Stopping>,
+    pub stopping_distance: Option<StoppingSettings>,
     /// Largest change of the override per second; 0 for unlimited. Faults and contact stop at once in any case.
     pub override_rate: f64,
     /// Age (s) beyond which input is stale: the override is 0.
@@ -25,11 +26,11 @@ impl Default for Laws {
 /// Assumptions of the stopping-distance law: how the robot stops, and how its programs accelerate.
 ///
 /// The robot stops along its programmed path. Its **stop time** is the longest that any joint needs by itself,
-/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`Stopping::joint_deceleration`]. While the robot runs faster than the commanded override,
-/// from [`Stopping::reaction_s`] after the command at the latest, `n` is assumed to fall by at least one second per second,
-/// whatever the program does meanwhile.
+/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`StoppingSettings::joint_deceleration`]. While the robot runs faster than the commanded
+/// override, from [`StoppingSettings::reaction_s`] after the command at the latest, `n` is assumed to fall by at least one
+/// second per second, whatever the program does meanwhile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stopping {
+pub struct StoppingSettings {
     /// Longest time (s) from a commanded override to the first deceleration.
     pub reaction_s: f64,
     /// Longest time (s) between two commanded overrides. A controller that waits longer must stop by itself.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::Pose;
 
+use crate::distance_to_guarded::distance_to_guarded;
 use crate::event::EventLog;
-use crate::guarded_distance::guarded_distance;
 use crate::laws::rate_limited;
 use crate::override_history::OverrideRange;
 use crate::override_law::{OverrideLaw, OverrideLawSettings, max_region_speed};
@@ -22,7 +22,7 @@ use crate::zone_client::{ExchangeState, RegionStatus, ZoneClient};
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{
     AccessClass, ConfigError, Configuration, Event, EventKind, Fault, Life, OverrideReason, RegionId, RegionKind,
-    RobotSlot, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, ZoneArbiter,
+    RobotSlot, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId, ZoneArbiter,
 };
 
 /// Smallest override by which actual velocities are divided to infer those of the program.
@@ -38,7 +38,7 @@ pub struct Monitor {
     predicted: Option<Placement>,
     /// The chain at the program's velocities at override 1, for the laws that need it.
     intent: Option<ChainState>,
-    stopping: Option<StoppingLaw>,
+    stopping_law: Option<StoppingLaw>,
     clearances: RegionClearances,
     /// The motion since the previous tick.
     sweep: RegionSweep,
@@ -86,7 +86,7 @@ impl Monitor {
             active: config.regions.iter().map(|r| r.life == Life::Permanent).collect(),
             predicted: laws.direction_aware.then(|| Placement::new(&config)),
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
-            stopping: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
+            stopping_law: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
             clearances: RegionClearances::new(&config, &now),
             sweep: RegionSweep::new(&config),
             zones: vec![ZoneState::default(); regions],
@@ -127,7 +127,7 @@ impl Monitor {
             self.sweep.reset();
         }
         self.measure(s, dt_s);
-        if self.stopping.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
+        if self.stopping_law.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
             return self.stop(s, Fault::Braking);
         }
         self.update_zones();
@@ -196,7 +196,8 @@ impl Monitor {
     /// Distance (m) of the region to the closest volume that it guards against, at the state of the last tick; `None` where
     /// it exceeds `limit` or the region is inactive. Not part of the tick: for reports.
     pub fn distance(&self, region: RegionId, limit: f64) -> Option<f64> {
-        let found = self.active[region.0].then(|| guarded_distance(&self.config, &self.now, region, limit)).flatten();
+        let found =
+            self.active[region.0].then(|| distance_to_guarded(&self.config, &self.now, region, limit)).flatten();
         found.map(|d| d.distance)
     }
 
@@ -251,8 +252,8 @@ impl Monitor {
     }
 
     /// Pose of a volume's shape in the last tick.
-    pub fn volume_in_world(&self, volume: usize) -> Pose {
-        self.now.volume_in_world[volume]
+    pub fn volume_in_world(&self, volume: VolumeId) -> Pose {
+        self.now.volume_in_world[volume.0]
     }
 
     /// State of the chain in the last tick.
@@ -293,7 +294,7 @@ impl Monitor {
         }
         self.fault = Some(fault);
         self.last_override = Some(0.0);
-        if let Some(law) = self.stopping.as_mut().filter(|_| fault.has_valid_time()) {
+        if let Some(law) = self.stopping_law.as_mut().filter(|_| fault.has_valid_time()) {
             law.record_override(s.now_s, 0.0);
         }
         TickReport {
@@ -308,19 +309,29 @@ impl Monitor {
 
     /// The overrides that the robot may be executing.
     fn override_range(&self, now_s: f64) -> OverrideRange {
-        self.stopping.as_ref().map_or(OverrideRange::default(), |law| law.override_range(now_s))
+        self.stopping_law.as_ref().map_or(OverrideRange::default(), |law| law.override_range(now_s))
     }
 
     fn record_override(&mut self, s: &Snapshot, speed_override: f64) {
         self.last_override = Some(speed_override);
-        if let Some(law) = &mut self.stopping {
+        if let Some(law) = &mut self.stopping_law {
             law.record_override(s.now_s, speed_override);
         }
     }
 
     fn measure(&mut self, s: &Snapshot, dt_s: f64) {
         let Self {
-            config, active, now, predicted, intent, stopping, watchdog, clearances, sweep, last_override, ..
+            config,
+            active,
+            now,
+            predicted,
+            intent,
+            stopping_law,
+            watchdog,
+            clearances,
+            sweep,
+            last_override,
+            ..
         } = self;
         let direction = DirectionSettings::default();
         now.place(config, s, watchdog.velocity());
@@ -336,7 +347,7 @@ impl Monitor {
                 predicted.place_ahead(config, s, &state.qd, direction.lookahead_s);
             }
         }
-        if let (Some(law), Some(intent)) = (stopping.as_mut(), intent.as_ref()) {
+        if let (Some(stopping_law), Some(intent)) = (stopping_law.as_mut(), intent.as_ref()) {
             let input = StoppingInput {
                 now: &now.chain,
                 intent,
@@ -348,7 +359,7 @@ impl Monitor {
                 unchanged_s: watchdog.max_unchanged_s(),
                 volume_in_world: &now.volume_in_world,
             };
-            law.begin(config, &input);
+            stopping_law.begin(config, &input);
         }
         let tick = TickContext {
             config,
@@ -359,13 +370,13 @@ impl Monitor {
             last_override: last_override.unwrap_or(0.0),
             direction,
         };
-        let law = OverrideLaw {
+        let override_law = OverrideLaw {
             tick,
-            stopping: stopping.as_ref(),
+            stopping_law: stopping_law.as_ref(),
             max_region_speed: max_region_speed(now, s.sources),
             settings: OverrideLawSettings::default(),
         };
-        clearances.measure(config, active, now, &law, sweep.travel_bound());
+        clearances.measure(config, active, now, &override_law, sweep.extra_reach_for_travel());
     }
 
     fn update_zones(&mut self) {
@@ -456,7 +467,7 @@ impl Monitor {
         let region_motion = region_point_motion(&self.config.regions[pair.region], s.sources, on_region);
         VirtualTcp {
             region: RegionId(pair.region),
-            volume: pair.volume,
+            volume: VolumeId(pair.volume),
             distance_m: pair.separation.distance,
             position,
             on_region,

@@ -1,4 +1,4 @@
-//! The override law: the override that each pair of volume and region requests.
+//! The override law of a tick: the override that each pair of volume and region requests, by the formulas of `laws.rs`.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
@@ -32,7 +32,7 @@ impl Default for OverrideLawSettings {
 pub(crate) struct OverrideLaw<'a> {
     pub(crate) tick: TickContext<'a>,
     /// The stopping-distance law, where it is on.
-    pub(crate) stopping: Option<&'a StoppingLaw>,
+    pub(crate) stopping_law: Option<&'a StoppingLaw>,
     /// Upper bound of the speed of all points of all regions, m/s.
     pub(crate) max_region_speed: f64,
     pub(crate) settings: OverrideLawSettings,
@@ -70,13 +70,13 @@ impl OverrideLaw<'_> {
         if pair.separation.distance <= 0.0 {
             return false;
         }
-        let Some(law) = self.stopping else { return self.is_at_rest(pair) };
+        let Some(law) = self.stopping_law else { return self.is_at_rest(pair) };
         self.stopping_query(pair, law).is_some_and(|query| law.stops_outside(&query))
     }
 
     /// Distance (m) beyond the warning zone within which a region can affect this volume.
     pub(crate) fn extra_reach(&self, volume: usize) -> f64 {
-        let Some(law) = self.stopping else { return 0.0 };
+        let Some(law) = self.stopping_law else { return 0.0 };
         law.reach_m(volume) + self.settings.stop_margin_m + self.max_region_speed * law.rest_after_s()
     }
 
@@ -92,7 +92,7 @@ impl OverrideLaw<'_> {
         // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the limit.
         // An override that changes at a limited rate may exceed the request of the zone: then the limit itself is needed.
         let max = if config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
-        let law = self.stopping.map(|law| (law, self.stopping_query(pair, law)));
+        let law = self.stopping_law.map(|law| (law, self.stopping_query(pair, law)));
         let limit = |margin_m: f64, max: f64| match &law {
             None => max,
             Some((law, query)) => query.map_or(0.0, |query| law.limit(&query.with_margin(margin_m), max)),

@@ -10,6 +10,10 @@ use crate::{SlotId, SourceState};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RegionId(pub usize);
 
+/// Index of a guarded volume in its configuration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct VolumeId(pub usize);
+
 /// Index of a source of motion (encoder, pose sensor, frame of another robot) in its configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SourceId(pub usize);

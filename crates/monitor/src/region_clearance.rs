@@ -1,14 +1,14 @@
-//! VCD and CPD (S1.11): which volumes are near which regions, and their closest points.
+//! Broad and narrow phase of a tick (VCD and CPD of S1.11): which volumes are near which regions, and their closest points.
 
 use elbowroom_proximity::Separation;
 use elbowroom_spatial::Vec3;
 
 use crate::broad_phase::RegionTree;
-use crate::distance_bound::RoundedBox;
 use crate::override_law::OverrideLaw;
 use crate::placement::Placement;
+use crate::rounded_box::RoundedBox;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
-use crate::warm_start_cache::{PlacedShape, WarmStartCache};
+use crate::warm_start_cache::{IndexedShape, WarmStartCache};
 use crate::{Configuration, RegionKind};
 
 /// Result of the distance queries of one region in one tick.
@@ -177,8 +177,8 @@ impl Measurement<'_> {
         }
         self.pairs += 1;
         let found = self.warm_starts.separation(
-            PlacedShape { index: v, shape: &volume.shape, in_world: &self.now.volume_in_world[v] },
-            PlacedShape { index: r, shape: &region.shape, in_world: &self.now.region_in_world[r] },
+            IndexedShape { index: v, shape: &volume.shape, in_world: &self.now.volume_in_world[v] },
+            IndexedShape { index: r, shape: &region.shape, in_world: &self.now.region_in_world[r] },
             limit,
         );
         let Some(separation) = found else { return };

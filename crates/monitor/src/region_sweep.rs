@@ -7,7 +7,7 @@
 use elbowroom_kinematics::motion_bound::max_motion_bounds;
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::guarded_distance::{BoundedDistance, guarded_distance};
+use crate::distance_to_guarded::{BoundedDistance, distance_to_guarded};
 use crate::placement::Placement;
 use crate::region_clearance::TravelBound;
 use crate::{Configuration, RegionId, SourceState};
@@ -164,15 +164,16 @@ impl RegionSweep {
 
     /// Upper bound of the travel (m) of a volume and a region towards each other since the last snapshot; infinite where it
     /// is not known.
-    pub fn motion_bound(&self, region: RegionId) -> f64 {
+    pub fn travel_bound_of(&self, region: RegionId) -> f64 {
         if self.known < 2 {
             return f64::INFINITY;
         }
         self.travel_m + self.dynamic_index(region).map_or(0.0, |i| self.region_motions[i].travel_m)
     }
 
-    /// Upper bounds of the travel since the last snapshot; 0 where it is not known.
-    pub(crate) fn travel_bound(&self) -> TravelBound {
+    /// How much farther than the laws require pairs are measured, because of the travel since the last snapshot; 0 (nothing to
+    /// search) where it is not known.
+    pub(crate) fn extra_reach_for_travel(&self) -> TravelBound {
         if self.known < 2 {
             return TravelBound { volumes_m: 0.0, relative_m: 0.0 };
         }
@@ -183,7 +184,7 @@ impl RegionSweep {
     /// Distance (m) of the region from the guarded volumes at the last snapshot; `None` where it exceeds `limit`.
     pub fn distance(&mut self, config: &Configuration, region: RegionId, limit: f64) -> Option<f64> {
         self.place(config, region, 1.0);
-        guarded_distance(config, &self.at, region, limit).map(|d| d.distance)
+        distance_to_guarded(config, &self.at, region, limit).map(|d| d.distance)
     }
 
     /// The closest approach of the region and the guarded volumes between the last two snapshots, to within `resolution_m`
@@ -195,7 +196,7 @@ impl RegionSweep {
         below_m: f64,
         resolution_m: f64,
     ) -> Option<ClosestApproach> {
-        let travel = self.motion_bound(region);
+        let travel = self.travel_bound_of(region);
         if !travel.is_finite() {
             return None;
         }
@@ -213,7 +214,7 @@ impl RegionSweep {
         ends: [f64; 2],
         settings: BisectionSettings,
     ) -> Option<ClosestApproach> {
-        let travel = self.motion_bound(region);
+        let travel = self.travel_bound_of(region);
         if !travel.is_finite() {
             return None;
         }
@@ -237,7 +238,7 @@ impl RegionSweep {
     ) -> Option<f64> {
         let zone_m = if warned { 0.0 } else { config.regions[region.0].warning_m };
         // Most ticks end here: the distances at the ends exceed the travel.
-        if ends[0] + ends[1] - 2.0 * zone_m > self.motion_bound(region) {
+        if ends[0] + ends[1] - 2.0 * zone_m > self.travel_bound_of(region) {
             return None;
         }
         let mut closest_below = |below_m| self.bisect(config, region, below_m, ends, IN_TICK);
@@ -251,7 +252,7 @@ impl RegionSweep {
     fn measure(&mut self, config: &Configuration, region: RegionId, fraction: f64, limit: f64) -> BoundedDistance {
         self.place(config, region, fraction);
         let beyond = BoundedDistance { distance: limit, lower_bound: limit };
-        guarded_distance(config, &self.at, region, limit).unwrap_or(beyond)
+        distance_to_guarded(config, &self.at, region, limit).unwrap_or(beyond)
     }
 
     fn place(&mut self, config: &Configuration, region: RegionId, fraction: f64) {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use elbowroom_spatial::Vec3;
 
-use crate::RegionId;
+use crate::{RegionId, VolumeId};
 
 /// The result of one tick: plain data of fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +28,8 @@ pub struct TickReport {
 pub struct VirtualTcp {
     /// The region.
     pub region: RegionId,
-    /// Index of the volume in the configuration.
-    pub volume: usize,
+    /// The volume.
+    pub volume: VolumeId,
     /// Distance to the region, 0 inside, m.
     pub distance_m: f64,
     /// The point of the volume, in the world, m.
@@ -82,7 +82,7 @@ impl fmt::Display for OverrideReason {
     }
 }
 
-/// Invalid input, which stops the robot (P.6).
+/// Invalid input, which stops the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// Older than [`Laws::stale_s`](crate::Laws).
@@ -109,7 +109,7 @@ pub enum Fault {
     NoVelocity,
     /// The joint values are bitwise constant although the robot is commanded to move: the reading is frozen.
     Frozen,
-    /// The robot brakes less than stated in [`Stopping`](crate::Stopping).
+    /// The robot brakes less than stated in [`StoppingSettings`](crate::StoppingSettings).
     Braking,
     /// The source of motion that an active region follows is stale or not finite.
     Source {

@@ -1,4 +1,4 @@
-//! Plausibility check of the sources of motion that regions follow (P.6).
+//! Plausibility check of the sources of motion that regions follow.
 
 use crate::{SourceSpec, SourceState};
 

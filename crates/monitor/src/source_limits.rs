@@ -1,4 +1,4 @@
-//! Sources of motion that regions follow, and the limits of their plausible motion (P.6).
+//! Sources of motion that regions follow, and the limits of their plausible motion.
 
 use elbowroom_spatial::{Pose, Vec3};
 

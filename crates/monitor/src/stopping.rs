@@ -1,7 +1,7 @@
 //! The stopping-distance law: the largest override from which a stop still ends before a region.
 //!
 //! The travel of a volume is bounded in two ways, both valid for every program that keeps to the accelerations of
-//! [`Stopping`](crate::Stopping); the smaller bound counts. **By program time**: until the robot is at rest the program
+//! [`StoppingSettings`](crate::StoppingSettings); the smaller bound counts. **By program time**: until the robot is at rest the program
 //! advances by at most some time u, and within u no joint deviates from the straight line `q′·u` by more than `A·u²/2`.
 //! **By the stop**: after braking has begun no joint travels farther than `a·n²/2`, whatever the program does. The first
 //! bound is tighter for a robot that passes by or leaves, the second for one that moves straight towards a region.
@@ -14,7 +14,7 @@ use crate::braking_check::BrakingCheck;
 use crate::carried_volume::{Approach, CarriedVolume, VolumeMotion, WorldAxis};
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::{OverrideHistory, OverrideRange, PendingMotion, StopTime};
-use crate::{Configuration, Stopping};
+use crate::{Configuration, StoppingSettings};
 
 /// Safety factor of the reaction time. While it slows down, a robot still executes earlier, higher overrides; without this
 /// margin the proof fails from time to time, and the override falls to 0 and rises again.
@@ -25,7 +25,7 @@ const BISECTION_STEPS: u32 = 16;
 /// The state of the law in one tick; allocated once.
 #[derive(Debug)]
 pub(crate) struct StoppingLaw {
-    settings: Stopping,
+    settings: StoppingSettings,
     /// Bound α of the rate of change of the stop time by program time.
     growth: f64,
     axes: Vec<WorldAxis>,
@@ -106,7 +106,7 @@ impl StoppingQuery {
 }
 
 impl StoppingLaw {
-    pub(crate) fn new(config: &Configuration, settings: &Stopping) -> Self {
+    pub(crate) fn new(config: &Configuration, settings: &StoppingSettings) -> Self {
         let chain = &config.chain;
         let at_rest = || JointSpeeds { speed: vec![0.0; chain.dof()], stop_s: 0.0 };
         Self {

@@ -110,8 +110,8 @@ impl VolumeModel {
 /// The volumes of all links that a joint moves. Solids fixed to the root link do not move and get no volume.
 pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
-    let volume = |link: usize, body: &Collider| {
-        let (shape, in_link) = model.of(&body.shape, body.in_link);
+    let volume = |link: usize, collider: &Collider| {
+        let (shape, in_link) = model.of(&collider.shape, collider.in_link);
         Volume { name: chain.links()[link].clone(), part: Part::Arm, link: LinkId(link), shape, in_link }
     };
     robot
@@ -119,6 +119,6 @@ pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
         .iter()
         .enumerate()
         .filter(|(link, _)| chain.is_movable(LinkId(*link)))
-        .flat_map(|(link, bodies)| bodies.iter().map(move |body| volume(link, body)))
+        .flat_map(|(link, colliders)| colliders.iter().map(move |collider| volume(link, collider)))
         .collect()
 }

@@ -18,9 +18,9 @@ pub(crate) struct WarmStartCache {
     workspace: Box<Workspace>,
 }
 
-/// A shape of the configuration at a pose in the world.
+/// A volume or region of the configuration: its index, its shape, and the pose of the shape in the world.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PlacedShape<'a> {
+pub(crate) struct IndexedShape<'a> {
     /// Index of the volume or region.
     pub(crate) index: usize,
     pub(crate) shape: &'a Shape,
@@ -38,8 +38,8 @@ impl WarmStartCache {
     /// [`separation_within`] of a volume and a region.
     pub(crate) fn separation(
         &mut self,
-        volume: PlacedShape<'_>,
-        region: PlacedShape<'_>,
+        volume: IndexedShape<'_>,
+        region: IndexedShape<'_>,
         limit: f64,
     ) -> Option<Separation> {
         let (a, a_in_world, b, b_in_world) = (volume.shape, volume.in_world, region.shape, region.in_world);

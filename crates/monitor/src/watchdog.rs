@@ -1,4 +1,4 @@
-//! Plausibility check of the input (P.6, W.9).
+//! Plausibility check of the input.
 
 use std::f64::consts::{PI, TAU};
 

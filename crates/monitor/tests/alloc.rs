@@ -1,4 +1,4 @@
-//! The tick does not allocate (P.6). Without the test harness, because the counter includes all threads of the process.
+//! The tick does not allocate. Without the test harness, because the counter includes all threads of the process.
 
 mod common;
 
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use common::{Random, arm, arm_volumes, parts};
 use elbowroom_monitor::{
     AccessClass, Configuration, ConfigurationParts, EventKind, Laws, Life, Monitor, OverrideReason, Region, RegionKind,
-    RobotSlot, SlotId, Snapshot, Stopping, ZoneArbiter,
+    RobotSlot, SlotId, Snapshot, StoppingSettings, ZoneArbiter,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
@@ -59,8 +59,13 @@ fn main() {
     exchange();
 }
 
-fn stopping() -> Stopping {
-    Stopping { reaction_s: 0.01, period_s: 0.002, joint_deceleration: vec![10.0; 6], joint_acceleration: vec![5.0; 6] }
+fn stopping() -> StoppingSettings {
+    StoppingSettings {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![10.0; 6],
+        joint_acceleration: vec![5.0; 6],
+    }
 }
 
 /// Two arms that move through two exchange regions: granted, waiting, yielding, in a cycle.
@@ -93,8 +98,8 @@ fn exchange() {
             let q = [t.sin(), 0.9, 0.4, 0.0, 0.2, 0.0];
             let intent = [t.cos(), 0.0, 0.0, 0.0, 0.0, 0.0];
             let qd = intent.map(|v| v * *applied);
-            let still = Snapshot::stationary(0.002 * f64::from(i), &q);
-            let report = monitor.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
+            let stationary = Snapshot::stationary(0.002 * f64::from(i), &q);
+            let report = monitor.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..stationary });
             *applied = report.speed_override;
             *t += 0.002 * applied.max(0.1);
             granted += monitor.events().iter().filter(|e| e.kind == EventKind::Granted).count();

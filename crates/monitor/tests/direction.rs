@@ -6,7 +6,7 @@ use common::{Random, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, Guards, Laws, Monitor, OverrideReason, Region, RegionId, RegionKind, Snapshot,
-    SourceId, SourceState, Stopping, Volume,
+    SourceId, SourceState, StoppingSettings, Volume, VolumeId,
 };
 use elbowroom_proximity::separation;
 use elbowroom_spatial::{FrameMotion, Obb, Pose, Rotation, Vec3};
@@ -126,7 +126,7 @@ fn plain_distance(m: &mut Monitor, now_s: f64, q: &[f64; 6]) -> f64 {
 
 #[test]
 fn the_stopping_law_stops_outside() {
-    let stopping = Stopping {
+    let stopping = StoppingSettings {
         reaction_s: 0.048,
         period_s: 0.002,
         joint_deceleration: vec![2.0; 6],
@@ -212,14 +212,14 @@ fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point
         let tcp = report.governing.unwrap();
         assert_eq!(m.virtual_tcps(&snapshot).collect::<Vec<_>>(), [tcp]);
         let (volume, region) = (&config.volumes()[0], &config.regions()[0]);
-        let exact = separation(&volume.shape, &m.volume_in_world(0), &region.shape, &region.anchor);
+        let exact = separation(&volume.shape, &m.volume_in_world(VolumeId(0)), &region.shape, &region.anchor);
         assert!((exact.distance - tcp.distance_m).abs() < 1e-12);
         // The same material point a little earlier and later.
-        let in_tool = m.volume_in_world(0).inverse_transform_point(tcp.position);
+        let in_tool = m.volume_in_world(VolumeId(0)).inverse_transform_point(tcp.position);
         let mut at = |dt: f64| {
             let q = std::array::from_fn::<f64, 6, _>(|i| q[i] + qd[i] * dt + 0.5 * qdd[i] * dt * dt);
             m.tick(&Snapshot::stationary(t0 + 5.0 + dt, &q));
-            m.volume_in_world(0).transform_point(in_tool)
+            m.volume_in_world(VolumeId(0)).transform_point(in_tool)
         };
         let h = 1e-4;
         let (before, middle, after) = (at(-h), at(0.0), at(h));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::{arm_volumes, gantry, parts};
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, ExchangeState, Laws, Monitor, Occupancy, Region, RegionId, RegionKind,
-    RobotSlot, SlotId, Snapshot, Stopping, ZoneArbiter,
+    RobotSlot, SlotId, Snapshot, StoppingSettings, ZoneArbiter,
 };
 use elbowroom_spatial::Vec3;
 
@@ -38,7 +38,7 @@ fn states(laws: Laws) -> (Vec<ExchangeState>, Vec<Occupancy>) {
 #[test]
 fn a_robot_publishes_that_it_cannot_stop_outside() {
     use ExchangeState::{Committed, Granted, Inside, Outside};
-    let stopping = Stopping {
+    let stopping = StoppingSettings {
         reaction_s: 0.01,
         period_s: TICK_S,
         joint_deceleration: vec![5.0; 6],

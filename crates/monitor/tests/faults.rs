@@ -1,4 +1,4 @@
-//! Input that must stop the robot (P.6, W.9).
+//! Input that must stop the robot.
 
 mod common;
 

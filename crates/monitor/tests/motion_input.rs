@@ -5,7 +5,8 @@ mod common;
 use common::{gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, OverrideReason, Region, Snapshot, Stopping, Volume,
+    Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, OverrideReason, Region, Snapshot,
+    StoppingSettings, Volume,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -17,7 +18,7 @@ fn monitor() -> Monitor {
 }
 
 fn reacting_after(reaction_s: f64) -> Monitor {
-    let stopping = Stopping {
+    let stopping = StoppingSettings {
         reaction_s,
         period_s: TICK_S,
         joint_deceleration: vec![BRAKES; 6],
@@ -87,8 +88,8 @@ fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
                 let (x, then) = frozen.unwrap_or((robot.x, robot.speed));
                 let speed = if all { then } else { robot.speed };
                 let (q, qd) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
-                let still = Snapshot::stationary(TICK_S * f64::from(tick), &q);
-                let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..still });
+                let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &q);
+                let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..stationary });
                 found |= matches!(report.reason, OverrideReason::Fault(Fault::Frozen | Fault::Braking));
                 robot.apply(report.speed_override, BRAKES);
                 assert!(robot.x < 2.0, "inside, frozen at {frozen_at}");
@@ -104,8 +105,8 @@ fn a_robot_that_reacts_late_is_not_frozen() {
     let mut m = reacting_after(0.3);
     let intent = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
     let mut reason = |tick: u32| {
-        let still = Snapshot::stationary(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..still }).reason
+        let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..stationary }).reason
     };
     let ticks = |time_s: f64| (time_s / TICK_S) as u32;
     assert!((0..ticks(0.3)).all(|tick| !matches!(reason(tick), OverrideReason::Fault(_))));
@@ -134,10 +135,10 @@ fn a_robot_that_brakes_less_than_stated_is_a_fault() {
         let mut found = false;
         for tick in 0..6000 {
             let (q, qd) = ([robot.x, 0.0, 0.0, 0.0, 0.0, 0.0], [robot.speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
-            let still = Snapshot::stationary(TICK_S * f64::from(tick), &q);
+            let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &q);
             // The operator stops it.
             let programmed_override = if robot.x > 0.9 { 0.0 } else { 1.0 };
-            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), programmed_override, ..still });
+            let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), programmed_override, ..stationary });
             found |= matches!(report.reason, OverrideReason::Fault(Fault::Braking));
             robot.apply(report.speed_override, brakes);
         }

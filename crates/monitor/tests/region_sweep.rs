@@ -56,7 +56,7 @@ fn the_closest_approach_agrees_with_samples() {
         assert!((sweep.distance(&config, RegionId(0), 10.0).unwrap() - ends[1]).abs() < 1e-9);
         let steps = 400;
         let sampled_m = sampled(&config, &from, &to, &region, steps);
-        let between_m = sweep.motion_bound(RegionId(0)) / f64::from(steps);
+        let between_m = sweep.travel_bound_of(RegionId(0)) / f64::from(steps);
         if let Some(closest) = sweep.closest_approach(&config, RegionId(0), 0.0, 1e-6) {
             passed += 1;
             assert!(closest.distance_m <= 0.0 && ends[0].min(ends[1]) >= 0.0, "{closest:?}");

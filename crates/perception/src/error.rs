@@ -1,6 +1,6 @@
 //! Errors of the perception pipeline.
 
-use elbowroom_cspace::{ConvexObstacleError, GridAxisError, ObstacleMapError, TooManyCells};
+use elbowroom_cspace::{ConvexObstacleError, GridAxisError, PlanarMapError, TooManyCells};
 use elbowroom_proximity::HullError;
 use elbowroom_vision::VisionError;
 
@@ -20,7 +20,7 @@ pub enum PerceptionError {
     Grid(String),
     /// The dimensions of the planar arm, or a step that is too coarse.
     #[error(transparent)]
-    Fill(#[from] ObstacleMapError),
+    Fill(#[from] PlanarMapError),
     /// A setting that is negative or not finite.
     #[error("the setting `{name}` is {value}: write a finite number, 0 or more")]
     Setting {

@@ -35,8 +35,8 @@ impl ExactPathChecker {
         Ok(Self { arm, fixtures, alone })
     }
 
-    /// Checks the straight joint-space segments between points (planar joint values, radians), the other joints as in
-    /// `held`, against the observed footprints of the prisms, without their predicted motion.
+    /// Checks the straight joint-space segments between points (map joint values, radians), the joints that the
+    /// map does not have as in `held`, against the observed footprints of the prisms, without their predicted motion.
     ///
     /// # Errors
     /// A separation distance below `clearance_m`, or one that could not be proven to be above it.
@@ -58,11 +58,11 @@ impl ExactPathChecker {
         let scene = self.alone.with_objects(objects).map_err(|e| failed(e.to_string()))?;
         let mut state = SceneState::new(&scene);
         state.set_q(&scene, RobotId(0), held).map_err(|e| failed(e.to_string()))?;
-        let points: Vec<[f64; 3]> = points.iter().map(|q| self.arm.signs.from_planar(*q)).collect();
+        let points: Vec<[f64; 3]> = points.iter().map(|q| self.arm.convention.from_planar(*q)).collect();
         let joints = MappedJoints { robot: RobotId(0), joints: self.arm.joints };
         let mut checker = Checker::new(&scene, CheckerOptions::default());
         let options = SweepOptions { clearance_m, ..SweepOptions::default() };
-        let found = Path::check_through(&points, &mut checker, &state, joints, &options);
+        let found = Path::check_polyline(&points, &mut checker, &state, joints, &options);
         found.map_err(|e: CheckError| failed(e.to_string()))
     }
 }

@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use elbowroom_cspace::{Grid, MapReader};
-use elbowroom_planner::{
-    GridPlanner, GridPlannerError, GridPlannerSettings, Path, PathEnd, PathProgress, PathStatus, ReplanKind,
-};
+use elbowroom_planner::{GridPlanner, GridPlannerError, GridPlannerSettings, Path, PathEnd, PathProgress, ReplanKind};
 use elbowroom_vision::Stopwatch;
 
+use crate::arc_limit::ArcLimit;
 use crate::exact_path_checker::ExactPathChecker;
-use crate::executor_settings::{ExecutorError, ExecutorSettings, check, three};
+use crate::executor_settings::{ExecutorError, ExecutorSettings, first_three, validate_settings};
 use crate::executor_state::{ExecutorState, HoldReason};
 use crate::executor_step::ExecutorStep;
+use crate::free_arc::free_arc_rad;
 use crate::mapped_arm::MappedArm;
 use crate::obstacle_update::{ObstacleUpdate, Prism};
-use crate::path_execution::{PathExecution, RemainingPath, distance};
+use crate::path_execution::{CurveStatus, PathExecution, distance};
 use crate::replan_in_motion::{InMotionSettings, replan_in_motion};
 use crate::replan_result::ReplanResult;
 
@@ -27,12 +27,13 @@ pub struct ReplanningExecutor {
     planner: GridPlanner,
     exact: Option<ExactPathChecker>,
     settings: ExecutorSettings,
+    /// All joint values. Those of the joints that the map does not have are fixed; the others are not used.
     held: Vec<f64>,
+    /// Map joint values of the current configuration.
     q: [f64; 3],
     goal: Option<[f64; 3]>,
     motion: Option<PathExecution>,
-    /// Upper bound of the arc length along the path, rad; `None` for no bound, negative infinity for a stop.
-    limit_rad: Option<f64>,
+    limit: ArcLimit,
     reason: Option<HoldReason>,
     image_s: Option<f64>,
     prisms: Vec<Prism>,
@@ -53,7 +54,7 @@ impl ReplanningExecutor {
         settings: ExecutorSettings,
         q: &[f64],
     ) -> Result<Self, ExecutorError> {
-        check(&settings)?;
+        validate_settings(&settings)?;
         let dof = arm.robot.chain.dof();
         if q.len() != dof {
             return Err(ExecutorError::Values { found: q.len(), dof });
@@ -70,7 +71,7 @@ impl ReplanningExecutor {
             q: planar,
             goal: None,
             motion: None,
-            limit_rad: None,
+            limit: ArcLimit::Unlimited,
             reason: None,
             image_s: None,
             prisms: Vec::new(),
@@ -85,12 +86,12 @@ impl ReplanningExecutor {
         Ok(executor)
     }
 
-    /// Planar values of the current configuration, radians.
+    /// Map joint values (see [`MappedArm::to_planar`]) of the current configuration, radians.
     pub fn planar(&self) -> [f64; 3] {
         self.q
     }
 
-    /// The path that is followed, planar values; `None` where the arm is stopped without one. After a change of path in
+    /// The path that is followed, map joint values; `None` where the arm is stopped without one. After a change of path in
     /// motion it begins slightly behind the configuration of that time.
     pub fn path(&self) -> Option<&Path> {
         self.motion.as_ref().map(|motion| &motion.path)
@@ -114,7 +115,7 @@ impl ReplanningExecutor {
         let goal = self.arm.to_planar(goal);
         self.inside(goal)?;
         if self.motion.is_some() {
-            self.limit_rad = Some(f64::NEG_INFINITY);
+            self.limit = ArcLimit::StopNow;
         }
         self.reason = Some(HoldReason::NotPlanned);
         self.goal = Some(goal);
@@ -160,38 +161,45 @@ impl ReplanningExecutor {
     /// Validates the current motion against the new map.
     fn revalidate(&mut self, motion: PathExecution, result: &mut ReplanResult) {
         let mut stopwatch = Stopwatch::start();
-        let is_stop_requested = self.limit_rad == Some(f64::NEG_INFINITY);
-        let remaining = if is_stop_requested { RemainingPath::NoExit } else { self.remaining_path(&motion) };
+        let is_stop_requested = self.limit == ArcLimit::StopNow;
+        let remaining = if is_stop_requested { CurveStatus::NoExit } else { self.remaining_status(&motion) };
         result.times.path_check = stopwatch.lap();
         result.kind = Some(ReplanKind::Kept);
         let now_rad = motion.arc_rad();
-        self.limit_rad = match remaining {
-            RemainingPath::Free => None,
-            RemainingPath::BlockedAt { arc_rad } => Some(arc_rad - self.settings.stop_margin_rad),
-            RemainingPath::StartBlocked { exit_s, then_arc_rad } => {
+        let stop_before = |arc_rad: f64| ArcLimit::StopAt(arc_rad - self.settings.stop_margin_rad);
+        self.limit = match remaining {
+            CurveStatus::Free => ArcLimit::Unlimited,
+            CurveStatus::BlockedAt { arc_rad } => stop_before(arc_rad),
+            CurveStatus::StartBlocked { exit_s, then_arc_rad } => {
                 // The cell was free when the arm entered it: continue if the path leaves it and the exact check passes.
                 let passes = self.exact.is_some()
                     && self.check_exactly(&motion.points(exit_s, self.settings.check_chord_rad)).is_ok();
                 result.times.exact += stopwatch.lap();
-                if passes { then_arc_rad.map(|far| far - self.settings.stop_margin_rad) } else { Some(now_rad) }
+                match then_arc_rad {
+                    _ if !passes => ArcLimit::StopAt(now_rad),
+                    None => ArcLimit::Unlimited,
+                    Some(arc_rad) => stop_before(arc_rad),
+                }
             }
-            RemainingPath::NoExit => Some(now_rad),
+            // A requested stop stays one until the arm is at rest.
+            CurveStatus::NoExit if is_stop_requested => ArcLimit::StopNow,
+            CurveStatus::NoExit => ArcLimit::StopAt(now_rad),
         };
-        if self.limit_rad.is_none() {
+        if self.limit == ArcLimit::Unlimited {
             self.motion = Some(motion);
             return;
         }
         result.was_blocked = true;
         result.reason = Some(HoldReason::Blocked);
         let is_stopped = motion.rate <= self.settings.stopped_rate
-            || distance(motion.state().qd, [0.0; 3]) < self.settings.stopped_rate;
+            || distance(motion.state().qd, [0.0; 3]) < self.settings.stopped_speed_rad_s;
         if is_stopped {
             self.motion = Some(motion);
             self.plan_from_rest(result);
             return;
         }
         let settings =
-            InMotionSettings { limits: &self.settings.limits, options: &self.options(0.0), grid: &self.grid };
+            InMotionSettings { limits: &self.settings.limits, planner: &self.planner_settings(0.0), grid: &self.grid };
         let outcome =
             if is_stop_requested { None } else { Some(replan_in_motion(&mut self.planner, &motion, &settings)) };
         let Some(replan) = outcome else {
@@ -207,7 +215,7 @@ impl ReplanningExecutor {
         });
         match checked {
             Some((next, kind)) => {
-                (self.motion, self.limit_rad) = (Some(next), None);
+                (self.motion, self.limit) = (Some(next), ArcLimit::Unlimited);
                 (result.kind, result.in_motion, result.reason) = (Some(kind), true, None);
             }
             None => self.motion = Some(motion),
@@ -215,16 +223,14 @@ impl ReplanningExecutor {
     }
 
     /// Validates the rest of the path: the curve point by point, its straight segments cell by cell.
-    fn remaining_path(&self, motion: &PathExecution) -> RemainingPath {
-        let curve = motion.remaining_path(self.planner.occupancy(), &self.grid);
-        let (RemainingPath::Free, Some(segment)) = (curve, motion.segment()) else { return curve };
+    fn remaining_status(&self, motion: &PathExecution) -> CurveStatus {
+        let curve = motion.curve_status(self.planner.occupancy(), &self.grid);
+        let (CurveStatus::Free, Some(segment)) = (curve, motion.segment()) else { return curve };
         let here = PathProgress { segment, q: motion.state().q };
-        match self.planner.path_status(&motion.path, here, &GridPlannerSettings::default()) {
-            Ok(PathStatus::Clear) => RemainingPath::Free,
-            Ok(PathStatus::Blocked { free_rad, .. }) => {
-                RemainingPath::BlockedAt { arc_rad: motion.arc_rad() + free_rad }
-            }
-            Err(_) => RemainingPath::NoExit,
+        match free_arc_rad(&self.planner, &motion.path, here) {
+            Ok(None) => CurveStatus::Free,
+            Ok(Some(free_rad)) => CurveStatus::BlockedAt { arc_rad: motion.arc_rad() + free_rad },
+            Err(_) => CurveStatus::NoExit,
         }
     }
 
@@ -236,7 +242,7 @@ impl ReplanningExecutor {
         for goal in goals.into_iter().flatten() {
             match self.plan_to(goal, in_blocked_cell, result) {
                 Ok(motion) => {
-                    (self.motion, self.limit_rad) = (Some(motion), None);
+                    (self.motion, self.limit) = (Some(motion), ArcLimit::Unlimited);
                     (result.kind, result.reason) = (Some(ReplanKind::Replanned), None);
                     return;
                 }
@@ -253,8 +259,8 @@ impl ReplanningExecutor {
     ) -> Result<PathExecution, HoldReason> {
         let mut stopwatch = Stopwatch::start();
         let may_search = in_blocked_cell && self.exact.is_some();
-        let options = self.options(if may_search { self.settings.free_search_rad } else { 0.0 });
-        let path = self.planner.plan(self.q, goal, &options);
+        let settings = self.planner_settings(if may_search { self.settings.free_search_rad } else { 0.0 });
+        let path = self.planner.plan(self.q, goal, &settings);
         result.times.replan += stopwatch.lap();
         let mut path = path.map_err(|e| HoldReason::NoPath(e.to_string()))?;
         if path.goal_moved_rad > 0.0 {
@@ -278,8 +284,8 @@ impl ReplanningExecutor {
             .map_or(Ok(()), |exact| exact.check(&self.prisms, &self.held, points, self.settings.check_clearance_m))
     }
 
-    fn options(&self, nearest_rad: f64) -> GridPlannerSettings {
-        GridPlannerSettings { weights: self.settings.weights, nearest_rad, ..GridPlannerSettings::default() }
+    fn planner_settings(&self, max_end_shift_rad: f64) -> GridPlannerSettings {
+        GridPlannerSettings { weights: self.settings.weights, max_end_shift_rad, ..GridPlannerSettings::default() }
     }
 
     /// Advances by `dt` seconds until `now_s` (on the clock of the frame stamps). A `dt` that is not finite or not
@@ -307,7 +313,7 @@ impl ReplanningExecutor {
         }
         let before = motion.rate;
         let target_rate = if hold.is_some() { 0.0 } else { self.permitted_rate(&motion, dt) };
-        let accelerate = three(&self.settings.limits.acceleration);
+        let accelerate = first_three(&self.settings.limits.acceleration);
         (motion.tau_s, motion.rate) = motion.after(dt, target_rate, self.settings.stop, accelerate);
         let state = motion.state();
         self.q = state.q;
@@ -319,9 +325,9 @@ impl ReplanningExecutor {
             () if rate < before => ExecutorState::Slowing(why()),
             () => ExecutorState::Moving,
         };
-        let is_stop_requested = self.limit_rad == Some(f64::NEG_INFINITY);
+        let is_stop_requested = self.limit == ArcLimit::StopNow;
         if is_finished || is_stop_requested && rate <= 0.0 {
-            self.limit_rad = None;
+            self.limit = ArcLimit::Unlimited;
         } else {
             self.motion = Some(motion);
         }
@@ -331,9 +337,12 @@ impl ReplanningExecutor {
     /// 1 where the arm can move for one more tick and still stop before its limit; its present rate where it cannot
     /// accelerate; 0 where it must brake.
     fn permitted_rate(&self, motion: &PathExecution, dt: f64) -> f64 {
-        let Some(limit_rad) = self.limit_rad else { return 1.0 };
-        let limit_s = if limit_rad > 0.0 { motion.time_at(limit_rad) } else { 0.0 };
-        let (stop, accelerate) = (self.settings.stop, three(&self.settings.limits.acceleration));
+        let limit_s = match self.limit {
+            ArcLimit::Unlimited => return 1.0,
+            ArcLimit::StopAt(limit_rad) if limit_rad > 0.0 => motion.time_at(limit_rad),
+            ArcLimit::StopAt(_) | ArcLimit::StopNow => 0.0,
+        };
+        let (stop, accelerate) = (self.settings.stop, first_three(&self.settings.limits.acceleration));
         let fits = |target_rate: f64| {
             let (tau_s, rate) = motion.after(dt, target_rate, stop, accelerate);
             motion.stops_at(tau_s, rate, stop, dt) <= limit_s

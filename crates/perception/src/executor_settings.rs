@@ -2,7 +2,8 @@
 
 use elbowroom_planner::{GridPlannerError, KinematicLimits, TimeParametrizationError};
 
-/// Settings of a [`ReplanningExecutor`](crate::ReplanningExecutor). Joints are those of the map, in planar values.
+/// Settings of a [`ReplanningExecutor`](crate::ReplanningExecutor). Joints are those of the map, in
+/// map joint values (see [`MappedArm::to_planar`](crate::MappedArm::to_planar)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExecutorSettings {
     /// Velocity, acceleration and jerk limits of planned motions, three joints.
@@ -14,15 +15,18 @@ pub struct ExecutorSettings {
     pub stale_s: f64,
     /// The arm stops at least this far before the first blocked cell of its path, radians in joint space.
     pub stop_margin_rad: f64,
-    /// Where the cell of the arm becomes blocked, a free cell is searched within this distance, radians.
+    /// Where the cell of the arm becomes blocked, a free cell is searched within this distance, weighted radians.
     pub free_search_rad: f64,
-    /// Configuration to retreat to where the arm is in a blocked cell and has no path to its goal: planar values,
-    /// radians.
+    /// Configuration to retreat to where the arm is in a blocked cell and has no path to its goal: map joint
+    /// values, radians.
     pub retreat: Option<[f64; 3]>,
-    /// Weights of the joints in path lengths; finite, above 0.
+    /// Weights of the joints in the lengths that the planner minimizes; finite, above 0. Arc lengths, stopping distances
+    /// and margins are not weighted.
     pub weights: [f64; 3],
-    /// Below this time scaling rate, and below this joint speed (rad/s), the arm counts as stopped.
+    /// At or below this time scaling rate (1: the planned speed) the arm counts as stopped.
     pub stopped_rate: f64,
+    /// Where the planned speed is below this, the arm counts as stopped, rad/s in joint space.
+    pub stopped_speed_rad_s: f64,
     /// Largest deviation (radians) of the polyline of the exact check from the trajectory.
     pub check_chord_rad: f64,
     /// Security margin of the exact check, metres. It must cover the deviation of the polyline: three joints that are 1
@@ -34,7 +38,7 @@ impl ExecutorSettings {
     /// Decelerates as hard as it accelerates, stops after 150 ms without an image, and 2° before blocked cells.
     pub fn new(limits: KinematicLimits) -> Self {
         Self {
-            stop: three(&limits.acceleration),
+            stop: first_three(&limits.acceleration),
             limits,
             stale_s: 0.15,
             stop_margin_rad: 2.0_f64.to_radians(),
@@ -42,6 +46,7 @@ impl ExecutorSettings {
             retreat: None,
             weights: [1.0; 3],
             stopped_rate: 1e-3,
+            stopped_speed_rad_s: 1e-3,
             check_chord_rad: 1e-3,
             check_clearance_m: 5e-3,
         }
@@ -76,11 +81,11 @@ pub enum ExecutorError {
 }
 
 /// The first three values; missing ones are NaN, which the check of the limits refuses.
-pub(super) fn three(values: &[f64]) -> [f64; 3] {
+pub(super) fn first_three(values: &[f64]) -> [f64; 3] {
     [0, 1, 2].map(|i| values.get(i).copied().unwrap_or(f64::NAN))
 }
 
-pub(super) fn check(settings: &ExecutorSettings) -> Result<(), ExecutorError> {
+pub(super) fn validate_settings(settings: &ExecutorSettings) -> Result<(), ExecutorError> {
     let joints = settings.stop.map(|value| ("stop", value));
     let others = [("stale_s", settings.stale_s)];
     let bad = joints.into_iter().chain(others).find(|(_, value)| !(value.is_finite() && *value > 0.0));

@@ -7,7 +7,7 @@ use crate::executor_state::ExecutorState;
 pub struct ExecutorStep {
     /// All joint values of the robot, radians or metres.
     pub q: Vec<f64>,
-    /// Velocities of the map's joints, planar, rad/s.
+    /// Velocities of the map's joints, rad/s: of map joint values (sign removed).
     pub qd: [f64; 3],
     /// Time scaling rate of the planned trajectory, 0 to 1.
     pub rate: f64,

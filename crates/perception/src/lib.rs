@@ -23,7 +23,7 @@
 //!         fore_length_m: 0.35, fore_radius_m: 0.06, wrist_radius_m: 0.06,
 //!     },
 //!     // Upright at zero, the forearm too.
-//!     signs: JointConvention { sign: [1.0; 3], offset_rad: [0.0, 0.0, -FRAC_PI_2] },
+//!     convention: JointConvention { sign: [1.0; 3], offset_rad: [0.0, 0.0, -FRAC_PI_2] },
 //!     joints: [0, 1, 2],
 //! });
 //! let lens = Intrinsics::pinhole(160, 120, 0.6);
@@ -64,12 +64,14 @@
 //!
 //! An obstacle that moves into a stopped arm is not prevented from doing so. This is not a certified safety device.
 
+mod arc_limit;
 mod error;
 mod exact_path_checker;
 mod executor;
 mod executor_settings;
 mod executor_state;
 mod executor_step;
+mod free_arc;
 mod map_updater;
 mod mapped_arm;
 mod obstacle_update;

@@ -59,7 +59,7 @@ impl MapUpdater {
     fn remove(&mut self, id: ObstacleId, map: &mut JointMap, update: &mut ObstacleUpdate) {
         self.prisms.retain(|p| p.id != id);
         update.left.push(id);
-        if let Some(changes) = map.remove(&name_of(id)) {
+        if let Some(changes) = map.remove_obstacle(&name_of(id)) {
             update.freed += changes.freed();
         }
     }
@@ -87,7 +87,8 @@ impl MapUpdater {
             }
         }
         let hull = prism_hull(&prism.swept_m, [prism.z_from_m, prism.z_to_m])?;
-        let changes = map.set(&name_of(observed.id), &ConvexObstacle::hull(settings.world_in_base, Arc::new(hull))?);
+        let changes =
+            map.set_obstacle(&name_of(observed.id), &ConvexObstacle::hull(settings.world_in_base, Arc::new(hull))?);
         update.blocked += changes.blocked();
         update.freed += changes.freed();
         match index {
@@ -166,7 +167,7 @@ mod tests {
     ) -> Result<(), PerceptionError> {
         let mut update = ObstacleUpdate {
             stamp_s: 0.0,
-            status: FrameStatus::Valid,
+            status: FrameStatus::Accepted,
             prisms: Vec::new(),
             entered: Vec::new(),
             left: Vec::new(),

@@ -18,8 +18,8 @@ pub struct MappedArm {
     /// Planar model of the arm in the map. It must contain the colliders of all links that joints move, at any wrist
     /// pose.
     pub planar: PlanarArm,
-    /// Signs and offsets from the robot's joint values to planar joint values.
-    pub signs: JointConvention,
+    /// Signs and offsets between the robot's joint values and the map's.
+    pub convention: JointConvention,
     /// Indices of the base, shoulder and elbow joints in `q`.
     pub joints: [usize; 3],
 }
@@ -27,10 +27,10 @@ pub struct MappedArm {
 impl MappedArm {
     /// The KUKA KR125 of `examples/models/kr125`.
     pub fn kr125(robot: Robot, base_in_world: Pose) -> Self {
-        Self { robot, base_in_world, planar: PlanarArm::KR125, signs: JointConvention::KR125, joints: [0, 1, 2] }
+        Self { robot, base_in_world, planar: PlanarArm::KR125, convention: JointConvention::KR125, joints: [0, 1, 2] }
     }
 
-    /// The grid of the map: the joint ranges in planar values, cells `step_rad` wide.
+    /// The grid of the map: the joint ranges in map joint values, cells `step_rad` wide.
     ///
     /// # Errors
     /// A joint that the robot does not have or that has no limits, or a step that is not usable.
@@ -39,21 +39,21 @@ impl MappedArm {
             let (index, chain) = (self.joints[i], &self.robot.chain);
             let id = chain.active_joints().get(index).ok_or(PerceptionError::Joint { index, dof: chain.dof() })?;
             let joint = &chain.joints()[id.0];
-            let [min, max] = self.signs.planar_range(i, [joint.limits.lower, joint.limits.upper]);
+            let [min, max] = self.convention.planar_range(i, [joint.limits.lower, joint.limits.upper]);
             Ok(GridAxis::new(joint.name.clone(), min, max, step_rad)?)
         };
         Ok(Grid::new([axis(0)?, axis(1)?, axis(2)?])?)
     }
 
-    /// Planar values of the map's joints for the robot's joint values `q`.
+    /// Map joint values (those of [`MappedArm::planar`]: sign and offset removed) for the robot's joint values `q`.
     pub fn to_planar(&self, q: &[f64]) -> [f64; 3] {
-        self.signs.to_planar(self.joints.map(|i| q.get(i).copied().unwrap_or(f64::NAN)))
+        self.convention.to_planar(self.joints.map(|i| q.get(i).copied().unwrap_or(f64::NAN)))
     }
 
-    /// The robot's joint values for planar values; the other joints as in `held`.
+    /// The robot's joint values for map joint values; the joints that the map does not have as in `held`.
     pub fn to_joints(&self, held: &[f64], planar: [f64; 3]) -> Vec<f64> {
         let mut q = held.to_vec();
-        for (index, value) in self.joints.into_iter().zip(self.signs.from_planar(planar)) {
+        for (index, value) in self.joints.into_iter().zip(self.convention.from_planar(planar)) {
             if let Some(place) = q.get_mut(index) {
                 *place = value;
             }

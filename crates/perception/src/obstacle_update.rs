@@ -59,6 +59,6 @@ pub struct ObstacleUpdate {
 impl ObstacleUpdate {
     /// True where the frame was accepted and the map is up to date.
     pub fn is_accepted(&self) -> bool {
-        self.status == FrameStatus::Valid
+        self.status == FrameStatus::Accepted
     }
 }

@@ -36,9 +36,10 @@ struct CurveSample {
     arc_rad: f64,
 }
 
-/// Validation of the rest of the path.
+/// Whether the rest of the curve is free, corners blended as they are executed. [`PathStatus`](elbowroom_planner::PathStatus)
+/// says the same of the straight segments of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum RemainingPath {
+pub(super) enum CurveStatus {
     /// Free to the end.
     Free,
     /// Free up to this arc length.
@@ -105,17 +106,17 @@ impl PathExecution {
     }
 
     /// Validates the curve from the current state on.
-    pub fn remaining_path(&self, occupancy: &OccupancyBitmap, grid: &Grid) -> RemainingPath {
+    pub fn curve_status(&self, occupancy: &OccupancyBitmap, grid: &Grid) -> CurveStatus {
         let blocked = |q: [f64; 3]| grid.cell(q).is_none_or(|cell| occupancy.is_blocked(cell));
         let here = self.samples.partition_point(|s| s.tau_s <= self.tau_s);
         let rest = &self.samples[here..];
         let first = |from: usize| rest[from..].iter().position(|s| blocked(s.q)).map(|n| n + from);
         let before = |n: usize| self.samples[(here + n).saturating_sub(1)].arc_rad;
         if blocked(self.state().q) {
-            let Some(exit) = rest.iter().position(|s| !blocked(s.q)) else { return RemainingPath::NoExit };
-            return RemainingPath::StartBlocked { exit_s: rest[exit].tau_s, then_arc_rad: first(exit).map(before) };
+            let Some(exit) = rest.iter().position(|s| !blocked(s.q)) else { return CurveStatus::NoExit };
+            return CurveStatus::StartBlocked { exit_s: rest[exit].tau_s, then_arc_rad: first(exit).map(before) };
         }
-        first(0).map_or(RemainingPath::Free, |n| RemainingPath::BlockedAt { arc_rad: before(n) })
+        first(0).map_or(CurveStatus::Free, |n| CurveStatus::BlockedAt { arc_rad: before(n) })
     }
 
     /// Arc length from the first sample to the current state, rad.

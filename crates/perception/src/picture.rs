@@ -31,7 +31,7 @@ pub fn overlay(pipeline: &PerceptionPipeline, prisms: &[Prism]) -> Result<Frame,
         Channels::Grey => canvas.rgb.extend(frame.pixels().iter().flat_map(|&grey| [grey; 3])),
         Channels::Rgb => canvas.rgb.extend_from_slice(frame.pixels()),
     }
-    for (i, &foreground) in pipeline.vision().foreground().iter().enumerate() {
+    for (i, &foreground) in pipeline.tracker().foreground().iter().enumerate() {
         let (x, y) = (i % width.max(1), i / width.max(1));
         if foreground != 0 {
             canvas.tint(x, y, FOREGROUND);
@@ -39,8 +39,8 @@ pub fn overlay(pipeline: &PerceptionPipeline, prisms: &[Prism]) -> Result<Frame,
             canvas.tint(x, y, ARM);
         }
     }
-    let floor_z_m = pipeline.vision().settings().floor_z_m;
-    let pixel = |p: Point2| pipeline.vision().calibration().floor_to_pixel(p, floor_z_m);
+    let floor_z_m = pipeline.tracker().settings().floor_z_m;
+    let pixel = |p: Point2| pipeline.tracker().calibration().floor_to_pixel(p, floor_z_m);
     for prism in prisms {
         for (outline, color) in [(&prism.swept_m, PREDICTED), (&prism.footprint_m, OBSERVED)] {
             let corners: Vec<Point2> = outline.iter().filter_map(|&p| pixel(p)).collect();
@@ -50,7 +50,7 @@ pub fn overlay(pipeline: &PerceptionPipeline, prisms: &[Prism]) -> Result<Frame,
     canvas.into_frame("overlay")
 }
 
-/// Paths and configuration drawn on an image of the map; planar values, radians.
+/// Paths and configuration drawn on an image of the map; map joint values, radians.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct MapOverlay<'a> {
     /// The path before, drawn grey.

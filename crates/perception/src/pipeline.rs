@@ -41,7 +41,7 @@ impl Default for PerceptionSettings {
 pub struct PerceptionPipeline {
     arm: Arc<MappedArm>,
     settings: PerceptionSettings,
-    vision: CameraTracker,
+    tracker: CameraTracker,
     map: JointMap,
     frame: Frame,
     mask: PixelMask,
@@ -71,7 +71,7 @@ impl PerceptionPipeline {
         let (width, height) = camera.size()?;
         Ok(Self {
             settings,
-            vision: CameraTracker::new(camera, tracker_settings)?,
+            tracker: CameraTracker::new(camera, tracker_settings)?,
             map: JointMap::new(arm.planar, &arm.grid(step_rad)?)?,
             frame: Frame::default(),
             mask: PixelMask::new(width, height),
@@ -97,9 +97,9 @@ impl PerceptionPipeline {
         &mut self.map
     }
 
-    /// The vision module: settings, foreground, detailed timings.
-    pub fn vision(&self) -> &CameraTracker {
-        &self.vision
+    /// The camera tracker: settings, foreground, detailed timings.
+    pub fn tracker(&self) -> &CameraTracker {
+        &self.tracker
     }
 
     /// Pixels that the arm covered in the last frame.
@@ -123,7 +123,7 @@ impl PerceptionPipeline {
     /// # Errors
     /// An image that cannot be decoded, has the wrong size or is out of order; joint values that do not match the
     /// robot. The map is unchanged: unknown is not free. Where an obstacle has no valid hull, its cells are unchanged,
-    /// the other obstacles are updated, and readers see the change after the next valid frame.
+    /// the other obstacles are updated, and readers see the change after the next accepted frame.
     pub fn process_image(
         &mut self,
         bytes: &[u8],
@@ -155,9 +155,9 @@ impl PerceptionPipeline {
         let mut stopwatch = Stopwatch::start();
         self.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
         self.mask.clear();
-        self.mask.mask_arm(self.vision.calibration(), &self.parts, self.settings.mask_margin_m)?;
+        self.mask.mask_arm(self.tracker.calibration(), &self.parts, self.settings.mask_margin_m)?;
         let mut times = PerceptionTimes { mask: stopwatch.lap(), ..PerceptionTimes::default() };
-        let report = self.vision.process(frame, Some(&self.mask))?;
+        let report = self.tracker.process(frame, Some(&self.mask))?;
         let t = &report.timings;
         times.tracks = t.label + t.project + t.track + t.prisms;
         times.background = t.total().saturating_sub(times.tracks);
@@ -172,14 +172,14 @@ impl PerceptionPipeline {
             freed: 0,
             times,
         };
-        if update.status == FrameStatus::Valid {
+        if update.status == FrameStatus::Accepted {
             let settings = PrismSettings {
                 world_in_base: self.arm.base_in_world.inverse(),
                 prediction_s: self.settings.prediction_s,
-                slack_m: self.vision.settings().hysteresis_m,
+                slack_m: self.tracker.settings().hysteresis_m,
             };
-            self.map_updater.update(&self.vision.report().obstacles, &settings, &mut self.map, &mut update)?;
-            update.times.fill = stopwatch.lap();
+            self.map_updater.update(&self.tracker.report().obstacles, &settings, &mut self.map, &mut update)?;
+            update.times.map = stopwatch.lap();
             self.map.publish();
             update.times.publish = stopwatch.lap();
         }

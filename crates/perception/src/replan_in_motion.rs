@@ -9,16 +9,17 @@ use std::time::Duration;
 
 use elbowroom_cspace::Grid;
 use elbowroom_planner::{
-    GridPlanner, GridPlannerSettings, KinematicLimits, Path, PathProgress, PathStatus, ReplanKind, Trajectory,
+    GridPlanner, GridPlannerSettings, KinematicLimits, Path, PathProgress, ReplanKind, Trajectory,
 };
 use elbowroom_vision::Stopwatch;
 
+use crate::free_arc::free_arc_rad;
 use crate::path_execution::{PathExecution, distance, state_at};
 
 /// Settings of [`replan_in_motion`].
 pub(super) struct InMotionSettings<'a> {
     pub limits: &'a KinematicLimits,
-    pub options: &'a GridPlannerSettings,
+    pub planner: &'a GridPlannerSettings,
     pub grid: &'a Grid,
 }
 
@@ -59,7 +60,7 @@ fn find_replacement(
     planner: &mut GridPlanner,
     old: &PathExecution,
     settings: &InMotionSettings<'_>,
-    times: &mut InMotionReplan,
+    result: &mut InMotionReplan,
 ) -> Option<(PathExecution, ReplanKind)> {
     let mut stopwatch = Stopwatch::start();
     let state = old.state();
@@ -68,16 +69,16 @@ fn find_replacement(
     let along = unit(state.qd)?;
     let back_rad = acceleration_distance(speed, along, settings.limits);
     let here = PathProgress { segment, q: state.q };
-    if let PathStatus::Blocked { free_rad, .. } = planner.path_status(&old.path, here, settings.options).ok()?
-        && free_rad <= back_rad
-    {
+    // Both lengths are unweighted: a weighted free length could exceed the stopping distance although the path is blocked
+    // before the arm can leave it.
+    if free_arc_rad(planner, &old.path, here).ok()?.is_some_and(|free_rad| free_rad <= back_rad) {
         return None;
     }
     let (ahead, branch) = advance_along(&old.path, here, back_rad)?;
-    let repaired = planner.replan(&old.path, branch, settings.options);
+    let repaired = planner.replan(&old.path, branch, settings.planner);
     let goal = old.path.waypoints.last().copied()?;
-    let replanned = planner.plan(branch.q, goal, settings.options).map(|path| (path, ReplanKind::Replanned));
-    times.replan = stopwatch.lap();
+    let replanned = planner.plan(branch.q, goal, settings.planner).map(|path| (path, ReplanKind::Replanned));
+    result.replan = stopwatch.lap();
     let behind = [0, 1, 2].map(|i| state.q[i] - along[i] * back_rad);
     // A path that is repaired repeatedly degrades, and a new one often branches off slowly: take the faster one.
     let mut best: Option<Candidate> = None;
@@ -95,7 +96,7 @@ fn find_replacement(
             best = Some(Candidate { remaining_s, entry_s, path, trajectory, kind });
         }
     }
-    times.timing = stopwatch.lap();
+    result.timing = stopwatch.lap();
     let Candidate { entry_s, path, trajectory, kind, .. } = best?;
     let entry = state_at(&trajectory, entry_s);
     let rate = speed / norm(entry.qd);
@@ -167,4 +168,51 @@ fn norm(a: [f64; 3]) -> f64 {
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = norm(a);
     (length > 1e-9).then(|| a.map(|x| x / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_cspace::{GridAxis, OccupancyBitmap, RowSpan};
+
+    use super::*;
+
+    /// An arm in the middle of a straight motion along the first joint; cells of `blocked` (first joint, second joint)
+    /// become blocked for all values of the third.
+    fn replan(weights: [f64; 3], blocked: [std::ops::Range<u32>; 2]) -> Option<(PathExecution, ReplanKind)> {
+        let axis = |name| GridAxis::new(name, 0.0, 3.0, 0.05);
+        let grid = Grid::new([axis("a").unwrap(), axis("b").unwrap(), axis("c").unwrap()]).unwrap();
+        let mut occupancy = OccupancyBitmap::new(grid.shape());
+        let mut planner = GridPlanner::new(&grid, &occupancy).unwrap();
+        let planner_settings = GridPlannerSettings { weights, ..GridPlannerSettings::DEFAULT };
+        let limits = KinematicLimits { velocity: vec![1.0; 3], acceleration: vec![2.0; 3], jerk: vec![20.0; 3] };
+        let path = planner.plan([0.12, 1.52, 1.52], [2.88, 1.52, 1.52], &planner_settings).unwrap();
+        let trajectory = planner.time_parametrize(&path, &limits).unwrap();
+        let middle_s = 0.5 * trajectory.seconds();
+        let motion = PathExecution::new(path, trajectory, middle_s, 1.0, &grid, &limits);
+        assert!((motion.state().q[0] - 1.5).abs() < 1e-6 && (motion.state().qd[0] - 1.0).abs() < 1e-6);
+        let [a, b] = blocked;
+        for (i, j) in a.flat_map(|i| b.clone().map(move |j| (i, j))) {
+            occupancy.block(RowSpan { row: i * 60 + j, first: 0, last: 59 });
+        }
+        planner.update(&occupancy).unwrap();
+        let settings = InMotionSettings { limits: &limits, planner: &planner_settings, grid: &grid };
+        replan_in_motion(&mut planner, &motion, &settings).found
+    }
+
+    /// The arm cannot stop before a wall at 1.65 rad; the configuration where it could leave its path is behind the wall.
+    #[test]
+    fn no_path_is_found_through_a_wall_nearer_than_the_stop_whatever_the_weights() {
+        for weight in [0.1, 1.0, 4.0, 100.0] {
+            assert!(replan([weight; 3], [33..35, 0..60]).is_none(), "{weight}");
+        }
+    }
+
+    /// An obstacle at 2.2 rad that can be bypassed.
+    #[test]
+    fn a_bypass_behind_the_stop_is_found_whatever_the_weights() {
+        for weight in [0.1, 1.0, 4.0, 100.0] {
+            let found = replan([weight; 3], [44..46, 28..33]);
+            assert!(found.is_some_and(|(_, kind)| kind != ReplanKind::Kept), "{weight}");
+        }
+    }
 }

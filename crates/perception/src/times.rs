@@ -14,7 +14,7 @@ pub struct PerceptionTimes {
     /// Blobs, floor positions, tracking, prisms.
     pub tracks: Duration,
     /// Prisms to occupied cells.
-    pub fill: Duration,
+    pub map: Duration,
     /// Publication of a snapshot for readers.
     pub publish: Duration,
 }
@@ -42,7 +42,7 @@ impl PerceptionTimes {
             ("mask of the arm", self.mask),
             ("background", self.background),
             ("blobs, tracks", self.tracks),
-            ("fill cells", self.fill),
+            ("fill cells", self.map),
             ("publish", self.publish),
         ]
     }

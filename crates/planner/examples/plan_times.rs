@@ -111,7 +111,7 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
         for path in paths.iter().filter(|path| path.length_rad > 1.0).take(300) {
             let middle = halfway(path);
             let wrist = example::ARM.joints_in_base(middle)[2];
-            map.set("intruder", &ConvexObstacle::sphere(wrist, radius)?);
+            map.set_obstacle("intruder", &ConvexObstacle::sphere(wrist, radius)?);
             let here = PathProgress { segment: 0, q: path.waypoints[0] };
             let clock = Instant::now();
             planner.update(map.occupancy())?;
@@ -138,7 +138,7 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
             } else {
                 lost += 1;
             }
-            map.remove("intruder");
+            map.remove_obstacle("intruder");
             planner.update(map.occupancy())?;
         }
         println!(

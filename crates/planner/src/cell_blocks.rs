@@ -4,8 +4,8 @@ use elbowroom_cspace::{CellIndex, OccupancyBitmap};
 
 /// Cells along the edge of a block.
 pub(crate) const EDGE: usize = 4;
-/// A block without blocked cells.
-pub(crate) const FULL: u64 = !0;
+/// The cells of a block without blocked ones.
+pub(crate) const ALL_FREE: u64 = !0;
 /// Most components of a block: every second cell.
 pub(crate) const MAX_COMPONENTS: usize = 32;
 
@@ -46,8 +46,8 @@ fn flood(seed: u64, free: u64) -> u64 {
 /// The connected components of a block's free cells, and their number.
 pub(crate) fn components(free: u64) -> ([u64; MAX_COMPONENTS], usize) {
     let (mut found, mut count, mut rest) = ([0; MAX_COMPONENTS], 0, free);
-    if free == FULL {
-        found[0] = FULL;
+    if free == ALL_FREE {
+        found[0] = ALL_FREE;
         return (found, 1);
     }
     while rest != 0 {
@@ -85,7 +85,7 @@ pub(crate) fn free_cells(occupancy: &OccupancyBitmap, block: [usize; 3]) -> u64 
 
 /// The cell of a component nearest to its centroid: it has line of sight to most of the component.
 pub(crate) fn central_bit(component: u64) -> u32 {
-    if component == FULL {
+    if component == ALL_FREE {
         return 0b01_01_01;
     }
     let mut sum = [0_i32; 3];

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use elbowroom_cspace::CellIndex;
 
-use crate::block_graph::{BlockGraph, Node};
 use crate::cell_blocks::bit_of;
+use crate::cell_group_graph::{CellGroupGraph, Node};
 
 const NOT_VISITED: u8 = u8::MAX;
 
@@ -28,7 +28,7 @@ impl CellPathSearch {
     /// ends included. Empty where there is none.
     pub fn shortest_path(
         &mut self,
-        graph: &BlockGraph,
+        graph: &CellGroupGraph,
         nodes: [Node; 2],
         [from, to]: [CellIndex; 2],
         cells: &mut Vec<CellIndex>,

@@ -59,7 +59,7 @@ impl Path {
     /// Proves that no pair of the scene comes too near along the path, the robot's other joints fixed as in `state`.
     ///
     /// Segments are straight between waypoints. For a trajectory that blends corners, give its points to
-    /// [`Path::check_through`].
+    /// [`Path::check_polyline`].
     ///
     /// ```
     /// use elbowroom_planner::{CheckError, MappedJoints, Path};
@@ -91,14 +91,14 @@ impl Path {
         arm: MappedJoints,
         options: &SweepOptions,
     ) -> Result<(), CheckError> {
-        Self::check_through(&self.waypoints, checker, state, arm, options)
+        Self::check_polyline(&self.waypoints, checker, state, arm, options)
     }
 
-    /// The same along any points (radians), straight from each to the next.
+    /// The same along a polyline: straight from each point (radians) to the next.
     ///
     /// # Errors
     /// As [`Path::check`].
-    pub fn check_through(
+    pub fn check_polyline(
         waypoints: &[[f64; 3]],
         checker: &mut Checker,
         state: &SceneState,

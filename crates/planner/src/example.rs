@@ -36,7 +36,7 @@ pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
         limits: Limits::range(grid.axes()[i].min(), grid.axes()[i].max()),
         mimic: None,
     };
-    let links = ["foot", "column", "upper", "fore"].map(String::from).to_vec();
+    let links = ["base", "column", "upper", "fore"].map(String::from).to_vec();
     let mut robot = Robot::new(Chain::new("arm", links, (0..3).map(joint).collect())?);
     let collider = |shape, in_link| Collider { name: String::new(), shape, in_link };
     let capsule = |length: f64, radius| Shape::Capsule(Capsule { half_length: 0.5 * length, radius });

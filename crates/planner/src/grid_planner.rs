@@ -2,9 +2,9 @@
 
 use elbowroom_cspace::{CellChanges, CellIndex, Grid, OccupancyBitmap};
 
-use crate::block_graph::{BlockGraph, Node};
+use crate::cell_group_graph::{CellGroupGraph, Node};
 use crate::cell_path::CellPathSearch;
-use crate::components::ConnectedComponents;
+use crate::graph_components::GraphComponents;
 use crate::grid_shortcutting::{GridShortcutting, PathContext};
 use crate::grid_space::{CellPoint, CellScale, GridPoint, GridSpace};
 use crate::line_of_sight::line_of_sight;
@@ -20,8 +20,8 @@ const NODES_BEFORE_COMPONENTS: usize = 1500;
 pub struct GridPlannerSettings {
     /// Weight of each joint in lengths; finite, above 0.
     pub weights: [f64; 3],
-    /// Radius (weighted radians) within which an end in a blocked cell may be moved to a free one; 0: not at all.
-    pub nearest_rad: f64,
+    /// An end in a blocked cell may be moved to a free cell within this distance, weighted radians; 0: not at all.
+    pub max_end_shift_rad: f64,
     /// Expansion limit of a repair; beyond it, the whole path is replanned.
     pub max_repair_nodes: usize,
     /// A repair begins and ends at this distance from the blocked part, in cell widths (the mean of the joints).
@@ -29,9 +29,9 @@ pub struct GridPlannerSettings {
 }
 
 impl GridPlannerSettings {
-    /// Equal weights; ends are not moved.
+    /// Unit weights, so that weighted lengths are lengths in joint space; ends are not moved.
     pub const DEFAULT: Self =
-        Self { weights: [1.0; 3], nearest_rad: 0.0, max_repair_nodes: 1500, repair_margin_cells: 8.0 };
+        Self { weights: [1.0; 3], max_end_shift_rad: 0.0, max_repair_nodes: 1500, repair_margin_cells: 8.0 };
 }
 
 impl Default for GridPlannerSettings {
@@ -49,7 +49,7 @@ impl Default for GridPlannerSettings {
 /// let axis = |name: &str, min, max| GridAxis::from_degrees(name, min, max, 2.0);
 /// let grid = Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?;
 /// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
-/// map.set("head", &ConvexObstacle::sphere(Vec3::new(1.5, 0.0, 1.0), 0.3)?);
+/// map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.5, 0.0, 1.0), 0.3)?);
 /// let mut planner = GridPlanner::new(&grid, map.occupancy())?;
 /// let path = planner.plan([-1.0, 0.4, 0.3], [1.0, 0.4, 0.3], &GridPlannerSettings::default())?;
 /// assert!(path.length_rad > 2.0 && path.waypoints.len() > 2); // not straight
@@ -60,8 +60,8 @@ impl Default for GridPlannerSettings {
 pub struct GridPlanner {
     pub(crate) space: GridSpace,
     pub(crate) occupancy: OccupancyBitmap,
-    pub(crate) graph: BlockGraph,
-    components: ConnectedComponents,
+    pub(crate) graph: CellGroupGraph,
+    components: GraphComponents,
     search: ThetaStarSearch,
     cell_path: CellPathSearch,
     pub(crate) shortcutting: GridShortcutting,
@@ -78,9 +78,9 @@ impl GridPlanner {
         check_shape(grid, occupancy)?;
         Ok(Self {
             space: GridSpace::new(grid),
-            graph: BlockGraph::new(occupancy),
+            graph: CellGroupGraph::new(occupancy),
             occupancy: occupancy.clone(),
-            components: ConnectedComponents::default(),
+            components: GraphComponents::default(),
             search: ThetaStarSearch::default(),
             cell_path: CellPathSearch::default(),
             shortcutting: GridShortcutting::default(),
@@ -101,7 +101,7 @@ impl GridPlanner {
         Ok(changes)
     }
 
-    /// The same where the changes are known, as [`elbowroom_cspace::JointMap::set`] reports them: no plane is compared.
+    /// The same where the changes are known, as [`elbowroom_cspace::JointMap::set_obstacle`] reports them: no plane is compared.
     /// `changes` must be all differences between the planner's occupancy and the newer one; changes of several updates are
     /// applied one by one, in order.
     ///
@@ -113,7 +113,7 @@ impl GridPlanner {
     /// # let grid = Grid::new([axis("base")?, axis("shoulder")?, axis("elbow")?])?;
     /// let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
     /// let mut planner = GridPlanner::new(&grid, map.occupancy())?;
-    /// let changes = map.set("head", &ConvexObstacle::sphere(Vec3::new(1.5, 0.0, 1.0), 0.3)?).clone();
+    /// let changes = map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.5, 0.0, 1.0), 0.3)?).clone();
     /// planner.apply(map.occupancy(), &changes)?;
     /// assert_eq!(planner.occupancy().blocked(), map.occupancy().blocked());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -141,7 +141,7 @@ impl GridPlanner {
     /// It exists if and only if the two cells are connected through free cells with common faces.
     ///
     /// # Errors
-    /// An end outside the grid (NaN too) or in a blocked cell without a free one within the radius; ends that are not
+    /// An end outside the grid (NaN too) or in a blocked cell without a free one near enough; ends that are not
     /// connected; invalid settings.
     pub fn plan(
         &mut self,
@@ -150,7 +150,7 @@ impl GridPlanner {
         settings: &GridPlannerSettings,
     ) -> Result<Path, GridPlannerError> {
         let scale = self.scale(settings)?;
-        let ends = self.ends([start, goal], scale, settings.nearest_rad)?;
+        let ends = self.ends([start, goal], scale, settings.max_end_shift_rad)?;
         let mut points = Vec::new();
         if !self.connect(scale, ends.map(|end| end.at), usize::MAX, &mut points) {
             return Err(GridPlannerError::NoPath);
@@ -180,8 +180,8 @@ impl GridPlanner {
         if let Some(value) = bad {
             return Err(GridPlannerError::InvalidSetting { setting: GridPlannerSetting::Weight, value });
         }
-        if !(settings.nearest_rad >= 0.0) {
-            let (setting, value) = (GridPlannerSetting::Radius, settings.nearest_rad);
+        if !(settings.max_end_shift_rad >= 0.0) {
+            let (setting, value) = (GridPlannerSetting::MaxEndShift, settings.max_end_shift_rad);
             return Err(GridPlannerError::InvalidSetting { setting, value });
         }
         Ok(self.space.scale(settings.weights))
@@ -303,7 +303,7 @@ impl GridPlanner {
 
     /// Appends the points of the links between two ends; links without line of sight cell by cell.
     fn append_links(&mut self, [start, goal]: [(Node, CellIndex); 2], points: &mut Vec<GridPoint>) {
-        let cell = |graph: &BlockGraph, node| match node {
+        let cell = |graph: &CellGroupGraph, node| match node {
             _ if node == start.0 => start.1,
             _ if node == goal.0 => goal.1,
             _ => graph.representative(node),

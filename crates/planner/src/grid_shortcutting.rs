@@ -1,4 +1,5 @@
-//! Shortcutting of grid paths: corners are skipped where there is line of sight, and moved to shorten the path.
+//! Shortcutting of grid paths: corners are skipped where there is line of sight, and moved to shorten the path. For paths in
+//! the exact scene: `rrt_connect/shortcutting.rs`.
 
 use elbowroom_cspace::{CellIndex, OccupancyBitmap};
 

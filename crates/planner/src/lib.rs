@@ -10,15 +10,16 @@
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 
-mod block_graph;
 mod cell_blocks;
+mod cell_group_graph;
 mod cell_path;
-mod components;
 mod exact_check;
 pub mod example;
+mod graph_components;
 mod grid_planner;
 mod grid_shortcutting;
 mod grid_space;
+mod grid_time_parametrization;
 mod line_of_sight;
 mod local_detour;
 mod nearest_free_cell;

@@ -36,15 +36,15 @@ pub struct Path {
 pub enum GridPlannerSetting {
     /// [`GridPlannerSettings::weights`](crate::GridPlannerSettings::weights).
     Weight,
-    /// [`GridPlannerSettings::nearest_rad`](crate::GridPlannerSettings::nearest_rad).
-    Radius,
+    /// [`GridPlannerSettings::max_end_shift_rad`](crate::GridPlannerSettings::max_end_shift_rad).
+    MaxEndShift,
 }
 
 impl std::fmt::Display for GridPlannerSetting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Weight => "a weight",
-            Self::Radius => "the radius",
+            Self::MaxEndShift => "the largest shift of an end",
         })
     }
 }
@@ -70,7 +70,7 @@ pub enum GridPlannerError {
     },
     /// The cell is blocked, and so are all cells around it.
     #[error(
-        "the {end} is in a blocked cell and no free one is within {radius_rad} rad: move it, or allow a larger radius"
+        "the {end} is in a blocked cell and no free one is within {radius_rad} rad: move it, or allow a larger shift"
     )]
     Blocked {
         /// Start or goal.
@@ -83,8 +83,8 @@ pub enum GridPlannerError {
         "no path: the free cells of the start and those of the goal are not joined: take an obstacle away, or use a finer map"
     )]
     NoPath,
-    /// An invalid weight or radius.
-    #[error("{setting} is {value}: weights must be finite and above 0, the radius 0 or more")]
+    /// An invalid weight, or an invalid largest shift of an end.
+    #[error("{setting} is {value}: weights must be finite and above 0, the largest shift 0 or more")]
     InvalidSetting {
         /// Which.
         setting: GridPlannerSetting,
@@ -92,7 +92,9 @@ pub enum GridPlannerError {
         value: f64,
     },
     /// The occupancy has another shape than the planner's grid.
-    #[error("the table has {occupancy:?} cells, the grid {grid:?}: use the table of the map that the grid belongs to")]
+    #[error(
+        "the occupancy bitmap has {occupancy:?} cells, the grid {grid:?}: use the bitmap of the map that the grid belongs to"
+    )]
     Shape {
         /// Numbers of cells of the occupancy bitmap.
         occupancy: [usize; 3],

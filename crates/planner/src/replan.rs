@@ -16,7 +16,8 @@ pub struct PathProgress {
     pub q: [f64; 3],
 }
 
-/// Whether the rest of a path is free.
+/// Whether the rest of a path is free: its straight segments, cell by cell. `CurveStatus` in the crate `perception` says the
+/// same of the curve with blended corners that is executed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PathStatus {
     /// All of it.
@@ -27,8 +28,9 @@ pub enum PathStatus {
         segment: usize,
         /// The end of the free part, radians.
         free_until: [f64; 3],
-        /// Length of the free part from the arm along the path, weighted radians; 0: stop.
-        free_rad: f64,
+        /// Length of the free part from the arm along the path, weighted radians; 0: stop. It is a length in joint space only
+        /// with unit weights.
+        weighted_free_rad: f64,
     },
 }
 
@@ -39,7 +41,7 @@ pub enum ReplanKind {
     Kept,
     /// It bypasses the blocked part; the rest is the old one.
     Repaired,
-    /// It was planned from the start.
+    /// It was planned again, from the arm to the goal.
     Replanned,
 }
 
@@ -67,8 +69,8 @@ impl GridPlanner {
     /// occupancy.block(RowSpan { row: 10 * 20 + 10, first: 9, last: 11 }); // on the path
     /// planner.update(&occupancy)?;
     /// let here = PathProgress { segment: 0, q: [0.1, 0.5, 0.5] };
-    /// let PathStatus::Blocked { free_rad, .. } = planner.path_status(&path, here, &settings)? else { panic!() };
-    /// assert!((free_rad - 0.4).abs() < 1e-6);
+    /// let PathStatus::Blocked { weighted_free_rad, .. } = planner.path_status(&path, here, &settings)? else { panic!() };
+    /// assert!((weighted_free_rad - 0.4).abs() < 1e-6);
     /// let (repaired, kind) = planner.replan(&path, here, &settings)?;
     /// assert!(kind == ReplanKind::Repaired && repaired.length_rad < 0.95);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -87,14 +89,14 @@ impl GridPlanner {
         let mut so_far = 0.0;
         for (n, w) in points.windows(2).enumerate() {
             if let Some(t) = first_blocked(&self.occupancy, w[0], w[1]) {
-                let free_rad = so_far + t * scale.distance(w[0], w[1]);
+                let weighted_free_rad = so_far + t * scale.distance(w[0], w[1]);
                 let free_until = self.space.q(interpolate(w, t));
-                return Ok(PathStatus::Blocked { segment: here.segment + n, free_until, free_rad });
+                return Ok(PathStatus::Blocked { segment: here.segment + n, free_until, weighted_free_rad });
             }
             so_far += scale.distance(w[0], w[1]);
         }
         if points.len() == 1 && first_blocked(&self.occupancy, points[0], points[0]).is_some() {
-            return Ok(PathStatus::Blocked { segment: here.segment, free_until: here.q, free_rad: 0.0 });
+            return Ok(PathStatus::Blocked { segment: here.segment, free_until: here.q, weighted_free_rad: 0.0 });
         }
         Ok(PathStatus::Clear)
     }

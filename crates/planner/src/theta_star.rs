@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 use elbowroom_cspace::OccupancyBitmap;
 
-use crate::block_graph::{BlockGraph, Node};
+use crate::cell_group_graph::{CellGroupGraph, Node};
 use crate::grid_space::{CellScale, GridPoint, GridSpace};
 use crate::line_of_sight::line_of_sight;
 
@@ -39,7 +39,7 @@ pub(crate) struct Terminal {
 /// Input of a search.
 pub(crate) struct ThetaStarQuery<'a> {
     pub occupancy: &'a OccupancyBitmap,
-    pub graph: &'a BlockGraph,
+    pub graph: &'a CellGroupGraph,
     pub space: &'a GridSpace,
     pub scale: CellScale,
     pub start: Terminal,
@@ -154,7 +154,7 @@ impl ThetaStarSearch {
             if neighbour.search != self.number || !neighbour.closed || other == node {
                 return;
             }
-            let is_straight = query.graph.is_full(node) && query.graph.is_full(other);
+            let is_straight = query.graph.is_all_free(node) && query.graph.is_all_free(other);
             let factor = if is_straight { 1.0 } else { CELL_PATH_FACTOR };
             let length = neighbour.length + query.distance(other, node) * factor;
             if length < best.0 {

@@ -46,7 +46,7 @@ fn paths_free_in_the_map_are_free_in_the_scene() {
         let positions: Vec<_> = (0..=100)
             .map(|n| trajectory.at(trajectory.seconds() * f64::from(n) / 100.0).q.try_into().unwrap())
             .collect();
-        Path::check_through(&positions, &mut checker, &state, JOINTS, &SweepOptions::default()).unwrap();
+        Path::check_polyline(&positions, &mut checker, &state, JOINTS, &SweepOptions::default()).unwrap();
     }
     assert!(bent > 20, "{bent}");
 }

@@ -142,7 +142,7 @@ fn empty_and_full_maps() {
     let mut full = OccupancyBitmap::new(grid.shape());
     (0..30).for_each(|row| full.block(RowSpan { row, first: 0, last: 66 }));
     planner.update(&full).unwrap();
-    let anywhere = GridPlannerSettings { nearest_rad: 100.0, ..DEFAULT };
+    let anywhere = GridPlannerSettings { max_end_shift_rad: 100.0, ..DEFAULT };
     assert_eq!(
         planner.plan(start, goal, &anywhere),
         Err(GridPlannerError::Blocked { end: PathEnd::Start, radius_rad: 100.0 })
@@ -163,10 +163,10 @@ fn a_blocked_end_is_moved_to_the_nearest_connected_free_cell() {
     let error = planner.plan(start, goal, &DEFAULT).unwrap_err();
     assert_eq!(error, GridPlannerError::Blocked { end: PathEnd::Goal, radius_rad: 0.0 });
     // [12, 2, 2] is nearer, but on the other side.
-    let path = planner.plan(start, goal, &GridPlannerSettings { nearest_rad: 0.35, ..DEFAULT }).unwrap();
+    let path = planner.plan(start, goal, &GridPlannerSettings { max_end_shift_rad: 0.35, ..DEFAULT }).unwrap();
     assert!((path.goal_moved_rad - 0.3).abs() < 1e-9 && path.start_moved_rad == 0.0);
     assert_eq!(grid.cell(*path.waypoints.last().unwrap()), Some([7, 2, 2]));
-    let back = planner.plan(goal, start, &GridPlannerSettings { nearest_rad: 0.35, ..DEFAULT }).unwrap();
+    let back = planner.plan(goal, start, &GridPlannerSettings { max_end_shift_rad: 0.35, ..DEFAULT }).unwrap();
     assert!((back.start_moved_rad - 0.3).abs() < 1e-9);
     assert_eq!(grid.cell(back.waypoints[0]), Some([7, 2, 2]));
 }
@@ -184,7 +184,7 @@ fn invalid_input_is_rejected() {
     ));
     let weights = GridPlannerSettings { weights: [1.0, 0.0, 1.0], ..DEFAULT };
     assert!(matches!(planner.plan(good, good, &weights), Err(GridPlannerError::InvalidSetting { .. })));
-    let radius = GridPlannerSettings { nearest_rad: f64::NAN, ..DEFAULT };
-    assert!(matches!(planner.plan(good, good, &radius), Err(GridPlannerError::InvalidSetting { .. })));
+    let shift = GridPlannerSettings { max_end_shift_rad: f64::NAN, ..DEFAULT };
+    assert!(matches!(planner.plan(good, good, &shift), Err(GridPlannerError::InvalidSetting { .. })));
     assert!(matches!(planner.update(&OccupancyBitmap::new([5, 5, 6])), Err(GridPlannerError::Shape { .. })));
 }

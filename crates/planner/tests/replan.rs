@@ -86,7 +86,8 @@ fn the_free_part_of_a_path_agrees_with_dense_sampling() {
         let changed = with_random_box(&occupancy, about, &mut random);
         planner.update(&changed).unwrap();
         let here = PathProgress { segment: 0, q: path.waypoints[0] };
-        let PathStatus::Blocked { segment, free_until, free_rad } = planner.path_status(&path, here, &DEFAULT).unwrap()
+        let PathStatus::Blocked { segment, free_until, weighted_free_rad } =
+            planner.path_status(&path, here, &DEFAULT).unwrap()
         else {
             continue;
         };
@@ -95,8 +96,8 @@ fn the_free_part_of_a_path_agrees_with_dense_sampling() {
         free.push(free_until);
         let length: f64 =
             free.windows(2).map(|w| (0..3).map(|i| (w[0][i] - w[1][i]).powi(2)).sum::<f64>().sqrt()).sum();
-        assert!((length - free_rad).abs() < 1e-6);
-        if free_rad > 0.0 {
+        assert!((length - weighted_free_rad).abs() < 1e-6);
+        if weighted_free_rad > 0.0 {
             assert_eq!(blocked_point(&grid, &changed, &free, 2000), None);
         }
     }
@@ -114,9 +115,9 @@ fn an_arm_in_a_blocked_cell_is_reported() {
     planner.update(&blocked_start).unwrap();
     let here = PathProgress { segment: 0, q: path.waypoints[0] };
     let status = planner.path_status(&path, here, &DEFAULT).unwrap();
-    assert!(matches!(status, PathStatus::Blocked { free_rad: 0.0, .. }), "{status:?}");
+    assert!(matches!(status, PathStatus::Blocked { weighted_free_rad: 0.0, .. }), "{status:?}");
     assert!(matches!(planner.replan(&path, here, &DEFAULT), Err(GridPlannerError::Blocked { .. })));
-    let moved = GridPlannerSettings { nearest_rad: 0.2, ..DEFAULT };
+    let moved = GridPlannerSettings { max_end_shift_rad: 0.2, ..DEFAULT };
     let (out, kind) = planner.replan(&path, here, &moved).unwrap();
     assert!(kind == ReplanKind::Replanned && out.start_moved_rad > 0.0);
     assert!(connected(&blocked_start, grid.cell(out.waypoints[0]).unwrap(), [8, 8, 8]));

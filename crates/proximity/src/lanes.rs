@@ -11,7 +11,7 @@ use std::ops::{Add, Mul, Sub};
 use std::sync::OnceLock;
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Level, Simd, f32x8, f32x16, f64x8, prelude::*};
+use fearless_simd::{Level as SimdLevel, Simd, f32x8, f32x16, f64x8, prelude::*};
 
 /// 2⁻¹⁷ = 128 half-units of rounding per unit of extent: the error bound of a gap in f32. README.md of `mesh_mesh` counts 75
 /// for the worst test.
@@ -19,9 +19,9 @@ pub(crate) const F32_ERROR: f64 = 1.0 / 131_072.0;
 
 /// The best instruction set of this processor, detected once.
 #[inline]
-pub(crate) fn detected_level() -> Level {
-    static DETECTED: OnceLock<Level> = OnceLock::new();
-    *DETECTED.get_or_init(Level::new)
+pub(crate) fn detected_simd_level() -> SimdLevel {
+    static DETECTED: OnceLock<SimdLevel> = OnceLock::new();
+    *DETECTED.get_or_init(SimdLevel::new)
 }
 
 /// Arithmetic of one register.

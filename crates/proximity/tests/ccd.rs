@@ -130,7 +130,7 @@ fn golden(f: &dyn Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     fx.min(fy)
 }
 
-/// Checks one answer; true where it was an impact after the start.
+/// Checks one answer; true where it was a contact after the start.
 fn check(
     a: &Shape,
     pa: &dyn RigidMotion,
@@ -239,7 +239,7 @@ fn times_match_the_closed_forms() {
 fn motions_along_the_gap_cost_no_steps() {
     let options = CcdOptions::default();
     let steps_and_hit = |a: &Shape, pa: &dyn RigidMotion, b: &Shape, pb: &dyn RigidMotion| {
-        // A motion that needs more steps gives an impact that is not certain.
+        // A motion that needs more steps gives a contact that is not certain.
         time_of_impact(a, pa, b, pb, &CcdOptions { max_steps: 12, ..options })
     };
     let plate = cuboid(5.0, 5.0, 0.001);
@@ -301,7 +301,7 @@ impl RigidMotion for UnknownSpeed {
 }
 
 #[test]
-fn nan_is_an_impact_that_is_not_certain() {
+fn nan_is_a_contact_that_is_not_certain() {
     let (brick, ball) = (cuboid(0.1, 0.1, 0.1), Shape::Sphere(Sphere { radius: 0.1 }));
     let far = Pose::from_translation(Vec3::X * 9.0);
     let good = ConstantTwist::screw(Pose::IDENTITY, Vec3::Y, Vec3::Z, 0.1);
@@ -339,7 +339,7 @@ fn nan_is_an_impact_that_is_not_certain() {
 }
 
 #[test]
-fn exhausted_steps_are_an_impact_that_is_not_certain() {
+fn exhausted_steps_are_a_contact_that_is_not_certain() {
     // Between two plates no plane separates the ball from both.
     let slot = TriMesh::new(
         vec![
@@ -363,7 +363,7 @@ fn exhausted_steps_are_an_impact_that_is_not_certain() {
 }
 
 #[test]
-fn the_earliest_time_is_not_after_the_impact() {
+fn the_earliest_time_is_not_after_the_contact() {
     let mut rng = Rng(5);
     let mut tight = 0;
     for k in 0..300 {
@@ -390,8 +390,8 @@ fn the_earliest_time_is_not_after_the_impact() {
     assert_eq!((when.estimate_s, when.earliest_s), (0.0, 0.0));
 }
 
-/// The kept faces alone give the same impact: were the first contact on a culled face, the whole mesh would already be in
-/// contact at the impact of the kept faces.
+/// The kept faces alone give the same contact: were the first contact on a culled face, the whole mesh would already be in
+/// contact at the time of impact of the kept faces.
 #[test]
 fn the_first_contact_is_on_a_face_that_was_kept() {
     let mut rng = Rng(7);

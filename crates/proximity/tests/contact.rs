@@ -291,14 +291,14 @@ fn degenerate_meshes_and_nan_have_an_answer() {
 fn every_level_of_detail_is_conservative() {
     let mut r = Rng(8);
     let mut workspace = Workspace::new();
-    let levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(2), Detail::Boxes(9), Detail::Exact];
+    let simd_levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(2), Detail::Boxes(9), Detail::Exact];
     let (mut contacts, kinds) = ([0; 5], ["sphere", "capsule", "cylinder", "box", "hull", "plane"]);
     for k in 0..200 {
         let a = lump(&mut r, 0.003);
         let b = if k % 2 == 0 { lump(&mut r, 0.003) } else { r.shape(kinds[k / 2 % 6]) };
         let (p, q, limit) = (r.pose(0.3), r.pose(0.8), if k % 3 == 0 { 0.05 } else { 0.0 });
         let exact = contact_point(&a, &p, &b, &q, within(limit), &mut workspace);
-        for (detail, contacts) in levels.iter().zip(&mut contacts) {
+        for (detail, contacts) in simd_levels.iter().zip(&mut contacts) {
             let settings = ContactSettings { limit, detail: *detail };
             let found = contact_point(&a, &p, &b, &q, settings, &mut workspace);
             let swapped = contact_point(&b, &q, &a, &p, settings, &mut workspace);
@@ -317,21 +317,21 @@ fn every_level_of_detail_is_conservative() {
 
 #[test]
 fn every_instruction_set_gives_the_same_point_of_two_meshes() {
-    use fearless_simd::Level;
-    let mut levels = vec![Level::new()];
+    use fearless_simd::Level as SimdLevel;
+    let mut simd_levels = vec![SimdLevel::new()];
     #[cfg(target_arch = "x86_64")]
     {
-        levels.extend(levels[0].as_sse2().map(Level::Sse2));
-        levels.extend(levels[0].as_sse4_2().map(Level::Sse4_2));
-        levels.extend(levels[0].as_avx2().map(Level::Avx2));
+        simd_levels.extend(simd_levels[0].as_sse2().map(SimdLevel::Sse2));
+        simd_levels.extend(simd_levels[0].as_sse4_2().map(SimdLevel::Sse4_2));
+        simd_levels.extend(simd_levels[0].as_avx2().map(SimdLevel::Avx2));
     }
     let mut r = Rng(9);
     let mut met = 0;
     for _ in 0..60 {
         let (a, b) = (lump(&mut r, 0.01), lump(&mut r, 0.01));
         let (p, q) = (r.pose(0.2), r.pose(0.4));
-        let found = levels.iter().map(|level| {
-            let mut workspace = Workspace::with_level(*level);
+        let found = simd_levels.iter().map(|simd_level| {
+            let mut workspace = Workspace::with_simd_level(*simd_level);
             contact_point(&a, &p, &b, &q, within(0.1), &mut workspace)
         });
         let found: Vec<_> = found.collect();

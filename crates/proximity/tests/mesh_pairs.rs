@@ -6,7 +6,7 @@ use elbowroom_proximity::advanced::{
 use elbowroom_proximity::{DistanceSettings, Separation, Shape, TriMesh, WarmStart, Workspace, collides, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 /// A generator of numbers in [0, 1) by integer arithmetic, the same on every machine.
 struct Numbers(u64);
@@ -338,15 +338,15 @@ fn nan_is_contact() {
 }
 
 /// Every instruction set of this processor.
-fn levels() -> Vec<(&'static str, Level)> {
-    let best = Level::new();
+fn simd_levels() -> Vec<(&'static str, SimdLevel)> {
+    let best = SimdLevel::new();
     let mut levels = vec![("best", best)];
     #[cfg(target_arch = "x86_64")]
     {
-        levels.extend(best.as_sse2().map(|t| ("sse2", Level::Sse2(t))));
-        levels.extend(best.as_sse4_2().map(|t| ("sse4.2", Level::Sse4_2(t))));
-        levels.extend(best.as_avx2().map(|t| ("avx2", Level::Avx2(t))));
-        levels.extend(best.as_avx512().map(|t| ("avx512", Level::Avx512(t))));
+        levels.extend(best.as_sse2().map(|t| ("sse2", SimdLevel::Sse2(t))));
+        levels.extend(best.as_sse4_2().map(|t| ("sse4.2", SimdLevel::Sse4_2(t))));
+        levels.extend(best.as_avx2().map(|t| ("avx2", SimdLevel::Avx2(t))));
+        levels.extend(best.as_avx512().map(|t| ("avx512", SimdLevel::Avx512(t))));
     }
     levels
 }
@@ -360,8 +360,8 @@ fn mix(hash: &mut u64, x: u64) {
 
 /// Hashes of a fixed workload: all answers, last bits included; and the course of the search, that is which pairs were found and
 /// how many nodes were visited.
-fn golden(level: Level) -> (u64, u64) {
-    let (mut n, mut s) = (Numbers(7), Workspace::with_level(level));
+fn golden(simd_level: SimdLevel) -> (u64, u64) {
+    let (mut n, mut s) = (Numbers(7), Workspace::with_simd_level(simd_level));
     let (mut answers, mut course) = (0xcbf2_9ce4_8422_2325, 0xcbf2_9ce4_8422_2325);
     for round in 0..120 {
         let (a, b) = if round % 3 == 0 { (n.soup(60), n.soup(40)) } else { (n.lump(6), n.lump(5)) };
@@ -395,9 +395,9 @@ const GOLDEN: u64 = 0xd7f2_aa22_0e93_64ca;
 
 #[test]
 fn every_instruction_set_gives_the_same_answers() {
-    let (_, course) = golden(Level::new());
-    for (name, level) in levels() {
-        let (answers, same_course) = golden(level);
+    let (_, course) = golden(SimdLevel::new());
+    for (name, simd_level) in simd_levels() {
+        let (answers, same_course) = golden(simd_level);
         assert_eq!(answers, GOLDEN, "{name}: {answers:#018x}");
         assert_eq!(same_course, course, "{name}: the search takes another course");
     }

@@ -1,4 +1,4 @@
-//! Motion-based face culling on closed meshes that are not convex: the same impacts with the kept faces of both as with all, and
+//! Motion-based face culling on closed meshes that are not convex: the same times of impact with the kept faces of both as with all, and
 //! the share of faces and time saved. 100,000 motions with `ELBOWROOM_LONG=1`, `--release`, `-- --nocapture` for the figures.
 
 mod common;
@@ -97,7 +97,7 @@ fn the_kept_faces_of_both_meet_when_all_do() {
         }
     }
     println!(
-        "{tested} motions, {hits} impacts, {grazes} grazes; kept {:.1} % of the faces, {:.1} % of the pairs of faces; \
+        "{tested} motions, {hits} contacts, {grazes} grazes; kept {:.1} % of the faces, {:.1} % of the pairs of faces; \
          time of impact {:.1} µs with all, {:.1} µs with the kept",
         100.0 * faces as f64 / all as f64,
         100.0 * pairs / all_pairs,

@@ -35,7 +35,7 @@ pub(super) struct PageContent<'a> {
     pub scene: Value,
 }
 
-/// Writes the report of one or several runs of the same cell, each with a label (`"control on"`).
+/// Writes the report of one or several runs of the same cell, each with a label (`"monitor on"`).
 ///
 /// The curves of all runs share their plots; the 3-D scene shows the selected run, at first the first one. The outlines
 /// of the regions are those of the first run. See the module documentation for the size.
@@ -102,10 +102,12 @@ fn placeholders(figures: &[plots::Figure]) -> String {
 fn facts(runs: &[(&str, &Recording)]) -> String {
     let mut out = String::new();
     for (label, rec) in runs {
-        let control = if rec.monitored { "monitor on" } else { "monitor off" };
+        let monitor = if rec.monitored { "monitor on" } else { "monitor off" };
+        // A label that says the same is not repeated.
+        let state = if *label == monitor { monitor.to_owned() } else { format!("{label}: {monitor}") };
         let t = rec.tick_ns;
         let line = format!(
-            "{label}: {control} · {:.2} s simulated · tick {} ms, took {} median, {} p99, {} max ({} ticks)",
+            "{state} · {:.2} s simulated · tick {} ms, took {} median, {} p99, {} max ({} ticks)",
             rec.duration_s,
             1e3 * rec.tick_s,
             duration(t.p50),

@@ -7,6 +7,7 @@ use std::{fs, io};
 use elbowroom_analysis::map::CellMap;
 use elbowroom_cspace::GridAxis;
 
+use crate::tables::escape;
 use crate::{palette, png};
 
 /// Smallest number of pixels along the shorter side.
@@ -83,10 +84,6 @@ fn color(index: usize) -> [u8; 3] {
 fn value(map: &CellMap, axis: usize, value: f64) -> String {
     let name = escape(map.axes[axis].joint());
     if map.is_angle[axis] { format!("{name} {:.1}°", value.to_degrees()) } else { format!("{name} {value:.3} m") }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
 fn page(map: &CellMap, figures: &str) -> String {

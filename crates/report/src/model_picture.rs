@@ -10,6 +10,7 @@ use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
 use crate::png;
+use crate::tables::escape;
 
 const WIDTH: usize = 960;
 const HEIGHT: usize = 720;
@@ -42,7 +43,6 @@ pub fn write_png(inspection: &Inspection, out: impl Write) -> io::Result<()> {
 /// Errors of the writer.
 pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()> {
     let colored_triangles = colored_triangles(inspection);
-    let escape = |t: &str| t.replace('&', "&amp;").replace('<', "&lt;");
     let name = escape(&inspection.name);
     writeln!(out, "<!DOCTYPE html><meta charset=\"utf-8\"><title>{name}</title><h1>{name}</h1>")?;
     for (title, turn, tilt) in

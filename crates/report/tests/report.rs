@@ -10,7 +10,7 @@ const HOSTILE: &str = "</script><script>alert(1)</script><img src=x onerror=aler
 
 fn page(on: &Recording, off: &Recording) -> String {
     let mut out = Vec::new();
-    write_html(&mut out, &report_demo::scene(), &[("control on", on), ("control off", off)]).unwrap();
+    write_html(&mut out, &report_demo::scene(), &[("monitor on", on), ("monitor off", off)]).unwrap();
     String::from_utf8(out).unwrap()
 }
 

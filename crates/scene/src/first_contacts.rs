@@ -43,9 +43,9 @@ pub struct FirstContact {
     pub fraction: f64,
 }
 
-/// How an object moves from the last call to this one.
+/// An object, and how it moved from the last call to this one.
 #[derive(Clone, Copy)]
-pub struct ObjectPath<'m> {
+pub struct MovedObject<'m> {
     /// The object.
     pub object: ObjectId,
     /// Its path; `t = 1` is now.
@@ -137,19 +137,26 @@ impl<'a> FirstContacts<'a> {
     }
 
     /// Calls `found` for each pair that touched since the last call (or, at the first call, touches) and never did before.
-    /// `states` holds forward kinematics, one per robot; `paths` the objects declared by [`Self::moving`].
-    pub fn check(&mut self, states: &[&ChainState], paths: &[ObjectPath<'_>], mut found: impl FnMut(FirstContact)) {
-        for path in paths {
-            let pose = path.path.pose(1.0);
-            self.placed[path.object.0] = (pose, self.object_boxes[path.object.0].transformed(&pose));
+    /// `states` holds forward kinematics, one per robot; `moved_objects` the objects declared by [`Self::moving`].
+    pub fn check(
+        &mut self,
+        states: &[&ChainState],
+        moved_objects: &[MovedObject<'_>],
+        mut found: impl FnMut(FirstContact),
+    ) {
+        for s in moved_objects {
+            let pose = s.path.pose(1.0);
+            self.placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         let Self { robots, objects, boxes, object_boxes, placed, last, pairs } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
-        let interval = Interval { now: &now, object_boxes, last, paths };
+        let interval = Interval { now: &now, object_boxes, last, moved_objects };
         for pair in pairs.iter_mut().filter(|p| !p.touched) {
-            let path = pair.moving_object.and_then(|(o, radius)| Some((paths.iter().find(|s| s.object == o)?, radius)));
-            let travel = path.map_or(0.0, |(s, radius)| s.path.speed(radius, 0.0, 1.0));
-            let jumped = path.is_some_and(|(s, _)| s.jumps);
+            let object = pair
+                .moving_object
+                .and_then(|(o, radius)| Some((moved_objects.iter().find(|s| s.object == o)?, radius)));
+            let travel = object.map_or(0.0, |(s, radius)| s.path.speed(radius, 0.0, 1.0));
+            let jumped = object.is_some_and(|(s, _)| s.jumps);
             pair.travel += travel;
             let moved = pair.moved(|j| states[j.robot.0].q[j.index]);
             // NaN (an unlimited slide that did not move) must be tested again.
@@ -224,7 +231,7 @@ struct Interval<'w, 'a> {
     now: &'w PlacedGeometry<'w, 'a>,
     object_boxes: &'w [Aabb],
     last: &'w [Vec<f64>],
-    paths: &'w [ObjectPath<'w>],
+    moved_objects: &'w [MovedObject<'w>],
 }
 
 impl Interval<'_, '_> {
@@ -270,7 +277,7 @@ impl Interval<'_, '_> {
             self.now.robots[r].0.chain.forward(state);
         }
         let mut placed = self.now.placed.to_vec();
-        for s in self.paths {
+        for s in self.moved_objects {
             let pose = s.path.pose(at);
             placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }

@@ -15,7 +15,7 @@ pub enum Level {
     /// One axis-aligned box in the world around each robot with the objects attached to it, and one around each other
     /// object. Links of one robot, which this level cannot separate, are compared at [`Level::L2`].
     L1,
-    /// One oriented box per link or object.
+    /// One oriented box per link or object, its axis-aligned box first.
     L2,
     /// One capsule per link or object.
     Capsule,

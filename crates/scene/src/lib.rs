@@ -51,7 +51,7 @@ pub use builder::SceneBuilder;
 pub use checker::{ApproachingPair, Checker, CheckerOptions, CollisionPoint, PairContact, PairDistance, PairQuery};
 pub use elbowroom_proximity::contact::Detail;
 pub use error::{MatrixError, SceneError};
-pub use first_contacts::{FirstContact, FirstContacts, ObjectPath};
+pub use first_contacts::{FirstContact, FirstContacts, MovedObject};
 pub use level::{Level, UnknownLevel};
 pub use level_of_detail::LevelOfDetail;
 pub use object::Object;

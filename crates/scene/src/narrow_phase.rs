@@ -65,8 +65,8 @@ impl NarrowPhase {
         if a.model.slim || b.model.slim {
             self.stats.pairs_tested.capsule += 1;
             let ([x], [y]) = (enclosure(a.model), enclosure(b.model)) else { return None };
-            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
-            if separation_within(&x.shape, &in_a, &y.shape, &in_b, limit).is_none() {
+            let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            if separation_within(&x.shape, &x_in_world, &y.shape, &y_in_world, limit).is_none() {
                 return Some(Level::Capsule);
             }
         }
@@ -113,11 +113,11 @@ impl NarrowPhase {
         b_in_world: &Pose,
         limit: f64,
     ) -> bool {
-        let (in_a, in_b) = (*a_in_world * x.in_geometry, *b_in_world * y.in_geometry);
+        let (x_in_world, y_in_world) = (*a_in_world * x.in_geometry, *b_in_world * y.in_geometry);
         let within = if limit > 0.0 {
-            self.workspace.within(&x.shape, &in_a, &y.shape, &in_b, limit)
+            self.workspace.within(&x.shape, &x_in_world, &y.shape, &y_in_world, limit)
         } else {
-            self.workspace.collides(&x.shape, &in_a, &y.shape, &in_b)
+            self.workspace.collides(&x.shape, &x_in_world, &y.shape, &y_in_world)
         };
         self.count_mesh_query(x, y);
         within
@@ -142,18 +142,18 @@ impl NarrowPhase {
         self.stats.pairs_tested.add(level, 1);
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
         if let ([x], [y]) = (of_a, of_b) {
-            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
             let settings = distance_settings(limit, &mut warm_start.mesh);
-            let found = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+            let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
             self.count_mesh_query(x, y);
             return found;
         }
         // The pair of shapes that was nearest last time gives a limit to the others.
         let (first, mut best, mut limit) = ((warm_start.shapes.0 as usize, warm_start.shapes.1 as usize), None, limit);
         if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
-            let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+            let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
             let settings = distance_settings(limit, &mut warm_start.mesh);
-            best = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+            best = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
             self.count_mesh_query(x, y);
             limit = best.map_or(limit, |s: Separation| s.distance);
         }
@@ -164,10 +164,10 @@ impl NarrowPhase {
                 if (i, j) == first || f64::from(bounds.gap(&self.bounds[j])) > limit {
                     continue;
                 }
-                let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+                let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
                 let mut mesh = WarmStart::default();
                 let settings = distance_settings(limit, &mut mesh);
-                let found = self.workspace.separation(&x.shape, &in_a, &y.shape, &in_b, settings);
+                let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
                 self.count_mesh_query(x, y);
                 let Some(s) = found else { continue };
                 best = Some(nearer(best, s));
@@ -190,13 +190,15 @@ impl NarrowPhase {
         limit: f64,
     ) -> Option<(f64, [Vec3; 2])> {
         let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
-        let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
-        let beyond = (limit + 1e-9 * (1.0 + limit), [in_a.translation, in_b.translation]);
+        let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+        let beyond = (limit + 1e-9 * (1.0 + limit), [x_in_world.translation, y_in_world.translation]);
         let coarse = match (&x.shape, &y.shape) {
-            (Shape::Mesh(m), Shape::Mesh(n)) => bvh_lower_bound(m, &in_a, n, &in_b, depth, limit, &mut self.workspace),
-            (Shape::Mesh(m), other) => Some(bvh_lower_bound_to_shape(m, &in_a, other, &in_b, depth)?),
+            (Shape::Mesh(m), Shape::Mesh(n)) => {
+                bvh_lower_bound(m, &x_in_world, n, &y_in_world, depth, limit, &mut self.workspace)
+            }
+            (Shape::Mesh(m), other) => Some(bvh_lower_bound_to_shape(m, &x_in_world, other, &y_in_world, depth)?),
             (other, Shape::Mesh(m)) => {
-                let coarse = bvh_lower_bound_to_shape(m, &in_b, other, &in_a, depth)?;
+                let coarse = bvh_lower_bound_to_shape(m, &y_in_world, other, &x_in_world, depth)?;
                 return Some((coarse.lower_bound, [coarse.on_b, coarse.on_a]));
             }
             _ => return None,
@@ -224,8 +226,8 @@ impl NarrowPhase {
                 if bounds.separated(&self.bounds[j], margin) {
                     continue;
                 }
-                let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
-                let found = contact_point(&x.shape, &in_a, &y.shape, &in_b, settings, &mut self.workspace);
+                let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+                let found = contact_point(&x.shape, &x_in_world, &y.shape, &y_in_world, settings, &mut self.workspace);
                 self.count_mesh_query(x, y);
                 match found {
                     Some(c) if c.touching => return Some(((i, j), c)),
@@ -240,8 +242,8 @@ impl NarrowPhase {
     /// An upper bound (m) on the distance of the exact models; `None` where it is not cheap.
     pub fn upper_bound(&mut self, a: &PlacedModel, b: &PlacedModel, warm_start: &mut PairWarmStart) -> Option<f64> {
         let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
-        let (in_a, in_b) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
-        self.workspace.distance_upper_bound(&x.shape, &in_a, &y.shape, &in_b, &mut warm_start.mesh)
+        let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
+        self.workspace.distance_upper_bound(&x.shape, &x_in_world, &y.shape, &y_in_world, &mut warm_start.mesh)
     }
 
     fn fill_bounds(&mut self, shapes: &[LocalShape], in_world: &Pose) {

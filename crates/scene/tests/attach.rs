@@ -45,10 +45,10 @@ fn an_attached_object_answers_as_the_object_at_its_pose() {
             seen[usize::from(x.metres > 0.0)] += 1;
         }
         // All pairs one by one.
-        let members: Vec<GeometryId> = scene.geometries().collect();
+        let geometries: Vec<GeometryId> = scene.geometries().collect();
         let mut nearest = f64::INFINITY;
-        for (i, a) in members.iter().enumerate() {
-            for b in &members[i + 1..] {
+        for (i, a) in geometries.iter().enumerate() {
+            for b in &geometries[i + 1..] {
                 let why = held.pair(&scene, *a, *b).map(|p| p.1);
                 if matches!(why, Some(Reason::Default | Reason::OutOfReach { .. })) {
                     let margin = if *b == GeometryId::Object(ObjectId(5)) || *a == GeometryId::Object(ObjectId(5)) {

@@ -53,7 +53,7 @@ fn the_link_nearest_to_a_base_is_reported_with_its_point() {
         let depth = |m: GeometryId| if let GeometryId::Link { link, .. } = m { link.0 } else { usize::MAX };
         let highest = all.iter().map(|(a, b)| depth(*a).min(depth(*b))).min().unwrap();
         assert_eq!(depth(c.link), highest);
-        assert!(c.touching && c.level == Detail::Exact);
+        assert!(c.touching && c.detail == Detail::Exact);
         check(&scene, &state, &c);
         several += usize::from(all.len() > 1);
         met += 1;
@@ -73,16 +73,16 @@ fn boxes_are_conservative_and_deeper_ones_are_tighter() {
     let mut checker =
         Checker::new(&scene, CheckerOptions { start: elbowroom_scene::Level::L3, ..CheckerOptions::default() });
     let mut r = Random(32);
-    let levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(9), Detail::Exact];
+    let details = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(9), Detail::Exact];
     let mut reported = [0; 4];
     for _ in 0..400 {
         let state = random_state(&scene, &mut r);
-        let found = levels.map(|detail| checker.collision_point(&state, detail));
+        let found = details.map(|detail| checker.collision_point(&state, detail));
         for (i, c) in found.iter().enumerate() {
             assert!(c.is_some() || found[3].is_none());
             reported[i] += usize::from(c.is_some());
             let Some(c) = c else { continue };
-            assert_eq!(c.level, levels[i]);
+            assert_eq!(c.detail, details[i]);
             if i < 3 {
                 assert!(distance_to_surface(&scene, &state, c.link, c.collider, c.on_link) < 1e-5, "{c:?}");
             }

@@ -5,7 +5,7 @@ use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
 use elbowroom_proximity::{Capsule, Cuboid, Shape, Sphere, collides};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs, rest_pose_contacts};
 
-use elbowroom_scene::{FirstContacts, Object, ObjectPath};
+use elbowroom_scene::{FirstContacts, MovedObject, Object};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::linear_congruential;
 
@@ -147,9 +147,9 @@ fn every_first_contact_is_found_with_its_time() {
             let time = |fraction: f64| (f64::from(step) - 1.0 + fraction).max(0.0) / f64::from(steps);
             let (states, ball) = at(time(1.0));
             let path = ConstantTwist::linear(at(time(0.0)).1, ball.translation - at(time(0.0)).1.translation);
-            let moves = [ObjectPath { object: ObjectId(0), path: &path as &dyn RigidMotion, jumps: false }];
+            let moved = [MovedObject { object: ObjectId(0), path: &path as &dyn RigidMotion, jumps: false }];
             let mut found = Vec::new();
-            checker.check(&[&states[0], &states[1]], &moves, |c| found.push(((c.a, c.b), c.fraction)));
+            checker.check(&[&states[0], &states[1]], &moved, |c| found.push(((c.a, c.b), c.fraction)));
             for pair in setup.pairs().into_iter().filter(|p| !known.contains(p)) {
                 let first = (1..=fine).map(|k| f64::from(k) / f64::from(fine)).find(|f| {
                     let (states, ball) = at(time(*f));

@@ -102,11 +102,11 @@ fn proofs_are_not_used_where_they_do_not_hold() {
     assert!(checker.collides(&state).is_none());
     assert!(checker.stats().pairs_skipped > 0);
     let mut r = Random(9);
-    let only_foot = |state: &SceneState| {
+    let only_base_link = |state: &SceneState| {
         let touches = |a, b| apart(&scene, state, a, b) == 0.0;
         touches(link(0, 0), link(0, 3)) && !touches(link(0, 0), link(0, 2)) && !touches(link(0, 1), link(0, 3))
     };
-    while !only_foot(&state) {
+    while !only_base_link(&state) {
         state.set_q(&scene, RobotId(0), &[0.0, r.between(-3.0, 3.0), r.between(-3.0, 3.0)]).unwrap();
     }
     let c = checker.collides(&state).expect("beyond the limits it touches");

@@ -162,7 +162,7 @@ fn recordings_play_back_on_their_rows_and_obey_the_override() {
         rail("r", 0.0)
     );
     let cell = Cell::parse(dir.path().join("c.toml"), &text).unwrap();
-    let free = simulate(&cell, &RunOptions { monitored: false, ..RunOptions::default() }).unwrap().recording;
+    let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap().recording;
     assert!(free.robots[0].finished && (free.duration_s - 2.0).abs() < 0.005);
     for s in &free.robots[0].samples {
         assert!((s.q[0] - 0.5 * (s.t_s * 1.5).sin()).abs() < 1e-9);

@@ -25,7 +25,7 @@ fn a_tcp_outside_of_the_solids_is_guarded_with_tool_and_arm() {
         let outcome = run(&text);
         let z = &outcome.recording.regions[0];
         assert!(!outcome.recording.robots[0].finished && !z.entered, "{guards}: {:?}", z.min_distance_m);
-        let free = simulate(&parse(&text), &RunOptions { monitored: false, ..RunOptions::default() }).unwrap();
+        let free = simulate(&parse(&text), &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap();
         assert!(free.recording.regions[0].entered, "{guards}: without the monitor it goes through");
     }
 }

@@ -117,7 +117,7 @@ impl Setting {
     /// The TCP at the share `met_at` of its unmonitored path; `None` where the program is infeasible.
     fn place(&self) -> Option<[f64; 3]> {
         let cell = Cell::parse("c.toml", &self.text([90.0, 0.0, 0.0], 0.001)).ok()?;
-        let run = simulate(&cell, &RunOptions { monitored: false, ..RunOptions::default() }).ok()?.recording;
+        let run = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).ok()?.recording;
         let samples = &run.robots[0].samples;
         Some(samples[(samples.len() as f64 * self.met_at) as usize].tcp.to_array())
     }

@@ -50,7 +50,7 @@ const FROZEN_MARGIN_PX: f64 = 4.0;
 /// }
 /// frame.stamp_s = 0.2;
 /// let report = tracker.process(&frame, None)?;
-/// assert_eq!((report.status, report.obstacles.len()), (FrameStatus::Valid, 1));
+/// assert_eq!((report.status, report.obstacles.len()), (FrameStatus::Accepted, 1));
 /// let obstacle = &report.obstacles[0];
 /// assert!(obstacle.change == ObstacleChange::Entered && (obstacle.centre_m.x - 0.4).abs() < 0.02);
 /// # Ok::<(), elbowroom_vision::VisionError>(())
@@ -253,7 +253,7 @@ impl CameraTracker {
         self.report.timings.prisms = stopwatch.lap();
         self.adapt(frame);
         self.report.timings.adapt = stopwatch.lap();
-        self.report.status = FrameStatus::Valid;
+        self.report.status = FrameStatus::Accepted;
         Ok(())
     }
 

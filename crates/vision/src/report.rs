@@ -32,9 +32,9 @@ pub enum FrameStatus {
         /// Frames of the empty cell still to come.
         frames_left: u32,
     },
-    /// The frame was evaluated: where no obstacle is reported, none was detected.
-    Valid,
-    /// The frame was not evaluated: the obstacles are those of the last valid frame. Unknown is not free: the caller
+    /// The frame was accepted and evaluated: where no obstacle is reported, none was detected.
+    Accepted,
+    /// The frame was not evaluated: the obstacles are those of the last accepted frame. Unknown is not free: the caller
     /// should stop what relies on it.
     Rejected(RejectReason),
 }

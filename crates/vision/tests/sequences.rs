@@ -35,7 +35,7 @@ fn noisy_frames_of_the_empty_cell_give_no_obstacle_while_the_light_drifts() {
             scene.conditions.slope = 0.15 * t;
             let report = scene.step(&[]);
             assert!(report.obstacles.is_empty(), "frame {i}: {:?}", report.obstacles);
-            assert_eq!(report.status, elbowroom_vision::FrameStatus::Valid);
+            assert_eq!(report.status, elbowroom_vision::FrameStatus::Accepted);
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The collision point beside Coal: robots of the data in slight contact with themselves, a box and a mesh. Point, triangles,
-//! normals and the link nearest to the base must be those that Coal finds when it is asked pair by pair.
+//! normals and the link nearest to the base must be those that Coal finds when it checks pair by pair.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -99,7 +99,7 @@ fn compare_all(
         let scene = world::scene(&files.name, robot, world::objects(root, &alone)?)?;
         let states = at_contact(&scene, &random)?;
         let (ours, us) = ours(&scene, &states)?;
-        let (tally, why) = ask(python, folder, files, &scene, (&states, &ours))?;
+        let (tally, why) = query_reference(python, folder, files, &scene, (&states, &ours))?;
         print!("{:<24}", files.name);
         for word in COUNTED.iter().chain(&WRONG) {
             print!(" {:>9}", tally.get(*word).copied().unwrap_or(0));
@@ -150,11 +150,11 @@ fn at_contact(scene: &Scene, random: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Strin
 fn ours(scene: &Scene, states: &[Vec<f64>]) -> Result<(String, f64), String> {
     let mut first = BTreeMap::new();
     let mut count = 0;
-    for member in scene.geometries() {
-        first.insert(member, count);
-        count += world::bodies(scene, member).len();
+    for geometry in scene.geometries() {
+        first.insert(geometry, count);
+        count += world::colliders(scene, geometry).len();
     }
-    let geometry = |member: GeometryId, body: usize| first.get(&member).copied().unwrap_or(0) + body;
+    let index = |geometry: GeometryId, collider: usize| first.get(&geometry).copied().unwrap_or(0) + collider;
     let mut checker = Checker::new(scene, CheckerOptions::default());
     let mut state = SceneState::new(scene);
     let mut text = String::new();
@@ -169,7 +169,7 @@ fn ours(scene: &Scene, states: &[Vec<f64>]) -> Result<(String, f64), String> {
             continue;
         };
         let number = |t: Option<u32>| t.map_or(-1, i64::from);
-        let (i, j) = (geometry(c.link, c.collider), geometry(c.other, c.other_collider));
+        let (i, j) = (index(c.link, c.collider), index(c.other, c.other_collider));
         let touching = u8::from(c.touching);
         let _ = write!(text, "{i} {j} {} {} {touching}", number(c.triangle), number(c.other_triangle));
         for v in [c.on_link, c.on_other, c.normal, c.other_normal] {
@@ -182,7 +182,7 @@ fn ours(scene: &Scene, states: &[Vec<f64>]) -> Result<(String, f64), String> {
 
 type Tally = (BTreeMap<String, usize>, Vec<String>);
 
-fn ask(
+fn query_reference(
     python: &Path,
     folder: &Path,
     files: &world::Files,

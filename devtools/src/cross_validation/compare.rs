@@ -32,16 +32,16 @@ pub struct Comparison {
     pub first: Vec<String>,
     /// Greatest relative difference of distances that agree.
     pub worst: f64,
-    /// µs per state: joint values set and distance asked.
+    /// µs per state: joint values set and distance computed.
     pub distance_us: f64,
-    /// µs per state: joint values set and collision asked.
+    /// µs per state: joint values set and collision computed.
     pub collide_us: f64,
 }
 
 /// What Coal's GJK may leave of a pair with a primitive, m and relative.
 const ITERATED: f64 = 2e-6;
 
-/// Asks our checker about every state and compares.
+/// Queries our checker in every state and compares.
 pub fn compare(scene: &Scene, states: &[Vec<f64>], theirs: &Answers) -> Result<Comparison, String> {
     let (ours, distance_us) = timed(scene, states, Checker::distance)?;
     let (hits, collide_us) = timed(scene, states, |checker, state| checker.collides(state).is_some())?;
@@ -97,19 +97,19 @@ const PASSES: usize = 5;
 fn timed<'s, T>(
     scene: &'s Scene,
     states: &[Vec<f64>],
-    mut ask: impl FnMut(&mut Checker<'s>, &SceneState) -> T,
+    mut query: impl FnMut(&mut Checker<'s>, &SceneState) -> T,
 ) -> Result<(Vec<T>, f64), String> {
     let mut least = f64::INFINITY;
     let mut answers = Vec::new();
     for _ in 0..PASSES {
         let mut checker = Checker::new(scene, CheckerOptions::default());
         let mut state = SceneState::new(scene);
-        ask(&mut checker, &state);
+        query(&mut checker, &state);
         answers = Vec::with_capacity(states.len());
         let started = Instant::now();
         for q in states {
             state.set_q(scene, RobotId(0), q).map_err(|e| e.to_string())?;
-            answers.push(ask(&mut checker, &state));
+            answers.push(query(&mut checker, &state));
         }
         least = least.min(started.elapsed().as_secs_f64());
     }
@@ -120,8 +120,8 @@ fn timed<'s, T>(
 fn is_contained(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     let mut workspace = Workspace::new();
     let mut inside = false;
-    for a in world::bodies(scene, found.a) {
-        for b in world::bodies(scene, found.b) {
+    for a in world::colliders(scene, found.a) {
+        for b in world::colliders(scene, found.b) {
             let (a_in_world, b_in_world) = (placed(scene, state, found.a), placed(scene, state, found.b));
             let (Some(pose_a), Some(pose_b)) = (a_in_world, b_in_world) else { return false };
             let (pose_a, pose_b) = (pose_a * a.in_link, pose_b * b.in_link);
@@ -141,16 +141,16 @@ fn is_contained(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool
     inside
 }
 
-fn placed(scene: &Scene, state: &SceneState, member: GeometryId) -> Option<elbowroom_spatial::Pose> {
-    state.pose(scene, member)
+fn placed(scene: &Scene, state: &SceneState, id: GeometryId) -> Option<elbowroom_spatial::Pose> {
+    state.pose(scene, id)
 }
 
 /// True where a primitive is nearest. Where it is a box, its twelve triangles must be as far away as we say: triangles
 /// against triangles is where both agree to the last digits, so that what is left is Coal's iteration.
 fn iterated(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
-    let [a, b] = [found.a, found.b].map(|m| world::bodies(scene, m));
-    let is_mesh = |body: &&Collider| matches!(body.shape, Shape::Mesh(_));
-    if a.iter().chain(&b).all(|body| is_mesh(&body)) {
+    let [a, b] = [found.a, found.b].map(|m| world::colliders(scene, m));
+    let is_mesh = |collider: &&Collider| matches!(collider.shape, Shape::Mesh(_));
+    if a.iter().chain(&b).all(|collider| is_mesh(&collider)) {
         return false;
     }
     let [Some(pose_a), Some(pose_b)] = [found.a, found.b].map(|m| state.pose(scene, m)) else { return false };

@@ -97,7 +97,7 @@ fn compare_all(
                 continue;
             }
             let known = before.as_ref().map(|alone| &alone.least[..]);
-            let mut theirs = reference::ask(python, folder, &files.urdf, scene, &states, &pairs, known)
+            let mut theirs = reference::query_reference(python, folder, &files.urdf, scene, &states, &pairs, known)
                 .map_err(|e| format!("{}: {e}", files.name))?;
             theirs.bounded_us += before.map_or(0.0, |alone| alone.bounded_us);
             let comparison = compare::compare(scene, &states, &theirs)?;
@@ -221,7 +221,7 @@ mod tests {
         let scene = world::scene("rx60b", robot, world::objects(&root, &alone).unwrap()).unwrap();
         let folder = std::env::temp_dir().join(format!("elbowroom-cross-validate-test-{}", std::process::id()));
         let pairs = world::by_rule(&scene);
-        let theirs = reference::ask(&python, &folder, &files.urdf, &scene, &states, &pairs, None);
+        let theirs = reference::query_reference(&python, &folder, &files.urdf, &scene, &states, &pairs, None);
         let _ = std::fs::remove_dir_all(&folder);
         let mut theirs = theirs.unwrap();
         let comparison = compare::compare(&scene, &states, &theirs).unwrap();

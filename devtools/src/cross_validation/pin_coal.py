@@ -3,11 +3,11 @@
 usage: pin_coal.py FOLDER
 
 FOLDER/job.txt says what there is, a line each, words apart by tabs:
-  urdf PATH | joints NAME… | states COUNT | whole COUNT | pair I J ASKED
+  urdf PATH | joints NAME… | states COUNT | whole COUNT | pair I J QUERIED
   geometry LINK KIND NUMBERS… POSE (12 numbers, rows of 3x4): box x y z | sphere r | cylinder r height | capsule r height-without-caps | mesh NV NT
-  LINK is empty for what stands in the world. ASKED is 0 for a pair whose distance FOLDER/known.bin covers.
+  LINK is empty for what stands in the world. QUERIED is 0 for a pair whose distance FOLDER/known.bin covers.
 FOLDER/job.bin holds the states (f64), then of each mesh its corners (f64) and triangles (u32).
-FOLDER/known.bin, where there is one, holds the least distance over the pairs not asked for (f64 per state).
+FOLDER/known.bin, where there is one, holds the least distance over the pairs that are not queried (f64 per state).
 Written: FOLDER/least.bin (f64 per state: least distance over all pairs, each pair within the least so far),
 FOLDER/whole.bin (f64, for the first `whole` states: least of computeDistances, every pair to the end) and
 FOLDER/collides.bin (u8 per state). Printed: microseconds per state of computeDistances and of computeCollisions, which
@@ -115,17 +115,17 @@ def build(job):
 
 
 class Bounded:
-    """The least distance over the asked pairs: Coal measures each pair within the least so far.
+    """The least distance over the queried pairs: Coal measures each pair within the least so far.
 
-    A DistanceResult whose min_distance is set is a limit to Coal's search: what is farther is left out. Pairs are asked
+    A DistanceResult whose min_distance is set is a limit to Coal's search: what is farther is left out. Pairs are queried
     in the order of the gaps of the boxes around them, until a gap exceeds the least; a gap is never above the distance.
     """
 
     def __init__(self, job, solids, boxes, request):
-        asked = [(a, b) for a, b, ask in job.pairs if ask]
-        self.a, self.b = (np.array([pair[i] for pair in asked], dtype=int) for i in (0, 1))
+        queried = [(a, b) for a, b, is_queried in job.pairs if is_queried]
+        self.a, self.b = (np.array([pair[i] for pair in queried], dtype=int) for i in (0, 1))
         shapes = [solid.geometry for solid in solids.geometryObjects]
-        self.measure = [coal.ComputeDistance(shapes[a], shapes[b]) for a, b in asked]
+        self.measure = [coal.ComputeDistance(shapes[a], shapes[b]) for a, b in queried]
         self.half, self.middle = (np.array([box[i] for box in boxes]) for i in (0, 1))
         self.request, self.result = request, coal.DistanceResult()
 
@@ -176,7 +176,7 @@ def main():
     model, solids, boxes = build(job)
     data, solid_data, as_it_comes = model.createData(), solids.createData(), solids.createData()
     # Tighter than its default, which is good to a micrometre: for pairs with a primitive, and for contacts of meshes,
-    # whose triangles Coal measures by GJK as well when it asks whether they touch.
+    # whose triangles Coal measures by GJK as well when it tests whether they touch.
     for request in [*solid_data.distanceRequests, *solid_data.collisionRequests]:
         request.gjk_tolerance = 1e-10
         request.gjk_max_iterations = 1000

@@ -17,7 +17,7 @@ pub struct Answers {
     pub least: Vec<f64>,
     /// Per state.
     pub collides: Vec<bool>,
-    /// Pairs of bodies.
+    /// Pairs of colliders.
     pub pairs: usize,
     /// µs per state of `computeDistances`, over the first [`WHOLE`] states.
     pub distance_us: f64,
@@ -37,9 +37,9 @@ pub const SCRIPT: &[u8] = include_bytes!("pin_coal.py");
 /// What the bound may change of a least distance, as a share of it: nothing but rounding.
 const BOUNDED: f64 = 1e-12;
 
-/// Asks for every pair of bodies of the `pairs` of members. Where the least distance of the pairs without an object is
+/// Queries every pair of colliders of the `pairs` of geometries. Where the least distance of the pairs without an object is
 /// `known` per state, only the others are measured.
-pub fn ask(
+pub fn query_reference(
     python: &Path,
     folder: &Path,
     urdf: &Path,
@@ -75,7 +75,7 @@ pub fn ask(
     let (least, whole) = (numbers("least.bin")?, numbers("whole.bin")?);
     let collides: Vec<bool> = read("collides.bin")?.iter().map(|b| *b != 0).collect();
     if [least.len(), collides.len()] != [states.len(); 2] || whole.len() != states.len().min(WHOLE) {
-        return Err("the reference printed fewer answers than were asked for".into());
+        return Err("the reference printed fewer answers than were requested".into());
     }
     same(&least, &whole)?;
     Ok(Answers { least, collides, pairs, distance_us, collide_us, bounded_us })
@@ -92,7 +92,7 @@ fn same(least: &[f64], whole: &[f64]) -> Result<(), String> {
     }
 }
 
-/// Text, numbers, pairs of bodies.
+/// Text, numbers, pairs of colliders.
 pub type Job = (String, Vec<u8>, usize);
 
 pub fn job(
@@ -109,25 +109,25 @@ pub fn job(
     let mut binary: Vec<u8> = states.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
     let mut first = Vec::new();
     let mut count = 0;
-    for member in scene.geometries() {
-        let bodies = world::bodies(scene, member);
-        first.push((member, count..count + bodies.len()));
-        count += bodies.len();
-        for body in bodies {
-            let pose = if let GeometryId::Object(o) = member { scene.objects()[o.0].in_world } else { body.in_link };
-            geometry(&mut text, &mut binary, &world::link_name(scene, member), &body.shape, &pose)?;
+    for id in scene.geometries() {
+        let colliders = world::colliders(scene, id);
+        first.push((id, count..count + colliders.len()));
+        count += colliders.len();
+        for collider in colliders {
+            let pose = if let GeometryId::Object(o) = id { scene.objects()[o.0].in_world } else { collider.in_link };
+            geometry(&mut text, &mut binary, &world::link_name(scene, id), &collider.shape, &pose)?;
         }
     }
-    let of = |member| first.iter().find(|(m, _)| *m == member).map_or(0..0, |(_, range)| range.clone());
-    let mut of_bodies = 0;
+    let of = |id| first.iter().find(|(m, _)| *m == id).map_or(0..0, |(_, range)| range.clone());
+    let mut collider_pairs = 0;
     for &(a, b) in pairs {
-        let asked = !objects_only || [a, b].iter().any(|m| matches!(m, GeometryId::Object(_)));
+        let requested = !objects_only || [a, b].iter().any(|m| matches!(m, GeometryId::Object(_)));
         for (i, j) in of(a).flat_map(|i| of(b).map(move |j| (i, j))) {
-            let _ = writeln!(text, "pair\t{i}\t{j}\t{}", u8::from(asked));
-            of_bodies += 1;
+            let _ = writeln!(text, "pair\t{i}\t{j}\t{}", u8::from(requested));
+            collider_pairs += 1;
         }
     }
-    Ok((text, binary, of_bodies))
+    Ok((text, binary, collider_pairs))
 }
 
 fn geometry(text: &mut String, binary: &mut Vec<u8>, link: &str, shape: &Shape, pose: &Pose) -> Result<(), String> {

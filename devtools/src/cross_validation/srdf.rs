@@ -44,8 +44,8 @@ pub fn compare(name: &str, plain: Robot, disabled: &[(LinkId, LinkId, String)]) 
 }
 
 fn has_entry(scene: &Scene, a: LinkId, b: LinkId) -> bool {
-    let member = |link| GeometryId::Link { robot: RobotId(0), link };
-    scene.allowed_collision_matrix().get(member(a), member(b)).is_some()
+    let geometry = |link| GeometryId::Link { robot: RobotId(0), link };
+    scene.allowed_collision_matrix().get(geometry(a), geometry(b)).is_some()
 }
 
 impl Comparison {

@@ -39,7 +39,7 @@ pub fn find(data: &Path) -> Vec<Files> {
     found
 }
 
-/// Loads it, with its SRDF where asked for and there.
+/// Loads it, with its SRDF where requested and there.
 pub fn load(files: &Files, with_srdf: bool) -> Result<Robot, String> {
     let srdf = files.srdf.clone().filter(|_| with_srdf);
     let options = LoadOptions { srdf, ..LoadOptions::default() };
@@ -81,19 +81,19 @@ pub fn objects(root: &Path, alone: &Scene) -> Result<Vec<Object>, String> {
 fn extent(scene: &Scene) -> Aabb {
     let state = SceneState::new(scene);
     let mut around: Option<Aabb> = None;
-    for member in scene.geometries() {
-        let Some(pose) = state.pose(scene, member) else { continue };
-        for body in bodies(scene, member) {
-            let next = body.shape.aabb(&(pose * body.in_link));
+    for id in scene.geometries() {
+        let Some(pose) = state.pose(scene, id) else { continue };
+        for collider in colliders(scene, id) {
+            let next = collider.shape.aabb(&(pose * collider.in_link));
             around = Some(around.map_or(next, |a| Aabb { min: a.min.min(next.min), max: a.max.max(next.max) }));
         }
     }
     around.unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::splat(1.0) })
 }
 
-/// What a member is made of; an object's frame is its shape's.
-pub fn bodies(scene: &Scene, member: GeometryId) -> Vec<Collider> {
-    match member {
+/// Colliders of a geometry; an object's frame is its shape's.
+pub fn colliders(scene: &Scene, id: GeometryId) -> Vec<Collider> {
+    match id {
         GeometryId::Link { robot, link } => scene.robots()[robot.0].robot.colliders[link.0].clone(),
         GeometryId::Object(o) => {
             let object = &scene.objects()[o.0];
@@ -109,8 +109,8 @@ pub fn by_rule(scene: &Scene) -> Vec<(GeometryId, GeometryId)> {
 }
 
 /// Name of the link; empty for an object.
-pub fn link_name(scene: &Scene, member: GeometryId) -> String {
-    match member {
+pub fn link_name(scene: &Scene, id: GeometryId) -> String {
+    match id {
         GeometryId::Link { robot, link: LinkId(link) } => scene.robots()[robot.0].robot.chain.links()[link].clone(),
         GeometryId::Object(_) => String::new(),
     }

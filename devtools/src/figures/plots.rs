@@ -1,7 +1,7 @@
 //! What the figures show.
 
 use elbowroom_monitor::laws::{rate_limited, speed_zone, warning_factor};
-use elbowroom_monitor::{Laws, Stopping};
+use elbowroom_monitor::{Laws, StoppingSettings};
 
 use super::rail::{Rail, TICK_S};
 use super::svg::{Axis, Curve, Dash, Plot};
@@ -140,7 +140,7 @@ fn minimum() -> Plot {
         curve("second ball", 1, Dash::Dashed, over(0.0, 1200.0, second)),
         curve("minimum", 2, Dash::Solid, over(0.0, 1200.0, |x| first(x).min(second(x)))),
     ];
-    let x = Axis { title: "way along the line (mm)", from: 0.0, to: 1200.0, step: 200.0 };
+    let x = Axis { title: "distance along the line (mm)", from: 0.0, to: 1200.0, step: 200.0 };
     Plot { title: "Two regions: the smaller override counts", x, y: override_axis(), curves }
 }
 
@@ -215,7 +215,7 @@ fn hysteresis() -> Result<Plot, String> {
 
 fn stopping() -> Plot {
     let (deceleration, reaction_s) = (2.0, 0.05);
-    let law = Stopping {
+    let law = StoppingSettings {
         reaction_s,
         period_s: TICK_S,
         joint_deceleration: vec![deceleration],
@@ -224,7 +224,9 @@ fn stopping() -> Plot {
     let laws = Laws { stopping_distance: Some(law), ..Laws::default() };
     let allowed = |speed: f64| {
         let laws = laws.clone();
-        move |d: f64| Rail::new(laws.clone(), 0.0, 0.001, d / MM).map_or(0.0, |mut rail| 100.0 * rail.ask(speed))
+        move |d: f64| {
+            Rail::new(laws.clone(), 0.0, 0.001, d / MM).map_or(0.0, |mut rail| 100.0 * rail.override_at_rest(speed))
+        }
     };
     let mut curves: Vec<Curve> = [0.25, 0.5, 1.0, 2.0]
         .iter()

@@ -55,11 +55,11 @@ impl Rail {
         f64::from(self.ticks) * TICK_S
     }
 
-    /// The override that a standing robot is asked for whose program goes at `intent` (m/s) at override 1.
-    pub fn ask(&mut self, intent: f64) -> f64 {
+    /// The speed override that the monitor computes for a stationary robot whose program goes at `intent` (m/s) at override 1.
+    pub fn override_at_rest(&mut self, intent: f64) -> f64 {
         let (q, intent) = ([BORDER_M - self.distance_m], [intent]);
-        let still = Snapshot::stationary(self.time_s(), &q);
-        self.monitor.tick(&Snapshot { qd: &[0.0], intent: Some(&intent), ..still }).speed_override
+        let stationary = Snapshot::stationary(self.time_s(), &q);
+        self.monitor.tick(&Snapshot { qd: &[0.0], intent: Some(&intent), ..stationary }).speed_override
     }
 
     /// One tick, then one step of the program, which asks for `intent` (m/s, positive towards the ball) at override 1.

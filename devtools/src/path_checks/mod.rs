@@ -49,7 +49,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let python = cross_validation::interpreter(root)?;
     let folder = std::env::temp_dir().join(format!("elbowroom-paths-{}", std::process::id()));
-    let hits = judge_all(root, &python, &folder, &options);
+    let hits = check_all(root, &python, &folder, &options);
     let _ = std::fs::remove_dir_all(&folder);
     match hits? {
         0 => Ok(()),
@@ -58,7 +58,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
 }
 
 /// Paths on which the reference finds a collision.
-fn judge_all(root: &Path, python: &Path, folder: &Path, options: &Options) -> Result<usize, String> {
+fn check_all(root: &Path, python: &Path, folder: &Path, options: &Options) -> Result<usize, String> {
     let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
     if !options.json {
         println!("{}", course::HEAD);

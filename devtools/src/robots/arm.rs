@@ -14,24 +14,24 @@ pub const Z_DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 pub struct Colours {
     /// From the turntable to the forearm.
     pub paint: [f64; 3],
-    /// Foot and wrist.
+    /// Base and wrist.
     pub cast: [f64; 3],
 }
 
 const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
 
-/// From the foot to the frame that lies on the flange.
+/// From the base to the frame that lies on the flange.
 const LINKS: [&str; 8] = ["base_link", "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "tool0"];
 
 /// A joint's name, where it stands in the link before (m), its axis, its range (degrees), its speed (degrees per second).
 pub type Axis = (&'static str, [f64; 3], [f64; 3], [f64; 2], f64);
 
-/// Links of meshes, foot to flange, and a bare frame.
+/// Links of meshes, base to flange, and a bare frame.
 pub fn of_meshes(parts: [Mesh; 7], colours: &Colours) -> Vec<Link> {
     links(parts.map(|mesh| (Some(mesh), Vec::new())), colours)
 }
 
-/// Links of primitives, foot to flange, and a bare frame.
+/// Links of primitives, base to flange, and a bare frame.
 pub fn of_primitives(parts: [Vec<Primitive>; 7], colours: &Colours) -> Vec<Link> {
     links(parts.map(|primitives| (None, primitives)), colours)
 }
@@ -43,7 +43,7 @@ fn links(parts: [(Option<Mesh>, Vec<Primitive>); 7], &Colours { paint, cast }: &
     named.map(|((name, (solid, primitives)), colour)| Link { name, solid, primitives, colour }).collect()
 }
 
-/// Six joints that turn, foot to flange, and where the bare frame stands on the last link: metres; roll, pitch, yaw.
+/// Six joints that turn, base to flange, and where the bare frame stands on the last link: metres; roll, pitch, yaw.
 pub fn joints(axes: &[Axis; 6], [frame_xyz, frame_rpy]: [[f64; 3]; 2]) -> Vec<Joint> {
     let turning = |(i, &(name, xyz, axis, range_deg, speed_deg_s)): (usize, &Axis)| Joint {
         name,

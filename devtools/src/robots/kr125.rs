@@ -50,7 +50,7 @@ fn joints() -> Vec<Joint> {
     arm::joints(&axes, [[0.21, 0.0, 0.0], tool_rpy])
 }
 
-/// A foot plate and a pedestal.
+/// A base plate and a pedestal.
 fn base() -> Vec<Primitive> {
     vec![cuboid([0.0, 0.0, 0.02], [0.9, 0.9, 0.04]), upright([0.0, 0.0, 0.19], 0.34, 0.30)]
 }

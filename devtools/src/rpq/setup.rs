@@ -35,8 +35,8 @@ pub fn scene(arm: &Robot, distance_m: f64) -> Result<Scene, String> {
 
 /// Triangles of one arm.
 pub fn triangles(arm: &Robot) -> usize {
-    let bodies = arm.colliders.iter().flatten();
-    bodies.map(|body| if let Shape::Mesh(mesh) = &body.shape { mesh.triangles().len() } else { 0 }).sum()
+    let colliders = arm.colliders.iter().flatten();
+    colliders.map(|collider| if let Shape::Mesh(mesh) = &collider.shape { mesh.triangles().len() } else { 0 }).sum()
 }
 
 /// Joint values of both arms, within their limits, one row of 12 per state.
@@ -90,11 +90,11 @@ mod tests {
     #[test]
     fn every_solid_is_closed_and_faces_outward() {
         let arm = arm(&crate::workspace_root().unwrap()).unwrap();
-        for body in arm.colliders.iter().flatten() {
-            let Shape::Mesh(mesh) = &body.shape else { panic!("{} is no mesh", body.name) };
+        for collider in arm.colliders.iter().flatten() {
+            let Shape::Mesh(mesh) = &collider.shape else { panic!("{} is no mesh", collider.name) };
             let report = mesh.report();
-            assert!(report.closed && !report.inside_out && report.volume > 0.0, "{}: {report:?}", body.name);
-            assert_eq!((report.degenerate, report.duplicate), (0, 0), "{}", body.name);
+            assert!(report.closed && !report.inside_out && report.volume > 0.0, "{}: {report:?}", collider.name);
+            assert_eq!((report.degenerate, report.duplicate), (0, 0), "{}", collider.name);
         }
     }
 }

@@ -56,7 +56,7 @@ pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut
             n: time.records,
             answers_checked: compared,
             disagreements,
-            judged_by_coal: reference.is_some_and(|r| group.entries[r].cell.lib.starts_with("coal")),
+            compared_with_coal: reference.is_some_and(|r| group.entries[r].cell.lib.starts_with("coal")),
         });
     }
     checked

@@ -19,7 +19,7 @@ pub struct Line {
     pub answers_checked: usize,
     pub disagreements: usize,
     /// Whether the answers were compared with Coal's; not in the JSON.
-    pub judged_by_coal: bool,
+    pub compared_with_coal: bool,
 }
 
 impl Line {
@@ -97,7 +97,8 @@ fn best_peer<'a>(lines: &'a [Line], ours: &Line, warm_too: bool) -> Option<&'a L
 
 fn agreement(out: &mut String, lines: &[Line], notes: &[String]) {
     let ours = |yes_or_no: bool| {
-        let some = move |line: &&Line| line.is_ours() && line.judged_by_coal && (line.query != "distance") == yes_or_no;
+        let some =
+            move |line: &&Line| line.is_ours() && line.compared_with_coal && (line.query != "distance") == yes_or_no;
         let checked: usize = lines.iter().filter(some).map(|line| line.answers_checked).sum();
         let wrong: usize = lines.iter().filter(some).map(|line| line.disagreements).sum();
         (checked, wrong)
@@ -142,7 +143,16 @@ mod tests {
 
     fn line(lib: &str, mean_ns: f64, disagreements: usize) -> Line {
         let (set, query) = ("m4k_near".into(), "collide".into());
-        Line { lib: lib.into(), set, query, mean_ns, n: 9, answers_checked: 90, disagreements, judged_by_coal: true }
+        Line {
+            lib: lib.into(),
+            set,
+            query,
+            mean_ns,
+            n: 9,
+            answers_checked: 90,
+            disagreements,
+            compared_with_coal: true,
+        }
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub fn run(root: &Path) -> Result<(), String> {
     Err(format!("{} places\n  {}", problems.len(), problems.join("\n  ")))
 }
 
-/// Rust sources, documents, cell files and scripts that the project wrote itself.
+/// Rust sources, documents, cell files, scripts, pages and pictures that the project wrote itself.
 fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
     const FOLDERS: [&str; 5] = ["crates", "devtools", "docs", "examples", "xtask"];
     let mut found: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "Cargo.toml"]
@@ -60,7 +60,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
 }
 
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), String> {
-    const ENDINGS: [&str; 7] = ["rs", "md", "toml", "py", "cpp", "hpp", "js"];
+    const ENDINGS: [&str; 10] = ["rs", "md", "toml", "py", "cpp", "hpp", "js", "html", "css", "svg"];
     // Programs of others, as they were published.
     const FOREIGN: [&str; 3] = ["plotly", "three", "target"];
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };

@@ -73,9 +73,13 @@ fn applies(term: &Term, name: &str) -> bool {
     !named(&term.except) && (term.within.is_empty() || named(&term.within))
 }
 
-/// Whether the word stands in the line with no letter, digit or underscore beside it.
+/// Words of so many letters are part of another where an underscore is beside them; longer ones are words of their own.
+const LONGEST_JOINED: usize = 4;
+
+/// Whether the word stands in the line with no letter or digit beside it, nor an underscore where it is short.
 fn has_word(line: &str, word: &str) -> bool {
-    let part_of_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    let is_joined = word.chars().count() <= LONGEST_JOINED;
+    let part_of_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_' && is_joined);
     line.match_indices(word).any(|(at, _)| {
         !part_of_word(line[..at].chars().next_back()) && !part_of_word(line[at + word.len()..].chars().next())
     })
@@ -100,9 +104,16 @@ mod tests {
     #[test]
     fn a_retired_word_is_found_with_its_line_and_its_replacement() {
         let terms = parse(LIST).unwrap();
-        let text = "first\nan attic, and attics\nmy_attic";
-        assert_eq!(problems(&terms, "a.rs", text), ["a.rs:2: `attic` is retired: write upper layer"]);
+        let text = "first\nan attic\nand attics\nmy_attic_door";
+        let found = ["a.rs:2: `attic` is retired: write upper layer", "a.rs:4: `attic` is retired: write upper layer"];
+        assert_eq!(problems(&terms, "a.rs", text), found);
         assert!(problems(&terms, "docs/old.md", text).is_empty() && problems(&terms, "CHANGES.md", text).is_empty());
+    }
+
+    #[test]
+    fn an_underscore_separates_long_words_only() {
+        assert!(has_word("fn attic_of()", "attic") && has_word("is_old_attic", "old_attic"));
+        assert!(has_word("a nook here", "nook") && !has_word("my_nook", "nook") && !has_word("attics", "attic"));
     }
 
     #[test]

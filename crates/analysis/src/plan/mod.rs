@@ -9,7 +9,7 @@ pub(crate) mod request_validation;
 use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRobot, region_constraint};
+use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_robot::RobotId;
@@ -65,7 +65,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     for (end, q) in [("start", from), ("goal", &request.to)] {
         request_validation::check_joint_values(cell, robot, end, q)?;
     }
-    let scene = elbowroom_cell::QueryModel::of_cell(cell).scene(false)?;
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, index, from).map_err(|e| refused(e.into()))?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };

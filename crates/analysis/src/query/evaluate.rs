@@ -9,7 +9,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, Level, PairContact, Scene, SceneError, SceneState};
 use elbowroom_spatial::Vec3;
 
-use super::{JointStates, QueryKind, QueryRow};
+use super::{QueryKind, QueryRow, QueryStates};
 
 /// States per checker: its learned weights must not depend on the number of threads.
 pub const BLOCK: usize = 256;
@@ -24,7 +24,7 @@ const WAITING: usize = 8;
 /// [`FormatError`] where a state does not fit the scene; states that were read for its model do.
 pub fn evaluate(
     scene: &Scene,
-    states: &JointStates,
+    states: &QueryStates,
     kind: QueryKind,
     level: Level,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
@@ -35,7 +35,7 @@ pub fn evaluate(
     let mut done = CheckerStats::default();
     if cores <= 1 {
         for block in 0..blocks {
-            let (rows, counts) = of_block(scene, states, kind, level, block).map_err(wrong)?;
+            let (rows, counts) = rows_of_block(scene, states, kind, level, block).map_err(wrong)?;
             done += counts;
             if !take(&rows) {
                 break;
@@ -52,7 +52,8 @@ pub fn evaluate(
             threads.spawn(move || {
                 while !stop.load(Ordering::Relaxed) {
                     let block = next.fetch_add(1, Ordering::Relaxed);
-                    if block >= blocks || send.send((block, of_block(scene, states, kind, level, block))).is_err() {
+                    if block >= blocks || send.send((block, rows_of_block(scene, states, kind, level, block))).is_err()
+                    {
                         return;
                     }
                 }
@@ -86,9 +87,9 @@ pub fn evaluate(
 }
 
 /// The rows of a block. Likely pairs are tested first; the weights are updated from state to state.
-fn of_block(
+fn rows_of_block(
     scene: &Scene,
-    states: &JointStates,
+    states: &QueryStates,
     kind: QueryKind,
     level: Level,
     block: usize,
@@ -100,12 +101,13 @@ fn of_block(
         for (robot, q) in states.of(index) {
             state.set_q(scene, RobotId(robot), q)?;
         }
-        Ok(QueryRow { index, ..one(&mut checker, &state, kind) })
+        Ok(QueryRow { index, ..row_of_state(&mut checker, &state, kind) })
     });
     Ok((rows.collect::<Result<_, SceneError>>()?, checker.stats()))
 }
 
-fn one(checker: &mut Checker<'_>, state: &SceneState, kind: QueryKind) -> QueryRow {
+/// The row of one state; its index is 0.
+fn row_of_state(checker: &mut Checker<'_>, state: &SceneState, kind: QueryKind) -> QueryRow {
     let nothing = |level| QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, level };
     match kind {
         QueryKind::Collision => {
@@ -114,7 +116,7 @@ fn one(checker: &mut Checker<'_>, state: &SceneState, kind: QueryKind) -> QueryR
                 collides: true,
                 distance_m: Some(0.0),
                 pair: Some((contact.a, contact.b)),
-                witness: touching(checker, state, contact),
+                witness: witness_of_contact(checker, state, contact),
                 ..nothing(contact.level)
             }
         }
@@ -130,7 +132,7 @@ fn one(checker: &mut Checker<'_>, state: &SceneState, kind: QueryKind) -> QueryR
     }
 }
 
-/// `None` without pairs.
+/// The row of a distance query; `None` without pairs.
 fn distance(checker: &mut Checker<'_>, state: &SceneState) -> Option<QueryRow> {
     let d = checker.distance(state)?;
     let row = QueryRow {
@@ -148,12 +150,12 @@ fn distance(checker: &mut Checker<'_>, state: &SceneState) -> Option<QueryRow> {
     // Below the accuracy of the distance the collision test decides, so that all kinds of queries agree.
     let Some(contact) = checker.collides(state) else { return Some(row) };
     let pair = Some((contact.a, contact.b));
-    let witness = if row.pair == pair { row.witness } else { touching(checker, state, contact) };
+    let witness = if row.pair == pair { row.witness } else { witness_of_contact(checker, state, contact) };
     Some(QueryRow { collides: true, distance_m: Some(0.0), pair, witness, ..row })
 }
 
 /// Witness points of two geometries in contact.
-fn touching(checker: &mut Checker<'_>, state: &SceneState, contact: PairContact) -> Option<(Vec3, Vec3)> {
+fn witness_of_contact(checker: &mut Checker<'_>, state: &SceneState, contact: PairContact) -> Option<(Vec3, Vec3)> {
     let found = checker.between(contact.a.into(), contact.b.into()).distance(state);
     found.map(|d| (d.on_a, d.on_b))
 }

@@ -1,12 +1,12 @@
 //! Collision, distance and tolerance queries for many states of a cell or of one robot (`elbowroom query`).
 //!
-//! A [`QueryModel`](elbowroom_cell::QueryModel) holds the robots and objects, [`JointStates`] the joint values;
+//! A [`QueryModel`](elbowroom_cell::QueryModel) holds the robots and objects, [`QueryStates`] the joint values;
 //! [`evaluate`] computes one [`QueryRow`] per state, in order, in parallel. A row depends only on its state and the
 //! rows before it in its block of [`BLOCK`], so the results are independent of the number of threads.
 //!
 //! ```
-//! use elbowroom_analysis::query::{JointStates, Level, QueryKind, evaluate};
-//! use elbowroom_cell::{Cell, QueryModel};
+//! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};
+//! use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 //! let cell = Cell::parse("c.toml", r#"
 //! version = 1
 //! units = { length = "m", angle = "rad" }
@@ -19,9 +19,9 @@
 //! radius = 0.5
 //! "#)?;
 //! let model = QueryModel::of_cell(&cell);
-//! let states = JointStates::parse("s.csv".as_ref(), "joint_1\n0\n1.5\n", &model)?;
+//! let states = QueryStates::parse("s.csv".as_ref(), "joint_1\n0\n1.5\n", &model)?;
 //! let mut rows = Vec::new();
-//! evaluate(&model.scene(false)?, &states, QueryKind::Distance, Level::Auto, &mut |block| {
+//! evaluate(&model.scene(OutOfReachProofs::Omit)?, &states, QueryKind::Distance, Level::Auto, &mut |block| {
 //!     rows.extend_from_slice(block);
 //!     true
 //! })?;
@@ -39,4 +39,4 @@ pub use elbowroom_scene::Level;
 pub use evaluate::{BLOCK, evaluate};
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use row::{QueryRecord, QueryRow};
-pub use states::JointStates;
+pub use states::QueryStates;

@@ -8,9 +8,9 @@ use elbowroom_formats::{FormatError, Warning};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Joint values of many states.
+/// The states of a query: joint values that fit its model.
 #[derive(Debug, Clone)]
-pub struct JointStates {
+pub struct QueryStates {
     /// The file, for messages.
     pub file: PathBuf,
     /// Warnings.
@@ -18,7 +18,7 @@ pub struct JointStates {
     states: joint_states::JointStates,
 }
 
-impl JointStates {
+impl QueryStates {
     /// The default state of the model.
     pub fn start(model: &QueryModel) -> Self {
         let start = model.robots.iter().map(|r| &r.start[..]);
@@ -36,7 +36,7 @@ impl JointStates {
         joint_states::JointStates::read(path, &options(model)).map(Self::new)
     }
 
-    /// As [`JointStates::read`], for text in place of the file `path`.
+    /// As [`QueryStates::read`], for text in place of the file `path`.
     ///
     /// # Errors
     /// As there.

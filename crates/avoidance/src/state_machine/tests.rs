@@ -114,8 +114,8 @@ fn reported_states_have_a_precedence() {
     let mut machine = StateMachine::new(TIMEOUT_S);
     let stalled = TickSummary { is_stalled: true, is_stationary: true, ..tick() };
     machine.end_tick(&stalled);
-    assert_eq!(machine.reported(&stalled, true), State::Waiting);
-    assert_eq!(machine.reported(&TickSummary { is_halted: true, ..stalled }, true), State::Halted);
-    assert_eq!(machine.reported(&tick(), true), State::Evading);
-    assert_eq!(machine.reported(&tick(), false), State::Returning);
+    assert_eq!(machine.reported(&stalled, true), AvoiderState::Waiting);
+    assert_eq!(machine.reported(&TickSummary { is_halted: true, ..stalled }, true), AvoiderState::Halted);
+    assert_eq!(machine.reported(&tick(), true), AvoiderState::Evading);
+    assert_eq!(machine.reported(&tick(), false), AvoiderState::Returning);
 }

@@ -1,8 +1,8 @@
 //! `follow = { … }` of a region: the source that moves it, and its largest plausible speed.
 
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::motion_bound::motion_bound;
-use elbowroom_kinematics::{JointKind, LinkId};
+use elbowroom_kinematics::motion_bound::{joint_reaches, motion_bound};
+use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::SourceLimits;
 use elbowroom_spatial::Pose;
 
@@ -44,7 +44,8 @@ pub(super) fn read(
             let index = robot_index(&source, known.robots)?;
             let robot = &known.robots[index];
             let (link, in_link) = frame(t.get("frame").as_ref(), robot)?;
-            limits = fastest(robot, link, in_link);
+            let speeds: Vec<f64> = robot.limits.iter().map(|limit| limit.velocity * FASTER).collect();
+            limits = fastest(&robot.robot.chain, &speeds, link, in_link);
             Follow::Robot { robot: index, link, in_link }
         }
         "encoder" => {
@@ -112,19 +113,20 @@ fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     Ok(())
 }
 
-/// Upper bound of the motion of a robot's frame from its joint speeds, at least the default.
-fn fastest(robot: &CellRobot, link: LinkId, in_link: Pose) -> SourceLimits {
-    let chain = &robot.robot.chain;
-    let path = chain.path(link);
-    let speed = |j: usize| robot.limits[j].velocity * FASTER;
-    let bound = motion_bound(chain, link, in_link.translation.length(), &path);
-    let turning = motion_bound(chain, link, 0.0, &path)
-        .into_iter()
-        .filter(|(j, _)| chain.joints()[chain.active_joints()[*j].0].kind != JointKind::Prismatic);
+/// Upper bound of the motion of a frame on a link, from the speeds of the independent joints (rad/s or m/s, as in `q`); at
+/// least the default.
+fn fastest(chain: &Chain, speeds: &[f64], link: LinkId, in_link: Pose) -> SourceLimits {
+    let bound = motion_bound(chain, link, in_link.translation.length(), &chain.path(link));
+    // Joints that follow another turn by a multiple of it, whatever the kind of the other. Reaches, and so strokes, do not
+    // count: a rotation has no lever.
+    let turning = joint_reaches(chain, link, 0.0, |_| 0.0)
+        .filter(|reach| reach.kind.turns())
+        .filter_map(|reach| reach.coupling)
+        .map(|coupling| coupling.multiplier.abs() * speeds[coupling.index]);
     let default = SourceLimits::default();
     SourceLimits {
-        speed_m_s: bound.iter().map(|(j, bound)| bound * speed(*j)).sum::<f64>().max(default.speed_m_s),
-        turn_rad_s: turning.map(|(j, _)| speed(j)).sum::<f64>().max(default.turn_rad_s),
+        speed_m_s: bound.iter().map(|(j, bound)| bound * speeds[*j]).sum::<f64>().max(default.speed_m_s),
+        turn_rad_s: turning.sum::<f64>().max(default.turn_rad_s),
         wrap_m: None,
     }
 }
@@ -163,4 +165,61 @@ fn warn_of_jump(t: &Table<'_>, what: &str, warnings: &mut Vec<Warning>) {
     let what = format!("{what}: the monitor takes that for a jump and stops the robots");
     let hint = "max_speed and max_turn in `follow`, if the source can be that fast";
     warnings.push(Warning::new(t.file, t.line, what).hint(hint));
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_kinematics::{ChainState, Joint, JointId, JointKind, Limits, Mimic};
+    use elbowroom_spatial::Vec3;
+
+    use super::*;
+
+    /// Joints about or along z, 0.3 m apart; a follower follows joint 0 with its multiplier.
+    fn chain(joints: &[(JointKind, Option<f64>)]) -> Chain {
+        let joint = |(i, (kind, multiplier)): (usize, &(JointKind, Option<f64>))| Joint {
+            name: format!("j{i}"),
+            kind: *kind,
+            parent: LinkId(i),
+            child: LinkId(i + 1),
+            origin: Pose::from_translation(Vec3::X * 0.3),
+            axis: Vec3::Z,
+            limits: Limits::symmetric(3.0),
+            mimic: multiplier.map(|multiplier| Mimic { joint: JointId(0), multiplier, offset: 0.1 }),
+        };
+        let links = (0..=joints.len()).map(|i| format!("l{i}")).collect();
+        Chain::new("chain", links, joints.iter().enumerate().map(joint).collect()).unwrap()
+    }
+
+    /// Turning speed of the last link while all independent joints move at their speeds, by differences, rad/s.
+    fn true_turn_rad_s(chain: &Chain, speeds: &[f64]) -> f64 {
+        let mut state = ChainState::new(chain);
+        let mut at = |t: f64| {
+            state.q.iter_mut().zip(speeds).for_each(|(q, speed)| *q = speed * t);
+            chain.forward(&mut state);
+            state.link_in_root(chain.tip()).rotation
+        };
+        let step_s = 1e-6;
+        (at(0.0).inverse() * at(step_s)).angle() / step_s
+    }
+
+    #[test]
+    fn joints_that_follow_another_turn_by_their_multiplier() {
+        use JointKind::{Prismatic, Revolute};
+        let cases: [(&[(JointKind, Option<f64>)], &[f64], f64); 5] = [
+            (&[(Revolute, None), (Revolute, Some(3.0))], &[10.0], 40.0),
+            (&[(Revolute, None), (Revolute, Some(-3.0))], &[10.0], 40.0),
+            (&[(Revolute, None), (Revolute, Some(2.0)), (Revolute, None)], &[10.0, 15.0], 45.0),
+            // A rotation that follows a slide turns, a slide that follows a rotation does not.
+            (&[(Prismatic, None), (Revolute, Some(50.0))], &[1.0], 50.0),
+            (&[(Revolute, None), (Prismatic, Some(5.0))], &[30.0], 30.0),
+        ];
+        for (joints, speeds, expected) in cases {
+            let chain = chain(joints);
+            let limits = fastest(&chain, speeds, chain.tip(), Pose::IDENTITY);
+            assert!((limits.turn_rad_s - expected).abs() < 1e-9, "{joints:?}: {limits:?}");
+            assert!(true_turn_rad_s(&chain, speeds) <= limits.turn_rad_s + 1e-3, "{joints:?}");
+        }
+        let slow = chain(&[(Revolute, None), (Revolute, Some(0.5))]);
+        assert_eq!(fastest(&slow, &[1.0], slow.tip(), Pose::IDENTITY), SourceLimits::default());
+    }
 }

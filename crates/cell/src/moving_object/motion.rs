@@ -11,7 +11,7 @@ pub struct ObjectMotion<'m> {
     moving_object: &'m MovingObject,
     from_s: f64,
     to_s: f64,
-    steady: Option<ConstantTwist>,
+    constant_twist: Option<ConstantTwist>,
 }
 
 impl MovingObject {
@@ -27,9 +27,9 @@ impl<'m> ObjectMotion<'m> {
             Drive::Belt(encoder) => encoder.changes(from_s, to_s) || encoder.wraps(from_s, to_s),
             Drive::Path(path) => path.changes(from_s, to_s),
         };
-        let steady =
+        let constant_twist =
             || ConstantTwist::from_motion(moving_object.pose(from_s), &moving_object.motion(from_s), to_s - from_s);
-        Self { moving_object, from_s, to_s, steady: (!changes).then(steady) }
+        Self { moving_object, from_s, to_s, constant_twist: (!changes).then(constant_twist) }
     }
 
     /// True where the motion is not continuous: the belt wraps in between.
@@ -63,6 +63,6 @@ impl RigidMotion for ObjectMotion<'_> {
     }
 
     fn constant_twist(&self) -> Option<ConstantTwist> {
-        self.steady
+        self.constant_twist
     }
 }

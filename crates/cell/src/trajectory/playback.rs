@@ -72,13 +72,13 @@ impl Playback {
     pub fn at(&self, t: f64) -> PathPoint {
         let q = self.q(t);
         let h = self.half_width.min(self.duration() / 2.0);
-        let first = (0..q.len()).map(|j| self.speed(j, t)).collect();
+        let dq = (0..q.len()).map(|j| self.speed(j, t)).collect();
         if h <= 0.0 {
-            return PathPoint { second: vec![0.0; q.len()], q, first };
+            return PathPoint { ddq: vec![0.0; q.len()], q, dq };
         }
         let [before, after] = [self.q((t - h).max(0.0)), self.q((t + h).min(self.duration()))];
-        let second = (0..q.len()).map(|j| (after[j] - 2.0 * q[j] + before[j]) / (h * h)).collect();
-        PathPoint { q, first, second }
+        let ddq = (0..q.len()).map(|j| (after[j] - 2.0 * q[j] + before[j]) / (h * h)).collect();
+        PathPoint { q, dq, ddq }
     }
 
     /// Averaged speed of a joint, rad/s or m/s.

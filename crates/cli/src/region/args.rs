@@ -14,7 +14,7 @@ pub(crate) enum RegionCommand {
     Change(ChangeArgs),
     /// Remove a region
     Remove(RemoveArgs),
-    /// Set or remove keys of `monitor`, the laws
+    /// Set or remove keys of the table `[monitor]`
     Laws(LawsArgs),
     /// Seal the present contents of a cell file
     Seal(SealArgs),
@@ -74,7 +74,8 @@ pub(crate) struct AddArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   elbowroom region change cell.toml cart radius=200 warning=300 --as programmer --key p.key
-  elbowroom region change cell.toml cart 'base=[900, 0, 0]' --unset slow_to --as programmer --key p.key")]
+  elbowroom region change cell.toml cart 'base=[900, 0, 0]' --unset slow_to \\
+    --as programmer --key p.key")]
 pub(crate) struct ChangeArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
@@ -112,7 +113,8 @@ pub(crate) struct RemoveArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  elbowroom region laws cell.toml stopping_distance=true reaction_ms=8 --as integrator --key i.key")]
+  elbowroom region laws cell.toml stopping_distance=true reaction_ms=8 \\
+    --as integrator --key i.key")]
 pub(crate) struct LawsArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
@@ -133,9 +135,8 @@ pub(crate) struct SealArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit status: 0 if the cell is as sealed; 1 if it differs; 2 if the log does not match its signatures."
-)]
+#[command(after_help = "Exit status: 0 if the cell is as sealed; 1 if it differs;
+2 if the log does not match its signatures.")]
 pub(crate) struct LogArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
@@ -146,7 +147,8 @@ pub(crate) struct LogArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  elbowroom region keygen --as integrator --name 'integration, line 4' --out integrator.key >> trusted-keys.toml")]
+  elbowroom region keygen --as integrator --name 'integration, line 4' \\
+    --out integrator.key >> trusted-keys.toml")]
 pub(crate) struct KeygenArgs {
     /// The access class of the key
     #[arg(long = "as", value_name = "CLASS", value_enum)]

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use clock::best;
 use elbowroom_cspace::{
-    CellChanges, ConvexObstacle, Grid, GridAxis, JointMap, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm,
+    CellChanges, ConvexObstacle, Grid, GridAxis, JointMap, Layer, OccupancyBitmap, PlanarArm, PlanarMapBuilder,
 };
 use elbowroom_spatial::{Pose, Vec3};
 use straightforward::{Planar, RoundedBox};
@@ -75,7 +75,7 @@ fn grid(step_deg: f64) -> Grid {
 
 /// Times of the row intervals alone, and with clearing and writing the bitmap; blocked cells.
 fn building(grid: &Grid, obstacle: &ConvexObstacle) -> (Duration, Duration, usize) {
-    let mut builder = ObstacleMapBuilder::new(ARM, grid).expect("a sound arm");
+    let mut builder = PlanarMapBuilder::new(ARM, grid).expect("a sound arm");
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     let fill = best(200, || builder.build_layer(obstacle, &mut layer));
     let whole = best(200, || {
@@ -91,20 +91,20 @@ fn updates(grid: &Grid, obstacle: &ConvexObstacle, moved: &ConvexObstacle) -> (D
     let mut map = JointMap::new(ARM, grid).expect("a sound arm");
     let mut added = Duration::MAX;
     for _ in 0..100 {
-        added = added.min(best(1, || _ = black_box(map.set("it", obstacle))));
-        map.remove("it");
+        added = added.min(best(1, || _ = black_box(map.set_obstacle("it", obstacle))));
+        map.remove_obstacle("it");
     }
-    map.set("it", obstacle);
+    map.set_obstacle("it", obstacle);
     let both = best(100, || {
-        black_box(map.set("it", moved));
-        black_box(map.set("it", obstacle));
+        black_box(map.set_obstacle("it", moved));
+        black_box(map.set_obstacle("it", obstacle));
     });
     (added, rebuilding(grid, obstacle, moved), both / 2)
 }
 
 /// The cost of a moved obstacle without layers.
 fn rebuilding(grid: &Grid, obstacle: &ConvexObstacle, moved: &ConvexObstacle) -> Duration {
-    let mut builder = ObstacleMapBuilder::new(ARM, grid).expect("a sound arm");
+    let mut builder = PlanarMapBuilder::new(ARM, grid).expect("a sound arm");
     let (mut layer, mut old, mut new) =
         (Layer::new(), OccupancyBitmap::new(grid.shape()), OccupancyBitmap::new(grid.shape()));
     builder.build_layer(obstacle, &mut layer);

@@ -8,7 +8,7 @@
 
 use elbowroom_cspace::{Grid, GridAxis, PlanarArm};
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level as SimdLevel, dispatch};
 
 type V = [f32; 3];
 
@@ -105,7 +105,7 @@ pub struct Planar {
     row: usize,
     fore_x: Vec<f32>,
     fore_z: Vec<f32>,
-    level: Level,
+    simd_level: SimdLevel,
 }
 
 impl Planar {
@@ -123,7 +123,7 @@ impl Planar {
             }
         }
         let (base, shoulder) = (turns(base), turns(shoulder));
-        Self { arm: *arm, base, shoulder, row: elbow.count(), fore_x, fore_z, level: Level::new() }
+        Self { arm: *arm, base, shoulder, row: elbow.count(), fore_x, fore_z, simd_level: SimdLevel::new() }
     }
 
     fn joints(&self, [sin, cos]: [f32; 2]) -> ([f32; 2], [f32; 2]) {
@@ -133,7 +133,7 @@ impl Planar {
 
     /// Planes out of reach are skipped, rows of which the elbow is too far, rows that the upper arm blocks.
     pub fn pruned(&self, solid: &RoundedBox, cells: &mut [u8]) {
-        dispatch!(self.level, _simd => self.pruned_lanes(solid, cells));
+        dispatch!(self.simd_level, _simd => self.pruned_lanes(solid, cells));
     }
 
     #[inline(always)]
@@ -177,7 +177,7 @@ impl Planar {
 
     /// Links as overlapping spheres that cover them, every cell.
     pub fn spheres(&self, solid: &RoundedBox, cells: &mut [u8]) {
-        dispatch!(self.level, _simd => self.spheres_lanes(solid, cells));
+        dispatch!(self.simd_level, _simd => self.spheres_lanes(solid, cells));
     }
 
     #[inline(always)]

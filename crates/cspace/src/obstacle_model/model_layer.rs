@@ -6,11 +6,11 @@ use super::model::ObstacleModel;
 use super::planar_slice;
 use super::sphere_set::spheres_until;
 use crate::convex_obstacle::ConvexShape;
-use crate::{ConvexObstacle, Layer, ObstacleMapBuilder};
+use crate::{ConvexObstacle, Layer, PlanarMapBuilder};
 
 impl ObstacleModel {
     /// Replaces a layer by the cells that this model of an obstacle blocks: never fewer than the obstacle itself blocks.
-    pub fn build_layer(self, builder: &mut ObstacleMapBuilder, obstacle: &ConvexObstacle, layer: &mut Layer) {
+    pub fn build_layer(self, builder: &mut PlanarMapBuilder, obstacle: &ConvexObstacle, layer: &mut Layer) {
         match self {
             Self::Exact => builder.build_layer(obstacle, layer),
             Self::Slices => planar_slice::build_layer(builder, obstacle, layer),

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::convex_obstacle::ConvexShape;
-use crate::{ConvexObstacle, GridAxis, Layer, ObstacleMapBuilder, RowSpan};
+use crate::{ConvexObstacle, GridAxis, Layer, PlanarMapBuilder, RowSpan};
 
 /// Bounds of base angle, radius and height of an obstacle, metres and radians.
 struct CylindricalBounds {
@@ -22,7 +22,7 @@ struct CylindricalBounds {
     high: f64,
 }
 
-pub(super) fn build_layer(builder: &mut ObstacleMapBuilder, obstacle: &ConvexObstacle, layer: &mut Layer) {
+pub(super) fn build_layer(builder: &mut PlanarMapBuilder, obstacle: &ConvexObstacle, layer: &mut Layer) {
     layer.spans.clear();
     let radius = builder.arm().max_radius_m();
     let bounds = CylindricalBounds::new(obstacle);

@@ -7,7 +7,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::model::MAX_SPHERES;
 use crate::convex_obstacle::ConvexShape;
 use crate::cuboid::Bisection;
-use crate::{ConvexObstacle, Layer, ObstacleMapBuilder};
+use crate::{ConvexObstacle, Layer, PlanarMapBuilder};
 
 /// Replaces a layer by the cells that spheres around parts of an obstacle block: one sphere first, then 2, 4, 8 … while the
 /// deadline has not passed and there are fewer than `max_spheres`. Returns the number of spheres of the layer.
@@ -16,12 +16,12 @@ use crate::{ConvexObstacle, Layer, ObstacleMapBuilder};
 /// spheres, and both contain all cells that the obstacle blocks. A refinement that the deadline interrupts is discarded.
 ///
 /// ```
-/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, PlanarArm, spheres_until};
+/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, PlanarMapBuilder, PlanarArm, spheres_until};
 /// use elbowroom_spatial::{Pose, Vec3};
 /// use std::time::{Duration, Instant};
 /// # let axis = |name: &str| GridAxis::from_degrees(name, -90.0, 90.0, 5.0);
 /// # let grid = Grid::new([axis("base")?, axis("shoulder")?, axis("elbow")?])?;
-/// let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
+/// let mut builder = PlanarMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
 /// let beam = ConvexObstacle::cuboid(Pose::from_xyz_rpy([1.2, 0.0, 0.8], [0.0; 3]), Vec3::new(0.1, 0.8, 0.1))?;
 /// let mut layer = Layer::new();
 /// let deadline = Instant::now() + Duration::from_millis(5);
@@ -30,7 +30,7 @@ use crate::{ConvexObstacle, Layer, ObstacleMapBuilder};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn spheres_until(
-    builder: &mut ObstacleMapBuilder,
+    builder: &mut PlanarMapBuilder,
     obstacle: &ConvexObstacle,
     max_spheres: u32,
     deadline: Option<Instant>,
@@ -54,7 +54,7 @@ pub fn spheres_until(
 }
 
 /// The cells that all spheres block; `None` where the deadline passes.
-fn union_of_spheres(builder: &mut ObstacleMapBuilder, parts: &[BoxPart], deadline: Option<Instant>) -> Option<Layer> {
+fn union_of_spheres(builder: &mut PlanarMapBuilder, parts: &[BoxPart], deadline: Option<Instant>) -> Option<Layer> {
     let (mut whole, mut one) = (Layer::new(), Layer::new());
     for part in parts {
         if deadline.is_some_and(|deadline| Instant::now() >= deadline) {

@@ -1,6 +1,6 @@
 //! What stays constant for one arm and one grid.
 
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 use super::simd_math::WIDTH;
 use crate::{Grid, GridAxis, PlanarArm};
@@ -11,7 +11,7 @@ pub(super) struct ArmGrid {
     pub arm: PlanarArm,
     pub grid: Grid,
     /// Instruction set of the kernels.
-    pub level: Level,
+    pub simd_level: SimdLevel,
     /// Cosine and sine of θ1 at the centre of each cell.
     pub planes: Vec<[f64; 2]>,
     /// Directions of the upper arm at the borders of θ2's cells, one more than cells.
@@ -35,7 +35,7 @@ impl ArmGrid {
         let planes = (0..base.count()).map(|i| base.center(i).sin_cos()).map(|(sin, cos)| [cos, sin]).collect();
         Self {
             arm,
-            level: Level::new(),
+            simd_level: SimdLevel::new(),
             planes,
             borders: ArmDirections::new(shoulder.count() + 1, elbow, |i| shoulder.border(i)),
             middles: ArmDirections::new(shoulder.count(), elbow, |i| shoulder.center(i)),

@@ -1,4 +1,4 @@
-//! Obstacle maps of a planar arm.
+//! Builds the map of an obstacle for a planar arm.
 
 use std::ops::Range;
 
@@ -13,12 +13,12 @@ use crate::{ArmError, ConvexObstacle, Grid, Layer, PlanarArm};
 /// Computes which cells of a grid an obstacle blocks for one planar arm.
 ///
 /// ```
-/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm};
+/// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, PlanarMapBuilder, OccupancyBitmap, PlanarArm};
 /// use elbowroom_spatial::Vec3;
 /// let axes = [("base", 170.0, -170.0), ("shoulder", 90.0, -90.0), ("elbow", 150.0, -120.0)];
 /// let [a, b, c] = axes.map(|(name, max, min)| GridAxis::from_degrees(name, min, max, 2.0).unwrap());
 /// let grid = Grid::new([a, b, c])?;
-/// let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
+/// let mut builder = PlanarMapBuilder::new(PlanarArm::KR125_SIZED, &grid)?;
 /// let mut layer = Layer::new();
 /// builder.build_layer(&ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?, &mut layer);
 /// let mut occupancy = OccupancyBitmap::new(grid.shape());
@@ -28,15 +28,15 @@ use crate::{ArmError, ConvexObstacle, Grid, Layer, PlanarArm};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct ObstacleMapBuilder {
+pub struct PlanarMapBuilder {
     arm_grid: ArmGrid,
     /// Workspace: one bit per row of a plane, set where the upper arm blocks the whole row.
     full_rows: Vec<u16>,
 }
 
-/// Why there is no fast map for an arm and a grid.
+/// Why no map can be built for an arm and a grid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ObstacleMapError {
+pub enum PlanarMapError {
     /// A dimension of the arm is invalid.
     #[error(transparent)]
     Arm(#[from] ArmError),
@@ -53,17 +53,17 @@ pub enum ObstacleMapError {
 /// Largest step. Larger cells say little, and the number of lines of an outline stays bounded.
 const MAX_STEP_DEGREES: f64 = 15.0;
 
-impl ObstacleMapBuilder {
+impl PlanarMapBuilder {
     /// For an arm and a grid.
     ///
     /// # Errors
     /// An invalid dimension of the arm, or a step above 15 degrees.
-    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, ObstacleMapError> {
+    pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, PlanarMapError> {
         arm.validate()?;
         for axis in grid.axes() {
             let degrees = axis.step().to_degrees();
             if degrees > MAX_STEP_DEGREES {
-                return Err(ObstacleMapError::Coarse { joint: axis.joint().to_owned(), degrees });
+                return Err(PlanarMapError::Coarse { joint: axis.joint().to_owned(), degrees });
             }
         }
         let full_rows = vec![0; grid.axes()[1].count().div_ceil(WIDTH)];
@@ -114,7 +114,7 @@ mod tests {
 
     use elbowroom_proximity::ConvexHull;
     use elbowroom_spatial::{Pose, Vec3};
-    use fearless_simd::Level;
+    use fearless_simd::Level as SimdLevel;
 
     use super::*;
     use crate::GridAxis;
@@ -133,9 +133,9 @@ mod tests {
         ];
         for obstacle in &obstacles {
             let (mut best, mut baseline) = (Layer::new(), Layer::new());
-            let mut builder = ObstacleMapBuilder::new(PlanarArm::KR125_SIZED, &grid).unwrap();
+            let mut builder = PlanarMapBuilder::new(PlanarArm::KR125_SIZED, &grid).unwrap();
             builder.build_layer(obstacle, &mut best);
-            builder.arm_grid.level = Level::baseline();
+            builder.arm_grid.simd_level = SimdLevel::baseline();
             builder.build_layer(obstacle, &mut baseline);
             assert_eq!(best, baseline);
             assert!(!best.spans().is_empty());

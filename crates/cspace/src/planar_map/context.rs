@@ -1,7 +1,7 @@
 //! What the planes of one convex obstacle share, and the outlines of one plane.
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 use super::arm_grid::{ArmDirections, ArmGrid, half_arc};
 use super::normals::{OutlineNormals, PADDED_NORMALS};
@@ -13,7 +13,7 @@ use crate::PlanarArm;
 
 /// Constants of one obstacle, shared by all planes.
 pub(super) struct ConvexContext {
-    pub level: Level,
+    pub simd_level: SimdLevel,
     pub arm: PlanarArm,
     pub spans: SpanWriter,
     /// Centre of the obstacle's enclosing sphere, and its radius plus the largest radius of the arm, metres.
@@ -63,7 +63,7 @@ impl ConvexContext {
         let grown_radius = radius + arm.max_radius_m();
         let stretch = 1.0 / half1.cos() - 1.0;
         Self {
-            level: arm_grid.level,
+            simd_level: arm_grid.simd_level,
             arm,
             spans: SpanWriter::new(&arm_grid.grid.axes()[2]),
             center,

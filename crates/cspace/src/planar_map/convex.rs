@@ -86,7 +86,7 @@ impl Outlines {
         }
         let (lean, radius) = ((context.tangent * side) as f32, context.arm.upper_radius_m as f32);
         line_distances(context, solid, &self.normals, lean, radius, &mut self.upper.far);
-        self.upper.complete_within(context.level, &self.normals, context.upper_reach)
+        self.upper.complete_within(context.simd_level, &self.normals, context.upper_reach)
     }
 
     /// Adds the spans of one plane; false where their rows do not ascend.
@@ -147,7 +147,7 @@ impl Outlines {
                     raw.far[k] = raw.far[k].min(context.margin);
                 }
             }
-            directions = directions.union(raw.rotate_both_ways(context.level, normals, context.turn, link));
+            directions = directions.union(raw.rotate_both_ways(context.simd_level, normals, context.turn, link));
         }
         // Where the wrist's outline vanishes by rounding, the forearm's is used for the end of the forearm.
         if self.fore.exists && !self.wrist.exists {

@@ -11,7 +11,7 @@ use super::wedge_support::support_distance;
 /// Radius from which on the grown solid intersects the wedge, metres; negative where the solid itself does.
 pub(super) fn reaching_radius<B: PlaneSolid>(context: &ConvexContext, solid: &B, lean: f32, side: f32) -> f32 {
     let offset = context.arm.offset_m as f32;
-    dispatch!(context.level, simd => reaching_radius_lanes(simd, solid, lean, side, offset))
+    dispatch!(context.simd_level, simd => reaching_radius_lanes(simd, solid, lean, side, offset))
 }
 
 /// Three directions in three lanes: across the right and the left side of the wedge, and ahead.
@@ -44,7 +44,7 @@ pub(super) fn line_distances<B: PlaneSolid>(
     radius: f32,
     out: &mut [f32; PADDED_NORMALS],
 ) {
-    dispatch!(context.level, simd => line_distances_lanes(simd, context, solid, normals, lean, radius, out));
+    dispatch!(context.simd_level, simd => line_distances_lanes(simd, context, solid, normals, lean, radius, out));
 }
 
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! The obstacle map of a planar arm: blocked intervals of θ3, row by row, in the arm's plane. Fast and conservative.
+//! The map of a planar arm: blocked intervals of θ3, row by row, in the arm's plane. Fast and conservative.
 //!
 //! For one θ1 the arm moves in a plane. A cell is blocked if any configuration in its box touches the obstacle. The three
 //! half widths of the box are applied one after the other:
@@ -13,7 +13,7 @@
 //!
 //! | file | contents |
 //! | --- | --- |
-//! | `builder.rs` | [`ObstacleMapBuilder`]: one obstacle, all planes |
+//! | `builder.rs` | [`PlanarMapBuilder`]: one obstacle, all planes |
 //! | `sphere.rs` | spheres: outlines are disks |
 //! | `convex.rs`, `context.rs` | boxes and convex polyhedra: outlines plane by plane |
 //! | `plane_solid.rs`, `wedge_support.rs` | support functions of solids in one plane, and of the part inside the wedge |
@@ -54,4 +54,4 @@ mod upper_arm;
 mod wedge_support;
 mod wrist;
 
-pub use builder::{ObstacleMapBuilder, ObstacleMapError};
+pub use builder::{PlanarMapBuilder, PlanarMapError};

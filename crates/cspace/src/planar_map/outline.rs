@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16};
+use fearless_simd::{Level as SimdLevel, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16};
 
 use super::half_planes;
 use super::normals::{OutlineNormals, PADDED_NORMALS};
@@ -96,12 +96,12 @@ impl Outline {
     /// sine and cosine, to either side. Returns the directions in which this one lies.
     pub fn rotate_both_ways(
         &mut self,
-        level: Level,
+        simd_level: SimdLevel,
         normals: &OutlineNormals,
         sin_cos: [f32; 2],
         out: &mut Self,
     ) -> Directions {
-        let directions = dispatch!(level, simd => {
+        let directions = dispatch!(simd_level, simd => {
             if self.complete(simd, normals) {
                 self.rotate_lanes(simd, normals, sin_cos, out);
                 self.directions_lanes(simd, normals)
@@ -143,8 +143,8 @@ impl Outline {
     }
 
     /// Completes this outline. Returns the directions from the shoulder in which a link of length `reach` meets it.
-    pub fn complete_within(&mut self, level: Level, normals: &OutlineNormals, reach: f32) -> Directions {
-        dispatch!(level, simd => {
+    pub fn complete_within(&mut self, simd_level: SimdLevel, normals: &OutlineNormals, reach: f32) -> Directions {
+        dispatch!(simd_level, simd => {
             self.exists = self.complete(simd, normals);
             if self.exists { self.reachable_lanes(simd, normals, reach) } else { Directions::Nowhere }
         })

@@ -60,7 +60,7 @@ mod tests {
     use elbowroom_spatial::{Pose, Vec3};
 
     use super::*;
-    use crate::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, PlanarArm};
+    use crate::{ConvexObstacle, Grid, GridAxis, Layer, PlanarArm, PlanarMapBuilder};
     use elbowroom_testkit::random::{unit, xorshift};
 
     /// Numbers of 0..1 that are the same everywhere.
@@ -83,7 +83,7 @@ mod tests {
         let grid = Grid::new([axis("a", 170.0), axis("b", 90.0), axis("c", 140.0)]).unwrap();
         let arms =
             [PlanarArm::KR125_SIZED, PlanarArm { wrist_radius_m: 0.0, fore_radius_m: 0.01, ..PlanarArm::KR125_SIZED }];
-        let mut builders = arms.map(|arm| ObstacleMapBuilder::new(arm, &grid).unwrap());
+        let mut builders = arms.map(|arm| PlanarMapBuilder::new(arm, &grid).unwrap());
         let mut layer = Layer::new();
         let start = ROWS.load(Ordering::Relaxed);
         for round in 0.. {

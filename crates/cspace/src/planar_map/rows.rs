@@ -22,7 +22,7 @@ pub(super) fn write_plane(
 ) -> bool {
     #[cfg(test)]
     let before = layer.spans.len();
-    let ordered = dispatch!(context.level, simd => write_lanes(simd, context, outlines, plane, write_full, layer));
+    let ordered = dispatch!(context.simd_level, simd => write_lanes(simd, context, outlines, plane, write_full, layer));
     #[cfg(test)]
     super::precision_audit::compare(context, outlines, plane, &layer.spans[before..]);
     ordered

@@ -84,7 +84,7 @@ pub(super) fn acos<S: Simd>(simd: S, cosine: Lanes<S>) -> Lanes<S> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch, prelude::*};
+    use fearless_simd::{Level as SimdLevel, dispatch, prelude::*};
 
     use super::*;
 
@@ -93,7 +93,7 @@ mod tests {
         for i in 0..4000 {
             let angle = (f64::from(i) / 4000.0 - 0.5) * std::f64::consts::TAU;
             let (y, x) = (angle.sin() * 1.7, angle.cos() * 1.7);
-            let (turned, opened) = dispatch!(Level::new(), simd => {
+            let (turned, opened) = dispatch!(SimdLevel::new(), simd => {
                 let (x, y) = (splat(simd, x as f32), splat(simd, y as f32));
                 (atan2(simd, y, x).to_array()[3], acos(simd, splat(simd, angle.cos() as f32)).to_array()[5])
             });

@@ -72,7 +72,7 @@ pub(super) fn build(
     layer: &mut Layer,
 ) {
     let context = SphereContext::new(arm_grid, sphere);
-    let ArmGrid { arm, grid, borders, level, .. } = arm_grid;
+    let ArmGrid { arm, grid, borders, simd_level, .. } = arm_grid;
     let shoulder = &grid.axes()[1];
     let arc = half_arc(shoulder.step() * 0.5 * WIDTH as f64);
     let rows = DiskRows { arm: *arm, arc, spans: SpanWriter::new(&grid.axes()[2]), borders };
@@ -88,7 +88,7 @@ pub(super) fn build(
             {
                 upper_arm::mark_rows(shoulder, middle - half, middle + half, full_rows);
             }
-            dispatch!(*level, simd => rows.write(simd, &disks, first, shoulder.count(), full_rows, layer));
+            dispatch!(*simd_level, simd => rows.write(simd, &disks, first, shoulder.count(), full_rows, layer));
             if between > before {
                 // Both sides of the base axis: rows were written twice.
                 layer.spans[before..].sort_unstable();

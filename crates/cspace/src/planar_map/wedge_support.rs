@@ -125,7 +125,7 @@ fn tilted_bound<S: Simd, B: PlaneSolid>(
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::{Pose, Vec3};
-    use fearless_simd::{Level, dispatch, prelude::*};
+    use fearless_simd::{Level as SimdLevel, dispatch, prelude::*};
 
     use super::*;
     use crate::planar_map::plane_solid::PlaneBox;
@@ -153,7 +153,7 @@ mod tests {
         for lean in [0.0174, -0.0174, 0.1] {
             for i in 0..32 {
                 let (z, x) = (f64::from(i) / 32.0 * std::f64::consts::TAU).sin_cos();
-                let fast = dispatch!(Level::new(), simd => {
+                let fast = dispatch!(SimdLevel::new(), simd => {
                     let u = [splat(simd, x as f32), splat(simd, z as f32)];
                     support_distance(simd, &solid, u, lean as f32, 0.2).to_array()[0]
                 });

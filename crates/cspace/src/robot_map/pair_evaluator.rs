@@ -128,7 +128,7 @@ impl<'a> PairEvaluator<'a> {
         let bound = MotionBound::new(piece, self.task.chain, &self.state);
         let stays =
             |depth: f64, p: Vec3| depth > 0.0 && depth > bound.max_point_displacement(piece, &joint_box.half, p);
-        piece.points.iter().map(|p| link.transform_point(*p)).any(|p| stays(obstacle.penetration_depth(p), p))
+        piece.points.iter().map(|p| link.transform_point(*p)).any(|p| stays(obstacle.depth_of(p), p))
             || obstacle.points.iter().any(|&p| stays(depth_inside(&piece.shape, &in_world, p), p))
     }
 

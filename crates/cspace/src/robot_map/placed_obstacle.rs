@@ -54,8 +54,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// Penetration depth of a point (in the world), metres; 0 or less outside.
-    pub fn penetration_depth(&self, p: Vec3) -> f64 {
+    /// Depth of a point (in the world) below the surface, metres; 0 or less outside.
+    pub fn depth_of(&self, p: Vec3) -> f64 {
         depth_inside(&self.original, &self.in_world, p)
     }
 
@@ -69,7 +69,7 @@ impl PlacedObstacle {
     }
 }
 
-/// Penetration depth of a point (in the world) in a solid, metres; 0 or less outside.
+/// Depth of a point (in the world) below the surface of a solid, metres; 0 or less outside.
 pub(super) fn depth_inside(shape: &Shape, in_world: &Pose, p: Vec3) -> f64 {
     -project_point(shape, in_world, p).signed_distance
 }

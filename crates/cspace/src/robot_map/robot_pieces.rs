@@ -96,14 +96,14 @@ impl RobotPieces {
                 groups.push(RigidGroup { joints: link_joints.driving.clone(), ..RigidGroup::default() });
                 groups.len() - 1
             });
-            for body in &robot.colliders[link] {
+            for collider in &robot.colliders[link] {
                 let invalid = || RobotMapError::InvalidPlacement(format!("link `{}`", chain.chain.links()[link]));
-                if !body.in_link.is_finite() || body.shape.validate().is_err() {
+                if !collider.in_link.is_finite() || collider.shape.validate().is_err() {
                     return Err(invalid());
                 }
                 let (shape, in_carrier) = match link_joints.swept.as_slice() {
-                    [] => (body.shape.clone(), body.in_link),
-                    swept => swept_enclosure(&body.shape, body.in_link, swept).ok_or_else(invalid)?,
+                    [] => (collider.shape.clone(), collider.in_link),
+                    swept => swept_enclosure(&collider.shape, collider.in_link, swept).ok_or_else(invalid)?,
                 };
                 let carrier = if link_joints.swept.is_empty() { LinkId(link) } else { link_joints.carrier };
                 let in_last = relative_pose(&state, last.child, carrier) * in_carrier;
@@ -125,9 +125,9 @@ impl RobotPieces {
             return Ok(());
         }
         let carrier_in_world = chain.link_in_world(&chain.state(), *carrier);
-        for body in &robot.colliders[link] {
+        for collider in &robot.colliders[link] {
             let invalid = || RobotMapError::InvalidPlacement(format!("link `{}`", chain.chain.links()[link]));
-            let (shape, in_carrier) = swept_enclosure(&body.shape, body.in_link, swept).ok_or_else(invalid)?;
+            let (shape, in_carrier) = swept_enclosure(&collider.shape, collider.in_link, swept).ok_or_else(invalid)?;
             self.static_solids.push((shape, carrier_in_world * in_carrier));
         }
         Ok(())

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use elbowroom_cspace::{
-    CellIndex, ConvexObstacle, Grid, GridAxis, Layer, ObstacleMapBuilder, OccupancyBitmap, PlanarArm,
+    CellIndex, ConvexObstacle, Grid, GridAxis, Layer, OccupancyBitmap, PlanarArm, PlanarMapBuilder,
 };
 use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -59,7 +59,7 @@ pub fn grid_of(step_deg: f64, ranges: [[f64; 2]; 3]) -> Grid {
 }
 
 pub fn fill(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> OccupancyBitmap {
-    let mut builder = ObstacleMapBuilder::new(*arm, grid).unwrap();
+    let mut builder = PlanarMapBuilder::new(*arm, grid).unwrap();
     let mut layer = Layer::new();
     builder.build_layer(obstacle, &mut layer);
     assert!(layer.spans().windows(2).all(|w| w[0].row <= w[1].row), "rows ascend");

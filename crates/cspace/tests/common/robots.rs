@@ -70,14 +70,15 @@ pub fn six_joints() -> Robot {
     }
     let mut robot = Robot::new(Chain::new("six", links, joints).unwrap());
     robot.colliders[..4].clone_from_slice(&arm.colliders);
-    let body = |shape, at: [f64; 3], rpy| Collider { name: String::new(), shape, in_link: Pose::from_xyz_rpy(at, rpy) };
-    robot.colliders[4].push(body(Shape::Mesh(Arc::new(box_mesh(0.08))), [0.0, 0.0, 0.02], [0.3, 0.2, 0.1]));
-    robot.colliders[5].push(body(
+    let collider =
+        |shape, at: [f64; 3], rpy| Collider { name: String::new(), shape, in_link: Pose::from_xyz_rpy(at, rpy) };
+    robot.colliders[4].push(collider(Shape::Mesh(Arc::new(box_mesh(0.08))), [0.0, 0.0, 0.02], [0.3, 0.2, 0.1]));
+    robot.colliders[5].push(collider(
         Shape::Cylinder(Cylinder { half_length: 0.05, radius: 0.03 }),
         [0.02, 0.0, 0.05],
         [0.4, 0.0, 0.0],
     ));
-    robot.colliders[6].push(body(
+    robot.colliders[6].push(collider(
         Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.02, 0.05, 0.03) }),
         [0.0, 0.03, 0.06],
         [0.0; 3],
@@ -127,13 +128,13 @@ impl Case {
         state.q.copy_from_slice(q);
         self.robot.chain.forward(state);
         links.iter().any(|&link| {
-            self.robot.colliders[link].iter().any(|body| {
-                let in_world = self.base * state.link_in_root(LinkId(link)) * body.in_link;
-                let bounds = body.shape.aabb(&in_world).inflated(1e-9);
+            self.robot.colliders[link].iter().any(|collider| {
+                let in_world = self.base * state.link_in_root(LinkId(link)) * collider.in_link;
+                let bounds = collider.shape.aabb(&in_world).inflated(1e-9);
                 self.obstacles
                     .iter()
                     .zip(around)
-                    .any(|((shape, at), o)| bounds.overlaps(o) && collides(&body.shape, &in_world, shape, at))
+                    .any(|((shape, at), o)| bounds.overlaps(o) && collides(&collider.shape, &in_world, shape, at))
             })
         })
     }
@@ -144,13 +145,13 @@ impl Case {
         self.robot.chain.forward(state);
         let mut least = f64::INFINITY;
         for link in self.moving_links() {
-            for body in &self.robot.colliders[link] {
-                let in_world = self.base * state.link_in_root(LinkId(link)) * body.in_link;
+            for collider in &self.robot.colliders[link] {
+                let in_world = self.base * state.link_in_root(LinkId(link)) * collider.in_link;
                 for (shape, at) in &self.obstacles {
-                    if collides(&body.shape, &in_world, shape, at) {
+                    if collides(&collider.shape, &in_world, shape, at) {
                         return 0.0;
                     }
-                    least = least.min(separation(&body.shape, &in_world, shape, at).distance);
+                    least = least.min(separation(&collider.shape, &in_world, shape, at).distance);
                 }
             }
         }

@@ -51,7 +51,7 @@ fn facts(record: &run::RunResult, station: &station::Station) -> Vec<String> {
     let no_image = |d: &ExecutorState| matches!(d.reason(), Some(HoldReason::NoRecentImage { .. }));
     let (least, when) = log.least_distance().unwrap_or((f64::NAN, f64::NAN));
     let cells = station.pipeline.map().grid().cells();
-    let settings = station.pipeline.vision().settings();
+    let settings = station.pipeline.tracker().settings();
     vec![
         format!(
             "{:.0} s, {} frames of 640 x 480, {} refused; map of {:.2} million cells of {}°",

@@ -64,7 +64,7 @@ pub fn run(
     let mut ground_truth = GroundTruthChecker::new(&scene, &q)?;
     let mut camera = CameraRenderer::new(station);
     let mut record = RunResult { log: log(obstacles), hits: vec![], arrivals: 0, coverage: Coverage::default() };
-    let learning_s = f64::from(station.pipeline.vision().settings().learning_frames) * PERIOD_S;
+    let learning_s = f64::from(station.pipeline.tracker().settings().learning_frames) * PERIOD_S;
     let period_ticks = (PERIOD_S / TICK_S).round() as usize;
     let latency_ticks = (LATENCY_S / TICK_S).round() as usize;
     let mut sent: Option<SentFrame> = None;

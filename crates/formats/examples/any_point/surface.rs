@@ -26,12 +26,12 @@ pub struct Surface {
 }
 
 impl Surface {
-    pub fn of(bodies: &[Collider]) -> Self {
+    pub fn of(colliders: &[Collider]) -> Self {
         let (mut triangles, mut area_up_to, mut area) = (Vec::new(), Vec::new(), 0.0);
-        for body in bodies {
-            let (vertices, corners) = tessellate(&body.shape, 1e-3);
+        for collider in colliders {
+            let (vertices, corners) = tessellate(&collider.shape, 1e-3);
             for corners in corners {
-                let t = corners.map(|i| body.in_link.transform_point(vertices[i as usize]));
+                let t = corners.map(|i| collider.in_link.transform_point(vertices[i as usize]));
                 let twice = (t[1] - t[0]).cross(t[2] - t[0]).length();
                 if twice > 0.0 {
                     area += 0.5 * twice;

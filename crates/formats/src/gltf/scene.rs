@@ -11,6 +11,8 @@ use crate::{FormatError, Warning, input, polygon};
 const MAX_DEPTH: usize = 200;
 const MAX_VISITS: usize = 100_000;
 
+/// The last of the modes of primitives with points and lines.
+const LINE_STRIP: u32 = 3;
 /// Modes of primitives with triangles.
 const TRIANGLES: u32 = 4;
 const TRIANGLE_STRIP: u32 = 5;
@@ -118,8 +120,13 @@ impl<'a> SceneReader<'a> {
 
     fn primitive(&mut self, place: &str, primitive: &Primitive, merged: &mut MeshData) -> Result<(), FormatError> {
         let mode = primitive.mode;
-        if !matches!(mode, TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN) {
-            return Ok(());
+        match mode {
+            ..=LINE_STRIP => return Ok(()),
+            TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN => {}
+            _ => {
+                let what = format!("has the mode {mode}, which does not exist");
+                return Err(self.reader.error(place, &what).hint("4 (triangles), 5 (a strip) or 6 (a fan)"));
+            }
         }
         let positions = primitive.attributes.position.ok_or_else(|| {
             self.reader.error(place, "has no POSITION").hint("the model exported with its positions, uncompressed")

@@ -54,22 +54,22 @@ pub fn to_tree(robot: &Robot) -> NodeTree {
     tree
 }
 
-fn node(chain: &Chain, link: usize, parent: Option<usize>, bodies: &[Collider]) -> Node {
+fn node(chain: &Chain, link: usize, parent: Option<usize>, colliders: &[Collider]) -> Node {
     let name = &chain.links()[link];
     let mut node = Node::new(name, parent, Pose::IDENTITY);
-    node.meshes = meshes(name, bodies);
+    node.meshes = meshes(name, colliders);
     node
 }
 
 /// Colliders as triangles in the link's frame, named after the link and numbered where there are several.
-pub(super) fn meshes(link: &str, bodies: &[Collider]) -> Vec<MeshData> {
-    let mesh = |(i, body): (usize, &Collider)| {
-        let (vertices, triangles) = tessellate(&body.shape, MAX_CHORD_ERROR_M);
-        let vertices = vertices.into_iter().map(|v| body.in_link.transform_point(v)).collect();
-        let name = if bodies.len() == 1 { link.to_owned() } else { format!("{link}_{}", i + 1) };
+pub(super) fn meshes(link: &str, colliders: &[Collider]) -> Vec<MeshData> {
+    let mesh = |(i, collider): (usize, &Collider)| {
+        let (vertices, triangles) = tessellate(&collider.shape, MAX_CHORD_ERROR_M);
+        let vertices = vertices.into_iter().map(|v| collider.in_link.transform_point(v)).collect();
+        let name = if colliders.len() == 1 { link.to_owned() } else { format!("{link}_{}", i + 1) };
         MeshData { name, vertices, triangles }
     };
-    bodies.iter().enumerate().map(mesh).collect()
+    colliders.iter().enumerate().map(mesh).collect()
 }
 
 fn track(chain: &Chain, id: JointId, joint: &Joint) -> Vec<Keyframe> {

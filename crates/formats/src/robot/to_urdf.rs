@@ -128,38 +128,38 @@ fn elements(
     link: &str,
     (folder, prefix): (&str, &str),
     index: usize,
-    bodies: &[Collider],
+    colliders: &[Collider],
     meshes: &mut Vec<(String, MeshData)>,
 ) -> Vec<GeometryElement> {
     let mut elements = Vec::new();
-    for (b, body) in bodies.iter().enumerate() {
+    for (b, collider) in colliders.iter().enumerate() {
         let mut element = |in_link: Pose, geometry: String| {
-            elements.push(GeometryElement { name: body.name.clone(), in_link, geometry });
+            elements.push(GeometryElement { name: collider.name.clone(), in_link, geometry });
         };
-        match &body.shape {
+        match &collider.shape {
             Shape::Cuboid(c) => {
                 let [x, y, z] = (c.half_extents * 2.0).to_array();
-                element(body.in_link, format!("<box size=\"{x:?} {y:?} {z:?}\"/>"));
+                element(collider.in_link, format!("<box size=\"{x:?} {y:?} {z:?}\"/>"));
             }
-            Shape::Sphere(s) => element(body.in_link, sphere(s.radius)),
-            Shape::Cylinder(c) => element(body.in_link, cylinder(c.radius, c.half_length)),
+            Shape::Sphere(s) => element(collider.in_link, sphere(s.radius)),
+            Shape::Cylinder(c) => element(collider.in_link, cylinder(c.radius, c.half_length)),
             Shape::Capsule(c) => {
-                element(body.in_link, cylinder(c.radius, c.half_length));
+                element(collider.in_link, cylinder(c.radius, c.half_length));
                 for z in [c.half_length, -c.half_length] {
-                    element(body.in_link * Pose::from_translation(Vec3::Z * z), sphere(c.radius));
+                    element(collider.in_link * Pose::from_translation(Vec3::Z * z), sphere(c.radius));
                 }
             }
             // A URDF cannot contain unbounded geometry.
             Shape::HalfSpace(_) => {}
             Shape::Hull(_) | Shape::Mesh(_) => {
-                let (vertices, triangles) = tessellate(&body.shape, 0.0);
+                let (vertices, triangles) = tessellate(&collider.shape, 0.0);
                 let link = plain_name(link);
                 let file = format!(
                     "meshes/{folder}/{index:02}_{prefix}{link}{}.stl",
                     if b == 0 { String::new() } else { format!("_{}", b + 1) }
                 );
-                element(body.in_link, format!("<mesh filename=\"{file}\"/>"));
-                meshes.push((file, MeshData { name: body.name.clone(), vertices, triangles }));
+                element(collider.in_link, format!("<mesh filename=\"{file}\"/>"));
+                meshes.push((file, MeshData { name: collider.name.clone(), vertices, triangles }));
             }
         }
     }

@@ -6,7 +6,7 @@ use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mim
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::{Configuration, Guards, Laws, Life, Part, Region, RegionKind, SlotId, SourceId, Stopping, Volume};
+use crate::{Configuration, Guards, Laws, Life, Part, Region, RegionKind, SlotId, SourceId, StoppingSettings, Volume};
 
 type Change = fn(&mut Configuration);
 
@@ -36,7 +36,7 @@ fn configuration() -> Configuration {
         warning_output: Some(2),
         ..Region::sphere("r", Vec3::X, 0.2).warning(0.3).kind(RegionKind::Monitored { slow_to: Some(0.5) })
     };
-    let stopping = Stopping {
+    let stopping = StoppingSettings {
         reaction_s: 0.01,
         period_s: 0.002,
         joint_deceleration: vec![3.0, 4.0],
@@ -185,12 +185,12 @@ fn of_region() -> Vec<Named> {
 }
 
 fn of_laws() -> Vec<Named> {
-    fn stopping(c: &mut Configuration) -> &mut Stopping {
+    fn stopping(c: &mut Configuration) -> &mut StoppingSettings {
         c.laws.stopping_distance.as_mut().unwrap()
     }
     let Laws { direction_aware: _, recovery: _, stopping_distance, override_rate: _, stale_s: _ } =
         configuration().laws;
-    let Stopping { reaction_s: _, period_s: _, joint_deceleration: _, joint_acceleration: _ } =
+    let StoppingSettings { reaction_s: _, period_s: _, joint_deceleration: _, joint_acceleration: _ } =
         stopping_distance.unwrap();
     vec![
         ("direction_aware", |c| c.laws.direction_aware ^= true),

@@ -7,7 +7,7 @@ use super::robot_set::RobotSet;
 use super::safe_order::{DECLARED, MAX_SLOTS, SafeOrder};
 use super::shared_state::{InjectedFault, SharedState};
 use super::slot::{RobotSlot, SlotId};
-use super::wait_graph::WaitGraph;
+use super::wait_for_graph::WaitForGraph;
 use crate::AccessClass;
 
 /// Locks and published occupancies that several controllers share.
@@ -92,7 +92,7 @@ impl ZoneArbiter {
         }
         self.state.join_queue(slot, robot);
         let refusal = self.refusal(slot, robot, now_s)?;
-        let graph = WaitGraph { state: &self.state, now_s };
+        let graph = WaitForGraph { state: &self.state, now_s };
         if !graph.has_cycle(robot) {
             return Some(refusal);
         }
@@ -166,7 +166,7 @@ impl ZoneArbiter {
     /// The robots that wait for each other in a cycle with this one, each with a slot that it waits for; empty where it is in
     /// no cycle. A silent robot is in no cycle: it may publish again, or be cleared. Not part of the tick: it allocates.
     pub fn wait_cycle(&self, robot: RobotSlot, now_s: f64) -> Vec<(RobotSlot, SlotId)> {
-        WaitGraph { state: &self.state, now_s }.cycle(robot)
+        WaitForGraph { state: &self.state, now_s }.cycle(robot)
     }
 
     /// Invalidates a robot's published occupancy of a slot, because one of its regions was switched on: the robot must

@@ -35,7 +35,7 @@ mod shared_state;
 mod slot;
 #[cfg(test)]
 mod tests;
-mod wait_graph;
+mod wait_for_graph;
 
 pub use arbiter::ZoneArbiter;
 pub use group::group_overlapping;

@@ -5,7 +5,7 @@
 //! afterwards every robot that could finish before can still finish: in some order each gets all slots that it declared,
 //! while those that have finished have released theirs. Then robots that keep to their declarations never wait for each
 //! other in a cycle. A robot without a declaration is assumed to need no more than it has; for it, cycles are only detected
-//! (`wait_graph.rs`).
+//! (`wait_for_graph.rs`).
 //!
 //! Younger requests may overtake an older one that waits for this reason, but not for ever: a robot that holds nothing does
 //! not start while an older request waits whose declared slots overlap with its own.

@@ -6,7 +6,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
 
 use super::{StopPhases, StoppingInput, StoppingLaw};
-use crate::{Configuration, ConfigurationParts, Laws, Part, Stopping, Volume};
+use crate::{Configuration, ConfigurationParts, Laws, Part, StoppingSettings, Volume};
 
 struct Random(u64);
 
@@ -25,7 +25,7 @@ impl Random {
 }
 
 /// A chain of `kinds`, with perpendicular axes or all axes along z, and a sphere at its end.
-fn configuration(kinds: &[JointKind], flat: bool, stopping: Stopping) -> Configuration {
+fn configuration(kinds: &[JointKind], flat: bool, stopping: StoppingSettings) -> Configuration {
     let joint = |(i, kind): (usize, &JointKind)| Joint {
         name: format!("j{i}"),
         kind: *kind,
@@ -70,7 +70,7 @@ fn fractions(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
     let (mut largest, mut sum) = (0.0_f64, 0.0);
     for _ in 0..rounds {
         let acceleration: Vec<f64> = (0..n).map(|_| r.between(0.5, 12.0)).collect();
-        let stopping = Stopping {
+        let stopping = StoppingSettings {
             reaction_s: 0.0,
             period_s: 0.002,
             joint_deceleration: vec![4.0; n],

@@ -2,8 +2,8 @@
 //! proven by a sweep.
 
 mod clearance_exit;
-mod corner_blending;
 mod error;
+mod exact_time_parametrization;
 mod interpolation;
 mod joint_bounds;
 mod joint_weights;

@@ -1,4 +1,5 @@
-//! Validity of configurations and motions of one robot in the exact scene: discrete checks and continuous proofs.
+//! Motion validator: whether configurations and motions of one robot are valid in the exact scene, by discrete checks and
+//! by continuous proofs.
 
 use std::time::Instant;
 
@@ -62,8 +63,8 @@ impl<'s> MotionValidator<'s> {
         Ok(())
     }
 
-    pub fn name(&self, member: GeometryId) -> String {
-        self.scene.name(member)
+    pub fn name(&self, geometry: GeometryId) -> String {
+        self.scene.name(geometry)
     }
 
     /// False where the scene rejects the values: they count as not free.

@@ -1,4 +1,4 @@
-//! Shortcutting of a path; every segment stays proven.
+//! Shortcutting of a path in the exact scene; every segment stays proven. For paths on the grid: `grid_shortcutting.rs`.
 
 use super::interpolation::{length, lerp, path_length};
 use super::motion_validator::MotionValidator;

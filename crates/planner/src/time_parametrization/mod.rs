@@ -2,7 +2,6 @@
 //! joints.
 
 mod blend;
-mod corner_blending;
 mod limits;
 mod segments;
 mod speed_profile;

@@ -6,7 +6,7 @@ use fearless_simd::{Simd, dispatch, prelude::*};
 use super::bvh16::Bvh16;
 use super::node::{ARITY, Node};
 use super::node_bound::NodeBound;
-use crate::lanes::{F32_ERROR, V3, W16, abs16, array16, detected_level, load16, narrow, splat16};
+use crate::lanes::{F32_ERROR, V3, W16, abs16, array16, detected_simd_level, load16, narrow, splat16};
 
 /// Distance from a box in its own frame.
 pub(crate) struct BoxDistance {
@@ -84,7 +84,7 @@ impl BoxDistance {
 
 impl NodeBound for BoxDistance {
     fn lower_bounds(&self, node: &Node) -> [f32; ARITY] {
-        dispatch!(detected_level(), simd => array16(self.lanes(simd, node)))
+        dispatch!(detected_simd_level(), simd => array16(self.lanes(simd, node)))
     }
 }
 

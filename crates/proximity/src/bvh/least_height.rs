@@ -6,7 +6,7 @@ use fearless_simd::{Simd, dispatch};
 use super::bvh16::Bvh16;
 use super::node::{ARITY, Node};
 use super::node_bound::NodeBound;
-use crate::lanes::{F32_ERROR, W16, array16, detected_level, load16, narrow, splat16};
+use crate::lanes::{F32_ERROR, W16, array16, detected_simd_level, load16, narrow, splat16};
 
 /// Height of boxes along a direction, units of the tree's frame.
 pub(crate) struct LeastHeight {
@@ -34,6 +34,6 @@ impl LeastHeight {
 
 impl NodeBound for LeastHeight {
     fn lower_bounds(&self, node: &Node) -> [f32; ARITY] {
-        dispatch!(detected_level(), simd => array16(self.lanes(simd, node)))
+        dispatch!(detected_simd_level(), simd => array16(self.lanes(simd, node)))
     }
 }

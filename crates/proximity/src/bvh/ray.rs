@@ -6,7 +6,7 @@ use fearless_simd::{Simd, dispatch, prelude::*};
 use super::bvh16::Bvh16;
 use super::node::{ARITY, Node};
 use super::node_bound::NodeBound;
-use crate::lanes::{F32_ERROR, W16, array16, detected_level, load16, narrow, splat16};
+use crate::lanes::{F32_ERROR, W16, array16, detected_simd_level, load16, narrow, splat16};
 
 /// A ray. The bound is below 0 for boxes that it passes and above 0 for others.
 pub(crate) struct Ray {
@@ -38,6 +38,6 @@ impl Ray {
 
 impl NodeBound for Ray {
     fn lower_bounds(&self, node: &Node) -> [f32; ARITY] {
-        dispatch!(detected_level(), simd => array16(self.lanes(simd, node)))
+        dispatch!(detected_simd_level(), simd => array16(self.lanes(simd, node)))
     }
 }

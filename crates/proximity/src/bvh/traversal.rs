@@ -5,7 +5,7 @@ use fearless_simd::{Simd, dispatch, prelude::*};
 use super::bvh16::Bvh16;
 use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
 use super::node_bound::NodeBound;
-use crate::lanes::{V3, W8, detected_level, load_corners};
+use crate::lanes::{V3, W8, detected_simd_level, load_corners};
 
 /// A subtree still to be visited.
 #[derive(Clone, Copy)]
@@ -51,7 +51,7 @@ impl Bvh16 {
 
     fn visit_leaf(&self, query: &dyn NodeBound, number: usize, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) -> f32 {
         let first = number * LEAF_SIZE;
-        let node = dispatch!(detected_level(), simd => node_of_triangles(simd, &self.leaves[number]));
+        let node = dispatch!(detected_simd_level(), simd => node_of_triangles(simd, &self.leaves[number]));
         let bounds = query.lower_bounds(&node);
         let mut left = (1u32 << self.leaf_len(number)) - 1;
         let mut limit = limit;

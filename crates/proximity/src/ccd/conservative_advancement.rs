@@ -14,7 +14,7 @@ const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
 /// The first time at which two moving shapes are within the tolerance of contact; `None` where they are apart all along.
 ///
-/// A NaN or an infinity in a pose, a dimension or a motion is an impact that is not certain: unknown does not count as free.
+/// A NaN or an infinity in a pose, a dimension or a motion counts as a contact that is not certain: unknown does not count as free.
 pub fn time_of_impact(
     a: &Shape,
     a_motion: &dyn RigidMotion,
@@ -50,7 +50,7 @@ pub fn time_of_impact_with(
             tolerance = tolerance.min(0.5 * near.lower_bound);
         }
         let tolerance = if tolerance > finest { tolerance } else { finest };
-        let found = |certain| Some(impact(&near, t, steps, certain));
+        let found = |certain| Some(contact_at(&near, t, steps, certain));
         if !(near.distance > tolerance) {
             return found(near.distance <= tolerance && a_in_world.is_finite() && b_in_world.is_finite());
         }
@@ -89,7 +89,7 @@ fn resolution(bounds: &PairBounds) -> f64 {
     RESOLUTION * (one(bounds.a, &bounds.a_in_world) + one(bounds.b, &bounds.b_in_world))
 }
 
-fn impact(near: &Separation, time: f64, steps: u32, certain: bool) -> TimeOfImpact {
+fn contact_at(near: &Separation, time: f64, steps: u32, certain: bool) -> TimeOfImpact {
     let apart = near.on_a - near.on_b;
     let normal = if near.distance > 0.0 { apart.try_normalize() } else { None };
     TimeOfImpact { time, on_a: near.on_a, on_b: near.on_b, normal, separation: near.distance, steps, certain }

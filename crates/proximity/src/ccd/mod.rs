@@ -3,7 +3,7 @@
 //! [`time_of_impact`] takes any two shapes and how they move: at rest (a [`Pose`](elbowroom_spatial::Pose)), straight, about an
 //! axis or along a screw ([`ConstantTwist`]), or any [`RigidMotion`] that can bound its own speed. `None` means that the shapes
 //! are apart during all of the motion, ends included; thin plates are not tunnelled through. `Some` means that they are within
-//! the tolerance at [`TimeOfImpact::time`] and were apart before. A pass within the tolerance may be reported as an impact; a
+//! the tolerance at [`TimeOfImpact::time`] and were apart before. A pass within the tolerance may be reported as a contact; a
 //! contact is always reported.
 //!
 //! Method: conservative advancement (Mirtich, 1996). README.md in this folder derives the bounds.

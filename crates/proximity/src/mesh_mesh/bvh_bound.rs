@@ -5,8 +5,8 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::containment::contained_point;
 use super::cutoff::Cutoff;
 use super::mesh_pair::MeshPair;
+use super::node_kernel::{DISTANCE, expand_sides};
 use super::node_pair::{NodePair, Sides};
-use super::node_pairs::{DISTANCE, expand_sides};
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::workspace::Workspace;
 use crate::bvh::{ARITY, BoxDistance, Bvh16, NodeBound};
@@ -65,7 +65,7 @@ pub fn bvh_lower_bound(
         return Some(BvhBound::touching(a_in_world.translation, b_in_world.translation));
     }
     let unit = a.bvh.frame.unit;
-    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let found = nearest_node_pair(&meshes, depth, limit.max(0.0) / unit + placement.f64_error, workspace);
     if workspace.stack.overflowed() {
         return Some(BvhBound::touching(a_in_world.translation, b_in_world.translation));

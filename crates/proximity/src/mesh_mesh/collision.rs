@@ -4,11 +4,11 @@ use elbowroom_spatial::Pose;
 
 use super::containment::contained_point;
 use super::cutoff::Cutoff;
-use super::leaf_pairs::{LeafPair, touching_pairs};
+use super::leaf_kernel::{LeafPair, touching_pairs};
 use super::mesh_features::MeshFeatures;
 use super::mesh_pair::MeshPair;
+use super::node_kernel::{INTERSECTION, expand};
 use super::node_pair::NodePair;
-use super::node_pairs::{INTERSECTION, expand};
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::triangle_batch::{TriangleBatch, corners_in_a, robust_closest_points};
 use super::workspace::{QueryStats, Workspace};
@@ -101,7 +101,7 @@ fn visit_contacts(
         touching = true;
         found(MeshFeatures::Triangles(x, y))
     };
-    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let ended = CollisionTraversal { meshes: &meshes, found: &mut found_triangles }.run(workspace);
     if workspace.stack.overflowed() {
         found(MeshFeatures::Unknown);
@@ -169,8 +169,8 @@ impl CollisionTraversal<'_> {
         if batch.is_empty() {
             return false;
         }
-        let MeshPair { a, b, placement, level } = *self.meshes;
-        let (measured, len) = batch.measure(level, placement);
+        let MeshPair { a, b, placement, simd_level } = *self.meshes;
+        let (measured, len) = batch.measure(simd_level, placement);
         stats.batches += 1;
         let contact = placement.f64_error;
         for lane in 0..len {

@@ -3,11 +3,11 @@
 use elbowroom_spatial::Vec3;
 
 use super::cutoff::Cutoff;
-use super::leaf_pairs::{LeafIntervals, LeafPair, pairs_within};
+use super::leaf_kernel::{LeafIntervals, LeafPair, pairs_within};
 use super::mesh_pair::MeshPair;
 use super::nearest_pair::NearestPair;
+use super::node_kernel::{DISTANCE, expand};
 use super::node_pair::NodePair;
-use super::node_pairs::{DISTANCE, expand};
 use super::triangle_batch::{corners_in_a, robust_closest_points};
 use super::workspace::Workspace;
 use crate::TriMesh;

@@ -8,7 +8,7 @@ use super::continuous_witness::{continuous_witness, has_parallel_features, toler
 use super::mesh_features::MeshFeatures;
 use super::mesh_pair::MeshPair;
 use super::nearest_pair::NearestPair;
-use super::nearest_pair_search::{FirstBound, SearchSettings, first_pair, nearest_pair};
+use super::nearest_pair_search::{FirstBound, SearchSettings, nearest_pair, upper_bound_pair};
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::warm_start::WarmStart;
 use super::workspace::Workspace;
@@ -72,7 +72,7 @@ pub fn mesh_separation_with(
         *warm_start = WarmStart::default();
         return Some(unknown(a_in_world, b_in_world, workspace));
     }
-    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let unit = a.bvh.frame.unit;
     let radius = limit.max(0.0) / unit + placement.f64_error;
     // Where a limit is known, most meshes are beyond it, and the traversal finds that soonest.
@@ -151,7 +151,7 @@ pub fn distance_upper_bound(
     if !placement.is_usable() {
         return f64::INFINITY;
     }
-    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let settings = SearchSettings {
         radius: f64::INFINITY,
         sufficient: placement.f64_error,
@@ -159,7 +159,7 @@ pub fn distance_upper_bound(
         warm_start: *warm_start,
         first_bound: FirstBound::Landmarks { width: UPPER_BOUND_WIDTH },
     };
-    let Some(found) = first_pair(&meshes, &settings, workspace) else { return f64::INFINITY };
+    let Some(found) = upper_bound_pair(&meshes, &settings, workspace) else { return f64::INFINITY };
     *warm_start = found.warm_start;
     (found.distance + placement.f64_error) * a.bvh.frame.unit
 }
@@ -234,7 +234,7 @@ pub(crate) fn features_within(
     if !placement.is_usable() {
         return Some(MeshFeatures::Unknown);
     }
-    let meshes = MeshPair { a, b, placement: &placement, level: workspace.level() };
+    let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let radius = tolerance / a.bvh.frame.unit + placement.f64_error;
     let warm_start = WarmStart::default();
     let settings = SearchSettings { radius, sufficient: radius, tie_tolerance: 0.0, warm_start, first_bound };

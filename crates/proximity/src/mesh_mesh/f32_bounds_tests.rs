@@ -2,13 +2,13 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 use super::cutoff::{Cutoff, WitnessFrame};
-use super::leaf_pairs::{LeafIntervals, LeafPair, PairMask, pairs_within, touching_pairs};
+use super::leaf_kernel::{LeafIntervals, LeafPair, PairMask, pairs_within, touching_pairs};
 use super::mesh_pair::MeshPair;
+use super::node_kernel::{DISTANCE, INTERSECTION, expand};
 use super::node_pair::NodePair;
-use super::node_pairs::{DISTANCE, INTERSECTION, expand};
 use super::relative_placement::RelativePlacement;
 use super::triangle_batch::corners_in_a;
 use super::workspace::Workspace;
@@ -107,7 +107,7 @@ fn child(tree: &Bvh16, height: u8, number: u32) -> Child {
     Child { center: at(&node.center), half: at(&node.half), normal: at(&node.normal), low, high }
 }
 
-/// The largest lower bound of the distance of two children, in units of A, by the formulas of `node_pairs.rs` in f64.
+/// The largest lower bound of the distance of two children, in units of A, by the formulas of `node_kernel.rs` in f64.
 fn bound(a: &Child, b: &Child, placement: &RelativePlacement, frame: Option<&WitnessFrame>) -> f64 {
     let column = |k: usize| Vec3::new(placement.exact[0][k], placement.exact[1][k], placement.exact[2][k]);
     // B's axes in A, each as long as B's unit.
@@ -252,7 +252,7 @@ fn pairs_left_out_in_f32_are_farther_than_the_cutoff() {
             let here = Pose { rotation: Rotation::from_rpy(n.next(), n.next(), n.next()), translation: n.vector() };
             let there = n.pose(&a, &here, &b);
             let placement = RelativePlacement::new(&a.bvh, &here, &b.bvh, &there);
-            let meshes = MeshPair { a: &a, b: &b, placement: &placement, level: Level::new() };
+            let meshes = MeshPair { a: &a, b: &b, placement: &placement, simd_level: SimdLevel::new() };
             let mut radius = if n.next() < 0.3 { placement.f64_error } else { 10f64.powf(-5.0 * n.next()) };
             let mut cutoff = Cutoff::new(radius, &placement);
             if n.next() < 0.7 {

@@ -86,7 +86,7 @@ fn offer_children(meshes: &MeshPair, pair: &NodePair, next: &mut NodeBeam) {
     let (node_a, mask_a) = lanes(&meshes.a.bvh, pair.a, pair.height_a, expanded.a);
     let (node_b, mask_b) = lanes(&meshes.b.bvh, pair.b, pair.height_b, expanded.b);
     let (worst, b_in_a) = (next.worst(), &meshes.placement.b_in_a);
-    let NearestPartners { squares, partners, better } = dispatch!(meshes.level, simd => {
+    let NearestPartners { squares, partners, better } = dispatch!(meshes.simd_level, simd => {
         let of_b = load16(simd, &node_b.landmark).placed(&rows16(simd, &b_in_a.m), splat16(simd, b_in_a.t));
         nearest_partners(simd, load16(simd, &node_a.landmark), &store16(of_b), mask_b, worst)
     });
@@ -112,7 +112,7 @@ fn offer_triangles(meshes: &MeshPair, pair: &NodePair, nearest: &mut SlotBeam) {
     let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
     let (count_a, count_b) = (a.leaf_len(leaf_a), b.leaf_len(leaf_b));
     let (worst, b_in_a) = (nearest.worst(), &meshes.placement.b_in_a);
-    let NearestPartners { squares, partners, better } = dispatch!(meshes.level, simd => {
+    let NearestPartners { squares, partners, better } = dispatch!(meshes.simd_level, simd => {
         let (rows, shift) = (rows8(simd, &b_in_a.m), splat8(simd, b_in_a.t));
         let of_b = centroids(simd, &b.leaves[leaf_b]).placed(&rows, shift);
         let zero = splat8(simd, [0.0; 3]);

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, dispatch, prelude::*};
 
 use crate::TriMesh;
 use crate::bvh::{ARITY, Bvh16, Leaf, box_of, most_central};
-use crate::lanes::{V3, W16, detected_level, load16, rows16, splat16, store16};
+use crate::lanes::{V3, W16, detected_simd_level, load16, rows16, splat16, store16};
 
 /// Sixteen points of a mesh's surface, spread over it.
 ///
@@ -54,7 +54,7 @@ impl Landmarks {
     pub fn placed(&self, pose: &Pose) -> PlacedLandmarks {
         let rows = pose.rotation.rows().map(|row| row.map(|x| x as f32));
         let shift = pose.translation.to_array().map(|x| x as f32);
-        let points = dispatch!(detected_level(), simd => {
+        let points = dispatch!(detected_simd_level(), simd => {
             store16(load16(simd, &self.points).placed(&rows16(simd, &rows), splat16(simd, shift)))
         });
         PlacedLandmarks { points }
@@ -64,7 +64,7 @@ impl Landmarks {
 impl PlacedLandmarks {
     /// Squared distance of the nearest two, m², in single precision; infinite where that is NaN.
     pub fn distance_squared(&self, other: &Self) -> f32 {
-        dispatch!(detected_level(), simd => least(simd, &load16(simd, &self.points), &other.points))
+        dispatch!(detected_simd_level(), simd => least(simd, &load16(simd, &self.points), &other.points))
     }
 }
 

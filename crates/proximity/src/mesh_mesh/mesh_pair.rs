@@ -1,6 +1,6 @@
 //! The two meshes of a query.
 
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 use super::relative_placement::RelativePlacement;
 use crate::TriMesh;
@@ -11,5 +11,5 @@ pub(super) struct MeshPair<'a> {
     pub a: &'a TriMesh,
     pub b: &'a TriMesh,
     pub placement: &'a RelativePlacement,
-    pub level: Level,
+    pub simd_level: SimdLevel,
 }

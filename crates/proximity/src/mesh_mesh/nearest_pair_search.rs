@@ -4,13 +4,13 @@ use elbowroom_spatial::Vec3;
 
 use super::cutoff::Cutoff;
 use super::landmark_descent::nearest_landmark_pairs;
-use super::leaf_pairs::{LeafIntervals, LeafPair, PairMask, nearest_pairs, pairs_within};
+use super::leaf_kernel::{LeafIntervals, LeafPair, PairMask, best_partners, pairs_within};
 use super::mesh_pair::MeshPair;
 use super::nearest_pair::NearestPair;
+use super::node_kernel::{DISTANCE, expand};
 use super::node_pair::{NodePair, NodePairStack};
-use super::node_pairs::{DISTANCE, expand};
 use super::triangle_batch::{TriangleBatch, robust_closest_points};
-use super::triangle_pairs::{BATCH, Distances};
+use super::triangle_kernel::{BATCH, Distances};
 use super::warm_start::WarmStart;
 use super::workspace::{QueryStats, Workspace};
 use crate::bvh::LEAF_SIZE;
@@ -74,7 +74,7 @@ pub(super) fn nearest_pair(
 }
 
 /// The nearest of the pairs that give the first upper bound.
-pub(super) fn first_pair(
+pub(super) fn upper_bound_pair(
     meshes: &MeshPair,
     settings: &SearchSettings,
     workspace: &mut Workspace,
@@ -144,7 +144,7 @@ impl<'a> NearestPairSearch<'a> {
     /// as one of eight.
     fn sample(&mut self, leaves: LeafPair) {
         let chosen = match &self.cutoff.witness_frame {
-            Some(frame) => nearest_pairs(self.meshes, leaves, frame),
+            Some(frame) => best_partners(self.meshes, leaves, frame),
             None => leaves.all(self.meshes).first_row(),
         };
         self.queue_pairs(leaves, chosen);
@@ -195,8 +195,8 @@ impl<'a> NearestPairSearch<'a> {
         if self.batch.is_empty() {
             return;
         }
-        let MeshPair { a, b, placement, level } = *self.meshes;
-        let (mut found, len) = self.batch.measure(level, placement);
+        let MeshPair { a, b, placement, simd_level } = *self.meshes;
+        let (mut found, len) = self.batch.measure(simd_level, placement);
         self.stats.triangles += len as u32;
         self.stats.batches += 1;
         if self.best.is_none() {

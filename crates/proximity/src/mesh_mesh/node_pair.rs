@@ -7,7 +7,7 @@ use crate::bvh::{ARITY, Bvh16};
 pub(super) struct NodePair {
     pub a: u32,
     pub b: u32,
-    /// A lower bound of the distance, see [`expand`](super::node_pairs::expand).
+    /// A lower bound of the distance, see [`expand`](super::node_kernel::expand).
     pub key: f32,
     pub height_a: u8,
     pub height_b: u8,

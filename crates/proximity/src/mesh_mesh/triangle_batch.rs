@@ -1,10 +1,10 @@
 //! Pairs of triangles that are measured together in f64, and the exact measurement of a single one.
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::relative_placement::RelativePlacement;
-use super::triangle_pairs::{BATCH, Corners, Distances, distances};
+use super::triangle_kernel::{BATCH, Corners, Distances, distances};
 use crate::TriMesh;
 use crate::triangle::{ClosestPoints, triangle_triangle};
 
@@ -51,9 +51,9 @@ impl TriangleBatch {
     }
 
     /// Measures all pairs and empties the batch; lanes from `len` on are meaningless. The second value is `len`.
-    pub fn measure(&mut self, level: Level, placement: &RelativePlacement) -> (Distances, usize) {
+    pub fn measure(&mut self, simd_level: SimdLevel, placement: &RelativePlacement) -> (Distances, usize) {
         let len = std::mem::take(&mut self.len);
-        (dispatch!(level, simd => distances(simd, &self.corners, placement)), len)
+        (dispatch!(simd_level, simd => distances(simd, &self.corners, placement)), len)
     }
 }
 

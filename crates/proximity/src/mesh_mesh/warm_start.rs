@@ -1,4 +1,4 @@
-//! Where a distance query of two meshes begins.
+//! Warm start: where a distance query of two meshes begins.
 
 /// The pair of triangles that was nearest in an earlier query of the same two meshes: where the next query begins.
 ///

@@ -2,12 +2,12 @@
 
 use std::cell::RefCell;
 
-use fearless_simd::Level;
+use fearless_simd::Level as SimdLevel;
 
 use super::mesh_features::MeshFeatures;
 use super::node_pair::NodePairStack;
 use super::triangle_batch::TriangleBatch;
-use crate::lanes::detected_level;
+use crate::lanes::detected_simd_level;
 
 /// Work done by one query on two meshes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct QueryStats {
 pub struct Workspace {
     pub(super) stack: NodePairStack,
     pub(super) batch: TriangleBatch,
-    level: Option<Level>,
+    simd_level: Option<SimdLevel>,
     pub(super) stats: QueryStats,
     pub(super) closest_features: Option<MeshFeatures>,
 }
@@ -46,7 +46,7 @@ impl Workspace {
         Self {
             stack: NodePairStack::new(),
             batch: TriangleBatch::new(),
-            level: None,
+            simd_level: None,
             stats: QueryStats::ZERO,
             closest_features: None,
         }
@@ -54,8 +54,8 @@ impl Workspace {
 
     /// For a given instruction set.
     #[doc(hidden)]
-    pub const fn with_level(level: Level) -> Self {
-        Self { level: Some(level), ..Self::new() }
+    pub const fn with_simd_level(simd_level: SimdLevel) -> Self {
+        Self { simd_level: Some(simd_level), ..Self::new() }
     }
 
     /// Work done by the last query on two meshes.
@@ -74,8 +74,8 @@ impl Workspace {
     }
 
     #[inline]
-    pub(super) fn level(&self) -> Level {
-        self.level.unwrap_or_else(detected_level)
+    pub(super) fn simd_level(&self) -> SimdLevel {
+        self.simd_level.unwrap_or_else(detected_simd_level)
     }
 }
 

@@ -8,7 +8,7 @@ pub(super) enum Goal {
     /// A separation with these witness points.
     Separation(WitnessPoints),
     /// Whether the shapes are within the limit: only `Some` or `None` matters.
-    Decision,
+    WithinLimit,
 }
 
 impl Goal {

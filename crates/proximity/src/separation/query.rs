@@ -48,7 +48,7 @@ pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) ->
 /// assert!(separation_within(&ball, &Pose::IDENTITY, &ball, &far, 2.9).is_some());
 /// ```
 pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
-    query(a, a_in_world, b, b_in_world, limit, Goal::CONTINUOUS, MeshOptions::DEFAULT)
+    dispatch_meshes(a, a_in_world, b, b_in_world, limit, Goal::CONTINUOUS, MeshOptions::DEFAULT)
 }
 
 /// True where the shapes touch or overlap, or are too close for f64 to separate: exactly where the distance of [`separation`]
@@ -75,7 +75,7 @@ pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> b
 /// assert!(!within(&ball, &Pose::IDENTITY, &ball, &there, 0.79));
 /// ```
 pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
-    query(a, a_in_world, b, b_in_world, tolerance, Goal::Decision, MeshOptions::DEFAULT).is_some()
+    dispatch_meshes(a, a_in_world, b, b_in_world, tolerance, Goal::WithinLimit, MeshOptions::DEFAULT).is_some()
 }
 
 /// The distance query with reused memory and all its settings.
@@ -107,7 +107,7 @@ impl Workspace {
     ) -> Option<Separation> {
         let DistanceSettings { limit, witness_points, warm_start } = settings;
         let options = MeshOptions { workspace: Some(self), warm_start, ..MeshOptions::DEFAULT };
-        query(a, a_in_world, b, b_in_world, limit, Goal::Separation(witness_points), options)
+        dispatch_meshes(a, a_in_world, b, b_in_world, limit, Goal::Separation(witness_points), options)
     }
 
     /// [`collides`](crate::collides()).
@@ -118,7 +118,7 @@ impl Workspace {
     /// [`within`](crate::within()). It is fastest where most pairs are farther apart than the tolerance, as after a broad phase.
     pub fn within(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
         let options = MeshOptions { workspace: Some(self), first_bound: EXPECT_FAR, ..MeshOptions::DEFAULT };
-        query(a, a_in_world, b, b_in_world, tolerance, Goal::Decision, options).is_some()
+        dispatch_meshes(a, a_in_world, b, b_in_world, tolerance, Goal::WithinLimit, options).is_some()
     }
 
     /// An upper bound of the distance of two meshes, metres, at a small part of the cost of the distance
@@ -151,9 +151,9 @@ impl MeshOptions<'_> {
     const DEFAULT: Self = Self { workspace: None, warm_start: None, first_bound: EXPECT_NEAR };
 }
 
-/// Every query over a pair of shapes.
+/// Every query over a pair of shapes: two meshes, or any other pair.
 #[inline]
-fn query(
+fn dispatch_meshes(
     a: &Shape,
     a_in_world: &Pose,
     b: &Shape,
@@ -164,19 +164,19 @@ fn query(
 ) -> Option<Separation> {
     match (a, b) {
         (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, a_in_world, n, b_in_world, limit, goal, options),
-        _ => limited(a, a_in_world, b, b_in_world, limit, goal),
+        _ => validated(a, a_in_world, b, b_in_world, limit, goal),
     }
 }
 
 /// All pairs but two meshes: validity of the input, the order of the pair, its method, and the limit.
-fn limited(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+fn validated(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
     if !(a.is_usable(a_in_world) && b.is_usable(b_in_world)) {
         return Some(Separation::unknown(a_in_world, b_in_world));
     }
     let found = if comes_first(a, a_in_world, b, b_in_world) {
-        ordered(a, a_in_world, b, b_in_world, limit, goal)?
+        by_first_shape(a, a_in_world, b, b_in_world, limit, goal)?
     } else {
-        ordered(b, b_in_world, a, a_in_world, limit, goal)?.swapped()
+        by_first_shape(b, b_in_world, a, a_in_world, limit, goal)?.swapped()
     };
     // Products of large numbers may have overflowed.
     let (p, q) = (found.on_a, found.on_b);
@@ -206,7 +206,7 @@ fn mesh_mesh(
             let settings = DistanceSettings { limit, witness_points, warm_start };
             mesh_separation_with(a, a_in_world, b, b_in_world, settings, workspace)
         }
-        Goal::Decision => features_within(a, a_in_world, b, b_in_world, limit, first_bound, workspace)
+        Goal::WithinLimit => features_within(a, a_in_world, b, b_in_world, limit, first_bound, workspace)
             .map(|_| Separation::unknown(a_in_world, b_in_world)),
     };
     match workspace {
@@ -217,16 +217,30 @@ fn mesh_mesh(
 
 /// The method for a pair of shapes, the first of which comes first. The gaps are in the frame of the second.
 #[inline]
-fn ordered(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+fn by_first_shape(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    goal: Goal,
+) -> Option<Separation> {
     match a {
         Shape::Sphere(s) => sphere(*s, a_in_world, b, b_in_world, limit),
-        _ => extended(a, a_in_world, b, b_in_world, limit, goal),
+        _ => all_but_spheres(a, a_in_world, b, b_in_world, limit, goal),
     }
 }
 
 /// All but spheres: a function of its own, because its register pressure would slow down the few instructions for spheres.
 #[inline(never)]
-fn extended(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+fn all_but_spheres(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    goal: Goal,
+) -> Option<Separation> {
     match (a, b) {
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
             capsule(c, a_in_world, b, b_in_world, limit, goal)

@@ -1,4 +1,4 @@
-//! The result of a distance query.
+//! The result of a distance query: separation distance, lower bound, witness points.
 
 use elbowroom_spatial::{Pose, Vec3};
 

@@ -76,9 +76,9 @@ const Stage = (() => {
   const solidMaterial = (color) => new THREE.MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.08, side: THREE.DoubleSide });
   const glass = (color, opacity) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
-  const robots = data.robots.map((robot) => robot.links.map((bodies) => {
+  const robots = data.robots.map((robot) => robot.links.map((solids) => {
     const group = new THREE.Group();
-    for (const body of bodies) group.add(new THREE.Mesh(geometry(body.mesh), solidMaterial(body.color)));
+    for (const solid of solids) group.add(new THREE.Mesh(geometry(solid.mesh), solidMaterial(solid.color)));
     scene.add(group);
     return group;
   }));

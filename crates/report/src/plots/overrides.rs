@@ -48,7 +48,7 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
     );
     Figure {
         title: "Override and the region that governs".into(),
-        note: "The strip below names the cause of the override, and collisions in red: hover over it. Without control the override is not \
+        note: "The strip below names the cause of the override, and collisions in red: hover over it. With the monitor off, the override is not \
                applied."
             .into(),
         over_time: true,

@@ -1,4 +1,4 @@
-//! Why a pair is tested or not.
+//! Reasons of the allowed collision matrix: why a pair is tested or not.
 
 use std::fmt;
 
@@ -79,7 +79,7 @@ impl fmt::Display for Reason {
                 write!(f, "in contact at rest, and in {contacts} of {samples} samples, with no solid between")
             }
             Self::ByHand(note) => write!(f, "by hand: {note}"),
-            Self::Attached(link) => write!(f, "part of {link}"),
+            Self::Attached(link) => write!(f, "attached to {link}"),
             Self::MayTouch(link) => write!(f, "held, may touch {link}"),
         }
     }

@@ -1,7 +1,13 @@
 //! The broad phase: the pairs that proofs and world boxes do not decide.
+//!
+//! [`broad_phase`](CheckerCore::broad_phase) separates boxes by a known tolerance: for collision and tolerance queries, all
+//! contacts, collision points, distances within a margin and approaching pairs.
+//! [`broad_phase_by_gap`](CheckerCore::broad_phase_by_gap) orders pairs by the gaps of their boxes: for the minimum distance,
+//! whose limit decreases while pairs are measured. Sweeps have a search of their own (`sweep/search.rs`).
 
 use super::core::{Candidate, CheckerCore};
 use super::pair_list::PairList;
+use super::result::PairDistance;
 use crate::world_box::round_up;
 use crate::{Level, SceneState};
 
@@ -47,6 +53,52 @@ impl CheckerCore<'_> {
         self.narrow.stats.pairs_cleared.l2 += cleared;
         if cleared > 0 {
             self.used(Level::L2);
+        }
+    }
+
+    /// Collects the pairs that may be nearer than the best so far, with the gaps of their world boxes, or their proven least
+    /// distances, as keys. `last` is the pair that is measured already. Pairs at [`Level::L1`] are measured at once.
+    pub(super) fn broad_phase_by_gap(
+        &mut self,
+        list: &PairList,
+        state: &SceneState,
+        best: &mut Option<PairDistance>,
+        last: Option<usize>,
+    ) {
+        self.candidates.clear();
+        let (boxes, robot_boxes) = (self.options.uses_boxes(), self.options.uses_robot_boxes());
+        for block in &list.blocks {
+            let same = block.a == block.b;
+            if robot_boxes && !same {
+                let gap = f64::from(state.boxes[block.a].gap(&state.boxes[block.b])) - block.margin;
+                if self.options.level == Level::L1 {
+                    self.measure_robot_boxes(list, block, state, best);
+                    continue;
+                }
+                if self.exceeds_best(gap, best.as_ref()) {
+                    self.narrow.stats.pairs_cleared.l1 += (block.end - block.start) as u64;
+                    continue;
+                }
+            }
+            for index in (block.start..block.end).filter(|i| Some(*i) != last) {
+                let packed = &list.packed[index];
+                let proven = if packed.proven { self.proven_distance(&list.pairs[index], state) } else { 0.0 };
+                if proven == f64::INFINITY {
+                    self.narrow.stats.pairs_skipped += 1;
+                    continue;
+                }
+                let gap = if boxes {
+                    f64::from(state.boxes[packed.a as usize].gap(&state.boxes[packed.b as usize]))
+                } else {
+                    0.0
+                };
+                let key = (gap.max(proven) - f64::from(packed.margin)).max(0.0);
+                if self.exceeds_best(key, best.as_ref()) {
+                    self.cleared(Level::L2);
+                    continue;
+                }
+                self.candidates.push(Candidate { key, rank: list.pairs[index].rank, index: index as u32 });
+            }
         }
     }
 

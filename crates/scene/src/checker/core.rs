@@ -26,9 +26,12 @@ pub(crate) struct CheckerCore<'s> {
 /// A pair that the broad phase has left undecided.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate {
-    /// Sort key: small first.
+    /// Sort key, small first. Minimum distance: a lower bound of the distance less margin, m. Collision and tolerance with
+    /// [`CheckerOptions::weights`]: the negative weight of the pair. All other queries: 0, so that the rank decides.
     pub key: f64,
+    /// Position of the pair in the order of the hierarchy, which decides among equal keys: [`GeometryPair::rank`].
     pub rank: u32,
+    /// Index of the pair in the list of the query.
     pub index: u32,
 }
 
@@ -68,9 +71,10 @@ impl<'s> CheckerCore<'s> {
     /// Least distance (m) of a pair that the allowed collision matrix proves in a state; 0 without a proof.
     pub fn proven_distance(&self, pair: &GeometryPair, state: &SceneState) -> f64 {
         let side = |model: u32| state.proofs_hold(self.scene.models[model as usize].id);
-        let holds =
-            pair.least > 0.0 && self.options.matrix && (state.all_proofs_hold || (side(pair.a) && side(pair.b)));
-        if holds { pair.least } else { 0.0 }
+        let holds = pair.proven_least_m > 0.0
+            && self.options.matrix
+            && (state.all_proofs_hold || (side(pair.a) && side(pair.b)));
+        if holds { pair.proven_least_m } else { 0.0 }
     }
 
     /// True where coarse models prove a pair farther apart than `limit` metres, at [`Level::Auto`].

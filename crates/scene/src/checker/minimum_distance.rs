@@ -17,16 +17,16 @@ impl CheckerCore<'_> {
         // The pair that was nearest is likely to be nearest again, and gives a limit to the others.
         let mut last = list.nearest.filter(|_| self.options.level != Level::L1);
         if let Some(index) = last {
-            if self.lower_upper_bound(list, index, state) {
+            if self.tighten_upper_bound(list, index, state) {
                 last = None;
             } else {
                 self.measure(list, index, state, &mut best);
             }
         }
-        self.collect_by_gap(list, state, &mut best, last);
+        self.broad_phase_by_gap(list, state, &mut best, last);
         self.sort_candidates();
         for i in 0..self.candidates.len().min(UPPER_BOUNDS) {
-            self.lower_upper_bound(list, self.candidates[i].index as usize, state);
+            self.tighten_upper_bound(list, self.candidates[i].index as usize, state);
         }
         for i in 0..self.candidates.len() {
             let Candidate { key, index, .. } = self.candidates[i];
@@ -41,12 +41,12 @@ impl CheckerCore<'_> {
     }
 
     /// True where a pair at least so far apart cannot be the nearest.
-    fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
+    pub(super) fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
         metres > self.upper_bound || best.is_some_and(|b| metres >= b.metres)
     }
 
-    /// Lowers the upper bound by that of one pair; false where it has none that is cheap.
-    fn lower_upper_bound(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
+    /// Tightens the upper bound by that of one pair; false where it has none that is cheap.
+    fn tighten_upper_bound(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
         if !matches!(self.options.level, Level::Auto | Level::L3) {
             return false;
         }
@@ -57,53 +57,8 @@ impl CheckerCore<'_> {
         true
     }
 
-    /// Collects the pairs that the gaps of world boxes leave undecided, with these gaps as keys.
-    fn collect_by_gap(
-        &mut self,
-        list: &PairList,
-        state: &SceneState,
-        best: &mut Option<PairDistance>,
-        last: Option<usize>,
-    ) {
-        self.candidates.clear();
-        let (boxes, robot_boxes) = (self.options.uses_boxes(), self.options.uses_robot_boxes());
-        for block in &list.blocks {
-            let same = block.a == block.b;
-            if robot_boxes && !same {
-                let gap = f64::from(state.boxes[block.a].gap(&state.boxes[block.b])) - block.margin;
-                if self.options.level == Level::L1 {
-                    self.measure_robot_boxes(list, block, state, best);
-                    continue;
-                }
-                if self.exceeds_best(gap, best.as_ref()) {
-                    self.narrow.stats.pairs_cleared.l1 += (block.end - block.start) as u64;
-                    continue;
-                }
-            }
-            for index in (block.start..block.end).filter(|i| Some(*i) != last) {
-                let packed = &list.packed[index];
-                let proven = if packed.proven { self.proven_distance(&list.pairs[index], state) } else { 0.0 };
-                if proven == f64::INFINITY {
-                    self.narrow.stats.pairs_skipped += 1;
-                    continue;
-                }
-                let gap = if boxes {
-                    f64::from(state.boxes[packed.a as usize].gap(&state.boxes[packed.b as usize]))
-                } else {
-                    0.0
-                };
-                let key = (gap.max(proven) - f64::from(packed.margin)).max(0.0);
-                if self.exceeds_best(key, best.as_ref()) {
-                    self.cleared(Level::L2);
-                    continue;
-                }
-                self.candidates.push(Candidate { key, rank: list.pairs[index].rank, index: index as u32 });
-            }
-        }
-    }
-
     /// Measures the box of a robot against that of another robot or an object.
-    fn measure_robot_boxes(
+    pub(super) fn measure_robot_boxes(
         &mut self,
         list: &PairList,
         block: &CarrierBlock,

@@ -16,10 +16,11 @@ pub(crate) struct GeometryPair {
     pub b: u32,
     /// Security margin, metres.
     pub margin: f64,
-    /// Proven least distance, metres; 0 without a proof. Infinite where the user has excluded the pair.
-    pub least: f64,
+    /// Proven least distance; 0 without a proof. Infinite where the user has excluded the pair.
+    pub proven_least_m: f64,
     /// Position in the order of the hierarchy.
     pub rank: u32,
+    /// How likely the pair is to collide, as learned: collision and tolerance queries test high weights first.
     pub weight: f64,
     pub warm_start: PairWarmStart,
 }
@@ -28,7 +29,7 @@ impl GeometryPair {
     /// A pair without a proof; `None` where one has no shape.
     pub fn of(scene: &Scene, (a, b): (GeometryId, GeometryId), margin: f64) -> Option<Self> {
         let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
-        Some(Self { a, b, margin, least: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })
+        Some(Self { a, b, margin, proven_least_m: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })
     }
 }
 
@@ -110,13 +111,13 @@ impl PairList {
             if !self.selects(state, e.a, e.b) {
                 continue;
             }
-            let least = match state.pair(scene, e.a, e.b) {
+            let proven_least_m = match state.pair(scene, e.a, e.b) {
                 Some((PairState::Tested, _)) => 0.0,
                 Some((_, Reason::OutOfReach { least_m })) => least_m,
                 Some((_, Reason::NeverInSamples { .. })) => f64::INFINITY,
                 _ => continue,
             };
-            self.push(scene, (e.a, e.b), e.margin_m, least, e.weight);
+            self.push(scene, (e.a, e.b), e.margin_m, proven_least_m, e.weight);
         }
     }
 
@@ -141,8 +142,8 @@ impl PairList {
         }
     }
 
-    fn push(&mut self, scene: &Scene, ids: (GeometryId, GeometryId), margin: f64, least: f64, weight: f64) {
-        self.pairs.extend(GeometryPair::of(scene, ids, margin).map(|p| GeometryPair { least, weight, ..p }));
+    fn push(&mut self, scene: &Scene, ids: (GeometryId, GeometryId), margin: f64, proven_least_m: f64, weight: f64) {
+        self.pairs.extend(GeometryPair::of(scene, ids, margin).map(|p| GeometryPair { proven_least_m, weight, ..p }));
     }
 
     /// Orders the pairs by the hierarchy: nearest to a base first, in the order of the matrix among equals.
@@ -171,8 +172,12 @@ impl PairList {
             (a.min(b), a.max(b))
         };
         self.pairs.sort_by_key(|p| (carriers(p), p.rank));
-        let packed =
-            |p: &GeometryPair| PackedPair { a: p.a, b: p.b, margin: round_up(p.margin), proven: p.least > 0.0 };
+        let packed = |p: &GeometryPair| PackedPair {
+            a: p.a,
+            b: p.b,
+            margin: round_up(p.margin),
+            proven: p.proven_least_m > 0.0,
+        };
         self.packed = self.pairs.iter().map(packed).collect();
         self.blocks.clear();
         for (i, p) in self.pairs.iter().enumerate() {

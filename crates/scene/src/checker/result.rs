@@ -7,15 +7,15 @@ use elbowroom_spatial::Vec3;
 
 use crate::Level;
 
-/// Two links or objects in contact.
+/// Two links or objects in contact or, as the answer to a tolerance query, not farther apart than its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PairContact {
     /// The first of the pair, in the order of the allowed collision matrix.
     pub a: GeometryId,
     /// The other.
     pub b: GeometryId,
-    /// The level of the models that touch. Only at [`Level::L3`] the contact is certain; at [`Level::L1`] the pair stands for its
-    /// robots.
+    /// The finest resolution level used: that of the models in contact, or within the tolerance. Only at [`Level::L3`] this is
+    /// certain; at [`Level::L1`] the pair stands for its robots.
     pub level: Level,
 }
 
@@ -34,7 +34,7 @@ pub struct PairDistance {
     pub a: GeometryId,
     /// The other.
     pub b: GeometryId,
-    /// The level of the models that were measured.
+    /// The finest resolution level used: that of the models that were measured.
     pub level: Level,
 }
 
@@ -62,7 +62,7 @@ pub struct CollisionPoint {
     /// Outward normal of the other surface there.
     pub other_normal: Vec3,
     /// The level of detail of the answer: only [`Detail::Exact`] is certain.
-    pub level: Detail,
+    pub detail: Detail,
     /// False where the surfaces (or boxes) do not touch, but are not farther apart than the pair's margin.
     pub touching: bool,
 }
@@ -73,7 +73,7 @@ impl CollisionPoint {
         (a, b): (GeometryId, GeometryId),
         colliders: (usize, usize),
         found: &ContactPoint,
-        level: Detail,
+        detail: Detail,
     ) -> Self {
         Self {
             link: a,
@@ -86,7 +86,7 @@ impl CollisionPoint {
             other_triangle: found.triangle_b,
             on_other: found.on_b,
             other_normal: found.normal_b,
-            level,
+            detail,
             touching: found.touching,
         }
     }

@@ -121,11 +121,11 @@ impl LinkBounds {
                 bound = bound.prismatic(rate);
             } else if rate > 0.0 || rate.is_nan() {
                 let off_axis = |p: Vec3| (p - j.axis * p.dot(j.axis)).length();
-                let lever = match next {
+                let lever_arm = match next {
                     None => self.farthest_corner(model, in_link, off_axis),
                     Some((origin, radius)) => off_axis(origin[0]).max(off_axis(origin[1])) + radius,
                 };
-                bound = bound.revolute(rate, lever);
+                bound = bound.revolute(rate, lever_arm);
             }
             if j.kind.turns() {
                 // The rounding of an angle is relative to its size.

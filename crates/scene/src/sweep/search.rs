@@ -122,8 +122,9 @@ impl SweepSearch {
             let tolerance = if options.tolerance_m > resolution { options.tolerance_m } else { resolution };
             let limit = pair.margin + clearance + models[0].slack_m(level) + models[1].slack_m(level);
             let near = limit + tolerance;
-            let proven =
-                pair.least > near && core.options.matrix && models.iter().all(|m| trajectory.proofs_hold(m.id));
+            let proven = pair.proven_least_m > near
+                && core.options.matrix
+                && models.iter().all(|m| trajectory.proofs_hold(m.id));
             if proven {
                 core.narrow.stats.pairs_skipped += 1;
                 continue;

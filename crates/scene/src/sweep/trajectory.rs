@@ -44,7 +44,7 @@ struct JointSegment {
 #[derive(Debug, Clone, Copy)]
 struct FreeObject {
     /// The path, where it is one at constant velocities.
-    steady: Option<ConstantTwist>,
+    constant_twist: Option<ConstantTwist>,
 }
 
 /// A model as seen from the frame below the first `cut` joints of the path from the root to it.
@@ -90,7 +90,10 @@ impl SweepTrajectory {
                     if !(path.pose(0.0).is_finite() && path.pose(1.0).is_finite()) {
                         return Err(SceneError::PoseNotFinite(format!("`{name}` on its path")));
                     }
-                    if self.free_objects[object.0].replace(FreeObject { steady: path.constant_twist() }).is_some() {
+                    if self.free_objects[object.0]
+                        .replace(FreeObject { constant_twist: path.constant_twist() })
+                        .is_some()
+                    {
                         return Err(SceneError::MovesTwice(name.to_string()));
                     }
                 }
@@ -236,7 +239,7 @@ impl SweepTrajectory {
             largest_speed(corners, |p| velocity + angular.cross(in_root.transform_point(p)))
         } else {
             let GeometryId::Object(o) = id else { return bound };
-            let Some(FreeObject { steady: Some(s) }) = self.free_objects[o.0] else { return bound };
+            let Some(FreeObject { constant_twist: Some(s) }) = self.free_objects[o.0] else { return bound };
             largest_speed(corners, |p| s.velocity_at(in_world.transform_point(p), self.now))
         };
         // Rounding is relative to the terms, not to their difference.
@@ -261,13 +264,13 @@ impl SweepTrajectory {
 
 /// Bound of an object on a path of its own whose points are within `radius` metres of its frame's origin.
 fn path_bound(path: &dyn RigidMotion, radius: f64) -> SpeedBound {
-    let steady = path.constant_twist();
-    let speed = match steady {
+    let constant_twist = path.constant_twist();
+    let speed = match constant_twist {
         // Without rotation, far points are no faster than near ones.
         Some(s) if s.rotation == Vec3::ZERO => s.velocity.length(),
         _ => path.speed(radius, 0.0, 1.0),
     };
-    let acceleration = steady.map_or(f64::INFINITY, |s| {
+    let acceleration = constant_twist.map_or(f64::INFINITY, |s| {
         let rotation = s.rotation.length();
         if rotation == 0.0 { 0.0 } else { rotation * rotation * (s.start.translation.distance(s.pivot) + radius) }
     });

@@ -252,10 +252,10 @@ struct MoveSampler<'a> {
 impl MoveSampler<'_> {
     fn at(&mut self, point: &PathPoint) -> MoveSample {
         self.state.q.copy_from_slice(&point.q);
-        self.state.qd.copy_from_slice(&point.first);
+        self.state.qd.copy_from_slice(&point.dq);
         self.chain.forward_motion(&mut self.state);
         let speed = |r: &LinkSolid| r.hull.fastest(&self.state.link_in_root(r.link), &self.state.link_motion(r.link));
-        let stop_times = point.first.iter().zip(self.limits).map(|(v, l)| v.abs() / l.stop);
+        let stop_times = point.dq.iter().zip(self.limits).map(|(v, l)| v.abs() / l.stop);
         MoveSample { stop_time: stop_times.fold(0.0, f64::max), speeds: self.solids.iter().map(speed).collect() }
     }
 }

@@ -44,11 +44,8 @@ impl ProgramClock {
     /// Starts a program.
     pub fn new(plan: ProgramPlan, limits: Vec<JointLimits>) -> Self {
         let programmed = plan.speed_override;
-        let here = PathPoint {
-            first: vec![0.0; plan.start.len()],
-            second: vec![0.0; plan.start.len()],
-            q: plan.start.clone(),
-        };
+        let here =
+            PathPoint { dq: vec![0.0; plan.start.len()], ddq: vec![0.0; plan.start.len()], q: plan.start.clone() };
         let mut clock = Self {
             plan,
             limits,
@@ -57,7 +54,7 @@ impl ProgramClock {
             rate: 0.0,
             rate_change: 0.0,
             programmed,
-            intent: here.first.clone(),
+            intent: here.dq.clone(),
             here,
             switches: Vec::new(),
             held: false,
@@ -82,13 +79,13 @@ impl ProgramClock {
 
     /// Current joint velocities, rad/s or m/s.
     pub fn velocity(&self) -> impl Iterator<Item = f64> + '_ {
-        self.here.first.iter().map(|v| v * self.rate)
+        self.here.dq.iter().map(|v| v * self.rate)
     }
 
     /// Current joint accelerations.
     pub fn acceleration(&self) -> impl Iterator<Item = f64> + '_ {
         let (square, change) = (self.rate * self.rate, self.rate_change);
-        self.here.first.iter().zip(&self.here.second).map(move |(v, a)| a * square + v * change)
+        self.here.dq.iter().zip(&self.here.ddq).map(move |(v, a)| a * square + v * change)
     }
 
     /// Rate of the program's time, 0..1.
@@ -199,14 +196,14 @@ impl ProgramClock {
     /// second. Where the program accelerates meanwhile, the rate falls faster; where it decelerates harder by itself,
     /// the program is followed.
     fn braked_rate(&self, dt: f64, target: f64) -> f64 {
-        let left = self.stop_time(&self.here.first) * self.rate - dt;
+        let left = self.stop_time(&self.here.dq) * self.rate - dt;
         if left <= 0.0 {
             return target;
         }
         let mut rate = self.rate;
         for _ in 0..SAMPLES {
             let ahead = self.point_at(self.time + dt * f64::midpoint(self.rate, rate));
-            let stop_time = ahead.map_or(0.0, |p| self.stop_time(&p.first));
+            let stop_time = ahead.map_or(0.0, |p| self.stop_time(&p.dq));
             let fits = if stop_time * rate > left { left / stop_time } else { rate };
             if fits >= rate {
                 break;
@@ -236,10 +233,10 @@ impl ProgramClock {
     fn max_rate_increase(&self) -> f64 {
         let square = self.rate * self.rate;
         let mut rise = f64::INFINITY;
-        for ((first, second), l) in self.here.first.iter().zip(&self.here.second).zip(&self.limits) {
-            let speed = first.abs();
+        for ((dq, ddq), l) in self.here.dq.iter().zip(&self.here.ddq).zip(&self.limits) {
+            let speed = dq.abs();
             if speed >= 1e-12 {
-                rise = rise.min((l.acceleration - second.abs() * square).max(RESERVE * l.acceleration) / speed);
+                rise = rise.min((l.acceleration - ddq.abs() * square).max(RESERVE * l.acceleration) / speed);
             }
         }
         // A finite bound avoids 0 · ∞.
@@ -268,10 +265,10 @@ impl ProgramClock {
         if let Some(point) = point {
             self.here = point;
         } else {
-            self.here.first.fill(0.0);
-            self.here.second.fill(0.0);
+            self.here.dq.fill(0.0);
+            self.here.ddq.fill(0.0);
         }
-        self.intent.clone_from(&self.here.first);
+        self.intent.clone_from(&self.here.dq);
         let duration = match self.plan.steps.get(self.step) {
             Some(PlanStep::Move(m)) => m.duration(),
             Some(PlanStep::Play(p)) => p.duration(),
@@ -279,7 +276,7 @@ impl ProgramClock {
         };
         let ahead = LOOKAHEAD_S.min(duration / 2.0);
         if moves && self.time < ahead {
-            self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.first);
+            self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.dq);
         }
     }
 }

@@ -24,8 +24,8 @@ impl Geometry {
         match self {
             Self::Joint { from, to } => {
                 let lerp = |(a, b): (&f64, &f64)| if s >= 1.0 { *b } else { a + (b - a) * s };
-                let first: Vec<f64> = from.iter().zip(to).map(|(a, b)| b - a).collect();
-                PathPoint { q: from.iter().zip(to).map(lerp).collect(), second: vec![0.0; first.len()], first }
+                let dq: Vec<f64> = from.iter().zip(to).map(|(a, b)| b - a).collect();
+                PathPoint { q: from.iter().zip(to).map(lerp).collect(), ddq: vec![0.0; dq.len()], dq }
             }
             Self::TcpLine(line) => line.at(s),
         }

@@ -201,10 +201,10 @@ impl TcpLine {
         let h = STENCIL;
         let c = s.clamp(h, 1.0 - h);
         let [before, middle, after] = [self.q(c - h), self.q(c), self.q(c + h)];
-        let second: Vec<f64> = (0..middle.len()).map(|j| (after[j] - 2.0 * middle[j] + before[j]) / (h * h)).collect();
-        let first = (0..middle.len()).map(|j| (after[j] - before[j]) / (2.0 * h) + second[j] * (s - c)).collect();
+        let ddq: Vec<f64> = (0..middle.len()).map(|j| (after[j] - 2.0 * middle[j] + before[j]) / (h * h)).collect();
+        let dq = (0..middle.len()).map(|j| (after[j] - before[j]) / (2.0 * h) + ddq[j] * (s - c)).collect();
         let q = if c == s { middle } else { self.q(s) };
-        PathPoint { q, first, second }
+        PathPoint { q, dq, ddq }
     }
 }
 

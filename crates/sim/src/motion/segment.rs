@@ -66,9 +66,9 @@ impl Segment {
     pub fn at(&self, t: f64) -> PathPoint {
         let (s, v, a) = self.parameter(t);
         let mut point = self.geometry.at(s);
-        for (first, second) in point.first.iter_mut().zip(&mut point.second) {
-            *second = *second * v * v + *first * a;
-            *first *= v;
+        for (dq, ddq) in point.dq.iter_mut().zip(&mut point.ddq) {
+            *ddq = *ddq * v * v + *dq * a;
+            *dq *= v;
         }
         point
     }
@@ -78,7 +78,7 @@ impl Segment {
         if t >= trajectory.get_duration() {
             return (1.0, 0.0, 0.0);
         }
-        let (mut s, mut v, mut a) = ([0.0], [0.0], [0.0]).map_stack();
+        let [mut s, mut v, mut a] = [[0.0]; 3].map(DataArrayOrVec::Stack);
         trajectory.at_time(t.max(0.0), &mut Some(&mut s), &mut Some(&mut v), &mut Some(&mut a), &mut None, &mut None);
         (s[0].clamp(0.0, 1.0), v[0].max(0.0), a[0])
     }
@@ -94,24 +94,13 @@ impl Segment {
     }
 }
 
-/// Conversion to the library's one-dimensional vectors.
-trait MapStack {
-    fn map_stack(self) -> (DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>);
-}
-
-impl MapStack for ([f64; 1], [f64; 1], [f64; 1]) {
-    fn map_stack(self) -> (DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>, DataArrayOrVec<f64, 1>) {
-        (DataArrayOrVec::Stack(self.0), DataArrayOrVec::Stack(self.1), DataArrayOrVec::Stack(self.2))
-    }
-}
-
 /// The limits of s, and the share of the programmed rate that remains; `None` without motion.
 fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
     let joints = limits.len();
     let largest =
         |f: &dyn Fn(&PathPoint, usize) -> f64, j: usize| samples.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()));
-    let first: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.first[j], j)).collect();
-    let second: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.second[j], j)).collect();
+    let first: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.dq[j], j)).collect();
+    let second: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.ddq[j], j)).collect();
     let third: Vec<f64> = (0..joints).map(|j| largest_change(samples, j)).collect();
     if first.iter().all(|f| *f < 1e-12) {
         return None;
@@ -135,5 +124,5 @@ fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: 
 /// |q‴| from the change of q″ between samples at equal steps of s.
 fn largest_change(samples: &[PathPoint], j: usize) -> f64 {
     let steps = (samples.len() - 1) as f64;
-    samples.windows(2).fold(0.0_f64, |m, w| m.max((w[1].second[j] - w[0].second[j]).abs() * steps))
+    samples.windows(2).fold(0.0_f64, |m, w| m.max((w[1].ddq[j] - w[0].ddq[j]).abs() * steps))
 }

@@ -228,7 +228,7 @@ impl<'s> AvoidingRobot<'s> {
             .map(|(robot, s)| Neighbour { robot: RobotId(robot), q: &s.q, qd: &s.qd, known: known(robot) })
             .collect();
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
-        let reference = Reference { q: &clock.point().q, qd: &clock.point().first, path };
+        let reference = Reference { q: &clock.point().q, qd: &clock.point().dq, path };
         let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
         match self.avoider.tick(cell.tick_s, &reference, &obstacles, allowed) {
             Ok(output) => {

@@ -16,14 +16,14 @@ use std::time::Instant;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, Frames, MovingObject, ObjectMotion};
+use elbowroom_cell::{Cell, Frames, MovingObject, ObjectMotion, OutOfReachProofs, QueryModel};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
     AccessClass, EventKind, Monitor, OverrideReason, RegionKind, Snapshot, SourceState, VirtualTcp, ZoneArbiter,
 };
 use elbowroom_robot::{GeometryId, ObjectId};
-use elbowroom_scene::{FirstContact, FirstContacts, ObjectPath};
+use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 
 use crate::motion::{ProgramClock, RegionSwitch, plan};
 use crate::recording::{
@@ -43,7 +43,7 @@ use zone_claims::ZoneClaims;
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunOptions {
     /// False: the override of the monitor is computed but not applied (`--no-monitor`).
-    pub monitored: bool,
+    pub apply_override: bool,
     /// False: robots with `[avoidance]` follow their programs (`--no-avoidance`).
     pub avoidance: bool,
     /// Number of repetitions of the programs, times their own `repeat`.
@@ -57,7 +57,7 @@ pub struct RunOptions {
 
 impl Default for RunOptions {
     fn default() -> Self {
-        Self { monitored: true, avoidance: true, repeat: 1, silent_from: Vec::new(), faults: Vec::new() }
+        Self { apply_override: true, avoidance: true, repeat: 1, silent_from: Vec::new(), faults: Vec::new() }
     }
 }
 
@@ -121,12 +121,12 @@ pub fn simulate_with(
         let plan = plan(cell, i, options.repeat, &mut notes)?;
         // A robot with avoidance leaves its program: its claims are not known.
         let keeps_to_plan =
-            options.monitored && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
+            options.apply_override && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
         let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
         claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(i, &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
-    let scene = elbowroom_cell::QueryModel::of_cell(cell).scene(false)?;
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
     let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
     (run.arbiter, run.claims) = (arbiter, claims);
@@ -285,7 +285,7 @@ impl<'a> Simulation<'a> {
         self.update_states(t_s);
         self.declare_claims();
         for i in 0..self.clocks.len() {
-            if self.is_silent(i, t_s) { self.record_silent(i, t_s) } else { self.monitor(i, t_s) }
+            if self.is_silent(i, t_s) { self.record_silent(i, t_s) } else { self.tick_monitor(i, t_s) }
         }
         self.regions.observe(t_s, &self.monitors, &self.states, &self.frames);
         if let Some(arbiter) = &self.arbiter {
@@ -342,7 +342,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn monitor(&mut self, i: usize, t_s: f64) {
+    fn tick_monitor(&mut self, i: usize, t_s: f64) {
         let sources = self.frames.sources(&self.setups[i].sources, &self.states, t_s);
         let clock = &self.clocks[i];
         let state = &self.states[i];
@@ -360,15 +360,15 @@ impl<'a> Simulation<'a> {
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
-        let applied = if self.options.monitored { report.speed_override } else { clock.programmed_override() };
+        let applied = if self.options.apply_override { report.speed_override } else { clock.programmed_override() };
         self.applied[i] = applied;
         self.log_events(i, t_s);
         // A region governs where it makes the robot slower than programmed.
-        let governs = self.options.monitored.then(|| report.reason.region()).flatten();
+        let governs = self.options.apply_override.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
         let distance_m = region.and(report.governing).map(|g| g.distance_m);
-        let reason = if self.options.monitored { report.reason } else { OverrideReason::Free };
+        let reason = if self.options.apply_override { report.reason } else { OverrideReason::Free };
         self.record(i, t_s, applied, region, distance_m, reason);
         if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
             let region = region.map_or("", |r| self.cell.regions[r].region.name.as_str());
@@ -399,7 +399,7 @@ impl<'a> Simulation<'a> {
 
     /// Records a tick without input of the monitor.
     fn record_without_input(&mut self, i: usize, t_s: f64) {
-        if self.options.monitored && !self.fault_injector.keeps_last_override(i, t_s) {
+        if self.options.apply_override && !self.fault_injector.keeps_last_override(i, t_s) {
             self.applied[i] = 0.0;
         }
         self.record(i, t_s, self.applied[i], None, None, OverrideReason::Fault(elbowroom_monitor::Fault::Stale));
@@ -426,7 +426,7 @@ impl<'a> Simulation<'a> {
         } else {
             let scratch = &mut self.scratch[i];
             scratch.q.copy_from_slice(&self.states[i].q);
-            scratch.qd.copy_from_slice(&self.clocks[i].point().first);
+            scratch.qd.copy_from_slice(&self.clocks[i].point().dq);
             self.cell.robots[i].robot.chain.forward_motion(scratch);
             self.frames.tcp(i, &self.scratch[i]).1
         };
@@ -452,11 +452,11 @@ impl<'a> Simulation<'a> {
         let before = std::mem::replace(checked_s, t_s);
         let motions: Vec<ObjectMotion<'_>> =
             cell.moving_objects.iter().map(|m| m.motion_between(before, t_s)).collect();
-        let steps: Vec<ObjectPath<'_>> = cell
+        let moved: Vec<MovedObject<'_>> = cell
             .moving_objects
             .iter()
             .zip(&motions)
-            .map(|(m, motion)| ObjectPath { object: ObjectId(m.object), path: motion, jumps: motion.jumps() })
+            .map(|(m, motion)| MovedObject { object: ObjectId(m.object), path: motion, jumps: motion.jumps() })
             .collect();
         objects.iter_mut().zip(&cell.moving_objects).for_each(|(track, m)| track.poses.push(m.pose(t_s)));
         let name = |m: GeometryId| match m {
@@ -466,7 +466,7 @@ impl<'a> Simulation<'a> {
                 format!("{}/{}", r.name, r.robot.chain.links()[link.0])
             }
         };
-        checker.check(&states, &steps, |FirstContact { a, b, fraction }| {
+        checker.check(&states, &moved, |FirstContact { a, b, fraction }| {
             // A contact at the end of the step has exactly the time of the tick.
             let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
             let collision = Collision { t_s, a: name(a), b: name(b) };
@@ -546,7 +546,7 @@ impl<'a> Simulation<'a> {
             checksum: self.cell.checksum.clone(),
             tick_s: self.cell.tick_s,
             duration_s: t_s,
-            monitored: self.options.monitored,
+            monitored: self.options.apply_override,
             robots,
             regions: self.regions.finish(t_s),
             objects: self.objects,

@@ -41,7 +41,7 @@ pub(super) fn ending(
         outcome,
         stopped_at_s: stopped_at(track),
         by: region.map(str::to_owned),
-        part: point.and_then(|p| configuration.volumes().get(p.volume)).map(|v| v.name.clone()),
+        part: point.and_then(|p| configuration.volumes().get(p.volume.0)).map(|v| v.name.clone()),
         point: point.map(|p| p.position),
     }
 }

@@ -161,7 +161,7 @@ impl RegionObserver {
         moves: bool,
     ) -> TickDistances {
         let limit = track.min_distance_m.unwrap_or(f64::INFINITY).max(track.warning_m);
-        let travel = sweep.motion_bound(self.local);
+        let travel = sweep.travel_bound_of(self.local);
         let before = self.before_m.replace(0.0);
         if let (false, Some(measured)) = (moves, &mut self.measured) {
             measured.travelled_m += travel;

@@ -13,6 +13,6 @@ pub fn run(text: &str) -> RunOutcome {
 }
 
 pub fn run_free(text: &str) -> RunOutcome {
-    let options = RunOptions { monitored: false, ..RunOptions::default() };
+    let options = RunOptions { apply_override: false, ..RunOptions::default() };
     simulate(&parse(text), &options).unwrap_or_else(|e| panic!("{e}"))
 }

@@ -67,7 +67,7 @@ fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
     // Without regions first: they are put where the robot will come.
     let Ok(cell) = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()) else { return spec };
     for i in 0..random.whole(1, 3) {
-        if let Some(region) = region::in_the_way(&spec, &cell, &format!("g{i}"), random) {
+        if let Some(region) = region::on_the_path(&spec, &cell, &format!("g{i}"), random) {
             spec.regions.push(region);
         }
     }

@@ -1,4 +1,4 @@
-//! Some regions ride on belts and on other robots, and some are switched.
+//! Some regions follow belts and other robots, and some are switched.
 
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{BeltSpec, CellSpec, FollowSpec, StepSpec};

@@ -7,16 +7,16 @@ use crate::fuzz_cells::oracle::{self, Guarded};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, RegionSpec, StepSpec, Vector, list};
 
-/// Tries to find a place that is in the way, but not at the start.
+/// Tries to find a place that is on the path, but not at the start.
 const TRIES: usize = 6;
 /// What the start must be away from a region, m.
 const START_M: f64 = 0.005;
 
-/// A forbidden region on the way of one of the robots; `None` where none was found that its start is outside of.
-pub fn in_the_way(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
+/// A forbidden region on the path of one of the robots; `None` where none was found that its start is outside of.
+pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
-        let at = point_on_the_way(spec, cell, robot, random)?;
+        let at = point_on_the_path(spec, cell, robot, random)?;
         let region = RegionSpec {
             name: name.to_owned(),
             shape: shape(random, at),
@@ -34,8 +34,8 @@ pub fn in_the_way(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random)
     None
 }
 
-/// A point on or near a guarded solid, somewhere on the program's way.
-fn point_on_the_way(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
+/// A point on or near a guarded solid, somewhere on the program's path.
+fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
     let r = &spec.robots[robot];
     let ends: Vec<&Vec<f64>> = std::iter::once(&r.start)
         .chain(r.steps.iter().filter_map(|s| match s {

@@ -77,16 +77,16 @@ impl Arm {
 
     /// Per value of q the farthest (m per rad or m) that it carries a point within `radius_m` of the link's origin,
     /// whatever the other joints do.
-    pub fn levers(&self, link: usize, radius_m: f64) -> Vec<f64> {
-        let mut levers = vec![0.0; self.dof];
+    pub fn lever_arms(&self, link: usize, radius_m: f64) -> Vec<f64> {
+        let mut lever_arms = vec![0.0; self.dof];
         let (mut at, mut reach) = (link, radius_m);
         while let Some(j) = self.joints.iter().find(|j| j.child == at) {
             if let Some((index, factor, _)) = j.driven {
-                levers[index] += factor.abs() * if j.kind == JointKind::Prismatic { 1.0 } else { reach };
+                lever_arms[index] += factor.abs() * if j.kind == JointKind::Prismatic { 1.0 } else { reach };
             }
             reach += j.origin.at.length() + j.stroke;
             at = j.parent;
         }
-        levers
+        lever_arms
     }
 }

@@ -5,36 +5,36 @@ use elbowroom_spatial::Vec3;
 
 use super::findings::{Finding, Findings};
 use super::guarded::Guarded;
-use super::motion::Motion;
-use super::sweep::Pair;
+use super::motion::OracleMotion;
+use super::sweep::SweptPair;
 
 /// A tick in which both of two robots are inside at some time is divided into so many parts.
 const PARTS: usize = 64;
-/// A robot that has not moved for so long (s) at the end stands for ever: a run goes on for a second without motion.
-const STANDS_S: f64 = 0.5;
+/// A robot that has not moved for so long (s) at the end is at rest for ever: a run goes on for a second without motion.
+const AT_REST_S: f64 = 0.5;
 /// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
-const STILL: f64 = 1e-4;
+const NO_MOTION: f64 = 1e-4;
 
 /// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin
 /// (hysteresis), and monitors measure volumes that enclose a link's solids, which may lie apart.
 const PARKED_M: f64 = 0.1;
 
 /// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
-type ZoneVisit<'a> = (usize, Vec<Pair<'a>>, Vec<bool>);
+type ZoneVisit<'a> = (usize, Vec<SweptPair<'a>>, Vec<bool>);
 
 /// `has_violation`: the run said that something went wrong.
-pub fn check(motion: &Motion<'_>, guarded: &[Vec<Guarded>], has_violation: bool, findings: &mut Findings) {
+pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], has_violation: bool, findings: &mut Findings) {
     let mut in_zone = vec![vec![false; motion.places.len()]; guarded.len()];
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Exchange { .. }) {
             continue;
         }
-        let stays: Vec<ZoneVisit<'_>> = place
+        let visits: Vec<ZoneVisit<'_>> = place
             .robots
             .iter()
             .map(|&robot| {
                 let counting = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
-                let pairs: Vec<Pair<'_>> = counting.map(|g| Pair::new(motion, g, robot, region)).collect();
+                let pairs: Vec<SweptPair<'_>> = counting.map(|g| SweptPair::new(motion, g, robot, region)).collect();
                 let mut during = vec![false; motion.ticks()];
                 for p in &pairs {
                     mark_inside(p, &mut during);
@@ -42,14 +42,14 @@ pub fn check(motion: &Motion<'_>, guarded: &[Vec<Guarded>], has_violation: bool,
                 (robot, pairs, during)
             })
             .collect();
-        for (i, a) in stays.iter().enumerate() {
-            for b in &stays[i + 1..] {
+        for (i, a) in visits.iter().enumerate() {
+            for b in &visits[i + 1..] {
                 two_inside(motion, region, a, b, findings);
             }
         }
         let last = motion.ticks().saturating_sub(1);
         let zone = motion.cell.regions[region].region.warning_m;
-        for (robot, pairs, _) in &stays {
+        for (robot, pairs, _) in &visits {
             let more = if motion.recording.robots[*robot].finished { PARKED_M + spread_m(motion, pairs) } else { 0.0 };
             in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone + more);
         }
@@ -58,7 +58,7 @@ pub fn check(motion: &Motion<'_>, guarded: &[Vec<Guarded>], has_violation: bool,
 }
 
 /// Largest distance (m) of the middles of two of a robot's solids, at the start.
-fn spread_m(motion: &Motion<'_>, pairs: &[Pair<'_>]) -> f64 {
+fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
     let frames = motion.frames(&motion.q[0]);
     let middles: Vec<_> = pairs.iter().map(|p| p.guarded.center(&frames[p.robot])).collect();
     let from = |a: &Vec3| middles.iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
@@ -66,7 +66,7 @@ fn spread_m(motion: &Motion<'_>, pairs: &[Pair<'_>]) -> f64 {
 }
 
 /// Marks the ticks from which to the next the solid touches the region at some time.
-fn mark_inside(pair: &Pair<'_>, during: &mut [bool]) {
+fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     let mut k = 0;
     while let Some((at, _)) = pair.first_touch(k, pair.motion.ticks()) {
         during[at] = true;
@@ -74,7 +74,7 @@ fn mark_inside(pair: &Pair<'_>, during: &mut [bool]) {
     }
 }
 
-fn two_inside(motion: &Motion<'_>, region: usize, a: &ZoneVisit<'_>, b: &ZoneVisit<'_>, findings: &mut Findings) {
+fn two_inside(motion: &OracleMotion<'_>, region: usize, a: &ZoneVisit<'_>, b: &ZoneVisit<'_>, findings: &mut Findings) {
     let both = |k: &usize| motion.is_active(region, *k) && a.2[*k] && b.2[*k];
     // Whoever starts inside is not brought there by the protocol: counted once one of the two has been out.
     let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
@@ -89,26 +89,26 @@ fn two_inside(motion: &Motion<'_>, region: usize, a: &ZoneVisit<'_>, b: &ZoneVis
     }
 }
 
-/// Robots that stand unfinished at the end, each in a zone of which another of them is, in a circle. A robot that waits for
-/// one that has finished, or stands for another reason, is in no circle.
-fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], has_violation: bool, findings: &mut Findings) {
+/// Robots at rest at the end that have not finished, each in a zone of which another of them is, in a circle. A robot that
+/// waits for one that has finished, or is at rest for another reason, is in no circle.
+fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: bool, findings: &mut Findings) {
     let ticks = motion.ticks();
-    let held = (STANDS_S / motion.recording.tick_s).ceil() as usize;
+    let held = (AT_REST_S / motion.recording.tick_s).ceil() as usize;
     if ticks <= held + 1 {
         return;
     }
-    let stands = |robot: usize| {
+    let at_rest = |robot: usize| {
         let track = &motion.recording.robots[robot];
         let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
-        !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < STILL)
+        !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < NO_MOTION)
     };
-    // While anybody moves, as in a run that was cut off, those who stand may still be let in.
-    if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !stands(r)) {
+    // While anybody moves, as in a run that was cut off, robots at rest may still be let in.
+    if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
         return;
     }
     // A crossing of several regions is one: whoever is in one of their zones is in all.
     let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
-    let robots: Vec<usize> = (0..in_zone.len()).filter(|r| stands(*r) && in_zone[*r].contains(&true)).collect();
+    let robots: Vec<usize> = (0..in_zone.len()).filter(|r| at_rest(*r) && in_zone[*r].contains(&true)).collect();
     let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
     let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
     // Whoever has finished, or left, and is still in the zone blocks the others for good: they wait, but not in a circle.
@@ -128,7 +128,7 @@ fn deadlock(motion: &Motion<'_>, in_zone: &[Vec<bool>], has_violation: bool, fin
 }
 
 /// The regions whose zones overlap, directly or through others, with one of these.
-fn spread(motion: &Motion<'_>, zones: &[bool]) -> Vec<bool> {
+fn spread(motion: &OracleMotion<'_>, zones: &[bool]) -> Vec<bool> {
     let exchange = |r: usize| matches!(motion.places[r].kind, RegionKind::Exchange { .. });
     let warning = |r: usize| motion.cell.regions[r].region.warning_m;
     let overlap = |a: usize, b: usize| motion.places[a].distance(&motion.places[b]) <= warning(a) + warning(b);

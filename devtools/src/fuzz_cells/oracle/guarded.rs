@@ -5,7 +5,7 @@ use elbowroom_monitor::Guards;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::frame::Frame;
-use super::solid::{Bounds, Solid};
+use super::solid::{Bounds, OracleSolid};
 
 /// A solid of a robot, or its tool centre point.
 #[derive(Debug, Clone)]
@@ -13,7 +13,7 @@ pub struct Guarded {
     /// Index of the link that carries it.
     pub link: usize,
     in_link: Frame,
-    solid: Solid,
+    solid: OracleSolid,
     part: GuardedPart,
     /// Farthest of its points from the link's origin, m.
     pub radius_m: f64,
@@ -30,18 +30,22 @@ impl Guarded {
     /// All that can count of a robot: the tool centre point first.
     pub fn all(robot: &CellRobot) -> Vec<Self> {
         let flange = robot.flange.0;
-        let mut all = vec![Self::new(flange, &robot.tcp_in_flange, Solid::point(), GuardedPart::Tcp)];
+        let mut all = vec![Self::new(flange, &robot.tcp_in_flange, OracleSolid::point(), GuardedPart::Tcp)];
         let carried = [&robot.tool, &robot.load].into_iter().flatten();
-        all.extend(carried.map(|b| Self::new(flange, &b.in_link, Solid::eroded(&b.shape, 0.0), GuardedPart::Tool)));
-        for (link, bodies) in robot.without_payload().colliders.iter().enumerate() {
+        all.extend(
+            carried.map(|b| Self::new(flange, &b.in_link, OracleSolid::eroded(&b.shape, 0.0), GuardedPart::Tool)),
+        );
+        for (link, colliders) in robot.without_payload().colliders.iter().enumerate() {
             all.extend(
-                bodies.iter().map(|b| Self::new(link, &b.in_link, Solid::eroded(&b.shape, 0.0), GuardedPart::Arm)),
+                colliders
+                    .iter()
+                    .map(|b| Self::new(link, &b.in_link, OracleSolid::eroded(&b.shape, 0.0), GuardedPart::Arm)),
             );
         }
         all
     }
 
-    fn new(link: usize, in_link: &Pose, solid: Solid, part: GuardedPart) -> Self {
+    fn new(link: usize, in_link: &Pose, solid: OracleSolid, part: GuardedPart) -> Self {
         let in_link = Frame::of(in_link);
         let radius_m = in_link.at.length() + solid.reach_from(Vec3::ZERO);
         Self { link, in_link, solid, part, radius_m }
@@ -60,7 +64,7 @@ impl Guarded {
         frames[self.link].then(&self.in_link).at
     }
 
-    pub fn distance(&self, frames: &[Frame], region: &Solid, region_at: &Frame, limit: f64) -> Bounds {
+    pub fn distance(&self, frames: &[Frame], region: &OracleSolid, region_at: &Frame, limit: f64) -> Bounds {
         self.solid.distance(&frames[self.link].then(&self.in_link), region, region_at, limit)
     }
 }

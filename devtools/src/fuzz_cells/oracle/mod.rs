@@ -33,7 +33,7 @@ use elbowroom_sim::Recording;
 pub fn check(cell: &Cell, recording: &Recording, has_violation: bool) -> Result<Findings, String> {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
-    let motion = motion::Motion::new(cell, recording, &arms)?;
+    let motion = motion::OracleMotion::new(cell, recording, &arms)?;
     let mut findings = Findings::default();
     presence::entries(&motion, &guarded, &mut findings);
     exchange::check(&motion, &guarded, has_violation, &mut findings);

@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::place::Place;
 
 /// Positions of all robots at all ticks, and the regions.
-pub struct Motion<'a> {
+pub struct OracleMotion<'a> {
     pub cell: &'a Cell,
     pub recording: &'a Recording,
     pub arms: &'a [Arm],
@@ -18,7 +18,7 @@ pub struct Motion<'a> {
     pub q: Vec<Vec<Vec<f64>>>,
 }
 
-impl<'a> Motion<'a> {
+impl<'a> OracleMotion<'a> {
     pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Result<Self, String> {
         let ticks = recording.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
         let at = |k: usize| recording.robots.iter().map(|r| r.samples[k].q.clone()).collect();

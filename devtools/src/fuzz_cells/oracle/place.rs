@@ -8,13 +8,13 @@ use elbowroom_spatial::Vec3;
 use super::arm::Arm;
 use super::findings::TOLERANCE_M;
 use super::frame::Frame;
-use super::solid::Solid;
+use super::solid::OracleSolid;
 
 /// A region as the oracle knows it.
 #[derive(Debug)]
 pub struct Place {
     /// Taken back by the tolerance.
-    pub solid: Solid,
+    pub solid: OracleSolid,
     pub guards: Guards,
     pub robots: Vec<usize>,
     pub kind: RegionKind,
@@ -29,27 +29,32 @@ pub struct Place {
 enum Carrier {
     Nothing,
     Belt(Encoder),
-    Robot { robot: usize, link: usize, in_link: Frame, levers: Vec<f64> },
+    Robot { robot: usize, link: usize, in_link: Frame, lever_arms: Vec<f64> },
 }
 
 impl Place {
     /// # Errors
-    /// Where the region rides on what the oracle does not know.
+    /// Where the region follows what the oracle does not know.
     pub fn new(cell: &Cell, region: usize, arms: &[Arm]) -> Result<Self, String> {
         let r = &cell.regions[region];
         let at = Frame::of(&r.region.anchor).then(&Frame::of(&r.region.shape_in_anchor));
-        let solid = Solid::eroded(&r.region.shape, TOLERANCE_M);
+        let solid = OracleSolid::eroded(&r.region.shape, TOLERANCE_M);
         let carrier = match &r.follow {
             None => Carrier::Nothing,
             Some(Follow::Object(_) | Follow::Poses(_)) => {
-                let what = "rides on an object or on a file of poses: the oracle knows belts and robots only";
+                let what = "follows an object or a file of poses: the oracle knows belts and robots only";
                 return Err(format!("region {} {what}", r.region.name));
             }
             Some(Follow::Encoder(e)) => Carrier::Belt(cell.encoders[*e].clone()),
             Some(Follow::Robot { robot, link, in_link }) => {
                 let in_link = Frame::of(in_link);
                 let radius = in_link.then(&at).at.length() + solid.reach_from(Vec3::ZERO);
-                Carrier::Robot { robot: *robot, link: link.0, in_link, levers: arms[*robot].levers(link.0, radius) }
+                Carrier::Robot {
+                    robot: *robot,
+                    link: link.0,
+                    in_link,
+                    lever_arms: arms[*robot].lever_arms(link.0, radius),
+                }
             }
         };
         Ok(Self {
@@ -65,8 +70,8 @@ impl Place {
 
     /// Distance (m) from another region, neither of which moves; 0 where one does.
     pub fn distance(&self, other: &Self) -> f64 {
-        let still = [self, other].iter().all(|p| matches!(p.carrier, Carrier::Nothing));
-        if still { self.solid.distance(&self.at, &other.solid, &other.at, f64::INFINITY).lower } else { 0.0 }
+        let is_fixed = [self, other].iter().all(|p| matches!(p.carrier, Carrier::Nothing));
+        if is_fixed { self.solid.distance(&self.at, &other.solid, &other.at, f64::INFINITY).lower } else { 0.0 }
     }
 
     pub fn is_carried(&self) -> bool {
@@ -105,8 +110,8 @@ impl Place {
     /// The robot that carries it, and how far (m) any of its points goes while that one's joints go from one place to the
     /// other.
     pub fn carried(&self, from: &[Vec<f64>], to: &[Vec<f64>]) -> f64 {
-        let Carrier::Robot { robot, levers, .. } = &self.carrier else { return 0.0 };
-        levers.iter().zip(&from[*robot]).zip(&to[*robot]).map(|((l, a), b)| l * (b - a).abs()).sum()
+        let Carrier::Robot { robot, lever_arms, .. } = &self.carrier else { return 0.0 };
+        lever_arms.iter().zip(&from[*robot]).zip(&to[*robot]).map(|((l, a), b)| l * (b - a).abs()).sum()
     }
 
     /// True where a point is inside; for meshes by the winding number.
@@ -118,7 +123,10 @@ impl Place {
                 let turned: f64 = m.triangles().iter().map(|t| solid_angle(t.map(|i| v[i as usize] - p))).sum();
                 turned.abs() > 2.0 * std::f64::consts::PI
             }
-            _ => self.solid.distance(&Frame::IDENTITY, &Solid::point(), &Frame::shift(p), f64::INFINITY).upper <= 0.0,
+            _ => {
+                self.solid.distance(&Frame::IDENTITY, &OracleSolid::point(), &Frame::shift(p), f64::INFINITY).upper
+                    <= 0.0
+            }
         }
     }
 }

@@ -4,22 +4,22 @@ use elbowroom_monitor::RegionKind;
 
 use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::guarded::Guarded;
-use super::motion::Motion;
-use super::sweep::Pair;
+use super::motion::OracleMotion;
+use super::sweep::SweptPair;
 
 /// Looks for entries into forbidden regions: of robots that were outside when the region became active and, where it was
 /// switched on beside a robot that moved, have been at rest outside since.
-pub fn entries(motion: &Motion<'_>, guarded: &[Vec<Guarded>], findings: &mut Findings) {
+pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &mut Findings) {
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Forbidden) {
             continue;
         }
         for &robot in &place.robots {
-            let pairs: Vec<Pair<'_>> = guarded[robot]
+            let pairs: Vec<SweptPair<'_>> = guarded[robot]
                 .iter()
                 .filter(|g| g.counts_for(place.guards))
-                .map(|g| Pair::new(motion, g, robot, region))
-                .filter(Pair::is_moved)
+                .map(|g| SweptPair::new(motion, g, robot, region))
+                .filter(SweptPair::is_moved)
                 .collect();
             findings.watched += usize::from(!pairs.is_empty());
             let Some((k, u, pair)) = first_entry(motion, &pairs, robot, region) else { continue };
@@ -38,18 +38,18 @@ pub fn entries(motion: &Motion<'_>, guarded: &[Vec<Guarded>], findings: &mut Fin
 }
 
 /// How long (s) the robot may take to stop from full speed, and to obey.
-fn stop_s(motion: &Motion<'_>, robot: usize) -> f64 {
+fn stop_s(motion: &OracleMotion<'_>, robot: usize) -> f64 {
     let slowest = motion.cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
     slowest + motion.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * motion.recording.tick_s
 }
 
 /// The first touch within the times in which the robot may be held responsible.
 fn first_entry<'p, 'a>(
-    motion: &Motion<'_>,
-    pairs: &'p [Pair<'a>],
+    motion: &OracleMotion<'_>,
+    pairs: &'p [SweptPair<'a>],
     robot: usize,
     region: usize,
-) -> Option<(usize, f64, &'p Pair<'a>)> {
+) -> Option<(usize, f64, &'p SweptPair<'a>)> {
     let mut k = 0;
     while k < motion.ticks() {
         if !motion.is_active(region, k) {
@@ -74,7 +74,7 @@ fn first_entry<'p, 'a>(
     None
 }
 
-fn is_outside(motion: &Motion<'_>, pairs: &[Pair<'_>], region: usize, k: usize) -> bool {
+fn is_outside(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>], region: usize, k: usize) -> bool {
     let frames = motion.frames(&motion.q[k]);
     let place = &motion.places[region];
     let at = place.at(place.travel_at(motion.times[k]).0, &frames);
@@ -84,15 +84,15 @@ fn is_outside(motion: &Motion<'_>, pairs: &[Pair<'_>], region: usize, k: usize) 
 }
 
 /// Until a belt begins again, where it does.
-fn jump(pairs: &[Pair<'_>], from: usize, end: usize) -> usize {
+fn jump(pairs: &[SweptPair<'_>], from: usize, end: usize) -> usize {
     let Some(pair) = pairs.first() else { return end };
     let last = end.min(pair.motion.ticks().saturating_sub(1));
     (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
 }
 
 /// True where the robot itself came nearer by more than the tolerance within the last tick: a region that runs into a
-/// robot that stands, or moves away, was not entered by it.
-fn drove_in(pair: &Pair<'_>, k: usize, u: f64) -> bool {
+/// robot at rest, or into one that moves away, was not entered by it.
+fn drove_in(pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
     if k == 0 {
         return true;
     }

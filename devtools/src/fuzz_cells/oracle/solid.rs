@@ -23,7 +23,7 @@ enum Core {
 
 /// A solid as pieces in a tree of boxes; or all below z = a height.
 #[derive(Debug, Clone)]
-pub enum Solid {
+pub enum OracleSolid {
     Pieces(Tree),
     Below(f64),
 }
@@ -56,7 +56,7 @@ pub struct Bounds {
     pub upper: f64,
 }
 
-impl Solid {
+impl OracleSolid {
     /// The shape with its surface taken back by `by` (m), where that is simple; otherwise as it is.
     pub fn eroded(shape: &Shape, by: f64) -> Self {
         let round =

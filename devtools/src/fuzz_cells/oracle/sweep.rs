@@ -1,7 +1,7 @@
 //! One solid of a robot against one region, between ticks: conservative advancement with the oracle's own bound of motion.
 
 use super::guarded::Guarded;
-use super::motion::Motion;
+use super::motion::OracleMotion;
 use super::solid::Bounds;
 
 /// Distances beyond this (m) are not computed: what is farther is computed again when it may be nearer.
@@ -10,23 +10,23 @@ const FAR_M: f64 = 0.5;
 const STEP_M: f64 = 1e-7;
 
 /// A pair under watch.
-pub struct Pair<'a> {
-    pub motion: &'a Motion<'a>,
+pub struct SweptPair<'a> {
+    pub motion: &'a OracleMotion<'a>,
     pub guarded: &'a Guarded,
     pub robot: usize,
     pub region: usize,
-    levers: Vec<f64>,
+    lever_arms: Vec<f64>,
 }
 
-impl<'a> Pair<'a> {
-    pub fn new(motion: &'a Motion<'a>, guarded: &'a Guarded, robot: usize, region: usize) -> Self {
-        let levers = motion.arms[robot].levers(guarded.link, guarded.radius_m);
-        Self { motion, guarded, robot, region, levers }
+impl<'a> SweptPair<'a> {
+    pub fn new(motion: &'a OracleMotion<'a>, guarded: &'a Guarded, robot: usize, region: usize) -> Self {
+        let lever_arms = motion.arms[robot].lever_arms(guarded.link, guarded.radius_m);
+        Self { motion, guarded, robot, region, lever_arms }
     }
 
     /// False where no joint moves it.
     pub fn is_moved(&self) -> bool {
-        self.levers.iter().any(|l| *l > 0.0)
+        self.lever_arms.iter().any(|l| *l > 0.0)
     }
 
     /// No point of the two comes nearer than this to the other's between tick `k` and the next, m.
@@ -37,7 +37,7 @@ impl<'a> Pair<'a> {
     /// The robot's share of it.
     pub fn own_travel(&self, k: usize) -> f64 {
         let (from, to) = (&self.motion.q[k][self.robot], &self.motion.q[k + 1][self.robot]);
-        self.levers.iter().zip(from).zip(to).map(|((l, a), b)| l * (b - a).abs()).sum()
+        self.lever_arms.iter().zip(from).zip(to).map(|((l, a), b)| l * (b - a).abs()).sum()
     }
 
     fn region_travel(&self, k: usize) -> f64 {

@@ -7,7 +7,7 @@ use elbowroom_sim::{RunOptions, RunOutcome, simulate};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::frame::Frame;
-use super::solid::Solid;
+use super::solid::OracleSolid;
 use super::{Arm, Finding, check};
 use crate::fuzz_cells::random::Random;
 
@@ -29,7 +29,7 @@ fn plate(x: f64, thickness: f64, kind: &str) -> String {
 
 fn run(text: &str, monitored: bool) -> (Cell, RunOutcome) {
     let cell = Cell::parse("test.toml", &format!("{HEAD}{text}")).unwrap();
-    let outcome = simulate(&cell, &RunOptions { monitored, ..RunOptions::default() }).unwrap();
+    let outcome = simulate(&cell, &RunOptions { apply_override: monitored, ..RunOptions::default() }).unwrap();
     (cell, outcome)
 }
 
@@ -68,7 +68,12 @@ fn distances_are_those_of_the_kernels() {
     for _ in 0..3000 {
         let (a, b, pa, pb) = (shape(&mut random), shape(&mut random), pose(&mut random), pose(&mut random));
         let theirs = separation(&a, &pa, &b, &pb).distance;
-        let ours = Solid::eroded(&a, 0.0).distance(&Frame::of(&pa), &Solid::eroded(&b, 0.0), &Frame::of(&pb), 10.0);
+        let ours = OracleSolid::eroded(&a, 0.0).distance(
+            &Frame::of(&pa),
+            &OracleSolid::eroded(&b, 0.0),
+            &Frame::of(&pb),
+            10.0,
+        );
         assert!(ours.lower <= theirs + 1e-9 && theirs <= ours.upper.max(0.0) + 1e-9, "{ours:?} {theirs} {a:?} {b:?}");
         assert!(ours.upper - ours.lower < 1e-6 || ours.upper <= 0.0, "{ours:?} {a:?} {b:?}");
         apart += usize::from(theirs > 0.0);
@@ -77,7 +82,7 @@ fn distances_are_those_of_the_kernels() {
 }
 
 #[test]
-fn frames_are_those_of_the_kernels_and_levers_bound_them() {
+fn frames_are_those_of_the_kernels_and_lever_arms_bound_them() {
     let text = "[robot.r]\nbase = { at = [1, 2, 3], rpy = [0.3, 0.2, 0.1] }\ndh = [\n\
         { a = 0.3, alpha = 1.5, d = 0.2, theta = 0.3 }, { kind = \"prismatic\", a = 0.1, alpha = -0.7, min = -1, max = 1 },\n\
         { a = 0.2, alpha = 0.4, d = -0.1, theta = 1 } ]\nlinks = [[], [], { sphere = { radius = 0.1 } }]\n";
@@ -97,7 +102,7 @@ fn frames_are_those_of_the_kernels_and_levers_bound_them() {
             let point = vector(&mut random, 0.3);
             assert!((theirs.transform_point(point) - frames[link].point(point)).length() < 1e-12);
             let bound: f64 = arm
-                .levers(link, point.length())
+                .lever_arms(link, point.length())
                 .iter()
                 .zip(q.iter().zip(&to))
                 .map(|(l, (a, b))| l * (b - a).abs())

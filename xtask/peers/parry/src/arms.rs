@@ -1,4 +1,4 @@
-//! Two arms of seven links: boxes of the links in the world decide which pairs are asked for.
+//! Two arms of seven links: boxes of the links in the world decide which pairs are queried.
 
 use std::path::Path;
 use std::rc::Rc;
@@ -34,8 +34,8 @@ pub fn add(data: &Path, cells: &mut Vec<Cell>) {
         let form = Cell { set, size, tolerance: TOLERANCE, ..Cell::default() };
         let mut add = |lib: &str, query, answer: fn(&Arms, &[Pose]) -> f64| {
             let (arms, p) = (arms.clone(), poses.clone());
-            let ask = Box::new(move |i: usize| answer(&arms, p.record(i)));
-            cells.push(form.with(&format!("{lib}+aabb"), query, poses.records(), ask));
+            let run = Box::new(move |i: usize| answer(&arms, p.record(i)));
+            cells.push(form.with(&format!("{lib}+aabb"), query, poses.records(), run));
         };
         add(LIB, "collide", |arms, poses| {
             yes(arms.any(poses, 0.0, |a, pa, b, pb| {

@@ -55,7 +55,7 @@ fn add_set(form: &Cell, band: &str, meshes: [&Rc<TriMesh>; 2], poses: Rc<Poses>,
     let tolerance = form.tolerance;
     // Every question has its own handles on the meshes and poses.
     let own = || (meshes[0].clone(), meshes[1].clone(), poses.clone());
-    let mut add = |lib: &str, query, ask| cells.push(form.with(lib, query, poses.records(), ask));
+    let mut add = |lib: &str, query, run| cells.push(form.with(lib, query, poses.records(), run));
     let path = band.ends_with("_path");
     if !path {
         let (a, b, p) = own();

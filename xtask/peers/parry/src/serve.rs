@@ -6,13 +6,13 @@ use std::time::Duration;
 use rustix::time::{ClockId, clock_gettime};
 
 /// The answer for a record: 0 or 1, or metres.
-pub trait Ask {
+pub trait Query {
     fn answer(&mut self, record: usize) -> f64;
     /// The whole loop, so that the question can be inlined into it.
     fn pass(&mut self, records: usize, passes: usize) -> f64;
 }
 
-impl<F: FnMut(usize) -> f64> Ask for F {
+impl<F: FnMut(usize) -> f64> Query for F {
     fn answer(&mut self, record: usize) -> f64 {
         self(record)
     }
@@ -36,14 +36,14 @@ pub struct Cell {
     pub records: usize,
     pub size: f64,
     pub tolerance: f64,
-    pub ask: Option<Box<dyn Ask>>,
+    pub run: Option<Box<dyn Query>>,
 }
 
 impl Cell {
     /// One question on this set.
-    pub fn with(&self, lib: &str, query: &'static str, records: usize, ask: Box<dyn Ask>) -> Self {
+    pub fn with(&self, lib: &str, query: &'static str, records: usize, run: Box<dyn Query>) -> Self {
         let (lib, set) = (lib.to_owned(), self.set.clone());
-        Self { lib, set, query, records, size: self.size, tolerance: self.tolerance, ask: Some(ask) }
+        Self { lib, set, query, records, size: self.size, tolerance: self.tolerance, run: Some(run) }
     }
 }
 
@@ -71,29 +71,29 @@ fn obey(line: &str, cells: &mut [Cell]) -> Option<String> {
     let number = |k: usize| words.get(k)?.parse::<usize>().ok();
     let cell = cells.get_mut(number(1)?)?;
     let records = cell.records;
-    let ask = cell.ask.as_mut()?;
+    let run = cell.run.as_mut()?;
     let (first, second) = (number(2)?, number(3)?);
     if words[0] == "time" {
-        return Some(format!("{:.3}", time(&mut **ask, first.min(records), second)));
+        return Some(format!("{:.3}", time(&mut **run, first.min(records), second)));
     }
     let all = first..(first + second).min(records);
-    let bytes: Vec<u8> = all.flat_map(|i| ask.answer(i).to_le_bytes()).collect();
+    let bytes: Vec<u8> = all.flat_map(|i| run.answer(i).to_le_bytes()).collect();
     std::fs::write(words.get(4)?, &bytes).ok()?;
     Some(format!("{}", bytes.len() / 8))
 }
 
 /// Nanoseconds of this thread's processor time per record, after a warm-up of a millisecond or one pass.
-fn time(ask: &mut dyn Ask, records: usize, passes: usize) -> f64 {
+fn time(run: &mut dyn Query, records: usize, passes: usize) -> f64 {
     let start = processor_time();
     let mut sum = 0.0;
     for record in 0..records {
-        sum += ask.answer(record);
+        sum += run.answer(record);
         if (processor_time() - start).as_micros() >= 1000 {
             break;
         }
     }
     let start = processor_time();
-    sum += ask.pass(records, passes);
+    sum += run.pass(records, passes);
     std::hint::black_box(sum);
     (processor_time() - start).as_nanos() as f64 / (records * passes).max(1) as f64
 }

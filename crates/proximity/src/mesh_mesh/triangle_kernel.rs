@@ -1,4 +1,4 @@
-//! Distances of eight pairs of triangles at once, in f64. README.md, "Triangles in f64".
+//! The f64 kernel of triangles: distances of eight pairs of triangles at once, in f64. README.md, "Triangles in f64".
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 

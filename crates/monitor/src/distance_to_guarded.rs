@@ -15,7 +15,7 @@ pub(crate) struct BoundedDistance {
 }
 
 /// Distance of a region from the closest guarded volume; `None` where it exceeds `limit` (m).
-pub(crate) fn guarded_distance(
+pub(crate) fn distance_to_guarded(
     config: &Configuration,
     now: &Placement,
     region: RegionId,

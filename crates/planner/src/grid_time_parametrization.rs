@@ -1,14 +1,12 @@
-//! Corner blending on the grid: the triangle of a blend must lie in free cells.
+//! Time parametrization of grid paths: a corner is blended where the triangle that is cut off lies in free cells.
 
 use elbowroom_cspace::OccupancyBitmap;
 
-use super::limits::{KinematicLimits, TimeParametrizationError};
-use super::segments::PathSegments;
-use super::trajectory::Trajectory;
 use crate::grid_planner::GridPlanner;
 use crate::grid_space::GridPoint;
 use crate::line_of_sight::box_is_free;
 use crate::path::Path;
+use crate::time_parametrization::{KinematicLimits, PathSegments, TimeParametrizationError, Trajectory};
 
 /// The triangle of a corner is halved in size this often before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 6;

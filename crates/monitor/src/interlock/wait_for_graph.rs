@@ -7,12 +7,12 @@ use super::slot::{RobotSlot, SlotId};
 
 /// The wait-for graph of the first 128 robots at one instant. A robot waits for those that hold or occupy a slot that it has
 /// requested. Silent robots are in no cycle: they may publish again, or be cleared.
-pub(super) struct WaitGraph<'a> {
+pub(super) struct WaitForGraph<'a> {
     pub(super) state: &'a SharedState,
     pub(super) now_s: f64,
 }
 
-impl WaitGraph<'_> {
+impl WaitForGraph<'_> {
     /// The robots in a cycle with this one, each with a slot that it waits for; empty where it is in no cycle.
     pub(super) fn cycle(&self, robot: RobotSlot) -> Vec<(RobotSlot, SlotId)> {
         let members = self.members(robot);

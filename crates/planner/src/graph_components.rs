@@ -1,15 +1,15 @@
 //! Connected components of the coarse graph: missing paths are reported without a search.
 
-use crate::block_graph::{BlockGraph, Node};
+use crate::cell_group_graph::{CellGroupGraph, Node};
 
 /// One number per connected component (union-find), computed on demand after cells changed.
 #[derive(Debug, Default)]
-pub(crate) struct ConnectedComponents {
+pub(crate) struct GraphComponents {
     parent: Vec<Node>,
     valid: bool,
 }
 
-impl ConnectedComponents {
+impl GraphComponents {
     /// Cells changed.
     pub fn invalidate(&mut self) {
         self.valid = false;
@@ -21,7 +21,7 @@ impl ConnectedComponents {
     }
 
     /// The component of a node.
-    pub fn component_of(&mut self, graph: &BlockGraph, node: Node) -> Node {
+    pub fn component_of(&mut self, graph: &CellGroupGraph, node: Node) -> Node {
         if !self.valid {
             self.rebuild(graph);
         }
@@ -29,11 +29,11 @@ impl ConnectedComponents {
     }
 
     /// True where two nodes are connected.
-    pub fn connected(&mut self, graph: &BlockGraph, a: Node, b: Node) -> bool {
+    pub fn connected(&mut self, graph: &CellGroupGraph, a: Node, b: Node) -> bool {
         self.component_of(graph, a) == self.component_of(graph, b)
     }
 
-    fn rebuild(&mut self, graph: &BlockGraph) {
+    fn rebuild(&mut self, graph: &CellGroupGraph) {
         self.parent.clear();
         self.parent.extend(0..graph.node_bound() as Node);
         for node in graph.nodes() {

@@ -1,4 +1,4 @@
-//! Eight triangles against eight: which of the 64 pairs may be within the cutoff.
+//! The f32 kernel of leaves: eight triangles against eight: which of the 64 pairs may be within the cutoff.
 
 use fearless_simd::{Simd, dispatch, prelude::*};
 
@@ -39,7 +39,7 @@ pub(super) fn pairs_within(
 ) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
-    dispatch!(meshes.level, simd => {
+    dispatch!(meshes.simd_level, simd => {
         let left = match &cutoff.witness_frame {
             Some(frame) => {
                 intervals.compute(simd, b, frame);
@@ -86,7 +86,7 @@ fn by_descent<S: Simd>(
 pub(super) fn touching_pairs(meshes: &MeshPair, leaves: LeafPair, cutoff: &Cutoff) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
-    dispatch!(meshes.level, simd => {
+    dispatch!(meshes.simd_level, simd => {
         let (of_a, of_b) = (load_corners(simd, &a.corner), triangles_in_a(simd, b, meshes.placement));
         let left = by_boxes(simd, &of_a, &of_b, cutoff, all);
         if left.is_empty() { left } else { by_normals(simd, &of_a, &of_b, a, cutoff, left) }
@@ -94,10 +94,10 @@ pub(super) fn touching_pairs(meshes: &MeshPair, leaves: LeafPair, cutoff: &Cutof
 }
 
 /// For every triangle of A the triangle of B with the least lower bound.
-pub(super) fn nearest_pairs(meshes: &MeshPair, leaves: LeafPair, frame: &WitnessFrame) -> PairMask {
+pub(super) fn best_partners(meshes: &MeshPair, leaves: LeafPair, frame: &WitnessFrame) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
-    dispatch!(meshes.level, simd => {
+    dispatch!(meshes.simd_level, simd => {
         let of_a = Intervals::of_a(simd, a, frame);
         let mut intervals = LeafIntervals::UNKNOWN;
         intervals.compute(simd, b, frame);

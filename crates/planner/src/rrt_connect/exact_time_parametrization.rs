@@ -1,4 +1,4 @@
-//! Time parametrization of planned paths: corners are blended where the result is proven free.
+//! Time parametrization of paths in the exact scene: a corner is blended where the result is proven free.
 
 use elbowroom_scene::SceneState;
 

@@ -3,7 +3,7 @@
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::motion_bound::displacement_bound;
 
-use crate::guarded_distance::guarded_distance;
+use crate::distance_to_guarded::distance_to_guarded;
 use crate::placement::Placement;
 use crate::{Configuration, Monitor, RegionId, SourceState, Volume};
 
@@ -46,7 +46,7 @@ use crate::{Configuration, Monitor, RegionId, SourceState, Volume};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct RegionDistance<'m> {
+pub struct RegionDistanceQuery<'m> {
     config: &'m Configuration,
     now: Placement,
     regions: Vec<RegionId>,
@@ -68,7 +68,7 @@ struct GuardedLink {
 impl Monitor {
     /// A query of the regions that are closed now, with dynamic regions at the poses given by `sources`, one per source of
     /// the configuration.
-    pub fn region_distance(&self, sources: &[SourceState]) -> RegionDistance<'_> {
+    pub fn region_distance(&self, sources: &[SourceState]) -> RegionDistanceQuery<'_> {
         let config = self.configuration();
         let regions: Vec<_> = (0..config.regions.len()).map(RegionId).filter(|r| self.is_closed(*r)).collect();
         let mut now = Placement::new(config);
@@ -76,7 +76,7 @@ impl Monitor {
         if regions_placed {
             now.place_sources(config, sources);
         }
-        RegionDistance {
+        RegionDistanceQuery {
             links: guarded_links(config, &regions),
             config,
             now,
@@ -87,7 +87,7 @@ impl Monitor {
     }
 }
 
-impl RegionDistance<'_> {
+impl RegionDistanceQuery<'_> {
     /// The regions, in the order of the configuration.
     pub fn regions(&self) -> &[RegionId] {
         &self.regions
@@ -108,7 +108,7 @@ impl RegionDistance<'_> {
             if !(self.regions_placed && self.robot_placed) {
                 return Some((*region, 0.0));
             }
-            guarded_distance(self.config, &self.now, *region, limit_m).map(|d| (*region, d.lower_bound))
+            distance_to_guarded(self.config, &self.now, *region, limit_m).map(|d| (*region, d.lower_bound))
         })
     }
 

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use common::{arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    AccessClass, Configuration, ConfigurationParts, Grant, Guards, Life, Monitor, Occupancy, Region, RegionDistance,
-    RegionId, RegionKind, RobotSlot, SlotId, Snapshot, SourceId, SourceState, Volume, ZoneArbiter,
+    AccessClass, Configuration, ConfigurationParts, Grant, Guards, Life, Monitor, Occupancy, Region,
+    RegionDistanceQuery, RegionId, RegionKind, RobotSlot, SlotId, Snapshot, SourceId, SourceState, Volume, ZoneArbiter,
 };
 use elbowroom_proximity::{HalfSpace, Shape};
 use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
@@ -102,7 +102,7 @@ proptest! {
 #[test]
 fn unknown_poses_count_as_inside() {
     let monitor = monitor();
-    let assert_inside = |query: &RegionDistance<'_>| {
+    let assert_inside = |query: &RegionDistanceQuery<'_>| {
         let all: Vec<_> = query.distances(0.0).collect();
         assert!(all.len() == 4 && all.iter().all(|a| a.1 == 0.0), "{all:?}");
     };

@@ -1,4 +1,4 @@
-//! Children of one node against children of another, sixteen at a time.
+//! The f32 kernel of nodes: children of one node against children of another, sixteen at a time.
 
 use fearless_simd::{Simd, dispatch, prelude::*};
 
@@ -33,7 +33,7 @@ pub(super) fn expand_sides<const MODE: u8>(
     cutoff: &Cutoff,
     stack: &mut NodePairStack,
 ) -> u32 {
-    dispatch!(meshes.level, simd => {
+    dispatch!(meshes.simd_level, simd => {
         let first = stack.len();
         let side_a = side(&meshes.a.bvh, pair.a, pair.height_a, expanded.a);
         let side_b = side(&meshes.b.bvh, pair.b, pair.height_b, expanded.b);

@@ -1,8 +1,9 @@
-//! The coarse graph: its nodes are the connected components of blocks, its edges join components with a common face.
+//! The coarse graph: its nodes are groups of free cells (the connected components of a block of 4 × 4 × 4 cells), its edges
+//! join groups with a common face.
 
 use elbowroom_cspace::{CellChanges, CellIndex, OccupancyBitmap};
 
-use crate::cell_blocks::{EDGE, FACES, FULL, bit_of, cell_of, central_bit, components, facing_cells, free_cells};
+use crate::cell_blocks::{ALL_FREE, EDGE, FACES, bit_of, cell_of, central_bit, components, facing_cells, free_cells};
 
 /// Number of a node.
 pub(crate) type Node = u32;
@@ -16,9 +17,9 @@ struct BlockNodes {
     capacity: u8,
 }
 
-/// Components of blocks and their connections.
+/// Groups of free cells and their connections.
 #[derive(Debug)]
-pub(crate) struct BlockGraph {
+pub(crate) struct CellGroupGraph {
     /// Numbers of blocks along the axes.
     shape: [usize; 3],
     blocks: Vec<BlockNodes>,
@@ -30,7 +31,7 @@ pub(crate) struct BlockGraph {
     changed_blocks: Vec<u32>,
 }
 
-impl BlockGraph {
+impl CellGroupGraph {
     pub fn new(occupancy: &OccupancyBitmap) -> Self {
         let shape = occupancy.shape().map(|n| n.div_ceil(EDGE));
         let blocks = shape.iter().product();
@@ -118,9 +119,9 @@ impl BlockGraph {
         self.representative[node as usize]
     }
 
-    /// True where the whole block of the node is free.
-    pub fn is_full(&self, node: Node) -> bool {
-        self.cells[node as usize] == FULL
+    /// True where all cells of the node's block are free.
+    pub fn is_all_free(&self, node: Node) -> bool {
+        self.cells[node as usize] == ALL_FREE
     }
 
     /// True where the cell belongs to the node.
