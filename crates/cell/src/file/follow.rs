@@ -174,9 +174,12 @@ mod tests {
 
     use super::*;
 
-    /// Joints about or along z, 0.3 m apart; a follower follows joint 0 with its multiplier.
-    fn chain(joints: &[(JointKind, Option<f64>)]) -> Chain {
-        let joint = |(i, (kind, multiplier)): (usize, &(JointKind, Option<f64>))| Joint {
+    /// Kind, and the multiplier with which the joint follows joint 0, if it does.
+    type TestJoint = (JointKind, Option<f64>);
+
+    /// Joints about or along z, 0.3 m apart.
+    fn chain(joints: &[TestJoint]) -> Chain {
+        let joint = |(i, (kind, multiplier)): (usize, &TestJoint)| Joint {
             name: format!("j{i}"),
             kind: *kind,
             parent: LinkId(i),
@@ -205,7 +208,7 @@ mod tests {
     #[test]
     fn joints_that_follow_another_turn_by_their_multiplier() {
         use JointKind::{Prismatic, Revolute};
-        let cases: [(&[(JointKind, Option<f64>)], &[f64], f64); 5] = [
+        let cases: [(&[TestJoint], &[f64], f64); 5] = [
             (&[(Revolute, None), (Revolute, Some(3.0))], &[10.0], 40.0),
             (&[(Revolute, None), (Revolute, Some(-3.0))], &[10.0], 40.0),
             (&[(Revolute, None), (Revolute, Some(2.0)), (Revolute, None)], &[10.0, 15.0], 45.0),
