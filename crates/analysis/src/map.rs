@@ -11,6 +11,7 @@ use elbowroom_cspace::{
 };
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::JointKind;
+use elbowroom_robot::ObjectId;
 
 use crate::plan::request_validation::select_robot;
 
@@ -108,12 +109,13 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         let (name, model) = (object.name.clone(), request.model);
         obstacles.push(MapObstacle { name, model, blocks, time: begin.elapsed() });
     }
-    let moves = |o: usize| cell.moving_objects.iter().any(|m| m.object == o);
-    let count = |dense: Option<&OccupancyArray>, which: &dyn Fn(usize) -> bool| {
+    let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
+    let count = |dense: Option<&OccupancyArray>, which: &dyn Fn(ObjectId) -> bool| {
         if let Some(dense) = dense {
             return Ok(dense.blocked());
         }
-        let all: Vec<_> = cell.objects.iter().enumerate().filter(|o| which(o.0)).flat_map(|o| solids(o.1)).collect();
+        let all: Vec<_> =
+            cell.objects.iter().enumerate().filter(|o| which(ObjectId(o.0))).flat_map(|o| solids(o.1)).collect();
         builder.build(&all).map(|b| b.blocked()).map_err(refuse)
     };
     let dense = OccupancyArray::new(&axes, obstacles.iter().map(|o| &o.blocks));
@@ -121,11 +123,11 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
     let static_blocked = if cell.moving_objects.is_empty() {
         blocked
     } else {
-        let fixed = obstacles.iter().enumerate().filter(|o| !moves(o.0)).map(|o| &o.1.blocks);
+        let fixed = obstacles.iter().enumerate().filter(|o| !moves(ObjectId(o.0))).map(|o| &o.1.blocks);
         count(OccupancyArray::new(&axes, fixed).as_ref(), &|o| !moves(o))?
     };
     for m in &cell.moving_objects {
-        let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object].name);
+        let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object.0].name);
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
     if cell.robots.len() > 1 {
@@ -154,8 +156,8 @@ fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, 
         _ => select_robot(cell, name)?.0,
     };
     let spec = cell.maps.iter().find(|m| m.robot == robot).cloned();
-    let spec = spec.unwrap_or_else(|| MapSpec::of(robot, &cell.robots[robot]));
-    Ok((&cell.robots[robot], spec))
+    let spec = spec.unwrap_or_else(|| MapSpec::of(robot, &cell.robots[robot.0]));
+    Ok((&cell.robots[robot.0], spec))
 }
 
 /// The joint axes. Continuous joints have a range of one turn.

@@ -36,6 +36,9 @@ const GENTLE_RETURN_S: f64 = 0.15;
 const MIN_CORRECTION: f64 = 0.02;
 /// Speed below which an obstacle is stationary, m/s.
 const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
+/// Fixed obstacles are found within this many times the distance in which they limit an evasion (its speed times the time
+/// constant of the controller): a reserve for the next ticks.
+const FIXED_RANGE_FACTOR: f64 = 1.5;
 
 /// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path (S4.11).
 ///
@@ -243,10 +246,9 @@ impl<'s> Avoider<'s> {
             *max = (v.abs() + limit.stop * dt).min(limit.speed);
         }
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, max_next);
-        // Fixed obstacles matter within a stop from the fastest next command, or from one and a half times the evasion speed
-        // within the time constant of the controller.
+        // Fixed obstacles matter within a stop from the fastest next command, or within the range of an evasion.
         let s = &self.settings.reactive;
-        let nearby_m = s.fixed_clearance_m + 1.5 * s.closing_s * s.speed_m_s;
+        let nearby_m = s.fixed_clearance_m + FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
         let fixed_m = nearby_m.max(self.query.own_motion_bounds().max_travel(max_next, ahead_s));
         let range = ProximityRange { dynamic_m: self.controller.rules().reach_m(), fixed_m, ahead_s };
         self.query.find_pairs(obstacles, range);

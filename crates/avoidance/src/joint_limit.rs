@@ -6,6 +6,12 @@ use elbowroom_kinematics::Chain;
 
 use crate::VelocityBounds;
 
+/// Square of the arrival speed per remaining time, both relative to a rise to full speed. At the deceleration of a rise 2
+/// would just stop in time: the rest is a reserve.
+const ARRIVAL_SQUARE: f64 = 1.6;
+/// Smallest duration of a rise to full speed, s: the arrival speed stays finite.
+const MIN_RISE_S: f64 = 1e-6;
+
 /// Limits of one joint in rad (m for a prismatic joint), s and s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimit {
@@ -152,7 +158,7 @@ pub(crate) fn progress(velocity: &[f64], desired: &[f64], limits: &[JointLimit])
 
 /// Speed fraction from which the remaining distance is enough to stop.
 pub(crate) fn arrival_speed(remaining_s: f64, rise_s: f64) -> f64 {
-    (1.6 * remaining_s / rise_s.max(1e-6)).sqrt()
+    (ARRIVAL_SQUARE * remaining_s / rise_s.max(MIN_RISE_S)).sqrt()
 }
 
 #[cfg(test)]

@@ -15,6 +15,12 @@ use elbowroom_spatial::linalg::solve_spd_in_place;
 const MAX_STEPS: usize = 100;
 /// Slope of the cost that counts as 0, relative to the largest curvature.
 const FLAT_SLOPE: f64 = 1e-13;
+/// Step that counts as 0, relative to the unknown plus 1.
+const SHORT_STEP: f64 = 1e-14;
+/// Bisections of a line search: one per bit of a double's fraction.
+const LINE_SEARCH_BISECTIONS: usize = 52;
+/// Largest number of active-set steps per unknown, one more unknown counted: each step frees an unknown at its bound.
+const ACTIVE_SET_STEPS: usize = 8;
 
 /// A soft constraint `a·x = b` or `a·x ≥ b`.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,7 +136,7 @@ impl LeastSquares {
             self.minimize_quadratic(x);
             let is_full_step = self.line_search(x);
             let same_active = self.constraints().iter().zip(&self.active).all(|(c, active)| c.is_active(x) == *active);
-            let is_short = self.step.iter().zip(x.iter()).all(|(d, x)| d.abs() <= 1e-14 * (1.0 + x.abs()));
+            let is_short = self.step.iter().zip(x.iter()).all(|(d, x)| d.abs() <= SHORT_STEP * (1.0 + x.abs()));
             if (is_full_step && same_active) || is_short {
                 break;
             }
@@ -171,7 +177,7 @@ impl LeastSquares {
         self.target.copy_from_slice(x);
         self.free.clear();
         self.free.extend((0..n).filter(|&j| x[j] > self.lower[j] && x[j] < self.upper[j]));
-        for _ in 0..8 * n + 8 {
+        for _ in 0..ACTIVE_SET_STEPS * (n + 1) {
             self.descend();
             // The unknown that reduces the cost most by leaving its bound becomes free.
             let gain = |j: usize| {
@@ -252,7 +258,7 @@ impl LeastSquares {
         let (mut low, mut high) = (0.0, 1.0);
         if self.slope_along(x, 1.0) > 0.0 {
             // The slope along a line rises: bisection of its zero to rounding.
-            for _ in 0..52 {
+            for _ in 0..LINE_SEARCH_BISECTIONS {
                 let middle = f64::midpoint(low, high);
                 if self.slope_along(x, middle) > 0.0 { high = middle } else { low = middle }
             }

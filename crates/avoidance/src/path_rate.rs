@@ -6,6 +6,9 @@ use crate::detour::SAME_CONFIGURATION_S;
 use crate::joint_limit::JointLimit;
 use crate::{PathKind, ProximityPair, ReactiveSettings, Reference};
 
+/// Share of the permitted decrease of a distance that the motion along the path takes: the rest is left to an evasion.
+const APPROACH_SHARE: f64 = 0.5;
+
 /// The robot with respect to its path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathState<'a> {
@@ -35,7 +38,7 @@ fn lead(reference: &Reference<'_>, state: &PathState<'_>) -> f64 {
     joints.map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed)).sum()
 }
 
-/// The rate at which the distances of dynamic obstacles decrease half as fast as they may.
+/// The rate at which the distances of dynamic obstacles decrease as fast as [`APPROACH_SHARE`] permits.
 pub(crate) fn approach_rate<'a>(
     chain: &Chain,
     state: &ChainState,
@@ -51,7 +54,7 @@ pub(crate) fn approach_rate<'a>(
         let along = |c: &[f64; 6]| c[0] * pair.away.x + c[1] * pair.away.y + c[2] * pair.away.z;
         let closing: f64 = -columns.iter().zip(qd).map(|(c, v)| along(c) * v).sum::<f64>();
         if closing > 0.0 {
-            let allowed = 0.5 * (pair.distance_m - settings.clearance_m) / settings.closing_s
+            let allowed = APPROACH_SHARE * (pair.distance_m - settings.clearance_m) / settings.closing_s
                 - pair.away.dot(pair.obstacle_velocity()).max(0.0);
             rate = rate.min((allowed / closing).max(0.0));
         }

@@ -27,6 +27,10 @@ const STATIONARY_M_S: f64 = 0.02;
 /// Speed of approach from which an obstacle is fully evaded even by a robot that keeps its path, m/s.
 const FULL_EVASION_M_S: f64 = 0.05;
 
+/// Smallest speed of the collision point with all joints at full speed that counts, m/s: the effort of a direction in which
+/// it hardly moves stays finite.
+const MIN_POINT_SPEED_M_S: f64 = 1e-3;
+
 /// Settings of the reactive controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReactiveSettings {
@@ -244,7 +248,7 @@ impl ReactiveController {
         };
         let effort = |side: Vec3| {
             let square: f64 = point.iter().map(|p| p.dot(side).powi(2)).sum();
-            1.0 / square.sqrt().max(1e-3)
+            1.0 / square.sqrt().max(MIN_POINT_SPEED_M_S)
         };
         self.sides.select(obstacle, max_speed, effort)
     }

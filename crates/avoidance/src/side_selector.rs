@@ -11,6 +11,8 @@ const HYSTERESIS_FRACTION: f64 = 1.0;
 const HYSTERESIS_S: f64 = 0.3;
 /// Cost of a second of joint motion relative to a second of waiting.
 const MOTION_WEIGHT: f64 = 0.3;
+/// Smallest speed in a direction that counts, m/s: the cost of a direction in which the point cannot move stays finite.
+const MIN_SPEED_M_S: f64 = 1e-3;
 /// Number of obstacles whose side is stored.
 const CAPACITY: usize = 32;
 /// Ticks after which the side of an obstacle that was not requested again is removed.
@@ -75,7 +77,7 @@ impl SideSelector {
         }
         let cost = |side: Vec3| {
             let travel = (obstacle.clearance_m - obstacle.offset.dot(side)).max(0.0);
-            travel / max_speed(side).max(1e-3) + MOTION_WEIGHT * travel * effort(side)
+            travel / max_speed(side).max(MIN_SPEED_M_S) + MOTION_WEIGHT * travel * effort(side)
         };
         let (e1, e2) = (direction.any_perpendicular(), direction.cross(direction.any_perpendicular()));
         let mut best = (f64::INFINITY, e1);

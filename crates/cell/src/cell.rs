@@ -7,7 +7,7 @@ use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
@@ -67,10 +67,10 @@ pub struct AvoidanceSpec {
     pub rules: Rules,
     /// Speeds, distances and times.
     pub settings: AvoiderSettings,
-    /// Indices of the evaded objects; the poses of all others are known to its program.
-    pub objects: Vec<usize>,
-    /// Indices of the evaded robots; the motion of all others is known to its program.
-    pub robots: Vec<usize>,
+    /// The evaded objects; the poses of all others are known to its program.
+    pub objects: Vec<ObjectId>,
+    /// The evaded robots; the motion of all others is known to its program.
+    pub robots: Vec<RobotId>,
     /// Whether another path is planned where an obstacle blocks the path.
     pub replan: bool,
 }
@@ -126,6 +126,11 @@ pub struct JointLimits {
     pub stop: f64,
 }
 
+/// Index of a region in [`Cell::regions`]. A monitor's [`RegionId`](elbowroom_monitor::RegionId) is another:
+/// [`MonitorSetup::regions`](crate::configure::MonitorSetup::regions) maps it to this one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CellRegionId(pub usize);
+
 /// A region and the robots it guards against.
 #[derive(Debug, Clone)]
 pub struct CellRegion {
@@ -133,8 +138,8 @@ pub struct CellRegion {
     pub region: Region,
     /// Line of its table.
     pub line: usize,
-    /// Indices of the robots that it guards against.
-    pub robots: Vec<usize>,
+    /// The robots that it guards against.
+    pub robots: Vec<RobotId>,
     /// The frame that it follows.
     pub follow: Option<Follow>,
     /// Largest plausible motion of that frame, for the monitors.
@@ -146,8 +151,8 @@ pub struct CellRegion {
 pub enum Follow {
     /// A frame of a robot.
     Robot {
-        /// Index of the robot.
-        robot: usize,
+        /// The robot.
+        robot: RobotId,
         /// The link.
         link: LinkId,
         /// The frame in the link.
@@ -155,8 +160,8 @@ pub enum Follow {
     },
     /// Index of an encoder.
     Encoder(usize),
-    /// Index of an object, moving or fixed.
-    Object(usize),
+    /// An object, moving or fixed.
+    Object(ObjectId),
     /// Index of a pose file.
     Poses(usize),
 }
@@ -233,8 +238,8 @@ pub enum StepAction {
     },
     /// Switches a temporary region.
     Switch {
-        /// Index of the region.
-        region: usize,
+        /// The region.
+        region: CellRegionId,
         /// On or off.
         active: bool,
     },
@@ -256,8 +261,8 @@ pub enum MoveTarget {
 /// Settings of the joint-space map of a robot.
 #[derive(Debug, Clone)]
 pub struct MapSpec {
-    /// Index of the robot.
-    pub robot: usize,
+    /// The robot.
+    pub robot: RobotId,
     /// Line of its table; that of the robot where there is none.
     pub line: usize,
     /// Indices in `q`.
@@ -271,10 +276,10 @@ pub struct MapSpec {
 impl MapSpec {
     /// Defaults for a robot: its first three joints, 2 degrees (0.02 m for prismatic joints), all values of the other
     /// joints.
-    pub fn of(index: usize, robot: &CellRobot) -> Self {
+    pub fn of(id: RobotId, robot: &CellRobot) -> Self {
         let joints: Vec<usize> = (0..robot.robot.chain.dof().min(3)).collect();
         let step = joints.iter().map(|&j| Self::default_step(robot, j)).collect();
-        Self { robot: index, line: robot.line, joints, step, others_at_start: false }
+        Self { robot: id, line: robot.line, joints, step, others_at_start: false }
     }
 
     /// Default cell width, rad or m.

@@ -8,9 +8,10 @@ use elbowroom_monitor::{
     ConfigError, Configuration, ConfigurationParts, Monitor, Region, RegionKind, RobotSlot, SlotId, SourceId,
     SourceLimits, SourceSpec, StoppingSettings, ZoneArbiter, group_overlapping,
 };
+use elbowroom_robot::RobotId;
 use sha2::{Digest, Sha256};
 
-use crate::{Cell, CellRobot, Follow};
+use crate::{Cell, CellRegionId, CellRobot, Follow};
 
 /// Ticks without an answer after which a controller stops by itself.
 pub const MISSED_ANSWERS: f64 = 2.0;
@@ -20,8 +21,8 @@ pub const MISSED_ANSWERS: f64 = 2.0;
 pub struct MonitorSetup {
     /// For [`Monitor::new`].
     pub configuration: Configuration,
-    /// Per region of the configuration, its index in [`Cell::regions`].
-    pub regions: Vec<usize>,
+    /// Per region of the configuration, that of the cell.
+    pub regions: Vec<CellRegionId>,
     /// Per source of the configuration, what it follows.
     pub sources: Vec<Follow>,
 }
@@ -32,7 +33,7 @@ pub struct MonitorSetup {
 /// [`FormatError`] at the line of the region or robot that a monitor would refuse.
 pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
     let slots = slots(cell);
-    cell.robots.iter().enumerate().map(|(i, robot)| setup(cell, i, robot, &slots)).collect()
+    cell.robots.iter().enumerate().map(|(i, robot)| setup(cell, RobotId(i), robot, &slots)).collect()
 }
 
 /// The monitors, connected by a zone arbiter where there are exchange regions.
@@ -87,7 +88,7 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
     }))
 }
 
-/// The slot of each exchange region; overlapping zones share one, which avoids deadlocks.
+/// Per region of the cell its slot, where it is an exchange region; overlapping zones share one, which avoids deadlocks.
 pub fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     let exchange: Vec<usize> = (0..cell.regions.len())
         .filter(|i| matches!(cell.regions[*i].region.kind, RegionKind::Exchange { .. }))
@@ -106,11 +107,11 @@ pub fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     slots
 }
 
-fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<MonitorSetup, FormatError> {
+fn setup(cell: &Cell, id: RobotId, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<MonitorSetup, FormatError> {
     let mut regions = Vec::new();
-    let mut indices = Vec::new();
+    let mut region_ids = Vec::new();
     let mut sources: Vec<(Follow, SourceLimits)> = Vec::new();
-    for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&index)) {
+    for (i, r) in cell.regions.iter().enumerate().filter(|(_, r)| r.robots.contains(&id)) {
         let mut region = r.region.clone();
         if let Some(slot) = slots[i] {
             region.kind = RegionKind::Exchange { slot };
@@ -124,14 +125,14 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
             }))
         });
         regions.push(region);
-        indices.push(i);
+        region_ids.push(CellRegionId(i));
     }
     let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| StoppingSettings {
         reaction_s,
         // A simulated controller stops by itself where an answer is missing for longer.
         period_s: MISSED_ANSWERS * cell.tick_s,
         joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
-        joint_acceleration: crate::trajectory::accelerations(cell, index),
+        joint_acceleration: crate::trajectory::accelerations(cell, id),
     });
     let parts = ConfigurationParts {
         robot: robot.name.clone(),
@@ -143,19 +144,19 @@ fn setup(cell: &Cell, index: usize, robot: &CellRobot, slots: &[Option<SlotId>])
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
-    Ok(MonitorSetup { configuration, regions: indices, sources: sources.into_iter().map(|s| s.0).collect() })
+    Ok(MonitorSetup { configuration, regions: region_ids, sources: sources.into_iter().map(|s| s.0).collect() })
 }
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {
     match follow {
         Follow::Encoder(i) => format!("encoder {}", cell.encoders[*i].name),
-        Follow::Object(i) => format!("object {}", cell.objects[*i].name),
+        Follow::Object(i) => format!("object {}", cell.objects[i.0].name),
         Follow::Poses(i) => {
             let file = cell.pose_tracks[*i].file.file_name();
             format!("poses {}", file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
         }
         Follow::Robot { robot, link, .. } => {
-            let robot = &cell.robots[*robot];
+            let robot = &cell.robots[robot.0];
             format!("{}/{}", robot.name, robot.robot.chain.links()[link.0])
         }
     }

@@ -2,6 +2,7 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::SourceState;
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::{Cell, Follow};
@@ -36,17 +37,17 @@ impl<'a> Frames<'a> {
                 Some(moving_object) => {
                     SourceState { pose: moving_object.pose(t_s), motion: moving_object.motion(t_s), stamp_s: t_s }
                 }
-                None => SourceState { pose: self.cell.objects[*o].in_world, motion: FrameMotion::REST, stamp_s: t_s },
+                None => SourceState { pose: self.cell.objects[o.0].in_world, motion: FrameMotion::REST, stamp_s: t_s },
             },
             Follow::Poses(p) => {
                 let track = &self.cell.pose_tracks[*p];
                 SourceState { pose: track.pose(t_s), motion: track.motion(t_s), stamp_s: t_s }
             }
             Follow::Robot { robot, link, in_link } => {
-                let base = self.cell.robots[*robot].base_in_world;
-                let link_in_root = states[*robot].link_in_root(*link);
+                let base = self.cell.robots[robot.0].base_in_world;
+                let link_in_root = states[robot.0].link_in_root(*link);
                 let offset = link_in_root.transform_vector(in_link.translation);
-                let m = states[*robot].link_motion(*link).shifted(offset);
+                let m = states[robot.0].link_motion(*link).shifted(offset);
                 let turn = |v: Vec3| base.transform_vector(v);
                 let motion = FrameMotion {
                     velocity: turn(m.velocity),
@@ -59,9 +60,9 @@ impl<'a> Frames<'a> {
         }
     }
 
-    /// Tool centre point in the world (m) and its speed (m/s).
-    pub fn tcp(&self, robot: usize, state: &ChainState) -> (Vec3, f64) {
-        let r = &self.cell.robots[robot];
+    /// Tool centre point of a robot in the world (m) and its speed (m/s).
+    pub fn tcp(&self, robot: RobotId, state: &ChainState) -> (Vec3, f64) {
+        let r = &self.cell.robots[robot.0];
         let flange_in_root = state.link_in_root(r.flange);
         let offset = flange_in_root.transform_vector(r.tcp_in_flange.translation);
         let tcp_in_root = flange_in_root * r.tcp_in_flange;

@@ -4,6 +4,7 @@ use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
 use elbowroom_planner::PathConstraint;
+use elbowroom_robot::RobotId;
 
 use crate::frames::Frames;
 use crate::{Cell, configure};
@@ -80,7 +81,7 @@ impl PathConstraint for RegionConstraint<'_> {
 /// Errors of the monitors' configurations, and those of `plan`.
 pub fn at_start<T>(
     cell: &Cell,
-    robot: usize,
+    robot: RobotId,
     q: &[f64],
     least_m: f64,
     plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
@@ -89,13 +90,13 @@ pub fn at_start<T>(
     let monitors = configure::monitors(cell, &setups)?;
     let state = |(i, r): (usize, &crate::CellRobot)| {
         let mut state = ChainState::new(&r.robot.chain);
-        state.q.copy_from_slice(if i == robot { q } else { &r.start });
+        state.q.copy_from_slice(if RobotId(i) == robot { q } else { &r.start });
         r.robot.chain.forward_motion(&mut state);
         state
     };
     let states: Vec<_> = cell.robots.iter().enumerate().map(state).collect();
-    let sources = Frames::new(cell).sources(&setups[robot].sources, &states, 0.0);
-    plan(RegionConstraint::new(&monitors[robot], &sources, 0.0, least_m))
+    let sources = Frames::new(cell).sources(&setups[robot.0].sources, &states, 0.0);
+    plan(RegionConstraint::new(&monitors[robot.0], &sources, 0.0, least_m))
 }
 
 /// The smaller value; NaN counts as smaller than any.

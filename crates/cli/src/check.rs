@@ -48,10 +48,10 @@ pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
 }
 
 fn row<'a>(cell: &'a Cell, check: &'a EntryCheck) -> Row<'a> {
-    let region = &cell.regions[check.region].region;
+    let region = &cell.regions[check.region.0].region;
     Row {
         name: &region.name,
-        robot: &cell.robots[check.robot].name,
+        robot: &cell.robots[check.robot.0].name,
         kind: region.kind.name(),
         excluded: check.excluded,
         reason: &check.reason,

@@ -15,7 +15,7 @@ mod common;
 use std::time::Duration;
 
 use clock::best;
-use common::{Random, grid, grid_of, missed_contacts, needless_share};
+use common::{Random, SampleCounts, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
     ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
 };
@@ -53,7 +53,8 @@ fn reproduce(title: &str, arm: &PlanarArm, grid: &Grid, solid: &ConvexObstacle, 
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     let print = |name: &str, time: Duration, occupancy: &OccupancyBitmap, beside: &str| {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
-        let missed = missed_contacts(arm, grid, occupancy, solid, (200_000, 200_000), &mut random);
+        let samples = SampleCounts { uniform: 200_000, beside: 200_000 };
+        let missed = missed_contacts(arm, grid, occupancy, solid, samples, &mut random);
         let share = needless_share(arm, grid, occupancy, solid, 2000, &mut random) * 100.0;
         let (ms, beside) = (time.as_secs_f64() * 1e3, if paper { beside } else { "" });
         println!("| {name} | {ms:.4} | {} | {missed} | {share:.1} % | {beside} |", occupancy.blocked());

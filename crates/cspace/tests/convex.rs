@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{Random, fill, grid, grid_of, missed_contacts, needless_share};
+use common::{Random, SampleCounts, fill, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{ConvexObstacle, Grid, PlanarArm};
 use elbowroom_proximity::ConvexHull;
 use elbowroom_spatial::{Pose, Vec3};
@@ -69,7 +69,7 @@ fn random_obstacle(random: &mut Random) -> ConvexObstacle {
     }
 }
 
-fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: (usize, usize), random: &mut Random) {
+fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: SampleCounts, random: &mut Random) {
     let occupancy = fill(arm, grid, obstacle);
     let missed = missed_contacts(arm, grid, &occupancy, obstacle, samples, random);
     assert_eq!(missed, 0, "step {}: {obstacle:?} blocks {}", grid.axes()[0].step().to_degrees(), occupancy.blocked());
@@ -80,7 +80,7 @@ fn no_contact_with_a_hard_box_lies_in_a_free_cell() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     for step in [2.0, 5.0] {
         for obstacle in &hard_cases() {
-            check(&ARM, &grid(step), obstacle, (5_000, 5_000), &mut random);
+            check(&ARM, &grid(step), obstacle, SampleCounts { uniform: 5_000, beside: 5_000 }, &mut random);
         }
     }
 }
@@ -98,14 +98,14 @@ fn no_contact_with_a_random_solid_lies_in_a_free_cell() {
             _ => ARM,
         };
         let obstacle = random_obstacle(&mut random);
-        check(&arm, &grid, &obstacle, (1_500, 2_500), &mut random);
+        check(&arm, &grid, &obstacle, SampleCounts { uniform: 1_500, beside: 2_500 }, &mut random);
     }
 }
 
 #[test]
 fn a_hundred_thousand_configurations_of_the_baseline() {
     let mut random = Random(13);
-    check(&ARM, &grid(2.0), &baseline(0.0), (100_000, 100_000), &mut random);
+    check(&ARM, &grid(2.0), &baseline(0.0), SampleCounts { uniform: 100_000, beside: 100_000 }, &mut random);
 }
 
 #[test]
@@ -117,7 +117,11 @@ fn the_oracle_detects_solids_smaller_by_2_mm() {
     for (at, rpy) in places {
         let occupancy = fill(&ARM, &grid, &cuboid(at, rpy, [0.248, 0.198, 0.298]));
         let whole = cuboid(at, rpy, [0.25, 0.2, 0.3]);
-        assert!(missed_contacts(&ARM, &grid, &occupancy, &whole, (0, 20_000), &mut random) > 0, "{at:?}");
+        assert!(
+            missed_contacts(&ARM, &grid, &occupancy, &whole, SampleCounts { uniform: 0, beside: 20_000 }, &mut random)
+                > 0,
+            "{at:?}"
+        );
     }
 }
 

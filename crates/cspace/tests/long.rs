@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Random, grid, grid_of, missed_contacts};
+use common::{Random, SampleCounts, grid, grid_of, missed_contacts};
 use elbowroom_cspace::{ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -11,7 +11,14 @@ fn count(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, model: Obstacl
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     model.build_layer(&mut builder, obstacle, &mut layer);
     occupancy.add(&layer);
-    missed_contacts(arm, grid, &occupancy, obstacle, (1_000_000, 1_000_000), &mut Random(0x1234_5678_9abc_def1))
+    missed_contacts(
+        arm,
+        grid,
+        &occupancy,
+        obstacle,
+        SampleCounts { uniform: 1_000_000, beside: 1_000_000 },
+        &mut Random(0x1234_5678_9abc_def1),
+    )
 }
 
 #[test]

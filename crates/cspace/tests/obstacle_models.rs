@@ -6,7 +6,7 @@ mod common;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use common::{Random, grid, grid_of, missed_contacts, needless_share};
+use common::{Random, SampleCounts, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
     ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
     spheres_until,
@@ -61,7 +61,14 @@ fn no_model_misses_a_contact() {
         for model in MODELS {
             let grid = grid(4.0);
             let occupancy = build(&ARM, &grid, obstacle, model);
-            let missed = missed_contacts(&ARM, &grid, &occupancy, obstacle, (3_000, 3_000), &mut random);
+            let missed = missed_contacts(
+                &ARM,
+                &grid,
+                &occupancy,
+                obstacle,
+                SampleCounts { uniform: 3_000, beside: 3_000 },
+                &mut random,
+            );
             assert_eq!(missed, 0, "{model}: {obstacle:?}");
         }
     }
@@ -75,7 +82,14 @@ fn no_model_misses_a_contact_of_the_papers_arm() {
     let grid = paper_grid(5.0);
     for model in MODELS {
         let occupancy = build(&PlanarArm::PAPER, &grid, &cube, model);
-        let missed = missed_contacts(&PlanarArm::PAPER, &grid, &occupancy, &cube, (5_000, 5_000), &mut random);
+        let missed = missed_contacts(
+            &PlanarArm::PAPER,
+            &grid,
+            &occupancy,
+            &cube,
+            SampleCounts { uniform: 5_000, beside: 5_000 },
+            &mut random,
+        );
         let share = needless_share(&PlanarArm::PAPER, &grid, &occupancy, &cube, 2000, &mut random);
         println!("{model}: {} blocked, {:.1} % needlessly", occupancy.blocked(), share * 100.0);
         assert_eq!(missed, 0, "{model}");
@@ -118,7 +132,14 @@ fn expansion_finds_the_components_of_its_seeds() {
     for obstacle in [&obstacles()[0], &obstacles()[3]] {
         let expansion = expand_from_seeds(&ARM, &grid, obstacle);
         let exact = build(&ARM, &grid, obstacle, ObstacleModel::Exact);
-        let missed = missed_contacts(&ARM, &grid, &expansion.occupancy, obstacle, (5_000, 5_000), &mut random);
+        let missed = missed_contacts(
+            &ARM,
+            &grid,
+            &expansion.occupancy,
+            obstacle,
+            SampleCounts { uniform: 5_000, beside: 5_000 },
+            &mut random,
+        );
         println!(
             "seeds {}, tested {}, filled {}, blocked {} (exact {})",
             expansion.seeds,

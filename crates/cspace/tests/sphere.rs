@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Random, fill, grid, missed_contacts, needless_share};
+use common::{Random, SampleCounts, fill, grid, missed_contacts, needless_share};
 use elbowroom_cspace::{ConvexObstacle, PlanarArm};
 use elbowroom_spatial::Vec3;
 
@@ -31,7 +31,14 @@ fn no_contact_lies_in_a_free_cell() {
         let grid = grid(step);
         for obstacle in &cases {
             let occupancy = fill(&ARM, &grid, obstacle);
-            let missed = missed_contacts(&ARM, &grid, &occupancy, obstacle, (20_000, 20_000), &mut random);
+            let missed = missed_contacts(
+                &ARM,
+                &grid,
+                &occupancy,
+                obstacle,
+                SampleCounts { uniform: 20_000, beside: 20_000 },
+                &mut random,
+            );
             assert_eq!(missed, 0, "step {step}: {obstacle:?} blocks {}", occupancy.blocked());
         }
     }
@@ -43,7 +50,9 @@ fn the_oracle_detects_a_sphere_smaller_by_2_mm() {
     let grid = grid(2.0);
     let (whole, smaller) = (sphere(1.3, 0.4, 0.9, 0.25), sphere(1.3, 0.4, 0.9, 0.248));
     let occupancy = fill(&ARM, &grid, &smaller);
-    assert!(missed_contacts(&ARM, &grid, &occupancy, &whole, (0, 20_000), &mut random) > 0);
+    assert!(
+        missed_contacts(&ARM, &grid, &occupancy, &whole, SampleCounts { uniform: 0, beside: 20_000 }, &mut random) > 0
+    );
 }
 
 #[test]

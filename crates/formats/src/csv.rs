@@ -6,6 +6,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use crate::FormatError;
+use crate::error::Location;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -50,8 +51,8 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
         Self { source, file, line: 0, buffer: Vec::new() }
     }
 
-    /// The next line and its number, counted from 1; `None` at the end.
-    pub(crate) fn next(&mut self) -> Result<Option<(usize, &str)>> {
+    /// The next line and where it is; `None` at the end.
+    pub(crate) fn next(&mut self) -> Result<Option<(Location<'a>, &str)>> {
         loop {
             self.line += 1;
             self.buffer.clear();
@@ -70,7 +71,7 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
         }
         let text = std::str::from_utf8(&self.buffer)
             .map_err(|_| FormatError::new(self.file, self.line, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
-        Ok(Some((self.line, text.trim_start_matches('\u{feff}').trim())))
+        Ok(Some((Location { file: self.file, line: self.line }, text.trim_start_matches('\u{feff}').trim())))
     }
 }
 
@@ -89,20 +90,20 @@ pub(crate) fn duplicate(columns: &[String]) -> Option<&String> {
 }
 
 /// The value of a cell; `instead` is an example of a value to write.
-pub(crate) fn finite(cell: &str, column: &str, (file, line): (&Path, usize), instead: &str) -> Result<f64> {
+pub(crate) fn finite(cell: &str, column: &str, at: Location<'_>, instead: &str) -> Result<f64> {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => {
             let what = format!("column `{column}` holds \"{}\", which is not a finite number", shortened(cell));
-            Err(FormatError::new(file, line, what).hint(instead))
+            Err(at.error(what).hint(instead))
         }
     }
 }
 
 /// The error of a row with more or fewer cells than the header.
-pub(crate) fn wrong_length(text: &str, columns: &[String], (file, line): (&Path, usize)) -> FormatError {
+pub(crate) fn wrong_length(text: &str, columns: &[String], at: Location<'_>) -> FormatError {
     let what = format!("has {} values for {} columns", text.split(',').count(), columns.len());
-    FormatError::new(file, line, what).hint(format!("a number for each of {}", columns.join(",")))
+    at.error(what).hint(format!("a number for each of {}", columns.join(",")))
 }
 
 /// At most 40 characters of a cell.
@@ -111,6 +112,6 @@ fn shortened(cell: &str) -> String {
 }
 
 /// The error where the time in a row is not after the time in the row before.
-pub(crate) fn not_rising(t_s: f64, last_s: f64, (file, line): (&Path, usize)) -> FormatError {
-    FormatError::new(file, line, format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
+pub(crate) fn not_rising(t_s: f64, last_s: f64, at: Location<'_>) -> FormatError {
+    at.error(format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
 }

@@ -102,6 +102,26 @@ impl fmt::Display for Warning {
 
 impl std::error::Error for FormatError {}
 
+/// A line of a text file, for messages.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Location<'a> {
+    pub(crate) file: &'a Path,
+    /// Counted from 1.
+    pub(crate) line: usize,
+}
+
+impl Location<'_> {
+    /// An error at this line.
+    pub(crate) fn error(self, what: impl Into<String>) -> FormatError {
+        FormatError::new(self.file, self.line, what)
+    }
+
+    /// A warning at this line.
+    pub(crate) fn warning(self, what: impl Into<String>) -> Warning {
+        Warning::new(self.file, self.line, what)
+    }
+}
+
 /// Collects warnings, up to a limit.
 #[derive(Debug, Default)]
 pub(crate) struct WarningList {

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use elbowroom_kinematics::{Chain, JointKind};
 
 use crate::csv::{self, CsvLines};
+use crate::error::Location;
 use crate::{FormatError, Warning};
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -188,10 +189,10 @@ impl JointStates {
     fn from_lines(path: &Path, mut lines: CsvLines<'_, impl BufRead>, options: &JointStateOptions<'_>) -> Result<Self> {
         let joints = Joints::new(options);
         let (mut last_line, mut warnings) = (1, Vec::new());
-        let Some((line, header)) = lines.next()? else {
+        let Some((at, header)) = lines.next()? else {
             return Err(FormatError::new(path, 1, "is empty").hint(format!("the header {}", joints.header())));
         };
-        let header = Header::parse((path, line), header, &joints, &mut warnings)?;
+        let header = Header::parse(at, header, &joints, &mut warnings)?;
         let defaults = joints.defaults();
         let mut states = Self {
             file: path.to_owned(),
@@ -202,21 +203,21 @@ impl JointStates {
             rows: 0,
         };
         let (mut beyond, mut first_beyond) = (0, None);
-        while let Some((line, text)) = lines.next()? {
-            last_line = line;
+        while let Some((at, text)) = lines.next()? {
+            last_line = at.line;
             let begin = states.values.len();
             states.values.extend_from_slice(&defaults);
             let row = &mut states.values[begin..];
-            let time = header.read_row((path, line), text, row)?;
-            states.times_s.extend(check_time(time, states.times_s.last(), (path, line))?);
+            let time = header.read_row(at, text, row)?;
+            states.times_s.extend(check_time(time, states.times_s.last(), at)?);
             states.rows += 1;
             match options.limits {
                 LimitCheck::None => {}
-                LimitCheck::Refuse => joints.refuse_beyond(row, (path, line))?,
+                LimitCheck::Refuse => joints.refuse_beyond(row, at)?,
                 LimitCheck::Warn => {
                     if let Some(joint) = joints.beyond(row, WARN_TOLERANCE) {
                         beyond += 1;
-                        first_beyond.get_or_insert_with(|| joints.warning(joint, row[joint], (path, line)));
+                        first_beyond.get_or_insert_with(|| joints.warning(joint, row[joint], at));
                     }
                 }
             }
@@ -237,7 +238,7 @@ impl JointStates {
     }
 }
 
-fn check_time(time: Option<f64>, last: Option<&f64>, at: (&Path, usize)) -> Result<Option<f64>> {
+fn check_time(time: Option<f64>, last: Option<&f64>, at: Location<'_>) -> Result<Option<f64>> {
     match (time, last) {
         (Some(t_s), Some(&last_s)) if t_s <= last_s => Err(csv::not_rising(t_s, last_s, at)),
         _ => Ok(time),
@@ -247,6 +248,8 @@ fn check_time(time: Option<f64>, last: Option<&f64>, at: (&Path, usize)) -> Resu
 /// Values may be so far (rad or m) beyond limits before they are worth a warning, or an error.
 const WARN_TOLERANCE: f64 = 1e-9;
 const REFUSE_TOLERANCE: f64 = 1e-6;
+/// Joint values beyond a full turn (2π, rounded up) where the limits are within one are probably degrees, rad.
+const FULL_TURN_RAD: f64 = 6.3;
 
 /// A joint with a column.
 struct JointColumn {
@@ -311,20 +314,20 @@ impl<'a> Joints<'a> {
         values.iter().zip(&self.list).position(is_beyond)
     }
 
-    fn refuse_beyond(&self, values: &[f64], (file, line): (&Path, usize)) -> Result<()> {
+    fn refuse_beyond(&self, values: &[f64], at: Location<'_>) -> Result<()> {
         let Some(i) = self.beyond(values, REFUSE_TOLERANCE) else { return Ok(()) };
         let joint = &self.list[i];
         let what = format!("joint `{}` is at {}, outside its limits", self.shown(joint), values[i]);
         let hint = format!("radians (metres for a prismatic joint) from {} to {}", joint.lower, joint.upper);
-        Err(FormatError::new(file, line, what).hint(hint))
+        Err(at.error(what).hint(hint))
     }
 
-    fn warning(&self, joint: usize, value: f64, (file, line): (&Path, usize)) -> Warning {
+    fn warning(&self, joint: usize, value: f64, at: Location<'_>) -> Warning {
         let joint = &self.list[joint];
-        // Values in degrees are a common mistake.
-        let degrees = if value.abs() > 6.3 && joint.upper < 6.3 { "; are these degrees?" } else { "" };
+        let degrees =
+            if value.abs() > FULL_TURN_RAD && joint.upper < FULL_TURN_RAD { "; are these degrees?" } else { "" };
         let (name, lower, upper) = (self.shown(joint), joint.lower, joint.upper);
-        Warning::new(file, line, format!("`{name}` is {value}, beyond its limits {lower:.4} to {upper:.4}{degrees}"))
+        at.warning(format!("`{name}` is {value}, beyond its limits {lower:.4} to {upper:.4}{degrees}"))
     }
 
     /// Why a column is none of a joint with a value of its own.
@@ -360,14 +363,9 @@ struct Header {
 }
 
 impl Header {
-    fn parse(
-        (file, line): (&Path, usize),
-        text: &str,
-        joints: &Joints<'_>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<Self> {
+    fn parse(at: Location<'_>, text: &str, joints: &Joints<'_>, warnings: &mut Vec<Warning>) -> Result<Self> {
         let names: Vec<String> = csv::cells(text).map(str::to_owned).collect();
-        let wrong = |what: String| FormatError::new(file, line, what).hint(format!("the header {}", joints.header()));
+        let wrong = |what: String| at.error(what).hint(format!("the header {}", joints.header()));
         if names.iter().all(|n| n.parse::<f64>().is_ok()) {
             return Err(wrong("has numbers where the joint names should be".into()));
         }
@@ -389,7 +387,7 @@ impl Header {
         for (robot, missing) in joints.options.robots.iter().zip(&missing) {
             if missing.len() == robot.chain.dof() && robot.default_q.is_some() {
                 let what = format!("has no column for robot `{}`, which stays at its start", robot.name);
-                warnings.push(Warning::new(file, line, what));
+                warnings.push(at.warning(what));
             } else if !missing.is_empty() {
                 return Err(no_column(&missing.join("`, `")));
             }
@@ -398,19 +396,14 @@ impl Header {
             columns[*index_of.get("t_s").ok_or_else(|| no_column("t_s"))?] = Column::Time;
         }
         let header = Self { names, columns };
-        header.check_extra((file, line), joints, warnings)?;
+        header.check_extra(at, joints, warnings)?;
         if !header.columns.iter().any(|c| matches!(c, Column::Joint(_))) {
             return Err(wrong("has no column of a joint".into()));
         }
         Ok(header)
     }
 
-    fn check_extra(
-        &self,
-        (file, line): (&Path, usize),
-        joints: &Joints<'_>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<()> {
+    fn check_extra(&self, at: Location<'_>, joints: &Joints<'_>, warnings: &mut Vec<Warning>) -> Result<()> {
         let is_extra = |c: Column, name: &str| c == Column::Skipped && !["t_s", "index"].contains(&name);
         let mut extra = self.columns.iter().zip(&self.names).filter(|(c, name)| is_extra(**c, name)).map(|(_, n)| n);
         let Some(name) = extra.next() else { return Ok(()) };
@@ -418,19 +411,19 @@ impl Header {
         match joints.options.extra_columns {
             ExtraColumns::Refused => {
                 let what = format!("column `{name}` {}", joints.why_extra(name));
-                Err(FormatError::new(file, line, what).hint(hint))
+                Err(at.error(what).hint(hint))
             }
             ExtraColumns::Skipped => {
                 let of = joints.options.robots.first().map_or("", |r| r.chain.name());
                 let what = format!("column `{name}` is not a joint of \"{of}\": ignored");
-                warnings.push(Warning::new(file, line, what).hint(hint));
+                warnings.push(at.warning(what).hint(hint));
                 Ok(())
             }
         }
     }
 
     /// Writes the values of a row; returns its time where that is required.
-    fn read_row(&self, at: (&Path, usize), text: &str, values: &mut [f64]) -> Result<Option<f64>> {
+    fn read_row(&self, at: Location<'_>, text: &str, values: &mut [f64]) -> Result<Option<f64>> {
         let mut time = None;
         let mut cells = csv::cells(text);
         for (name, column) in self.names.iter().zip(&self.columns) {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::FormatError;
 use crate::csv::{self, CsvLines};
+use crate::error::Location;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -58,20 +59,20 @@ impl NumberTable {
     }
 
     fn from_lines(path: &Path, mut lines: CsvLines<'_, impl BufRead>) -> Result<Self> {
-        let Some((line, header)) = lines.next()? else {
+        let Some((at, header)) = lines.next()? else {
             return Err(FormatError::new(path, 1, "is empty").hint("a header of column names, then rows of numbers"));
         };
         let columns: Vec<String> = csv::cells(header).map(str::to_owned).collect();
         if let Some(name) = csv::duplicate(&columns) {
-            return Err(FormatError::new(path, line, format!("two columns are named `{name}`")).hint("each name once"));
+            return Err(at.error(format!("two columns are named `{name}`")).hint("each name once"));
         }
         let mut rows = Vec::new();
-        while let Some((line, text)) = lines.next()? {
+        while let Some((at, text)) = lines.next()? {
             if text.split(',').count() != columns.len() {
-                return Err(csv::wrong_length(text, &columns, (path, line)));
+                return Err(csv::wrong_length(text, &columns, at));
             }
-            let number = |(cell, name): (&str, &String)| csv::finite(cell, name, (path, line), "a number such as 0.25");
-            rows.push((line, csv::cells(text).zip(&columns).map(number).collect::<Result<_>>()?));
+            let number = |(cell, name): (&str, &String)| csv::finite(cell, name, at, "a number such as 0.25");
+            rows.push((at.line, csv::cells(text).zip(&columns).map(number).collect::<Result<_>>()?));
         }
         Ok(Self { file: path.to_owned(), columns, rows })
     }
@@ -98,7 +99,7 @@ impl NumberTable {
         for (line, row) in &self.rows {
             let t_s = row[time];
             if t_s <= last_s {
-                return Err(csv::not_rising(t_s, last_s, (&self.file, *line)));
+                return Err(csv::not_rising(t_s, last_s, Location { file: &self.file, line: *line }));
             }
             last_s = t_s;
             rows.push(TimedRow { line: *line, t_s, values: columns.iter().map(|c| row[*c]).collect() });

@@ -159,7 +159,7 @@ fn load_tree(
     if let Some(w) = mesh::unit_warning(tree.aabb().extent()).filter(|_| !format.states_its_unit()) {
         warnings.push(Warning { file: path.to_owned(), ..w });
     }
-    let robot = from_tree::robot(tree, &specs, (path, &default_path), &mut warnings)?;
+    let robot = from_tree::robot(tree, &specs, path, &default_path, &mut warnings)?;
     Ok((robot, warnings))
 }
 

@@ -1,20 +1,26 @@
 //! Resolution level L2: the enclosing volume of each solid for whole-arm guarding.
 
 use elbowroom_monitor::VolumeModel;
-use elbowroom_proximity::{ConvexHull, Shape};
+use elbowroom_proximity::{ConvexHull, Shape, ShapeKind};
 use elbowroom_robot::Robot;
 use elbowroom_spatial::Pose;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The enclosing volume of one solid.
 #[derive(Debug, Clone, Serialize)]
 pub struct EnclosingVolume {
     /// The solid's link.
     pub link: String,
-    /// `capsule`, `cuboid`, or the solid's own kind where it is already a primitive.
-    pub volume: &'static str,
+    /// Its kind: a capsule, a box, or the solid's own kind where it is already a primitive.
+    #[serde(serialize_with = "serialize_kind")]
+    pub volume: ShapeKind,
     /// Its volume divided by that of the solid's convex hull; null where the hull has none.
     pub ratio_to_hull: Option<f64>,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn serialize_kind<S: Serializer>(kind: &ShapeKind, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(kind.name())
 }
 
 pub(super) fn of_robot(robot: &Robot) -> Vec<EnclosingVolume> {

@@ -32,7 +32,7 @@ mod units;
 pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
 pub use enclosing_volume::EnclosingVolume;
 pub use inspection::{InspectOptions, Inspection, ModelKind};
-pub use pairs::PairRow;
+pub use pairs::{PairRow, ReasonKind};
 pub use resolution_levels::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
 pub use rows::{JointRow, MeshRow};
 pub use units::{SuspectQuantity, SuspectUnit, UnitLabel, suspect_units};

@@ -1,5 +1,7 @@
 //! The allowed collision matrix of one robot.
 
+use std::fmt;
+
 use elbowroom_formats::FormatError;
 use elbowroom_robot::{GeometryId, Robot};
 use elbowroom_scene::{PairState, Reason, Scene};
@@ -25,13 +27,79 @@ pub struct PairRow {
     pub margin_m: f64,
     /// Reason without details, by which rows are counted.
     #[serde(skip)]
-    pub kind: &'static str,
+    pub kind: ReasonKind,
     /// True where all samples are in contact.
     #[serde(skip)]
     pub always: bool,
     /// True for a contact at rest without a collider in between.
     #[serde(skip)]
     pub at_rest: bool,
+}
+
+/// Reason without details why a pair is tested or not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ReasonKind {
+    /// Nothing excludes the pair.
+    NotExcluded,
+    /// Adjacent links.
+    Adjacent,
+    /// No joint between the links moves.
+    NoJointBetween,
+    /// Disabled in the SRDF.
+    Srdf,
+    /// Proven to be out of reach of each other.
+    OutOfReach,
+    /// In contact in none of the samples.
+    NeverInSamples,
+    /// In contact in all samples.
+    AlwaysInContact,
+    /// In contact at rest.
+    TouchesAtRest,
+    /// Set by hand.
+    ByHand,
+    /// Attached, or allowed to touch what is attached.
+    Attached,
+}
+
+impl ReasonKind {
+    /// As in the table of an inspection: `not excluded`, `adjacent`, …
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotExcluded => "not excluded",
+            Self::Adjacent => "adjacent",
+            Self::NoJointBetween => "no joint between",
+            Self::Srdf => "disabled in the SRDF",
+            Self::OutOfReach => "out of reach of each other: proven",
+            Self::NeverInSamples => "never in samples",
+            Self::AlwaysInContact => "always in contact",
+            Self::TouchesAtRest => "in contact at rest",
+            Self::ByHand => "by hand",
+            Self::Attached => "attached",
+        }
+    }
+}
+
+impl fmt::Display for ReasonKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl From<&Reason> for ReasonKind {
+    fn from(reason: &Reason) -> Self {
+        match reason {
+            Reason::Default => Self::NotExcluded,
+            Reason::Adjacent => Self::Adjacent,
+            Reason::NoJointBetween => Self::NoJointBetween,
+            Reason::Srdf(_) => Self::Srdf,
+            Reason::OutOfReach { .. } => Self::OutOfReach,
+            Reason::NeverInSamples { .. } => Self::NeverInSamples,
+            Reason::AlwaysInContact { .. } => Self::AlwaysInContact,
+            Reason::TouchesAtRest { .. } => Self::TouchesAtRest,
+            Reason::ByHand(_) => Self::ByHand,
+            Reason::Attached(_) | Reason::MayTouch(_) => Self::Attached,
+        }
+    }
 }
 
 /// Number of sampled states.
@@ -53,24 +121,9 @@ pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<Pair
         suggestion: e.suggestion.as_ref().map(ToString::to_string),
         weight: e.weight,
         margin_m: e.margin_m,
-        kind: kind(&e.reason),
+        kind: ReasonKind::from(&e.reason),
         at_rest: matches!(e.suggestion, Some(Reason::TouchesAtRest { .. })),
         always: matches!(e.suggestion, Some(Reason::AlwaysInContact { .. })),
     };
     Ok(scene.allowed_collision_matrix().sampled(&scene, SAMPLES).entries().iter().map(row).collect())
-}
-
-fn kind(reason: &Reason) -> &'static str {
-    match reason {
-        Reason::Default => "not excluded",
-        Reason::Adjacent => "adjacent",
-        Reason::NoJointBetween => "no joint between",
-        Reason::Srdf(_) => "disabled in the SRDF",
-        Reason::OutOfReach { .. } => "out of reach of each other: proven",
-        Reason::NeverInSamples { .. } => "never in samples",
-        Reason::AlwaysInContact { .. } => "always in contact",
-        Reason::TouchesAtRest { .. } => "in contact at rest",
-        Reason::ByHand(_) => "by hand",
-        Reason::Attached(_) | Reason::MayTouch(_) => "attached",
-    }
 }

@@ -6,6 +6,7 @@ use elbowroom_kinematics::JointKind;
 
 use crate::dh::{self, DhConvention};
 use crate::inspection::{Inspection, ModelKind};
+use crate::pairs::ReasonKind;
 use crate::resolution_levels::TrianglesRow;
 use crate::text::shortened;
 
@@ -114,7 +115,7 @@ impl Inspection {
         }
         let tested = self.pairs.iter().filter(|p| p.tested).count();
         writeln!(f, "\n{tested} of {} pairs of links are tested for collisions", self.pairs.len())?;
-        let mut kinds: Vec<&str> = Vec::new();
+        let mut kinds: Vec<ReasonKind> = Vec::new();
         for p in &self.pairs {
             if !kinds.contains(&p.kind) {
                 kinds.push(p.kind);

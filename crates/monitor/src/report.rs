@@ -67,6 +67,18 @@ impl OverrideReason {
             Self::Free | Self::Rate | Self::Fault(_) => None,
         }
     }
+
+    /// The same reason with its region, also that of a fault, under another index.
+    #[must_use]
+    pub fn with_region(self, index: impl FnOnce(RegionId) -> RegionId) -> Self {
+        match self {
+            Self::Region(r) => Self::Region(index(r)),
+            Self::SpeedZone(r) => Self::SpeedZone(index(r)),
+            Self::Waiting(r) => Self::Waiting(index(r)),
+            Self::Fault(Fault::Source { region }) => Self::Fault(Fault::Source { region: index(region) }),
+            Self::Free | Self::Rate | Self::Fault(_) => self,
+        }
+    }
 }
 
 impl fmt::Display for OverrideReason {

@@ -18,6 +18,9 @@ use crate::path_execution::{CurveStatus, PathExecution, distance};
 use crate::replan_in_motion::{InMotionSettings, replan_in_motion};
 use crate::replan_result::ReplanResult;
 
+/// Configurations nearer than this are the same, rad: it is far above rounding and far below a step of an encoder.
+const SAME_CONFIGURATION_RAD: f64 = 1e-9;
+
 /// Executes and replans the motion of one arm.
 #[derive(Debug)]
 pub struct ReplanningExecutor {
@@ -238,7 +241,7 @@ impl ReplanningExecutor {
     fn plan_from_rest(&mut self, result: &mut ReplanResult) {
         let in_blocked_cell = self.grid.cell(self.q).is_none_or(|cell| self.planner.occupancy().is_blocked(cell));
         let retreat = self.settings.retreat.filter(|_| in_blocked_cell);
-        let goals = [self.goal.filter(|goal| distance(*goal, self.q) > 1e-9), retreat];
+        let goals = [self.goal.filter(|goal| distance(*goal, self.q) > SAME_CONFIGURATION_RAD), retreat];
         for goal in goals.into_iter().flatten() {
             match self.plan_to(goal, in_blocked_cell, result) {
                 Ok(motion) => {
@@ -298,7 +301,7 @@ impl ReplanningExecutor {
         let is_valid_step = dt.is_finite() && dt > 0.0;
         let hold = (!is_valid_step).then_some(HoldReason::InvalidTimeStep { dt_s: dt }).or(stale);
         let Some(mut motion) = self.motion.take() else {
-            let has_goal = self.goal.is_some_and(|goal| distance(goal, self.q) > 1e-9);
+            let has_goal = self.goal.is_some_and(|goal| distance(goal, self.q) > SAME_CONFIGURATION_RAD);
             let why = hold.or_else(|| self.reason.clone()).unwrap_or(HoldReason::Blocked);
             return self.step(
                 [0.0; 3],

@@ -11,6 +11,12 @@ const SAMPLES_PER_CELL: f64 = 4.0;
 const BRAKE_STEP_S: f64 = 1e-4;
 /// Most steps of the braking simulation; a longer stop counts as none.
 const BRAKE_STEPS: usize = 100_000;
+/// The arm is on a straight segment within this distance, rad: above rounding, below the deviation of a blended corner.
+const ON_SEGMENT_RAD: f64 = 1e-9;
+/// A joint that is slower than this along the curve, rad/s, does not limit the rate.
+const MIN_JOINT_SPEED_RAD_S: f64 = 1e-12;
+/// Largest change of the rate, 1/s: finite, because 0 · ∞ is not a number.
+const MAX_CHANGE_OF_RATE: f64 = 1e6;
 
 /// Values and derivatives of the map's joints at an instant.
 #[derive(Debug, Clone, Copy)]
@@ -101,7 +107,7 @@ impl PathExecution {
     pub fn segment(&self) -> Option<usize> {
         let q = self.state().q;
         let segments = self.path.waypoints.windows(2).enumerate();
-        let is_on = |w: &[[f64; 3]]| distance_to_segment(q, w[0], w[1]) < 1e-9;
+        let is_on = |w: &[[f64; 3]]| distance_to_segment(q, w[0], w[1]) < ON_SEGMENT_RAD;
         segments.filter(|(_, w)| is_on(w)).map(|(n, _)| n).next_back()
     }
 
@@ -187,10 +193,9 @@ fn change_of_rate(state: &PlanarState, rate: f64, most: [f64; 3], sign: f64) -> 
     let of = |i: usize| {
         let speed = state.qd[i].abs();
         let taken = sign * state.qd[i].signum() * state.qdd[i] * square;
-        if speed < 1e-12 { f64::INFINITY } else { (most[i] - taken).max(RESERVE * most[i]) / speed }
+        if speed < MIN_JOINT_SPEED_RAD_S { f64::INFINITY } else { (most[i] - taken).max(RESERVE * most[i]) / speed }
     };
-    // A finite bound avoids 0 · ∞.
-    (0..3).map(of).fold(1e6, f64::min)
+    (0..3).map(of).fold(MAX_CHANGE_OF_RATE, f64::min)
 }
 
 pub(super) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {

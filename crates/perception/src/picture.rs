@@ -18,6 +18,17 @@ const OLD: [u8; 3] = [120, 120, 130];
 const NEW: [u8; 3] = [16, 120, 60];
 const CURRENT: [u8; 3] = [20, 60, 200];
 
+/// The longer side of an image of the map is at most so long, pixels, unless a cell is one pixel already.
+const MAP_SIZE_PX: usize = 560;
+/// Parts of the picture and of the colour in a tint.
+const PICTURE_PARTS: u16 = 3;
+const COLOR_PARTS: u16 = 2;
+/// Most points of a line: its ends may lie far outside of the image.
+const MAX_LINE_POINTS: f64 = 1e4;
+/// Radius of the dot at the current configuration, pixels, and its square; a little more than 4² makes it round.
+const DOT_RADIUS_PX: i32 = 4;
+const DOT_SQUARE_PX: i32 = 17;
+
 /// The last frame with annotations: the arm's silhouette tinted blue, foreground red, each prism's footprint green and
 /// its predicted area yellow.
 ///
@@ -121,7 +132,7 @@ struct Projection<'a> {
 
 fn draw_map(grid: &Grid, projection: &Projection<'_>, overlay: &MapOverlay<'_>) -> Result<Frame, VisionError> {
     let &Projection { right, up, columns, rows, share } = projection;
-    let scale = (560 / columns.max(rows).max(1)).max(1);
+    let scale = (MAP_SIZE_PX / columns.max(rows).max(1)).max(1);
     let (width, height) = (columns * scale, rows * scale);
     let mut canvas = Canvas { width, height, rgb: Vec::with_capacity(3 * width * height) };
     for y in 0..height {
@@ -166,14 +177,14 @@ impl Canvas {
 
     fn tint(&mut self, x: usize, y: usize, color: [u8; 3]) {
         if let Some(pixel) = self.rgb.get_mut(3 * (y * self.width + x)..).and_then(|rest| rest.first_chunk_mut::<3>()) {
-            *pixel = std::array::from_fn(|c| ((3 * u16::from(pixel[c]) + 2 * u16::from(color[c])) / 5) as u8);
+            let mixed = |c: usize| PICTURE_PARTS * u16::from(pixel[c]) + COLOR_PARTS * u16::from(color[c]);
+            *pixel = std::array::from_fn(|c| (mixed(c) / (PICTURE_PARTS + COLOR_PARTS)) as u8);
         }
     }
 
     fn line(&mut self, a: Point2, b: Point2, color: [u8; 3]) {
         let line = b - a;
-        // Limited: the ends may lie far outside of the image.
-        let steps = line.x.abs().max(line.y.abs()).ceil().clamp(1.0, 1e4);
+        let steps = line.x.abs().max(line.y.abs()).ceil().clamp(1.0, MAX_LINE_POINTS);
         for n in 0..=steps as u32 {
             let p = a + line * (f64::from(n) / steps);
             self.pixel(p.x, p.y, color);
@@ -189,9 +200,9 @@ impl Canvas {
     }
 
     fn dot(&mut self, at: Point2, color: [u8; 3]) {
-        for dy in -4..=4 {
-            for dx in -4..=4_i32 {
-                if dx * dx + dy * dy <= 17 {
+        for dy in -DOT_RADIUS_PX..=DOT_RADIUS_PX {
+            for dx in -DOT_RADIUS_PX..=DOT_RADIUS_PX {
+                if dx * dx + dy * dy <= DOT_SQUARE_PX {
                     self.pixel(at.x + f64::from(dx), at.y + f64::from(dy), color);
                 }
             }

@@ -16,6 +16,22 @@ use elbowroom_vision::Stopwatch;
 use crate::free_arc::free_arc_rad;
 use crate::path_execution::{PathExecution, distance, state_at};
 
+/// The arm enters the new path where that passes its configuration within this distance, rad.
+const ENTRY_DISTANCE_RAD: f64 = 1e-6;
+/// The rate at the entry may exceed 1 by this much, which is rounding; it is then 1.
+const RATE_ROUNDING: f64 = 1e-6;
+/// Reserve of the distance in which a speed is reached: a factor, and a length in rad for speeds near 0.
+const DISTANCE_RESERVE_FACTOR: f64 = 1.05;
+const DISTANCE_RESERVE_RAD: f64 = 1e-3;
+/// Smallest component of a direction: joints that do not move along it do not limit the motion.
+const MIN_COMPONENT: f64 = 1e-12;
+/// A slower arm has no direction of motion, rad/s.
+const MIN_SPEED_RAD_S: f64 = 1e-9;
+/// Steps in which the entry is searched, seconds: in one the arm hardly changes its speed.
+const ENTRY_STEP_S: f64 = 0.004;
+/// Bisections of such a step: to rounding.
+const ENTRY_BISECTIONS: usize = 50;
+
 /// Settings of [`replan_in_motion`].
 pub(super) struct InMotionSettings<'a> {
     pub limits: &'a KinematicLimits,
@@ -100,7 +116,8 @@ fn find_replacement(
     let Candidate { entry_s, path, trajectory, kind, .. } = best?;
     let entry = state_at(&trajectory, entry_s);
     let rate = speed / norm(entry.qd);
-    let is_smooth = distance(entry.q, state.q) < 1e-6 && rate <= 1.0 + 1e-6 && dot(entry.qd, along) > 0.0;
+    let is_near = distance(entry.q, state.q) < ENTRY_DISTANCE_RAD;
+    let is_smooth = is_near && rate <= 1.0 + RATE_ROUNDING && dot(entry.qd, along) > 0.0;
     let execution = || PathExecution::new(path, trajectory, entry_s, rate.min(1.0), settings.grid, settings.limits);
     is_smooth.then(|| (execution(), kind))
 }
@@ -108,10 +125,10 @@ fn find_replacement(
 /// Distance in which a speed along a direction is reached from rest, which is also the distance to stop from it, with a
 /// reserve.
 fn acceleration_distance(speed: f64, along: [f64; 3], limits: &KinematicLimits) -> f64 {
-    let least = |of: &[f64]| (0..3).map(|i| of[i] / along[i].abs().max(1e-12)).fold(f64::INFINITY, f64::min);
+    let least = |of: &[f64]| (0..3).map(|i| of[i] / along[i].abs().max(MIN_COMPONENT)).fold(f64::INFINITY, f64::min);
     let (a, j) = (least(&limits.acceleration), least(&limits.jerk));
     let seconds = if speed >= a * a / j { speed / a + a / j } else { 2.0 * (speed / j).sqrt() };
-    0.5 * speed * seconds * 1.05 + 1e-3
+    0.5 * speed * seconds * DISTANCE_RESERVE_FACTOR + DISTANCE_RESERVE_RAD
 }
 
 /// Moves `left` rad along a path: the waypoints passed, and the point reached.
@@ -131,18 +148,18 @@ fn advance_along(path: &Path, here: PathProgress, mut left: f64) -> Option<(Vec<
     None
 }
 
-/// First zero of a function that rises from below 0: steps of 4 ms, then bisection.
+/// First zero of a function that rises from below 0: steps, then bisection.
 fn first_root(value: impl Fn(f64) -> f64, end: f64) -> Option<f64> {
     let mut low = 0.0;
     let mut high = low;
     while value(high) < 0.0 {
         low = high;
-        high += 0.004;
+        high += ENTRY_STEP_S;
         if low > end {
             return None;
         }
     }
-    for _ in 0..50 {
+    for _ in 0..ENTRY_BISECTIONS {
         let middle = f64::midpoint(low, high);
         if value(middle) < 0.0 {
             low = middle;
@@ -167,7 +184,7 @@ fn norm(a: [f64; 3]) -> f64 {
 
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = norm(a);
-    (length > 1e-9).then(|| a.map(|x| x / length))
+    (length > MIN_SPEED_RAD_S).then(|| a.map(|x| x / length))
 }
 
 #[cfg(test)]

@@ -14,12 +14,32 @@ const Z3: u64 = Z0 << 3;
 const Y0: u64 = 0x000f_000f_000f_000f;
 const Y3: u64 = Y0 << 12;
 
-/// The faces of a block: axis and direction.
-pub(crate) const FACES: [(usize, bool); 6] = [(0, false), (0, true), (1, false), (1, true), (2, false), (2, true)];
+/// A face of a block.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Face {
+    /// The axis normal to it.
+    pub axis: usize,
+    /// At the upper end of the axis, else at the lower one.
+    pub is_upper: bool,
+}
+
+/// The faces at the upper ends of the axes.
+pub(crate) const UPPER_FACES: [Face; 3] =
+    [Face { axis: 0, is_upper: true }, Face { axis: 1, is_upper: true }, Face { axis: 2, is_upper: true }];
+
+/// The faces of a block.
+pub(crate) const FACES: [Face; 6] = [
+    Face { axis: 0, is_upper: false },
+    UPPER_FACES[0],
+    Face { axis: 1, is_upper: false },
+    UPPER_FACES[1],
+    Face { axis: 2, is_upper: false },
+    UPPER_FACES[2],
+];
 
 /// The cells of the neighbour beyond a face that share it with some cells of this block.
-pub(crate) fn facing_cells(cells: u64, (axis, up): (usize, bool)) -> u64 {
-    match (axis, up) {
+pub(crate) fn facing_cells(cells: u64, face: Face) -> u64 {
+    match (face.axis, face.is_upper) {
         (0, true) => cells >> 48,
         (0, false) => cells << 48,
         (1, true) => (cells & Y3) >> 12,
@@ -167,9 +187,9 @@ mod tests {
         for face in FACES {
             for bit in 0..64 {
                 let mut there = coordinates(bit);
-                there[face.0] += if face.1 { 1 } else { -1 };
-                let beyond = !(0..4).contains(&there[face.0]);
-                there[face.0] = there[face.0].rem_euclid(4);
+                there[face.axis] += if face.is_upper { 1 } else { -1 };
+                let beyond = !(0..4).contains(&there[face.axis]);
+                there[face.axis] = there[face.axis].rem_euclid(4);
                 let expected = if beyond { 1_u64 << ((there[0] * 4 + there[1]) * 4 + there[2]) } else { 0 };
                 assert_eq!(facing_cells(1 << bit, face), expected);
             }

@@ -3,7 +3,9 @@
 
 use elbowroom_cspace::{CellChanges, CellIndex, OccupancyBitmap};
 
-use crate::cell_blocks::{ALL_FREE, EDGE, FACES, bit_of, cell_of, central_bit, components, facing_cells, free_cells};
+use crate::cell_blocks::{
+    ALL_FREE, EDGE, FACES, Face, bit_of, cell_of, central_bit, components, facing_cells, free_cells,
+};
 
 /// Number of a node.
 pub(crate) type Node = u32;
@@ -144,18 +146,19 @@ impl CellGroupGraph {
 
     /// Neighbours of a node across some faces.
     #[inline]
-    pub fn neighbours(&self, node: Node, faces: &[(usize, bool)], mut found: impl FnMut(Node)) {
+    pub fn neighbours(&self, node: Node, faces: &[Face], mut found: impl FnMut(Node)) {
         let cells = self.cells[node as usize];
         let coordinates = self.representative[node as usize].map(|c| usize::from(c) / EDGE);
         let block = (coordinates[0] * self.shape[1] + coordinates[1]) * self.shape[2] + coordinates[2];
         let strides = [self.shape[1] * self.shape[2], self.shape[2], 1];
-        for &(axis, up) in faces {
-            let edge = if up { self.shape[axis] - 1 } else { 0 };
-            let facing = facing_cells(cells, (axis, up));
+        for &face in faces {
+            let Face { axis, is_upper } = face;
+            let edge = if is_upper { self.shape[axis] - 1 } else { 0 };
+            let facing = facing_cells(cells, face);
             if facing == 0 || coordinates[axis] == edge {
                 continue;
             }
-            let nodes = self.blocks[if up { block + strides[axis] } else { block - strides[axis] }];
+            let nodes = self.blocks[if is_upper { block + strides[axis] } else { block - strides[axis] }];
             for n in nodes.first..nodes.first + Node::from(nodes.count) {
                 if self.cells[n as usize] & facing != 0 {
                     found(n);

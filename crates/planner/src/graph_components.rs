@@ -1,5 +1,6 @@
 //! Connected components of the coarse graph: missing paths are reported without a search.
 
+use crate::cell_blocks::UPPER_FACES;
 use crate::cell_group_graph::{CellGroupGraph, Node};
 
 /// One number per connected component (union-find), computed on demand after cells changed.
@@ -37,7 +38,7 @@ impl GraphComponents {
         self.parent.clear();
         self.parent.extend(0..graph.node_bound() as Node);
         for node in graph.nodes() {
-            graph.neighbours(node, &[(0, true), (1, true), (2, true)], |other| self.unite(node, other));
+            graph.neighbours(node, &UPPER_FACES, |other| self.unite(node, other));
         }
         self.valid = true;
     }

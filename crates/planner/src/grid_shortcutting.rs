@@ -12,6 +12,10 @@ const MAX_ALL_PAIRS: usize = 24;
 const MAX_ROUNDS: usize = 6;
 /// Most moves of a corner by one step size.
 const MAX_MOVES: usize = 8;
+/// A round that leaves more than this share of the length is the last one: further rounds gain even less.
+const LAST_ROUND_RATIO: f64 = 0.999;
+/// A corner is moved where that shortens its two segments by more than this share: rounding errors move no corner.
+const MIN_MOVE_GAIN: f64 = 1e-9;
 /// Steps by which a corner is moved, cells.
 const STEPS: [i32; 5] = [16, 8, 4, 2, 1];
 
@@ -40,7 +44,7 @@ impl GridShortcutting {
             let before = context.scale.length(points);
             (1..points.len().saturating_sub(1)).for_each(|i| pull_corner(context, points, i, &STEPS));
             self.shortest_subsequence(context, points);
-            if context.scale.length(points) > before * 0.999 {
+            if context.scale.length(points) > before * LAST_ROUND_RATIO {
                 break;
             }
         }
@@ -129,7 +133,7 @@ fn best_move(
     over: impl Fn(GridPoint) -> f64,
     clear: impl Fn(GridPoint) -> bool,
 ) -> Option<GridPoint> {
-    let (mut best, mut least) = (None, over(from) * (1.0 - 1e-9));
+    let (mut best, mut least) = (None, over(from) * (1.0 - MIN_MOVE_GAIN));
     for shift in neighbour_shifts() {
         let Some(cell) = shifted_cell(context, from, shift.map(|s| s * step)) else { continue };
         let to = context.space.center(cell);

@@ -7,6 +7,8 @@ use crate::grid_space::GridPoint;
 /// Cells are enlarged by this on every side, in cell widths: a segment along a border or through a corner touches all cells
 /// that meet there, independent of rounding. Smaller than the inset of path ends from borders.
 const CELL_TOLERANCE: f64 = 5e-10;
+/// A segment that moves less along an axis, in cell widths, does not move along it: the inverse would be infinite.
+const MIN_MOTION: f64 = 1e-300;
 
 /// True where all cells that the segment touches are free.
 pub(crate) fn line_of_sight(occupancy: &OccupancyBitmap, a: GridPoint, b: GridPoint) -> bool {
@@ -77,7 +79,7 @@ struct Line {
 
 impl Line {
     fn new(a: GridPoint, b: GridPoint) -> Self {
-        let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]].map(|d: f64| if d.abs() < 1e-300 { 0.0 } else { d });
+        let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]].map(|d: f64| if d.abs() < MIN_MOTION { 0.0 } else { d });
         Self { a, d, inverse: d.map(|d| if d == 0.0 { 0.0 } else { 1.0 / d }) }
     }
 

@@ -7,6 +7,8 @@ use crate::line_of_sight::line_of_sight;
 /// Offsets of the corner, cells.
 const OFFSETS: [i32; 6] = [2, 4, 7, 11, 16, LARGEST_OFFSET];
 const LARGEST_OFFSET: i32 = 24;
+/// The blocked part is at most so many times as long as an obstacle is wide: smaller offsets are skipped.
+const MAX_BLOCKED_PER_WIDTH: f64 = 3.0;
 /// Steps by which the corner is moved to shorten the path, cells.
 const STEPS: [i32; 1] = [2];
 /// Bisections between the blocked part and the corner.
@@ -23,7 +25,8 @@ pub(crate) fn single_corner_detour(
     let across = (0..3).map(|i| (blocked[0][i] - blocked[1][i]).abs()).fold(0.0, f64::max);
     let over = |p: GridPoint| context.scale.distance(from, p) + context.scale.distance(p, to);
     let segment = [0, 1, 2].map(|i| to[i] - from[i]);
-    for offset in OFFSETS.into_iter().filter(|&offset| f64::from(offset) * 3.0 >= across || offset == LARGEST_OFFSET) {
+    let may_clear = |offset: i32| f64::from(offset) * MAX_BLOCKED_PER_WIDTH >= across || offset == LARGEST_OFFSET;
+    for offset in OFFSETS.into_iter().filter(|&offset| may_clear(offset)) {
         let (mut best, mut least) = (None, f64::INFINITY);
         for shift in neighbour_shifts() {
             if is_along(segment, shift.map(f64::from)) {

@@ -77,6 +77,6 @@ pub use penetration::{Penetration, penetration};
 pub use point_projection::{PointProjection, project_point};
 pub use separation::{DistanceSettings, Separation, WitnessPoints, collides, separation, separation_within, within};
 pub use shape::{
-    Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, HullError, MeshError, MeshReport, Shape, ShapeError, Sphere,
-    TriMesh,
+    Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, HullError, MeshError, MeshReport, Shape, ShapeError, ShapeKind,
+    Sphere, TriMesh,
 };

@@ -8,7 +8,7 @@ use common::{CONVEX, Rng};
 use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
 use elbowroom_proximity::contact::{ContactPoint, ContactSettings, Detail, contact_point};
 use elbowroom_proximity::{
-    Cuboid, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides, penetration, project_point, separation,
+    Cuboid, HalfSpace, Shape, ShapeKind, Sphere, TriMesh, Workspace, collides, penetration, project_point, separation,
     tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -247,7 +247,7 @@ fn contacts_are_the_same_when_moved_or_swapped() {
         assert!(swapped.triangle_b == c.triangle_a && (swapped.normal_b - c.normal_a).length() < 1e-9);
         let same = there.on_a.distance(away.transform_point(c.on_a)) < 1e-9;
         // The deepest point in a cylinder is approximate; one point may be a corner of several triangles.
-        moved += usize::from(!same && b.kind() != "cylinder");
+        moved += usize::from(!same && b.kind() != ShapeKind::Cylinder);
         if same && there.triangle_a == c.triangle_a {
             turned += 1;
             assert!((there.normal_a - away.transform_vector(c.normal_a)).length() < 1e-9);

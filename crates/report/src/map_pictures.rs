@@ -37,7 +37,7 @@ pub fn write(map: &CellMap, folder: &Path) -> io::Result<usize> {
         }
         let (width, height) = (axes[right].count(), up.map_or(1, |u| axes[u].count()));
         let scale = SMALLEST.div_ceil(width.min(height.max(width / 8))).clamp(1, 16);
-        let rgb = draw(map, &mut cell, [right, up.unwrap_or(right)], (width, height), scale);
+        let rgb = draw(map, &mut cell, [right, up.unwrap_or(right)], width, height, scale);
         let name = format!("slice_{plane:03}.png");
         png::write(io::BufWriter::new(fs::File::create(folder.join(&name))?), width * scale, height * scale, &rgb)?;
         let title = if axes.len() > 2 { value(map, 0, axes[0].center(plane)) } else { String::new() };
@@ -54,7 +54,8 @@ fn draw(
     map: &CellMap,
     cell: &mut [u16],
     [right, up]: [usize; 2],
-    (width, height): (usize, usize),
+    width: usize,
+    height: usize,
     scale: usize,
 ) -> Vec<u8> {
     let mut rgb = vec![0; 3 * width * height * scale * scale];

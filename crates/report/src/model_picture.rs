@@ -198,7 +198,7 @@ fn render(colored_triangles: &[ColoredTriangle], turn: f64, tilt: f64) -> Vec<u8
         let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else { continue };
         // Both sides are lit, because a surface may be inside out.
         let light = 0.35 + 0.45 * normal.dot(Vec3::new(0.8, -0.3, 0.52)).abs() + 0.2 * normal.x.abs();
-        fill(at, (width, height), |pixel, depth| {
+        fill(at, width, height, |pixel, depth| {
             let depth = depth + nearer * f64::from(*layer);
             if depth > depths[pixel] {
                 depths[pixel] = depth;
@@ -210,7 +210,7 @@ fn render(colored_triangles: &[ColoredTriangle], turn: f64, tilt: f64) -> Vec<u8
 }
 
 /// Calls `paint` with the pixel and the depth of every sample in the triangle.
-fn fill([a, b, c]: [Vec3; 3], (width, height): (usize, usize), mut paint: impl FnMut(usize, f64)) {
+fn fill([a, b, c]: [Vec3; 3], width: usize, height: usize, mut paint: impl FnMut(usize, f64)) {
     let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if !(area.abs() > 1e-12) {
         return;

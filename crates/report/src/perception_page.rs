@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::Life;
 use elbowroom_monitor::{Guards, OverrideReason, RegionId};
@@ -79,7 +80,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
             tcp_speed: speed,
             programmed_speed: speed,
             speed_override: if matches!(tick.step.state, ExecutorState::Waiting(_)) { 0.0 } else { tick.step.rate },
-            region: nearest.map(|(i, _)| i),
+            region: nearest.map(|(i, _)| CellRegionId(i)),
             distance_m: tick.distance_m,
             reason,
         });

@@ -100,7 +100,7 @@ fn run(scene: &ReportScene, label: &str, rec: &Recording) -> Value {
     let ticks = rec.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
     let frames = every(ticks, MAX_FRAMES);
     let times = rec.robots.first().map(|r| floats(frames.iter().map(|&i| r.samples[i].t_s)));
-    let spans = |list: &[Span]| list.iter().map(|s| json!([s.robot, s.from_s, s.to_s])).collect::<Vec<_>>();
+    let spans = |list: &[Span]| list.iter().map(|s| json!([s.robot.0, s.from_s, s.to_s])).collect::<Vec<_>>();
     let regions = rec.regions.iter().map(|r| json!({
         "poses": match &r.poses {
             RegionPoses::Fixed(pose) => floats(pose_values(pose)),
@@ -176,7 +176,7 @@ fn pose_values(pose: &Pose) -> [f64; 7] {
 fn nearest(track: &RobotTrack, rec: &Recording, tick: usize) -> [f64; 3] {
     let sample = &track.samples[tick];
     let unknown = [f64::NAN; 3];
-    let (Some(region), Some(distance)) = (sample.region.and_then(|i| rec.regions.get(i)), sample.distance_m) else {
+    let (Some(region), Some(distance)) = (sample.region.and_then(|i| rec.regions.get(i.0)), sample.distance_m) else {
         return unknown;
     };
     let pose = match &region.poses {

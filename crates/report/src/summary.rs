@@ -204,7 +204,7 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     }
     let p = last.tcp;
     let place = format!("at {since:.2} s, TCP ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z);
-    match (last.region.and_then(|i| rec.regions.get(i)), last.distance_m) {
+    match (last.region.and_then(|i| rec.regions.get(i.0)), last.distance_m) {
         (Some(region), Some(d)) if d > 0.0 => {
             format!("stopped {} before {}, {place}", millimetres(Some(d)), clip(&region.name, 20))
         }

@@ -6,7 +6,7 @@ use elbowroom_kinematics::LinkId;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RobotId(pub usize);
 
-/// Index of an object among the objects of a scene.
+/// Index of an object among the objects of a scene or a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId(pub usize);
 

@@ -234,6 +234,24 @@ struct Interval<'w, 'a> {
     moved_objects: &'w [MovedObject<'w>],
 }
 
+/// An instant of an interval at which a pair is apart.
+#[derive(Clone, Copy)]
+struct ClearInstant {
+    /// Fraction of the time.
+    at: f64,
+    /// Lower bound on the distance, metres.
+    gap_m: f64,
+}
+
+/// An instant of an interval.
+#[derive(Clone, Copy)]
+struct MeasuredInstant {
+    /// Fraction of the time.
+    at: f64,
+    /// Distance of the pair, metres; `None` in contact.
+    gap_m: Option<f64>,
+}
+
 impl Interval<'_, '_> {
     /// The first contact of a pair that is `gap` apart now, as a fraction of the time. Its object travelled `travel` m.
     fn first_contact(&self, pair: &TrackedPair, travel: f64, gap: Option<f64>) -> Option<f64> {
@@ -246,25 +264,25 @@ impl Interval<'_, '_> {
             return gap.is_none().then_some(1.0);
         }
         let clear_before = pair.clear - pair.moved(before) - (pair.travel - travel);
-        self.bisect(pair, travel_bound, (0.0, clear_before), (1.0, gap))
+        let from = ClearInstant { at: 0.0, gap_m: clear_before };
+        self.bisect(pair, travel_bound, from, MeasuredInstant { at: 1.0, gap_m: gap })
     }
 
-    /// The first contact between two fractions of the time with the gaps there. Over all of the time the gap changes by
-    /// `travel_bound` m at most.
-    fn bisect(&self, pair: &TrackedPair, travel_bound: f64, from: (f64, f64), to: (f64, Option<f64>)) -> Option<f64> {
+    /// The first contact between two instants. Over all of the time the gap changes by `travel_bound` m at most.
+    fn bisect(&self, pair: &TrackedPair, travel_bound: f64, from: ClearInstant, to: MeasuredInstant) -> Option<f64> {
         // The gap at either end excludes contact for a while: contact is possible only in between.
-        let first = from.0 + from.1.max(0.0) / travel_bound;
-        let last = to.0 - to.1.unwrap_or(0.0) * ROUNDING / travel_bound;
+        let first = from.at + from.gap_m.max(0.0) / travel_bound;
+        let last = to.at - to.gap_m.unwrap_or(0.0) * ROUNDING / travel_bound;
         // True for NaN, too: where nothing moved.
         if !(last - first > (2.0 * MIN_DEPTH / travel_bound).max(MIN_DURATION)) {
-            return to.1.is_none().then_some(to.0);
+            return to.gap_m.is_none().then_some(to.at);
         }
         let middle = 0.5 * (first + last);
         match self.gap(pair, middle) {
-            None => self.bisect(pair, travel_bound, from, (middle, None)),
+            None => self.bisect(pair, travel_bound, from, MeasuredInstant { at: middle, gap_m: None }),
             Some(gap) => self
-                .bisect(pair, travel_bound, from, (middle, Some(gap)))
-                .or_else(|| self.bisect(pair, travel_bound, (middle, gap * ROUNDING), to)),
+                .bisect(pair, travel_bound, from, MeasuredInstant { at: middle, gap_m: Some(gap) })
+                .or_else(|| self.bisect(pair, travel_bound, ClearInstant { at: middle, gap_m: gap * ROUNDING }, to)),
         }
     }
 

@@ -94,12 +94,12 @@ fn middle(bounds: &Aabb) -> Vec3 {
 fn depth(robots: &[SceneRobot], id: GeometryId) -> usize {
     match id {
         GeometryId::Object(_) => 0,
-        GeometryId::Link { robot, link } => link_depth(robots, (robot, link)),
+        GeometryId::Link { robot, link } => link_depth(robots, robot, link),
     }
 }
 
 /// Number of moving joints between a link and its base.
-pub(crate) fn link_depth(robots: &[SceneRobot], (robot, link): (RobotId, LinkId)) -> usize {
+pub(crate) fn link_depth(robots: &[SceneRobot], robot: RobotId, link: LinkId) -> usize {
     let chain = &robots[robot.0].robot.chain;
     chain.path(link).iter().filter(|j| chain.joints()[j.0].kind.moves()).count()
 }

@@ -13,8 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_cell::{Cell, Drive, ObjectPath, PathRepeat};
-use elbowroom_robot::ObjectId;
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
 use elbowroom_sim::run::simulate;
 use elbowroom_sim::{Recording, RobotTrack, RunOptions};
@@ -38,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cell = Cell::load(file)?;
     let seen =
         cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();
-    let moves = |o: &&usize| cell.moving_objects.iter().any(|m| m.object == **o);
+    let moves = |o: &&ObjectId| cell.moving_objects.iter().any(|m| m.object == **o);
     let object = *seen.iter().find(moves).ok_or("no moving object is evaded")?;
     let free = without_obstacle(&cell)?;
     println!(
@@ -75,7 +74,12 @@ struct RunComparison {
 }
 
 /// The chosen runs, in parallel, in order.
-fn compare(cell: &Cell, object: usize, paths: &[ObjectPath], chosen: &[usize]) -> Result<Vec<RunComparison>, String> {
+fn compare(
+    cell: &Cell,
+    object: ObjectId,
+    paths: &[ObjectPath],
+    chosen: &[usize],
+) -> Result<Vec<RunComparison>, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
     let work = || {
@@ -116,11 +120,11 @@ fn without_obstacle(cell: &Cell) -> Result<Recording, Box<dyn std::error::Error>
 }
 
 /// A scene of the robot and the obstacle.
-fn obstacle_scene(cell: &Cell, object: usize) -> Result<Scene, Box<dyn std::error::Error>> {
+fn obstacle_scene(cell: &Cell, object: ObjectId) -> Result<Scene, Box<dyn std::error::Error>> {
     let mut builder = Scene::builder();
     let robot = &cell.robots[0];
     builder.robot(&robot.name, robot.robot.clone(), robot.base_in_world);
-    builder.object(cell.objects[object].clone());
+    builder.object(cell.objects[object.0].clone());
     Ok(builder.build()?)
 }
 

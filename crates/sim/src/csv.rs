@@ -28,7 +28,7 @@ pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()>
                 }
             }
             write!(out, "{},{},{},{},{},", s.tcp.x, s.tcp.y, s.tcp.z, s.tcp_speed, s.speed_override)?;
-            let region = s.region.and_then(|r| recording.regions.get(r)).map_or("", |r| &r.name);
+            let region = s.region.and_then(|r| recording.regions.get(r.0)).map_or("", |r| &r.name);
             match s.distance_m {
                 Some(d) => writeln!(out, "{region},{d}")?,
                 None => writeln!(out, "{region},")?,

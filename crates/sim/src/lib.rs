@@ -1,7 +1,7 @@
 //! Simulation of the programs of a cell under the interference-region monitors.
 //!
 //! [`simulate`] runs the programs of a [`Cell`](elbowroom_cell::Cell) on one clock and returns a [`Recording`], which
-//! [`Summary`] and [`csv`] turn into what scripts read and `elbowroom_report` into what people read. [`check`](check::check)
+//! [`RunSummary`] and [`csv`] turn into what scripts read and `elbowroom_report` into what people read. [`check`](check::check)
 //! decides, without a run, which regions the active laws keep the robots out of; [`motion`] times the programs for
 //! both.
 //!
@@ -40,5 +40,5 @@ pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, RecordedRegionKind,
     Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEvent, Sample, Span, TickTimes,
 };
-pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, simulate};
+pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, RunSummary};

@@ -2,8 +2,10 @@
 
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_cell::CellRegionId;
 use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
 use elbowroom_proximity::Shape;
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::{Pose, Vec3};
 use serde::Serialize;
 
@@ -165,11 +167,11 @@ pub struct Sample {
     pub programmed_speed: f64,
     /// The override of this tick, 0..1, the programmed override included.
     pub speed_override: f64,
-    /// Index of the governing region, where there is one.
-    pub region: Option<usize>,
+    /// The governing region, where there is one; an index in [`Recording::regions`] too.
+    pub region: Option<CellRegionId>,
     /// Distance (m) from the governing point to its region.
     pub distance_m: Option<f64>,
-    /// Why the override has this value.
+    /// Why the override has this value; its region is an index in [`Recording::regions`].
     pub reason: OverrideReason,
 }
 
@@ -227,8 +229,8 @@ pub struct RegionTrack {
 /// An interval of one robot in a region or its warning zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Index of the robot.
-    pub robot: usize,
+    /// The robot; an index in [`Recording::robots`] too.
+    pub robot: RobotId,
     /// Start, s.
     pub from_s: f64,
     /// End, s.

@@ -131,9 +131,10 @@ fn a_region_switched_on_behind_a_robot_was_not_passed() {
 
 #[test]
 fn faults_of_the_input_do_not_change_the_recorded_positions() {
+    use elbowroom_robot::RobotId;
     use elbowroom_sim::{InputFault, InputFaultKind};
     let cell = parse(&format!("{HEAD}{}{}", carriage(1000), plate(200.0, "warning = 300")));
-    let jump = InputFault { robot: 0, from_s: 0.0, to_s: f64::INFINITY, kind: InputFaultKind::Frozen };
+    let jump = InputFault { robot: RobotId(0), from_s: 0.0, to_s: f64::INFINITY, kind: InputFaultKind::Frozen };
     let options = RunOptions { faults: vec![jump], ..RunOptions::default() };
     let outcome = simulate(&cell, &options).unwrap();
     let r = &outcome.recording;

@@ -6,7 +6,8 @@ mod random;
 
 use common::{ARM, HEAD, parse, rail, run, run_free};
 use elbowroom_cell::Cell;
-use elbowroom_sim::{RunOptions, csv, simulate};
+use elbowroom_robot::RobotId;
+use elbowroom_sim::{RunOptions, SilentFrom, csv, simulate};
 
 /// Two carriages on crossing rails; the crossing is an exchange region.
 fn crossing(wait_a: f64, wait_b: f64) -> String {
@@ -51,7 +52,8 @@ fn without_the_monitor_they_meet_in_the_crossing() {
 #[test]
 fn a_robot_that_becomes_silent_inside_keeps_the_region_blocked() {
     let cell = parse(&crossing(0.0, 0.6));
-    let options = RunOptions { silent_from: vec![(0, 1.35)], ..RunOptions::default() };
+    let options =
+        RunOptions { silent_from: vec![SilentFrom { robot: RobotId(0), t_s: 1.35 }], ..RunOptions::default() };
     let outcome = simulate(&cell, &options).unwrap();
     let r = &outcome.recording;
     assert!(r.robots[0].samples.last().unwrap().tcp.length() < 0.25, "it fell silent elsewhere");

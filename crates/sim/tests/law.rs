@@ -3,7 +3,7 @@
 mod common;
 
 use common::{ARM, HEAD, parse, rail, run, run_free};
-use elbowroom_cell::{ProgramBody, StepAction};
+use elbowroom_cell::{CellRegionId, ProgramBody, StepAction};
 use elbowroom_sim::RunSummary;
 use elbowroom_spatial::Vec3;
 
@@ -34,7 +34,7 @@ fn the_override_is_the_law_at_every_row_and_the_arm_stops_at_the_border() {
         assert!((s.speed_override - law).abs() < 1e-9, "at {} s: {} against {law}", s.t_s, s.speed_override);
         if law < 1.0 {
             slowed += 1;
-            assert_eq!(s.region, Some(0));
+            assert_eq!(s.region, Some(CellRegionId(0)));
             assert!((s.distance_m.unwrap() - to_column(s.tcp)).abs() < 1e-9);
         }
     }

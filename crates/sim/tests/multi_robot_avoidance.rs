@@ -4,6 +4,7 @@ mod common;
 
 use common::{HEAD, parse, run};
 use elbowroom_cell::Cell;
+use elbowroom_robot::RobotId;
 
 /// Two prismatic joints in the plane of world x and y that carry a ball; the first robot is stationary on the path of
 /// the other.
@@ -62,5 +63,5 @@ fn names_of_robots_are_checked() {
     wrong("[\"waits\"]", "itself");
     wrong("\"drives\"", "list");
     wrong("[3]", "robots");
-    assert_eq!(parse(&cell("")).avoidance[0].as_ref().unwrap().robots, [1]);
+    assert_eq!(parse(&cell("")).avoidance[0].as_ref().unwrap().robots, [RobotId(1)]);
 }

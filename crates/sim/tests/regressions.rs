@@ -19,6 +19,28 @@ fn a_stop_is_planned_for_a_path_that_bends_towards_the_region() {
     }
 }
 
+/// A monitor has the regions of its robot alone and counts them by itself.
+#[test]
+fn the_reason_of_an_override_names_the_region_of_the_cell() {
+    let sphere = |name: &str, x: f64, robot: &str| {
+        format!(
+            "[region.{name}]\nshape = \"sphere\"\ncentre = [{x}, 0, 0]\nradius = 100\nwarning = 100\nguards = [\"tcp\"]\n\
+             robots = [\"{robot}\"]\n"
+        )
+    };
+    let text = format!(
+        "{HEAD}{}{}{}{}[program.a]\nsteps = [{{ move = \"joint\", to = [1000] }}]\n",
+        rail("a", 0.0),
+        rail("b", 900.0),
+        sphere("far", 5000.0, "b"),
+        sphere("near", 900.0, "a"),
+    );
+    let recording = run(&text).recording;
+    let regions: Vec<_> = recording.robots[0].samples.iter().filter_map(|s| s.reason.region()).collect();
+    assert!(!regions.is_empty());
+    assert!(regions.iter().all(|r| recording.regions[r.0].name == "near"), "{regions:?}");
+}
+
 #[test]
 fn a_robot_that_starts_inside_an_exchange_region_occupies_it_from_the_first_tick() {
     let text = format!(

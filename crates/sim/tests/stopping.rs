@@ -196,7 +196,7 @@ fn recordings_never_meet_in_an_exchange_region() {
     let (_dir, cell) = with_recordings(&text, &[("a", TURNS), ("b", "t_s,joint_1,joint_2\n0,1.3,0\n3,1.5,0\n")]);
     let run = simulate(&cell, &RunOptions::default()).unwrap().recording;
     // The first one starts 30 mm from the region, the second one inside.
-    assert!(run.regions[0].inside_spans.iter().all(|s| s.robot == 1), "{:?}", run.regions[0].inside_spans);
+    assert!(run.regions[0].inside_spans.iter().all(|s| s.robot.0 == 1), "{:?}", run.regions[0].inside_spans);
 }
 
 /// A carriage inside a box: 30 mm deep from a face beside it, and the program leaves straight ahead.

@@ -59,6 +59,19 @@ const MAX_SWAP_ROUNDS: usize = 8;
 const MERGE_OVERLAP: f64 = 0.3;
 /// A detection that lies by more than this fraction in a track's predicted outline is a fragment of it.
 const FRAGMENT_OVERLAP: f64 = 0.5;
+/// Cost of a logarithm of 1 of the ratio of the areas, and the largest logarithm that counts.
+const AREA_COST: f64 = 0.5;
+const MAX_AREA_LOGARITHM: f64 = 2.0;
+/// Difference in brightness that costs 1, grey levels, and the largest cost of brightness.
+const BRIGHTNESS_SCALE_LEVELS: f64 = 40.0;
+const MAX_BRIGHTNESS_COST: f64 = 2.0;
+/// A swap must lower the total cost by more than this: rounding errors swap nothing.
+const MIN_SWAP_GAIN: f64 = 1e-12;
+/// Smallest area (m²) and radius (m) in a ratio, which stays finite.
+const MIN_AREA_M2: f64 = 1e-9;
+const MIN_RADIUS_M: f64 = 1e-6;
+/// Smallest area in a share of an overlap, m².
+const MIN_SHARED_AREA_M2: f64 = 1e-12;
 
 impl Association {
     /// Assigns the detections of a frame to the tracks.
@@ -80,7 +93,7 @@ impl Association {
             for (d, detection) in detections.iter().enumerate() {
                 let distance = (track.centre_m - detection.centre_m).length();
                 let may_overlap = distance <= own_radius + self.radii[d];
-                if may_overlap && self.push_overlapping((t, track), (d, detection), distance) {
+                if may_overlap && self.push_overlapping(t, track, d, detection, distance) {
                     continue;
                 }
                 if distance <= track.gate_m && !track.is_occluded {
@@ -110,8 +123,10 @@ impl Association {
     /// Adds a candidate where track and detection overlap; returns whether they do.
     fn push_overlapping(
         &mut self,
-        (t, track): (usize, &TrackPrediction),
-        (d, detection): (usize, &Detection),
+        t: usize,
+        track: &TrackPrediction,
+        d: usize,
+        detection: &Detection,
         distance: f64,
     ) -> bool {
         polygon::intersection(&track.outline_m, &detection.outline_m, &mut self.intersection, &mut self.workspace);
@@ -121,8 +136,8 @@ impl Association {
                 track: t,
                 detection: d,
                 cost: cost(track, detection, distance),
-                overlap_of_track: area / track.area.max(1e-12),
-                overlap_of_detection: area / detection.area.max(1e-12),
+                overlap_of_track: area / track.area.max(MIN_SHARED_AREA_M2),
+                overlap_of_detection: area / detection.area.max(MIN_SHARED_AREA_M2),
             });
         }
         area > 0.0
@@ -166,7 +181,7 @@ impl Association {
         let (Some(ai), Some(bj), Some(bi)) = (self.cost_of(a, i), self.cost_of(b, j), self.cost_of(b, i)) else {
             return false;
         };
-        if a == b || pair.cost + bi + 1e-12 >= ai + bj {
+        if a == b || pair.cost + bi + MIN_SWAP_GAIN >= ai + bj {
             return false;
         }
         (self.detection_of[a], self.detection_of[b]) = (Some(j), Some(i));
@@ -213,10 +228,12 @@ impl Association {
 
 /// Sum of the differences in position, area and brightness, each scaled to about 1 where the match is doubtful.
 fn cost(track: &TrackPrediction, detection: &Detection, distance: f64) -> f64 {
-    let area = (track.area.max(1e-9) / detection.area.max(1e-9)).ln().abs();
+    let area = (track.area.max(MIN_AREA_M2) / detection.area.max(MIN_AREA_M2)).ln().abs();
     let brightness = (track.brightness - detection.brightness).abs();
     let radius = (track.area / std::f64::consts::PI).sqrt();
-    distance / (radius + 1e-6) + 0.5 * area.min(2.0) + (brightness / 40.0).min(2.0)
+    distance / (radius + MIN_RADIUS_M)
+        + AREA_COST * area.min(MAX_AREA_LOGARITHM)
+        + (brightness / BRIGHTNESS_SCALE_LEVELS).min(MAX_BRIGHTNESS_COST)
 }
 
 fn radius(outline_m: &[Point2], centre_m: Point2) -> f64 {

@@ -4,6 +4,21 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::{Point2, VisionError};
 
+/// A point less far in front of the camera, along its axis, has no pixel, metres.
+pub(crate) const MIN_DEPTH_M: f64 = 1e-9;
+/// Rays with a smaller slope are the optical axis: they have no direction in the image.
+const AXIS_SLOPE: f64 = 1e-12;
+/// Largest slope (tangent of the angle from the optical axis) of a ray through a lens that distorts: 83°.
+const MAX_SLOPE: f64 = 8.0;
+/// Step of the search for the slope at which distortion stops growing.
+const SLOPE_STEP: f64 = 0.01;
+/// Smallest derivative of distortion by the slope that counts as growth; with it distortion goes on beyond that slope.
+const MIN_DERIVATIVE: f64 = 0.05;
+/// Newton steps or bisections for a slope: bisections alone reach the relative error below in so many.
+const MAX_UNDISTORT_STEPS: usize = 60;
+/// Relative error of a distorted radius that is rounding.
+const RADIUS_ROUNDING: f64 = 1e-15;
+
 /// Intrinsics of a camera (Brown, 1966, radial terms): a point (x, y, z) of the camera's frame with
 /// `r² = (x² + y²) / z²` appears at `(fx·d·x/z + cx, fy·d·y/z + cy)`, `d = 1 + k1·r² + k2·r⁴ + k3·r⁶`.
 ///
@@ -138,12 +153,12 @@ impl Camera {
 
     /// As [`Camera::world_to_pixel`], for a point in the camera's frame.
     pub fn camera_to_pixel(&self, p_in_camera: Vec3) -> Option<Point2> {
-        if !(p_in_camera.z > 1e-9) || !p_in_camera.is_finite() {
+        if !(p_in_camera.z > MIN_DEPTH_M) || !p_in_camera.is_finite() {
             return None;
         }
         let (x, y) = (p_in_camera.x / p_in_camera.z, p_in_camera.y / p_in_camera.z);
         let r = x.hypot(y);
-        let factor = if r > 1e-12 { self.distort_extended(r) / r } else { 1.0 };
+        let factor = if r > AXIS_SLOPE { self.distort_extended(r) / r } else { 1.0 };
         let i = &self.intrinsics;
         Some(Point2::new(i.fx * factor * x + i.cx, i.fy * factor * y + i.cy))
     }
@@ -153,7 +168,7 @@ impl Camera {
         let i = &self.intrinsics;
         let (x, y) = ((point_px.x - i.cx) / i.fx, (point_px.y - i.cy) / i.fy);
         let radius = x.hypot(y);
-        let factor = if i.radial == [0.0; 3] || radius < 1e-12 { 1.0 } else { self.undistort(radius) / radius };
+        let factor = if i.radial == [0.0; 3] || radius < AXIS_SLOPE { 1.0 } else { self.undistort(radius) / radius };
         Vec3::new(x * factor, y * factor, 1.0)
     }
 
@@ -176,11 +191,12 @@ impl Camera {
         if self.intrinsics.radial == [0.0; 3] {
             return f64::INFINITY;
         }
-        let slopes = (0..=800).map(|step| f64::from(step) * 0.01);
+        let steps = (MAX_SLOPE / SLOPE_STEP).round() as u32;
+        let slopes = (0..=steps).map(|step| f64::from(step) * SLOPE_STEP);
         slopes
             .into_iter()
-            .find(|&r| self.intrinsics.distortion_derivative(r) < 0.05)
-            .map_or(8.0, |r| (r - 0.01).max(0.0))
+            .find(|&r| self.intrinsics.distortion_derivative(r) < MIN_DERIVATIVE)
+            .map_or(MAX_SLOPE, |r| (r - SLOPE_STEP).max(0.0))
     }
 
     /// Distorted radius, extended linearly where the polynomial would fold back.
@@ -189,21 +205,21 @@ impl Camera {
         if r <= last {
             return self.intrinsics.distort(r);
         }
-        self.intrinsics.distort(last) + (r - last) * self.intrinsics.distortion_derivative(last).max(0.05)
+        self.intrinsics.distort(last) + (r - last) * self.intrinsics.distortion_derivative(last).max(MIN_DERIVATIVE)
     }
 
     /// The slope whose distorted radius is `radius`: Newton iteration, safeguarded by bisection.
     fn undistort(&self, radius: f64) -> f64 {
-        let last = self.max_slope.min(8.0);
+        let last = self.max_slope.min(MAX_SLOPE);
         let end = self.intrinsics.distort(last);
         if radius >= end {
-            return last + (radius - end) / self.intrinsics.distortion_derivative(last).max(0.05);
+            return last + (radius - end) / self.intrinsics.distortion_derivative(last).max(MIN_DERIVATIVE);
         }
         let (mut low, mut high) = (0.0, last);
         let mut r = radius.min(last);
-        for _ in 0..60 {
+        for _ in 0..MAX_UNDISTORT_STEPS {
             let error = self.intrinsics.distort(r) - radius;
-            if error.abs() <= 1e-15 * radius {
+            if error.abs() <= RADIUS_ROUNDING * radius {
                 break;
             }
             if error > 0.0 {

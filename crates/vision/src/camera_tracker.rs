@@ -20,6 +20,8 @@ const ROW_STRIDE: usize = 4;
 /// Frames with a gain or an offset outside these ranges are rejected.
 const GAINS: std::ops::RangeInclusive<f64> = 0.4..=2.5;
 const MAX_OFFSET: f64 = 60.0;
+/// Frames in which a smaller fraction of the samples follows the line of the illumination show something else: rejected.
+const MIN_INLIER_RATIO: f64 = 0.5;
 /// The background does not adapt up to this distance from an obstacle, pixels.
 const FROZEN_MARGIN_PX: f64 = 4.0;
 
@@ -166,7 +168,7 @@ impl CameraTracker {
     /// # Errors
     /// Frames of the wrong size or kind, or out of order. The state does not change.
     pub fn process(&mut self, frame: &Frame, arm: Option<&PixelMask>) -> Result<&FrameReport, VisionError> {
-        frame_check::frame(frame, arm, (self.width, self.height), self.channels, self.last_s)?;
+        frame_check::frame(frame, arm, self.width, self.height, self.channels, self.last_s)?;
         self.last_s = Some(frame.stamp_s);
         self.report.stamp_s = frame.stamp_s;
         self.report.timings = StageTimings::default();
@@ -262,7 +264,7 @@ impl CameraTracker {
         for ((plane, pixels), illumination) in self.planes.iter().zip(planes).zip(&mut self.report.illumination) {
             let estimate = self.estimator.estimate(plane, pixels, &self.frozen, self.width, illumination);
             let estimate = estimate.ok_or(RejectReason::Unrecognized { inlier_ratio: 0.0 })?;
-            if estimate.inlier_ratio < 0.5 {
+            if estimate.inlier_ratio < MIN_INLIER_RATIO {
                 return Err(RejectReason::Unrecognized { inlier_ratio: estimate.inlier_ratio });
             }
             if !GAINS.contains(&estimate.gain) || estimate.offset.abs() > MAX_OFFSET {

@@ -6,6 +6,8 @@ use crate::{Calibration, CameraTrackerSettings, Point2, polygon, raster};
 
 /// Where the lens distorts, longer pieces of an outline are divided before they are projected to the floor, pixels.
 const MAX_PIECE_PX: f64 = 12.0;
+/// Samples of the brightness along each side of a blob; the outer quarters, which may show floor, are left out.
+const BRIGHTNESS_SAMPLES: usize = 16;
 
 /// Pixels that the arm occludes: all 0 where there are none.
 #[derive(Debug, Clone, Copy)]
@@ -95,7 +97,7 @@ fn brightness(blob: &Blob, pixels: &[u8], width: usize) -> f64 {
     let (columns, rows) = (&blob.columns, &blob.rows);
     let middle = |range: &std::ops::Range<usize>| {
         let quarter = range.len() / 4;
-        (range.start + quarter..range.end - quarter).step_by((range.len() / 16).max(1))
+        (range.start + quarter..range.end - quarter).step_by((range.len() / BRIGHTNESS_SAMPLES).max(1))
     };
     let (mut sum, mut n) = (0_u64, 0_u32);
     for y in middle(rows) {

@@ -6,7 +6,8 @@ use crate::{Calibration, CameraTrackerSettings, Channels, Frame, PixelMask, Poin
 pub(crate) fn frame(
     frame: &Frame,
     arm: Option<&PixelMask>,
-    size: (usize, usize),
+    width: usize,
+    height: usize,
     channels: Option<Channels>,
     last_s: Option<f64>,
 ) -> Result<(), VisionError> {
@@ -15,7 +16,6 @@ pub(crate) fn frame(
     if found_width == 0 || found_height == 0 {
         return Err(VisionError::Empty { frame: name(), width: found_width, height: found_height });
     }
-    let (width, height) = size;
     if (found_width, found_height) != (width, height) {
         return Err(VisionError::WrongSize { frame: name(), width, height, found_width, found_height });
     }

@@ -9,6 +9,11 @@ use crate::{Point2, VisionError};
 
 type Matrix = [[f64; 3]; 3];
 
+/// Smallest ratio of the second smallest eigenvalue to the largest: below, more than one homography fits the pairs.
+const MIN_EIGENVALUE_RATIO: f64 = 1e-9;
+/// Smallest determinant of a homography between normalized points: below, it maps the image to a line.
+const MIN_DETERMINANT: f64 = 1e-7;
+
 /// A homography from the image to the floor (no lens distortion).
 ///
 /// ```
@@ -161,14 +166,12 @@ fn direct_linear_transform(from: &[Point2], to: &[Point2]) -> Result<Matrix, Vis
     let (values, vectors) = symmetric_eigen(normal);
     let mut order: Vec<usize> = (0..9).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    // A second eigenvalue of (almost) zero: more than one homography fits the pairs.
-    if values[order[1]] < 1e-9 * values[order[8]] {
+    if values[order[1]] < MIN_EIGENVALUE_RATIO * values[order[8]] {
         return Err(collinear_points());
     }
     let h: [f64; 9] = std::array::from_fn(|i| vectors[i][order[0]]);
     let matrix = [[h[0], h[1], h[2]], [h[3], h[4], h[5]], [h[6], h[7], h[8]]];
-    // The points are normalized, so a degenerate homography has a small determinant.
-    if determinant(&matrix).abs() < 1e-7 {
+    if determinant(&matrix).abs() < MIN_DETERMINANT {
         return Err(collinear_points());
     }
     Ok(matrix)

@@ -14,6 +14,19 @@ const INLIER_LEVELS: f32 = 8.0;
 /// Weight of the candidate's gain in the least squares, squared grey levels: a uniform floor does not determine a gain.
 const GAIN_PRIOR_WEIGHT: f32 = 25.0;
 
+/// Fewest samples for an estimate, and fewest inliers for a fit: with fewer the noise of the pixels decides.
+const MIN_SAMPLES: usize = 16;
+const MIN_INLIERS: f32 = 8.0;
+/// Grey levels of pixels that are not saturated; a saturated pixel does not follow the line.
+const UNSATURATED: std::ops::Range<u8> = 3..253;
+
+/// The line `observed = gain · learnt + offset`, offset in grey levels.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    gain: f32,
+    offset: f32,
+}
+
 /// Workspace of the estimate.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IlluminationEstimator {
@@ -34,19 +47,24 @@ impl IlluminationEstimator {
         previous: &Illumination,
     ) -> Option<Illumination> {
         self.sample(plane, pixels, frozen, width);
-        if self.samples.len() < 16 {
+        if self.samples.len() < MIN_SAMPLES {
             return None;
         }
         let ratio = self.median(|(learnt, observed)| observed / learnt.max(1.0));
         let offset = self.median(|(learnt, observed)| observed - learnt);
-        let candidates = [(previous.gain as f32, previous.offset as f32), (1.0, 0.0), (ratio, 0.0), (1.0, offset)];
+        let candidates = [
+            Line { gain: previous.gain as f32, offset: previous.offset as f32 },
+            Line { gain: 1.0, offset: 0.0 },
+            Line { gain: ratio, offset: 0.0 },
+            Line { gain: 1.0, offset },
+        ];
         let best = candidates.into_iter().fold((0, candidates[0]), |best, line| {
             let inliers = self.inliers(line).count();
             if inliers > best.0 { (inliers, line) } else { best }
         });
         let line = self.refined(self.refined(best.1));
         let inlier_ratio = self.inliers(line).count() as f64 / self.samples.len() as f64;
-        Some(Illumination { gain: f64::from(line.0), offset: f64::from(line.1), inlier_ratio })
+        Some(Illumination { gain: f64::from(line.gain), offset: f64::from(line.offset), inlier_ratio })
     }
 
     fn sample(&mut self, plane: &BackgroundPlane, pixels: &[u8], frozen: &[u8], width: usize) {
@@ -54,8 +72,7 @@ impl IlluminationEstimator {
         self.samples.clear();
         let starts = (STEP / 2 * width..pixels.len()).step_by(STEP * width);
         for i in starts.flat_map(|start| (start + STEP / 2..(start + width).min(pixels.len())).step_by(STEP)) {
-            // Saturated pixels do not follow the line.
-            if frozen[i] == 0 && pixels[i] > 2 && pixels[i] < 253 {
+            if frozen[i] == 0 && UNSATURATED.contains(&pixels[i]) {
                 self.samples.push((plane.mean(i), f32::from(pixels[i])));
             }
         }
@@ -68,15 +85,15 @@ impl IlluminationEstimator {
         *self.sorted.select_nth_unstable_by(middle, f32::total_cmp).1
     }
 
-    fn inliers(&self, (gain, offset): (f32, f32)) -> impl Iterator<Item = &(f32, f32)> {
+    fn inliers(&self, Line { gain, offset }: Line) -> impl Iterator<Item = &(f32, f32)> {
         self.samples.iter().filter(move |(b, f)| (f - gain * b - offset).abs() < INLIER_LEVELS)
     }
 
     /// Least squares over the inliers of a line.
-    fn refined(&self, line: (f32, f32)) -> (f32, f32) {
+    fn refined(&self, line: Line) -> Line {
         let inliers = || self.inliers(line);
         let n = inliers().count() as f32;
-        if n < 8.0 {
+        if n < MIN_INLIERS {
             return line;
         }
         let (sum_b, sum_f) = inliers().fold((0.0, 0.0), |s, (b, f)| (s.0 + b, s.1 + f));
@@ -85,7 +102,7 @@ impl IlluminationEstimator {
             let (b, f) = (b - mean_b, f - mean_f);
             (s.0 + b * f, s.1 + b * b)
         });
-        let gain = (cross / n + GAIN_PRIOR_WEIGHT * line.0) / (square / n + GAIN_PRIOR_WEIGHT);
-        (gain, mean_f - gain * mean_b)
+        let gain = (cross / n + GAIN_PRIOR_WEIGHT * line.gain) / (square / n + GAIN_PRIOR_WEIGHT);
+        Line { gain, offset: mean_f - gain * mean_b }
     }
 }

@@ -4,6 +4,7 @@
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::camera::MIN_DEPTH_M;
 use crate::{Calibration, Camera, Point2, VisionError, polygon, raster};
 
 /// A convex solid of the arm in the world.
@@ -231,7 +232,7 @@ fn project_sphere(camera: &Camera, centre_in_world: Vec3, radius_m: f64, out: &m
     for i in 0..8 {
         let (sin, cos) = (f64::from(i) * std::f64::consts::FRAC_PI_4).sin_cos();
         let p = c + across * (r * cos) + other * (r * sin);
-        if p.z > 1e-9 {
+        if p.z > MIN_DEPTH_M {
             out.push(Point2::new(p.x / p.z, p.y / p.z));
             counts.0 += 1;
         } else {

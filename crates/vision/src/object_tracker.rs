@@ -10,7 +10,7 @@ use elbowroom_spatial::Vec3;
 use crate::association::{Association, TrackPrediction};
 use crate::detection::Detection;
 use crate::template::TemplateMatcher;
-use crate::track::Track;
+use crate::track::{AlphaBetaGains, Track};
 use crate::{CameraTrackerSettings, Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
 
 /// All tracks; memory is reused.
@@ -35,9 +35,14 @@ const STATIONARY_MPS: f64 = 0.05;
 /// Reported heights may exceed the present ones by so many times the hysteresis before the prism changes.
 const HEIGHT_HYSTERESIS_FACTOR: f64 = 2.0;
 
-/// Gains (alpha, beta) of the filter for tracks with a detection of their own, and for merged ones.
-const ISOLATED_GAINS: (f64, f64) = (1.0, 0.4);
-const MERGED_GAINS: (f64, f64) = (0.35, 0.08);
+/// Gains for a track with a detection of its own: its position is the measured one, which is accurate to a pixel or two.
+const ISOLATED_GAINS: AlphaBetaGains = AlphaBetaGains { position: 1.0, velocity: 0.4 };
+
+/// Gains for merged tracks: the line that divides them is uncertain, so that the prediction counts for more.
+const MERGED_GAINS: AlphaBetaGains = AlphaBetaGains { position: 0.35, velocity: 0.08 };
+
+/// A track whose share of a merged outline has less than this fraction of its own area is missed: it is covered.
+const MIN_SHARE: f64 = 0.1;
 
 impl ObjectTracker {
     /// Updates the tracks with the detections of a frame, `dt_s` seconds after the last call.
@@ -49,7 +54,7 @@ impl ObjectTracker {
         for t in 0..track_count {
             match association.detection_of[t] {
                 Some(d) if association.is_isolated[t] => self.update_isolated(t, &detections[d], dt_s, settings),
-                Some(d) => self.update_merged(t, (d, &detections[d]), &association, dt_s, settings),
+                Some(d) => self.update_merged(t, d, &detections[d], &association, dt_s, settings),
                 None => self.tracks[t].miss(),
             }
         }
@@ -104,7 +109,8 @@ impl ObjectTracker {
     fn update_merged(
         &mut self,
         t: usize,
-        (d, detection): (usize, &Detection),
+        d: usize,
+        detection: &Detection,
         association: &Association,
         dt_s: f64,
         settings: &CameraTrackerSettings,
@@ -122,7 +128,7 @@ impl ObjectTracker {
             }
         }
         let track = &mut self.tracks[t];
-        if polygon::area(&self.share_m) < 0.1 * track.area {
+        if polygon::area(&self.share_m) < MIN_SHARE * track.area {
             track.miss();
             return;
         }

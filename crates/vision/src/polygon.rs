@@ -4,6 +4,11 @@
 
 use crate::Point2;
 
+/// Smaller sums of cross products, m² or pixels², are no area: their inverse would be infinite.
+const MIN_CENTROID_WEIGHT: f64 = 1e-300;
+/// Edges at a smaller sine of the angle between them are parallel: their extensions do not meet.
+const PARALLEL_SINE: f64 = 1e-9;
+
 /// Corners of the regular octagon around the unit circle, which [`inflate`] adds to each corner.
 const OCTAGON: [Point2; 8] = {
     // 1 / cos(π/8) times cosine and sine of odd multiples of 22.5°: edges touch the circle on the axes.
@@ -77,7 +82,7 @@ pub fn centroid(polygon: &[Point2]) -> Point2 {
         sum = sum + (a + b) * cross;
         weight += cross;
     }
-    if weight.abs() > 1e-300 {
+    if weight.abs() > MIN_CENTROID_WEIGHT {
         return o + sum * (1.0 / (3.0 * weight));
     }
     polygon.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / polygon.len() as f64)
@@ -180,7 +185,7 @@ fn edge_to_remove(polygon: &[Point2]) -> Option<(usize, Point2)> {
         let (before, after) = (a - p, q - b);
         let turn = before.cross(after);
         // Extensions that meet behind the edge, or too far away for a defined intersection, do not replace it.
-        if turn <= 1e-9 * before.length() * after.length() {
+        if turn <= PARALLEL_SINE * before.length() * after.length() {
             continue;
         }
         let corner = a + before * ((b - a).cross(after) / turn);

@@ -38,8 +38,23 @@ pub(crate) struct Track {
     pub(crate) merged_z_to_m: Option<f64>,
 }
 
+/// Gains of an alpha-beta filter, each from 0 (keep the prediction) to 1 (P. R. Kalata: *The tracking index*, 1984).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AlphaBetaGains {
+    /// Alpha: the position is the predicted one plus this share of the residual (measured less predicted position).
+    pub(crate) position: f64,
+    /// Beta: the velocity changes by this share of the residual per time step.
+    pub(crate) velocity: f64,
+}
+
 /// At most one fully visible frame in so many may match no template.
 const FRAMES_PER_MISMATCH: u32 = 10;
+
+/// Smallest speed by which the speed limit is divided, m/s: a track at rest is not limited.
+const MIN_SPEED_MPS: f64 = 1e-12;
+
+/// A footprint smaller than this fraction of the reported one is reported again, so that a prism is not much too large.
+const SHRUNK_AREA_RATIO: f64 = 0.8;
 
 impl Track {
     pub(crate) fn restart(&mut self, id: ObstacleId, detection: &Detection) {
@@ -59,20 +74,20 @@ impl Track {
         (self.z_from_m, self.z_to_m) = (detection.z_from_m, detection.z_to_m);
     }
 
-    /// Alpha-beta filter: corrects the predicted centre by the first gain and the velocity by the second.
+    /// Alpha-beta filter: corrects the predicted centre and the velocity by the measured centre.
     pub(crate) fn correct(
         &mut self,
         predicted_m: Point2,
         measured_m: Point2,
         dt_s: f64,
-        (alpha, beta): (f64, f64),
+        gains: AlphaBetaGains,
         max_speed_mps: f64,
     ) {
         let residual = measured_m - predicted_m;
-        self.centre_m = predicted_m + residual * alpha;
+        self.centre_m = predicted_m + residual * gains.position;
         if dt_s > 0.0 {
-            let velocity = self.velocity_mps + residual * (beta / dt_s);
-            self.velocity_mps = velocity * (max_speed_mps / velocity.length().max(1e-12)).min(1.0);
+            let velocity = self.velocity_mps + residual * (gains.velocity / dt_s);
+            self.velocity_mps = velocity * (max_speed_mps / velocity.length().max(MIN_SPEED_MPS)).min(1.0);
         }
         self.frames_seen = self.frames_seen.saturating_add(1);
         self.frames_missed = 0;
@@ -122,7 +137,7 @@ impl Track {
 
     /// Whether the reported footprint still contains the present one and is not much too large.
     pub(crate) fn still_contains(&self, footprint_m: &[Point2]) -> bool {
-        let has_shrunk = polygon::area(footprint_m) < 0.8 * self.reported_area;
+        let has_shrunk = polygon::area(footprint_m) < SHRUNK_AREA_RATIO * self.reported_area;
         let contains = || footprint_m.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
         !has_shrunk && contains()
     }

@@ -1,5 +1,7 @@
 //! Makes a failing cell smaller while it goes on failing in the same way.
 
+use elbowroom_robot::RobotId;
+
 use super::oracle::Finding;
 use super::spec::{CellSpec, FollowSpec, Model, StepSpec};
 
@@ -96,8 +98,8 @@ fn remove_region(c: &mut CellSpec, i: usize) {
 fn remove_robot(c: &mut CellSpec, i: usize) {
     c.robots.remove(i);
     let moved = |r: usize| if r > i { r - 1 } else { r };
-    c.faults.retain(|f| f.robot != i);
-    c.faults.iter_mut().for_each(|f| f.robot = moved(f.robot));
+    c.faults.retain(|f| f.robot != RobotId(i));
+    c.faults.iter_mut().for_each(|f| f.robot.0 = moved(f.robot.0));
     c.regions.retain(|r| r.robots != [i] && !matches!(r.follow, Some(FollowSpec::Robot(f)) if f == i));
     for region in &mut c.regions {
         region.robots.retain(|r| *r != i);

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind};
 
 pub type Vector = [f64; 3];
@@ -254,7 +255,7 @@ impl RegionSpec {
 const FAULT: &str = "# fault:";
 
 fn write_fault(t: &mut String, f: &InputFault) {
-    let InputFault { robot, from_s, to_s, kind } = f;
+    let InputFault { robot: RobotId(robot), from_s, to_s, kind } = f;
     let kind = match kind {
         InputFaultKind::Delayed { by_s } => format!("late {by_s}"),
         InputFaultKind::Lost { timeout_s } => format!("lost {timeout_s}"),
@@ -284,7 +285,8 @@ fn read_fault(line: &str) -> Option<InputFault> {
         "not_a_number" => InputFaultKind::NotANumber,
         _ => return None,
     };
-    Some(InputFault { robot: words.first()?.parse().ok()?, from_s: number(1)?, to_s: number(2)?, kind })
+    let robot = RobotId(words.first()?.parse().ok()?);
+    Some(InputFault { robot, from_s: number(1)?, to_s: number(2)?, kind })
 }
 
 /// `[1, 2, 3]`.
@@ -306,7 +308,7 @@ mod tests {
             InputFaultKind::Jump { joint: 2, by: -0.3 },
             InputFaultKind::NotANumber,
         ];
-        let faults = kinds.map(|kind| InputFault { robot: 1, from_s: 0.5, to_s: 0.75, kind }).to_vec();
+        let faults = kinds.map(|kind| InputFault { robot: RobotId(1), from_s: 0.5, to_s: 0.75, kind }).to_vec();
         let spec = CellSpec { faults: faults.clone(), ..CellSpec::default() };
         assert_eq!(read_faults(&spec.to_toml()).unwrap(), faults);
         assert!(read_faults("# fault: 0 1").is_err());

@@ -59,7 +59,7 @@ pub struct PathRequest {
 /// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
 /// number of values; a goal in a region; a start in a region that no straight path leaves.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
-    let (index, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
+    let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let limits = request_validation::kinematic_limits(cell, robot)?;
     let from = request.from.as_ref().unwrap_or(&robot.start);
     for (end, q) in [("start", from), ("goal", &request.to)] {
@@ -67,11 +67,11 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     }
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
-    let state = start_state(cell, &scene, index, from).map_err(|e| refused(e.into()))?;
+    let state = start_state(cell, &scene, id, from).map_err(|e| refused(e.into()))?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
-    region_constraint::at_start(cell, index, from, clearance_m, |constraint| {
+    region_constraint::at_start(cell, id, from, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
-        let mut planner = RrtConnect::new(&scene, RobotId(index)).map_err(|e| refused(e.into()))?;
+        let mut planner = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
         if let Some(constraint) = constraint {
             planner = planner.with_constraint(constraint);
         }
@@ -92,11 +92,17 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
 }
 
 /// The state with all robots at their start, except one.
-fn start_state(cell: &Cell, scene: &Scene, robot: usize, q: &[f64]) -> Result<SceneState, elbowroom_scene::SceneError> {
+fn start_state(
+    cell: &Cell,
+    scene: &Scene,
+    robot: RobotId,
+    q: &[f64],
+) -> Result<SceneState, elbowroom_scene::SceneError> {
     let mut state = SceneState::new(scene);
     for (i, r) in cell.robots.iter().enumerate() {
         let r: &CellRobot = r;
-        state.set_q(scene, RobotId(i), if i == robot { q } else { &r.start })?;
+        let id = RobotId(i);
+        state.set_q(scene, id, if id == robot { q } else { &r.start })?;
     }
     Ok(state)
 }

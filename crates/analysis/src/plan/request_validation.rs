@@ -4,16 +4,17 @@ use elbowroom_cell::{Cell, CellRobot, suggest};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::JointKind;
 use elbowroom_planner::{KinematicLimits, PathEnd, RrtConnectError};
+use elbowroom_robot::RobotId;
 
 /// The robot of this name; the only one where none is named.
-pub(crate) fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(usize, &'c CellRobot), FormatError> {
+pub(crate) fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), FormatError> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
     let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
     match (name, &cell.robots[..]) {
-        (None, [only]) => Ok((0, only)),
+        (None, [only]) => Ok((RobotId(0), only)),
         (None, _) => wrong(format!("has {} robots: name one", cell.robots.len()), suggest::hint("", names())),
         (Some(name), robots) => match robots.iter().position(|r| r.name == name) {
-            Some(i) => Ok((i, &robots[i])),
+            Some(i) => Ok((RobotId(i), &robots[i])),
             None => wrong(format!("has no robot \"{name}\""), suggest::hint(name, names())),
         },
     }

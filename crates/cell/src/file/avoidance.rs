@@ -2,6 +2,7 @@
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::FormatError;
+use elbowroom_robot::{ObjectId, RobotId};
 
 use super::read::{Table, Value};
 use super::robot::robot_of;
@@ -24,13 +25,13 @@ pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<Avoidance
     let mut all = vec![None; cell.robots.len()];
     for (name, t) in root.named("avoidance")? {
         t.only(KEYS)?;
-        let (index, _) = robot_of(name, &t, &cell.robots)?;
-        all[index] = Some(spec(&t, cell, index)?);
+        let (robot, _) = robot_of(name, &t, &cell.robots)?;
+        all[robot.0] = Some(spec(&t, cell, robot)?);
     }
     Ok(all)
 }
 
-fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
+fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     let units = cell.units;
     let mut settings = AvoiderSettings::default();
     if let Some(v) = t.get("speed") {
@@ -71,7 +72,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: usize) -> Result<AvoidanceSpec> {
         Some(v) => v.list("objects = [\"cart\"]")?.iter().map(|v| object(v, cell)).collect::<Result<_>>()?,
     };
     let robots = match t.get("robots") {
-        None => (0..cell.robots.len()).filter(|r| *r != own).collect(),
+        None => (0..cell.robots.len()).map(RobotId).filter(|r| *r != own).collect(),
         Some(v) => v.list("robots = [\"r2\"]")?.iter().map(|v| neighbour(v, cell, own)).collect::<Result<_>>()?,
     };
     Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)? })
@@ -98,21 +99,21 @@ fn within((least, most): (f64, f64), v: f64) -> bool {
     (least..=most).contains(&v)
 }
 
-fn object(v: &Value<'_>, cell: &Cell) -> Result<usize> {
+fn object(v: &Value<'_>, cell: &Cell) -> Result<ObjectId> {
     let name = v.text()?;
-    cell.objects.iter().position(|o| o.name == name).ok_or_else(|| {
+    cell.objects.iter().position(|o| o.name == name).map(ObjectId).ok_or_else(|| {
         v.error(format!("names the object \"{name}\", which is not in this cell"))
             .hint(suggest::hint(name, cell.objects.iter().map(|o| o.name.as_str())))
     })
 }
 
-fn neighbour(v: &Value<'_>, cell: &Cell, own: usize) -> Result<usize> {
+fn neighbour(v: &Value<'_>, cell: &Cell, own: RobotId) -> Result<RobotId> {
     let name = v.text()?;
-    let others = || cell.robots.iter().enumerate().filter(|(i, _)| *i != own);
-    if name == cell.robots[own].name {
+    let others = || cell.robots.iter().enumerate().filter(|(i, _)| RobotId(*i) != own);
+    if name == cell.robots[own.0].name {
         return Err(v.error(format!("names \"{name}\" itself")).hint("robots = [], or the names of others"));
     }
-    others().find(|(_, r)| r.name == name).map(|(i, _)| i).ok_or_else(|| {
+    others().find(|(_, r)| r.name == name).map(|(i, _)| RobotId(i)).ok_or_else(|| {
         v.error(format!("names the robot \"{name}\", which is not in this cell"))
             .hint(suggest::hint(name, others().map(|(_, r)| r.name.as_str())))
     })

@@ -1,6 +1,7 @@
 //! The definitions that a region may refer to, and their lookup by name.
 
 use elbowroom_formats::FormatError;
+use elbowroom_robot::RobotId;
 use elbowroom_scene::Object;
 
 use super::read::Value;
@@ -19,9 +20,9 @@ pub(super) struct Definitions<'a> {
     pub pose_tracks: Vec<PoseTrack>,
 }
 
-pub(super) fn robot_index(v: &Value<'_>, robots: &[CellRobot]) -> Result<usize> {
+pub(super) fn robot_id(v: &Value<'_>, robots: &[CellRobot]) -> Result<RobotId> {
     let name = v.text()?;
-    robots.iter().position(|r| r.name == name).ok_or_else(|| {
+    robots.iter().position(|r| r.name == name).map(RobotId).ok_or_else(|| {
         v.error(format!("names the robot \"{name}\", which is not in this cell"))
             .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
     })

@@ -4,9 +4,10 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::motion_bound::{joint_reaches, motion_bound};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::SourceLimits;
+use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Pose;
 
-use super::definitions::{Definitions, encoder_index, robot_index};
+use super::definitions::{Definitions, encoder_index, robot_id};
 use super::poses;
 use super::read::{Table, Value};
 use super::robot::unknown_link;
@@ -41,12 +42,12 @@ pub(super) fn read(
     let mut limits = SourceLimits::default();
     let follow = match kind {
         "robot" => {
-            let index = robot_index(&source, known.robots)?;
-            let robot = &known.robots[index];
+            let id = robot_id(&source, known.robots)?;
+            let robot = &known.robots[id.0];
             let (link, in_link) = frame(t.get("frame").as_ref(), robot)?;
             let speeds: Vec<f64> = robot.limits.iter().map(|limit| limit.velocity * FASTER).collect();
             limits = fastest(&robot.robot.chain, &speeds, link, in_link);
-            Follow::Robot { robot: index, link, in_link }
+            Follow::Robot { robot: id, link, in_link }
         }
         "encoder" => {
             let index = encoder_index(&source, known.encoders)?;
@@ -55,13 +56,13 @@ pub(super) fn read(
             Follow::Encoder(index)
         }
         "object" => {
-            let index = object_index(&source, known)?;
+            let object = object_id(&source, known)?;
             if let Some(crate::Drive::Belt(encoder)) =
-                known.moving_objects.iter().find(|m| m.object == index).map(|m| &m.drive)
+                known.moving_objects.iter().find(|m| m.object == object).map(|m| &m.drive)
             {
                 limits.wrap_m = encoder.wrap_m.map(|travel| encoder.direction * travel);
             }
-            Follow::Object(index)
+            Follow::Object(object)
         }
         _ => {
             known.pose_tracks.push(poses::read(&source, units)?);
@@ -131,10 +132,10 @@ fn fastest(chain: &Chain, speeds: &[f64], link: LinkId, in_link: Pose) -> Source
     }
 }
 
-fn object_index(v: &Value<'_>, known: &Definitions<'_>) -> Result<usize> {
+fn object_id(v: &Value<'_>, known: &Definitions<'_>) -> Result<ObjectId> {
     let name = v.text()?;
     let names = || known.objects.iter().map(|o| o.name.as_str());
-    names().position(|n| n == name).ok_or_else(|| {
+    names().position(|n| n == name).map(ObjectId).ok_or_else(|| {
         let what = format!("names the object \"{name}\", which has no table [object.{name}]");
         v.error(what).hint(suggest::hint(name, names()))
     })

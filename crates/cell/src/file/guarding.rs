@@ -33,7 +33,7 @@ pub(super) fn check(
         }
     }
     let line = t.get("guards").map_or(t.line, |v| v.line);
-    for robot in region.robots.iter().map(|r| &robots[*r]) {
+    for robot in region.robots.iter().map(|r| &robots[r.0]) {
         let Some(missing) = MissingPart::of(robot, region.region.guards) else { continue };
         let error =
             FormatError::new(t.file, line, missing.what(&region.region, robot)).hint(missing.hint(robot, robots.len()));

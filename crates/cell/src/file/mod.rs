@@ -21,6 +21,7 @@ use std::path::Path;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
+use elbowroom_robot::RobotId;
 
 pub use document::CellFile;
 use read::{Table, Value};
@@ -144,9 +145,9 @@ impl Cell {
         CellFile::parse(path, text)?.resolve()
     }
 
-    /// Index of the robot of this name.
-    pub fn robot(&self, name: &str) -> Option<usize> {
-        self.robots.iter().position(|r| r.name == name)
+    /// The robot of this name.
+    pub fn robot(&self, name: &str) -> Option<RobotId> {
+        self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
 }
 
@@ -238,8 +239,8 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
 fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
     let mut programs = vec![None; cell.robots.len()];
     for (name, t) in root.named("program")? {
-        let (index, robot) = robot_of(name, &t, &cell.robots)?;
-        programs[index] = Some(program::read(&t, cell.units, robot, &cell.regions, warnings)?);
+        let (id, robot) = robot_of(name, &t, &cell.robots)?;
+        programs[id.0] = Some(program::read(&t, cell.units, robot, &cell.regions, warnings)?);
     }
     cell.programs = programs;
     Ok(())
@@ -249,9 +250,9 @@ fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
     let mut maps = Vec::new();
     for (name, t) in root.named("map")? {
         t.only(&["joints", "step", "others"])?;
-        let (index, robot) = robot_of(name, &t, &cell.robots)?;
+        let (id, robot) = robot_of(name, &t, &cell.robots)?;
         let names = robot.joint_names();
-        let default = MapSpec::of(index, robot);
+        let default = MapSpec::of(id, robot);
         let joints = match t.get("joints") {
             None => default.joints,
             Some(v) => {
@@ -263,7 +264,7 @@ fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
             Some(v) => map_steps(&v, &joints, |j, x| cell.units.joint(robot.slides(j), x))?,
         };
         let others_at_start = t.get("others").map_or(Ok(false), |v| v.word(&[("any", false), ("start", true)]))?;
-        maps.push(MapSpec { robot: index, line: t.line, joints, step, others_at_start });
+        maps.push(MapSpec { robot: id, line: t.line, joints, step, others_at_start });
     }
     Ok(maps)
 }

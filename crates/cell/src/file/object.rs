@@ -1,6 +1,7 @@
 //! `[object.NAME]`: solid objects, and their motion.
 
 use elbowroom_formats::FormatError;
+use elbowroom_robot::ObjectId;
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -41,7 +42,7 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
         }
         let drive = drive(&t, cell, in_world)?;
         let moving_object =
-            drive.map(|drive| MovingObject { object: cell.objects.len(), rest_in_world: in_world, drive });
+            drive.map(|drive| MovingObject { object: ObjectId(cell.objects.len()), rest_in_world: in_world, drive });
         let in_world = moving_object.as_ref().map_or(in_world, |m| m.pose(0.0));
         cell.objects.push(Object { name: name.to_owned(), shape, in_world });
         cell.moving_objects.extend(moving_object);

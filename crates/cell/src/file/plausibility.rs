@@ -3,7 +3,7 @@
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
 use elbowroom_proximity::{Shape, Sphere, separation, within};
-use elbowroom_robot::Collider;
+use elbowroom_robot::{Collider, ObjectId};
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -31,7 +31,7 @@ pub(super) fn check(root: &Table<'_>, cell: &Cell, warnings: &mut Vec<Warning>) 
         plausible.tool(&t, robot, warnings);
     }
     for (index, (_, t)) in root.named("object")?.iter().enumerate() {
-        plausible.object(t, index, warnings);
+        plausible.object(t, ObjectId(index), warnings);
     }
     for (region, (_, t)) in cell.regions.iter().zip(root.named("region")?) {
         plausible.region(&t, region, warnings);
@@ -111,11 +111,11 @@ impl PlausibilityCheck<'_> {
             let more_m = region.warning_m;
             match r.follow {
                 Some(Follow::Robot { robot, .. }) => {
-                    let at_frame = Reach { base: Vec3::ZERO, ..self.reaches[robot] };
+                    let at_frame = Reach { base: Vec3::ZERO, ..self.reaches[robot.0] };
                     beyond(&[at_frame], &region.shape, &[in_source], more_m)
                 }
                 follow => {
-                    let concerned: Vec<Reach> = r.robots.iter().map(|i| self.reaches[*i]).collect();
+                    let concerned: Vec<Reach> = r.robots.iter().map(|robot| self.reaches[robot.0]).collect();
                     beyond(&concerned, &region.shape, &self.poses(follow, in_source), more_m)
                 }
             }
@@ -124,10 +124,10 @@ impl PlausibilityCheck<'_> {
         self.warn(t, &what, implausibility, warnings);
     }
 
-    fn object(&self, t: &Table<'_>, index: usize, warnings: &mut Vec<Warning>) {
-        let object = &self.cell.objects[index];
+    fn object(&self, t: &Table<'_>, id: ObjectId, warnings: &mut Vec<Warning>) {
+        let object = &self.cell.objects[id.0];
         let implausibility = size(&object.shape).or_else(|| {
-            let moving_object = self.cell.moving_objects.iter().find(|m| m.object == index);
+            let moving_object = self.cell.moving_objects.iter().find(|m| m.object == id);
             let poses: Vec<Pose> = match moving_object {
                 Some(moving_object) => sample_times(self.cell).map(|t_s| moving_object.pose(t_s)).collect(),
                 None => vec![object.in_world],

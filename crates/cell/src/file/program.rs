@@ -7,7 +7,8 @@ use super::models;
 use super::read::{Table, Value};
 use super::robot::joint_values;
 use crate::{
-    CellRegion, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units, suggest,
+    CellRegion, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
+    Units, suggest,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -95,21 +96,21 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
     t.only(&["region", "active"])?;
     let v = t.need("region", "region = \"column\"")?;
     let name = v.text()?;
-    let Some(region) = regions.iter().position(|r| r.region.name == name) else {
+    let Some(index) = regions.iter().position(|r| r.region.name == name) else {
         let known = regions.iter().map(|r| r.region.name.as_str());
         return Err(v
             .error(format!("names the region \"{name}\", which is not in this cell"))
             .hint(suggest::hint(name, known)));
     };
-    if regions[region].region.life == Life::Permanent {
+    if regions[index].region.life == Life::Permanent {
         let what = format!(
             "switches the region \"{name}\", which is permanent (line {}): no program may",
-            regions[region].line
+            regions[index].line
         );
         return Err(v.error(what).hint(format!("life = \"temporary\" in [region.{name}], or leave the step out")));
     }
     let active = t.need("active", "active = true")?.flag()?;
-    Ok(StepAction::Switch { region, active })
+    Ok(StepAction::Switch { region: CellRegionId(index), active })
 }
 
 fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {

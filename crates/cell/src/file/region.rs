@@ -3,10 +3,11 @@
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::{Guards, Life, Region, RegionKind, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
 
-use super::definitions::{Definitions, robot_index};
+use super::definitions::{Definitions, robot_id};
 use super::read::{Table, Value};
 use super::{follow, models};
 use crate::{CellRegion, Encoder, Follow, Travel, Units};
@@ -207,13 +208,13 @@ fn guards(v: &Value<'_>) -> Result<Guards> {
     Ok(guards)
 }
 
-fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Result<Vec<usize>> {
+fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Result<Vec<RobotId>> {
     let followed = match follow {
         Some(Follow::Robot { robot, .. }) => Some(robot),
         _ => None,
     };
     let Some(v) = t.get("robots") else {
-        return Ok((0..known.robots.len()).filter(|i| Some(*i) != followed).collect());
+        return Ok((0..known.robots.len()).map(RobotId).filter(|r| Some(*r) != followed).collect());
     };
     let list = v.list("robots = [\"r1\"]")?;
     if list.is_empty() {
@@ -221,15 +222,15 @@ fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Res
     }
     let mut robots = Vec::new();
     for item in &list {
-        let index = robot_index(item, known.robots)?;
-        if Some(index) == followed {
+        let robot = robot_id(item, known.robots)?;
+        if Some(robot) == followed {
             let what = "names the robot that the region follows: it would stop itself";
             return Err(item.error(what).hint("the other robots only, or leave `robots` out"));
         }
-        if robots.contains(&index) {
+        if robots.contains(&robot) {
             return Err(item.error("is named twice").hint("each robot once"));
         }
-        robots.push(index);
+        robots.push(robot);
     }
     Ok(robots)
 }

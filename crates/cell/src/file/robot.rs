@@ -5,7 +5,7 @@ use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::{Chain, JointKind, Limits, LinkId};
 use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
 use super::models;
@@ -370,8 +370,9 @@ fn limits(
 }
 
 /// The robot that a table `[map.NAME]` or `[program.NAME]` refers to.
-pub(super) fn robot_of<'a>(name: &str, t: &Table<'_>, robots: &'a [CellRobot]) -> Result<(usize, &'a CellRobot)> {
-    robots.iter().enumerate().find(|(_, r)| r.name == name).ok_or_else(|| {
+pub(super) fn robot_of<'a>(name: &str, t: &Table<'_>, robots: &'a [CellRobot]) -> Result<(RobotId, &'a CellRobot)> {
+    let mut all = robots.iter().enumerate().map(|(i, r)| (RobotId(i), r));
+    all.find(|(_, r)| r.name == name).ok_or_else(|| {
         t.error(format!("`{}` refers to the robot \"{name}\", which is not in this cell", t.name))
             .hint(suggest::hint(name, robots.iter().map(|r| r.name.as_str())))
     })

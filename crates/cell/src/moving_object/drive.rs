@@ -1,5 +1,6 @@
 //! A moving object, and its drive.
 
+use elbowroom_robot::ObjectId;
 use elbowroom_spatial::{FrameMotion, Pose};
 
 use super::encoder::Encoder;
@@ -29,8 +30,8 @@ use super::path::ObjectPath;
 /// ```
 #[derive(Debug, Clone)]
 pub struct MovingObject {
-    /// Index of the object in the cell.
-    pub object: usize,
+    /// The object of the cell.
+    pub object: ObjectId,
     /// Pose from the cell file: at travel 0, or before the path begins.
     pub rest_in_world: Pose,
     /// What moves it.

@@ -5,7 +5,7 @@ use elbowroom_spatial::Pose;
 
 use super::drive::{Drive, MovingObject};
 
-/// Motion of an object from one time to another; the parameter `t` of the [`Path`] runs from 0 to 1.
+/// Motion of an object from one time to another; the parameter `t` of the [`RigidMotion`](elbowroom_proximity::ccd::RigidMotion) runs from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct ObjectMotion<'m> {
     moving_object: &'m MovingObject,

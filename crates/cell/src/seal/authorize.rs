@@ -1,6 +1,7 @@
 //! Whether an access class may make an edit: decided by the monitors' configurations.
 
 use elbowroom_monitor::{AccessClass, Configuration, ConfigurationEdit, EditError, Region};
+use elbowroom_robot::RobotId;
 
 use super::result::Result;
 use crate::{Cell, configure};
@@ -10,7 +11,7 @@ pub(super) fn authorize(who: AccessClass, before: &Cell, after: &Cell) -> Result
     let setups = configure::setups(before)?;
     let allowed = setups.into_iter().enumerate().try_for_each(|(robot, setup)| {
         let mut configuration = setup.configuration;
-        for edit in edits(&configuration, robot, before, after) {
+        for edit in edits(&configuration, RobotId(robot), before, after) {
             configuration.edit(who, edit)?;
         }
         Ok(())
@@ -19,7 +20,7 @@ pub(super) fn authorize(who: AccessClass, before: &Cell, after: &Cell) -> Result
 }
 
 /// The edits from one cell to the other that affect a robot.
-fn edits(configuration: &Configuration, robot: usize, before: &Cell, after: &Cell) -> Vec<ConfigurationEdit> {
+fn edits(configuration: &Configuration, robot: RobotId, before: &Cell, after: &Cell) -> Vec<ConfigurationEdit> {
     let known = |name: &str| configuration.region(name).is_some();
     let now = |name: &str| after.regions.iter().find(|r| r.region.name == name);
     let mut edits = Vec::new();

@@ -1,6 +1,7 @@
 //! The source that moves a region: it determines the region's pose, and so is sealed with it.
 
 use elbowroom_monitor::{Region, SourceLimits};
+use elbowroom_robot::ObjectId;
 use sha2::{Digest, Sha256};
 
 use super::hex;
@@ -28,13 +29,13 @@ impl<'a> SealedSource<'a> {
         let value = |path: &[&str]| find(path).map(|e| &e.node);
         let encoder_file = |name: &str| value(&["encoder", name, "file"]);
         let (name, object, files) = match follow {
-            Follow::Robot { robot, .. } => (format!("robot {}", key(&cell.robots[robot].name)), None, [None, None]),
+            Follow::Robot { robot, .. } => (format!("robot {}", key(&cell.robots[robot.0].name)), None, [None, None]),
             Follow::Encoder(i) => {
                 let name = &cell.encoders[i].name;
                 (format!("encoder {}", key(name)), None, [encoder_file(name), None])
             }
             Follow::Object(i) => {
-                let name = &cell.objects[i].name;
+                let name = &cell.objects[i.0].name;
                 let belt = moving_object(cell, i).and_then(|m| match &m.drive {
                     Drive::Belt(encoder) => encoder_file(&encoder.name),
                     Drive::Path(_) => None,
@@ -69,7 +70,7 @@ fn find<'a>(entries: &'a [Entry], path: &[&str]) -> Option<&'a Entry> {
     }
 }
 
-fn moving_object(cell: &Cell, object: usize) -> Option<&MovingObject> {
+fn moving_object(cell: &Cell, object: ObjectId) -> Option<&MovingObject> {
     cell.moving_objects.iter().find(|m| m.object == object)
 }
 
@@ -98,9 +99,9 @@ fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
 }
 
 /// Passes the numbers of an object's motion; returns the checksum of its shape at its initial pose.
-fn object(cell: &Cell, index: usize, number: &mut dyn FnMut(f64)) -> String {
-    let object = &cell.objects[index];
-    let rest_in_world = match moving_object(cell, index) {
+fn object(cell: &Cell, id: ObjectId, number: &mut dyn FnMut(f64)) -> String {
+    let object = &cell.objects[id.0];
+    let rest_in_world = match moving_object(cell, id) {
         None => {
             number(0.0);
             object.in_world

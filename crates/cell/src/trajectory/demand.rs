@@ -4,6 +4,7 @@ use elbowroom_formats::Warning;
 use elbowroom_kinematics::Chain;
 use elbowroom_kinematics::motion_bound::max_motion_bounds;
 use elbowroom_monitor::Volume;
+use elbowroom_robot::RobotId;
 
 use super::playback::Playback;
 use crate::{Cell, CellRobot, Program, ProgramBody};
@@ -30,12 +31,13 @@ pub struct JointDemand {
     pub acceleration_at_s: f64,
 }
 
-/// Per joint the demand of a robot's recording (by index); empty without a recording.
-pub fn demands(cell: &Cell, robot: usize) -> Vec<JointDemand> {
-    let Some(ProgramBody::Trajectory(rows)) = cell.programs.get(robot).and_then(Option::as_ref).map(|p| &p.body) else {
+/// Per joint the demand of a robot's recording; empty without a recording.
+pub fn demands(cell: &Cell, robot: RobotId) -> Vec<JointDemand> {
+    let Some(ProgramBody::Trajectory(rows)) = cell.programs.get(robot.0).and_then(Option::as_ref).map(|p| &p.body)
+    else {
         return Vec::new();
     };
-    let at = &cell.robots[robot];
+    let at = &cell.robots[robot.0];
     let motion_bounds = motion_bounds(at);
     let play = Playback::new(rows.clone(), &motion_bounds);
     let jumps: f64 = motion_bounds.iter().enumerate().map(|(j, bound)| bound * play.largest_jump(j)).sum();
@@ -51,20 +53,20 @@ pub fn demands(cell: &Cell, robot: usize) -> Vec<JointDemand> {
 }
 
 /// Accelerations that no program of this robot exceeds, rad/s² or m/s².
-pub fn accelerations(cell: &Cell, robot: usize) -> Vec<f64> {
+pub fn accelerations(cell: &Cell, robot: RobotId) -> Vec<f64> {
     let demands = demands(cell, robot);
     let demanded = |j: usize| demands.get(j).map_or(0.0, |d| d.acceleration);
-    let limits = cell.robots[robot].limits.iter().enumerate();
+    let limits = cell.robots[robot.0].limits.iter().enumerate();
     limits.map(|(j, l)| ACCELERATION_MARGIN * l.acceleration.max(demanded(j))).collect()
 }
 
 /// Warns of joints whose speed in a recording exceeds their limit, or, with the stopping-distance law, whose
 /// acceleration exceeds the stated one.
-pub fn recording_warnings(cell: &Cell, robot: usize) -> Vec<Warning> {
-    let Some(program) = cell.programs.get(robot).and_then(Option::as_ref) else { return Vec::new() };
+pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Warning> {
+    let Some(program) = cell.programs.get(robot.0).and_then(Option::as_ref) else { return Vec::new() };
     let mut warnings = Vec::new();
     for (j, demand) in demands(cell, robot).iter().enumerate() {
-        let joint = RecordedJoint { cell, robot: &cell.robots[robot], program, j };
+        let joint = RecordedJoint { cell, robot: &cell.robots[robot.0], program, j };
         warnings.extend(joint.too_fast(demand));
         if cell.laws.stopping_reaction_s.is_some() {
             warnings.extend(joint.too_hard(demand));

@@ -90,7 +90,6 @@ impl PlanarMapBuilder {
         layer.spans.clear();
         let Self { arm_grid, full_rows } = self;
         let shoulder = [arm_grid.arm.offset_m, arm_grid.arm.height_m];
-        let enclosing = obstacle.enclosing_sphere();
         match &obstacle.solid {
             ConvexShape::Sphere { center, radius } => {
                 let sphere = SphereObstacle { center: *center, radius: *radius };
@@ -98,11 +97,11 @@ impl PlanarMapBuilder {
             }
             ConvexShape::Cuboid { in_base, half_extents } => {
                 let mut solid = PlaneBox::new(in_base, *half_extents, shoulder);
-                convex::build(arm_grid, &mut solid, enclosing, planes, full_rows, layer);
+                convex::build(arm_grid, &mut solid, obstacle, planes, full_rows, layer);
             }
             ConvexShape::Hull { in_base, hull } => {
                 let mut solid = PlaneHull::new(in_base, hull, shoulder);
-                convex::build(arm_grid, &mut solid, enclosing, planes, full_rows, layer);
+                convex::build(arm_grid, &mut solid, obstacle, planes, full_rows, layer);
             }
         }
     }

@@ -53,8 +53,8 @@ pub(super) struct Sectors {
 }
 
 impl ConvexContext {
-    /// For an obstacle within a sphere: centre and radius.
-    pub fn new(arm_grid: &ArmGrid, (center, radius): (Vec3, f64)) -> Self {
+    /// For an obstacle within a sphere about `center` with `radius`, metres.
+    pub fn new(arm_grid: &ArmGrid, center: Vec3, radius: f64) -> Self {
         let [half1, half2, _] = arm_grid.grid.half_widths();
         // The forearm ends in half a sphere: the wrist's is no smaller.
         let wrist_radius_m = arm_grid.arm.wrist_radius_m.max(arm_grid.arm.fore_radius_m);

@@ -3,8 +3,6 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use elbowroom_spatial::Vec3;
-
 use super::arm_grid::ArmGrid;
 use super::context::{ConvexContext, Outlines, PlaneRows};
 use super::line_distances::{line_distances, reaching_radius};
@@ -14,21 +12,22 @@ use super::plane_solid::PlaneSolid;
 use super::rows::write_plane;
 use super::simd_math::ANGLE_ERROR;
 use super::upper_arm;
-use crate::Layer;
+use crate::{ConvexObstacle, Layer};
 
 /// Margin for angles seen from the shoulder in single precision, radians.
 const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
 
-/// Adds the spans of some planes. `enclosing` is a sphere around the solid; `full_rows` is workspace.
+/// Adds the spans of some planes. `solid` is the obstacle as seen in a plane of the arm; `full_rows` is workspace.
 pub(super) fn build<B: PlaneSolid>(
     arm_grid: &ArmGrid,
     solid: &mut B,
-    enclosing: (Vec3, f64),
+    obstacle: &ConvexObstacle,
     planes: Range<usize>,
     full_rows: &mut [u16],
     layer: &mut Layer,
 ) {
-    let context = ConvexContext::new(arm_grid, enclosing);
+    let (center, radius) = obstacle.enclosing_sphere();
+    let context = ConvexContext::new(arm_grid, center, radius);
     let mut outlines = Outlines::new(&context);
     let shoulder = &arm_grid.grid.axes()[1];
     for (i, &plane) in arm_grid.planes.iter().enumerate().take(planes.end).skip(planes.start) {

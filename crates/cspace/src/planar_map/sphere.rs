@@ -232,7 +232,7 @@ impl DiskRows<'_> {
         let across = y * cos - x * sin;
         let middle = mad(atan2(simd, across, along), scale, zero);
         let square = mad(along, along, across * across);
-        let cosine = half_width_cosine(simd, square, self.arm.fore_length_m as f32, [disks.fore, disks.wrist]);
+        let cosine = half_width_cosine(simd, square, self.arm.fore_length_m as f32, disks);
         let half = acos(simd, cosine) * scale;
         let all = cosine.simd_le(splat(simd, -1.0));
         let hit = cosine.simd_le(splat(simd, 1.0));
@@ -253,7 +253,8 @@ impl DiskRows<'_> {
 /// Cosine of half the interval in which forearm or wrist meet their disks: above 1 never, −1 or less always. The wrist's
 /// disk is no smaller: where the forearm's end is the first to meet its disk, the wrist has met its own before.
 #[inline(always)]
-fn half_width_cosine<S: Simd>(simd: S, square: Lanes<S>, length: f32, [fore, wrist]: [f32; 2]) -> Lanes<S> {
+fn half_width_cosine<S: Simd>(simd: S, square: Lanes<S>, length: f32, disks: &GrownDisks) -> Lanes<S> {
+    let &GrownDisks { fore, wrist, .. } = disks;
     let s = |value: f32| splat(simd, value);
     let distance = square.sqrt().max(s(1e-12));
     let over = s(1.0) / distance;

@@ -10,7 +10,8 @@ use super::placed_obstacle::PlacedObstacle;
 /// meshes the cheapest test comes first: one pair of triangles that is near enough decides.
 pub(super) fn distance_within(
     workspace: &mut Workspace,
-    (shape, in_world): (&Shape, &Pose),
+    shape: &Shape,
+    in_world: &Pose,
     obstacle: &PlacedObstacle,
     threshold_m: f64,
     warm_start: &mut WarmStart,

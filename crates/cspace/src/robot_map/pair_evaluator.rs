@@ -108,8 +108,8 @@ impl<'a> PairEvaluator<'a> {
         }
         self.stats.distance_queries += 1;
         let in_world = self.in_world(pair.piece as usize);
-        let solid = (&piece.shape, &in_world);
-        let found = distance_within(&mut self.workspace, solid, obstacle, displacement, &mut pair.warm_start);
+        let warm_start = &mut pair.warm_start;
+        let found = distance_within(&mut self.workspace, &piece.shape, &in_world, obstacle, displacement, warm_start);
         pair.distance = found.unwrap_or(displacement);
         found.is_none()
     }

@@ -154,19 +154,27 @@ pub fn free_neighbours(occupancy: &OccupancyBitmap) -> Vec<CellIndex> {
     found
 }
 
-/// Number of samples in contact in a free cell. `uniform` samples are anywhere, `beside` samples in free neighbours of
-/// blocked cells; a third as many as `uniform` are bent backwards over the base.
+/// Numbers of random configurations.
+#[derive(Debug, Clone, Copy)]
+pub struct SampleCounts {
+    /// Anywhere. A third as many are bent backwards over the base.
+    pub uniform: usize,
+    /// In free neighbours of blocked cells.
+    pub beside: usize,
+}
+
+/// Number of samples in contact in a free cell.
 pub fn missed_contacts(
     arm: &PlanarArm,
     grid: &Grid,
     occupancy: &OccupancyBitmap,
     obstacle: &ConvexObstacle,
-    (uniform, beside): (usize, usize),
+    samples: SampleCounts,
     random: &mut Random,
 ) -> usize {
     let shape = obstacle.shape();
     let mut missed = 0;
-    for _ in 0..uniform {
+    for _ in 0..samples.uniform {
         let q = random.configuration(grid);
         let cell = grid.cell(q).unwrap();
         missed += usize::from(!occupancy.is_blocked(cell) && touches(arm, q, &shape));
@@ -174,14 +182,14 @@ pub fn missed_contacts(
     // An arm bent backwards reaches obstacles behind its base.
     let center = obstacle.enclosing_sphere().0;
     let behind = center.y.atan2(center.x) + std::f64::consts::PI;
-    for _ in 0..uniform / 3 {
+    for _ in 0..samples.uniform / 3 {
         let mut q = random.configuration(grid);
         q[0] = (behind + random.within(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
             - std::f64::consts::PI;
         missed += usize::from(grid.cell(q).is_some_and(|cell| !occupancy.is_blocked(cell)) && touches(arm, q, &shape));
     }
     let cells = free_neighbours(occupancy);
-    for _ in 0..beside {
+    for _ in 0..samples.beside {
         if cells.is_empty() {
             break;
         }

@@ -5,9 +5,10 @@ use std::path::Path;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use toml::de::{DeTable, DeValue};
 
-use super::spec::JointSpec;
+use super::spec::{JointSpec, JointUnits};
 use super::value::{Data, Value};
 use crate::FormatError;
+use crate::error::Location;
 use crate::tokens::LineIndex;
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -35,7 +36,7 @@ pub(super) fn parse(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
                         let what = format!("`joint.{}` is not a table", node.get_ref());
                         return Err(FormatError::new(file, line, what).hint("[joint.NODE], and below it axis = \"z\""));
                     };
-                    specs.push(joint(node.get_ref(), entries, (file, line), &lines, units)?);
+                    specs.push(joint(node.get_ref(), entries, Location { file, line }, &lines, units)?);
                 }
             }
             (other, _) => {
@@ -48,7 +49,7 @@ pub(super) fn parse(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
     Ok(specs)
 }
 
-fn units(table: &DeTable<'_>, lines: &LineIndex, file: &Path) -> Result<(LengthUnit, AngleUnit)> {
+fn units(table: &DeTable<'_>, lines: &LineIndex, file: &Path) -> Result<JointUnits> {
     let Some((key, value)) = table.iter().find(|(key, _)| key.get_ref() == "units") else {
         return Err(FormatError::new(file, None, "has no `units`: a guessed unit is a wrong unit").hint(UNITS));
     };
@@ -58,22 +59,23 @@ fn units(table: &DeTable<'_>, lines: &LineIndex, file: &Path) -> Result<(LengthU
         let found = entries.iter().find(|(key, _)| key.get_ref() == name);
         found.and_then(|(_, value)| if let DeValue::String(s) = value.get_ref() { Some(s.as_ref()) } else { None })
     };
-    let (length, angle) = (of("length").and_then(LengthUnit::parse), of("angle").and_then(AngleUnit::parse));
-    length.zip(angle).ok_or_else(wrong)
+    let length = of("length").and_then(LengthUnit::parse).ok_or_else(wrong)?;
+    let angle = of("angle").and_then(AngleUnit::parse).ok_or_else(wrong)?;
+    Ok(JointUnits { length, angle })
 }
 
 fn joint(
     node: &str,
     entries: &DeTable<'_>,
-    (file, line): (&Path, usize),
+    node_at: Location<'_>,
     lines: &LineIndex,
-    units: (LengthUnit, AngleUnit),
+    units: JointUnits,
 ) -> Result<JointSpec> {
-    let mut spec = JointSpec::new(node, file, Some(line), units);
+    let mut spec = JointSpec::new(node, node_at.file, Some(node_at.line), units);
     for (key, value) in entries {
         let data = data(value.get_ref());
         let line = lines.line_at(key.span().start);
-        Value { key: key.get_ref(), file, line: Some(line), data }.apply(&mut spec)?;
+        Value { key: key.get_ref(), file: node_at.file, line: Some(line), data }.apply(&mut spec)?;
     }
     spec.check()?;
     Ok(spec)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use super::spec::JointSpec;
+use super::spec::{JointSpec, JointUnits};
 use super::value::{Data, Value};
 use crate::FormatError;
 
@@ -16,7 +16,8 @@ pub(super) fn parse(option: &str) -> Result<JointSpec, FormatError> {
     let Some((node, rest)) = option.rsplit_once(':') else {
         return Err(wrong(format!("`{option}` names no node before a colon")));
     };
-    let mut spec = JointSpec::new(node.trim(), file, None, (LengthUnit::Metre, AngleUnit::Degree));
+    let units = JointUnits { length: LengthUnit::Metre, angle: AngleUnit::Degree };
+    let mut spec = JointSpec::new(node.trim(), file, None, units);
     for pair in rest.split(',').map(str::trim).filter(|p| !p.is_empty()) {
         let Some((key, value)) = pair.split_once('=') else {
             return Err(wrong(format!("`{pair}` is not key=value")));

@@ -37,8 +37,14 @@ pub struct JointSpec {
     pub acceleration: Option<f64>,
     /// Name of the joint that it mimics, multiplier, and offset in the given units.
     pub mimic: Option<(String, f64, f64)>,
-    length: LengthUnit,
-    angle: AngleUnit,
+    units: JointUnits,
+}
+
+/// The units of a joint's numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct JointUnits {
+    pub(super) length: LengthUnit,
+    pub(super) angle: AngleUnit,
 }
 
 /// The frame in which an axis is given.
@@ -56,11 +62,15 @@ pub enum AxisFrame {
 impl JointSpec {
     /// Converts a number of this joint to m or rad.
     pub fn si(&self, kind: JointKind, value: f64) -> f64 {
-        if kind == JointKind::Prismatic { self.length.to_metres(value) } else { self.angle.to_radians(value) }
+        if kind == JointKind::Prismatic {
+            self.units.length.to_metres(value)
+        } else {
+            self.units.angle.to_radians(value)
+        }
     }
 
     /// A specification that names only the node.
-    pub(super) fn new(node: &str, file: &Path, line: Option<usize>, (length, angle): (LengthUnit, AngleUnit)) -> Self {
+    pub(super) fn new(node: &str, file: &Path, line: Option<usize>, units: JointUnits) -> Self {
         Self {
             file: file.to_owned(),
             line,
@@ -75,14 +85,13 @@ impl JointSpec {
             speed: None,
             acceleration: None,
             mimic: None,
-            length,
-            angle,
+            units,
         }
     }
 
     /// A length of this joint in metres.
     pub(super) fn metres(&self, length: f64) -> f64 {
-        self.length.to_metres(length)
+        self.units.length.to_metres(length)
     }
 
     /// Refuses limits in the wrong order.

@@ -25,7 +25,8 @@ pub const MAX_LINKS: usize = 2000;
 pub(super) fn robot(
     tree: NodeTree,
     specs: &[JointSpec],
-    (file, default_path): (&Path, &Path),
+    file: &Path,
+    default_path: &Path,
     warnings: &mut WarningList,
 ) -> Result<Robot, FormatError> {
     if tree.nodes.len() > MAX_LINKS {

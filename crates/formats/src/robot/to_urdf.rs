@@ -88,10 +88,11 @@ fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, M
     // Robots written to the same directory have their own meshes.
     let folder = plain_name(name);
     for (i, link) in chain.links().iter().enumerate() {
-        let collisions = elements(link, (&folder, ""), i, &robot.colliders[i], meshes);
+        let collisions =
+            elements(&robot.colliders[i], &MeshFiles { folder: &folder, prefix: "", index: i, link }, meshes);
         let visuals = match &robot.visuals[i][..] {
             [] => collisions.clone(),
-            visuals => elements(link, (&folder, "visual_"), i, visuals, meshes),
+            visuals => elements(visuals, &MeshFiles { folder: &folder, prefix: "visual_", index: i, link }, meshes),
         };
         if collisions.is_empty() && visuals.is_empty() {
             writeln!(out, "  <link name=\"{}\"/>", escaped(link))?;
@@ -124,11 +125,30 @@ struct GeometryElement {
     geometry: String,
 }
 
-fn elements(
-    link: &str,
-    (folder, prefix): (&str, &str),
+/// Names of the mesh files of a link.
+struct MeshFiles<'a> {
+    /// The folder of the robot below `meshes`.
+    folder: &'a str,
+    /// Before the name of the link: empty, or `visual_`.
+    prefix: &'a str,
+    /// Index of the link, which makes the names unique.
     index: usize,
+    link: &'a str,
+}
+
+impl MeshFiles<'_> {
+    /// The file of one collider, relative to the URDF.
+    fn path(&self, collider: usize) -> String {
+        let Self { folder, prefix, index, .. } = self;
+        let link = plain_name(self.link);
+        let number = if collider == 0 { String::new() } else { format!("_{}", collider + 1) };
+        format!("meshes/{folder}/{index:02}_{prefix}{link}{number}.stl")
+    }
+}
+
+fn elements(
     colliders: &[Collider],
+    files: &MeshFiles<'_>,
     meshes: &mut Vec<(String, MeshData)>,
 ) -> Vec<GeometryElement> {
     let mut elements = Vec::new();
@@ -153,11 +173,7 @@ fn elements(
             Shape::HalfSpace(_) => {}
             Shape::Hull(_) | Shape::Mesh(_) => {
                 let (vertices, triangles) = tessellate(&collider.shape, 0.0);
-                let link = plain_name(link);
-                let file = format!(
-                    "meshes/{folder}/{index:02}_{prefix}{link}{}.stl",
-                    if b == 0 { String::new() } else { format!("_{}", b + 1) }
-                );
+                let file = files.path(b);
                 element(collider.in_link, format!("<mesh filename=\"{file}\"/>"));
                 meshes.push((file, MeshData { name: collider.name.clone(), vertices, triangles }));
             }

@@ -24,7 +24,7 @@ pub(super) fn tree(content: TdsFile, file: &Path, warnings: &mut WarningList) ->
     let object_of = object_of(&objects, &nodes, &order);
     let is_local = !nodes.iter().any(FileNode::has_track) && objects.iter().any(|o| o.axes.is_some());
     let frames = if is_local && !nodes.is_empty() {
-        Frames::of_axes(&objects, &nodes, &parents, &order, &object_of, (file, warnings))
+        Frames::of_axes(&objects, &nodes, &parents, &order, &object_of, file, warnings)
     } else {
         Frames::of_tracks(&nodes, &parents, &order)
     };
@@ -147,7 +147,7 @@ impl Frames {
             if node.kind == NodeKind::Aimed {
                 rotation = targets.orientation(i);
             }
-            full[i] = parent_of(&full, parents[i]).after(&is_local(position, rotation, scale(node)));
+            full[i] = parent_of(&full, parents[i]).after(&node_transform(position, rotation, scale(node)));
         }
         let rigid = full.iter().map(rigid).collect();
         Self { full, rigid, is_local: false }
@@ -160,7 +160,8 @@ impl Frames {
         parents: &[Option<usize>],
         order: &[usize],
         object_of: &[Option<usize>],
-        (file, warnings): (&Path, &mut WarningList),
+        file: &Path,
+        warnings: &mut WarningList,
     ) -> Self {
         // Assimp writes the rows of the rotation in place of its columns.
         let own = |i: usize| object_of[i].and_then(|o| objects[o].axes).map(|axes| axes.transposed());
@@ -231,7 +232,7 @@ impl Frames {
         let key = |frame: f64| {
             let position = sample(&node.position, frame, Vec3::lerp).unwrap_or(Vec3::ZERO);
             let rotation = sample(&node.rotation, frame, Rotation::interpolate).unwrap_or(Rotation::IDENTITY);
-            let in_world = rigid(&parent_full.after(&is_local(position, rotation, scale(node))));
+            let in_world = rigid(&parent_full.after(&node_transform(position, rotation, scale(node))));
             Keyframe { time_s: frame / FRAMES_PER_SECOND, in_parent: parent_rigid.inverse_mul(&in_world) }
         };
         frames.into_iter().map(key).collect()
@@ -246,7 +247,7 @@ fn scale(node: &FileNode) -> Vec3 {
     node.scale.first().map_or(Vec3::splat(1.0), |k| k.1)
 }
 
-fn is_local(position: Vec3, rotation: Rotation, scale: Vec3) -> Affine {
+fn node_transform(position: Vec3, rotation: Rotation, scale: Vec3) -> Affine {
     Affine::translation(position.to_array())
         .after(&Affine::rotation(rotation.rows()))
         .after(&Affine::scale(scale.to_array()))

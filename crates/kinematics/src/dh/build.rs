@@ -73,8 +73,8 @@ fn serial(
         links.push(format!("link_{}_drive", i + 1));
         links.push(format!("link_{}", i + 1));
         let frame = format!("{joint}_frame");
-        joints.push(joint_of(joint, row.kind, (before, drive), Pose::IDENTITY, limits(i)));
-        joints.push(joint_of(frame, JointKind::Fixed, (drive, after), at_zero(row), Limits::UNLIMITED));
+        joints.push(joint_of(joint, row.kind, before, drive, Pose::IDENTITY, limits(i)));
+        joints.push(joint_of(frame, JointKind::Fixed, drive, after, at_zero(row), Limits::UNLIMITED));
     }
     Chain::new(name, links, joints)
 }
@@ -83,6 +83,6 @@ fn at_zero(row: &GeneralizedRow) -> Pose {
     GeneralizedRow { kind: JointKind::Fixed, ..row.clone() }.transform(0.0)
 }
 
-fn joint_of(name: String, kind: JointKind, (parent, child): (LinkId, LinkId), origin: Pose, limits: Limits) -> Joint {
+fn joint_of(name: String, kind: JointKind, parent: LinkId, child: LinkId, origin: Pose, limits: Limits) -> Joint {
     Joint { name, kind, parent, child, origin, axis: Vec3::Z, limits, mimic: None }
 }

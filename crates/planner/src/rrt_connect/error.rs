@@ -6,6 +6,9 @@ use super::settings::RrtConnectSetting;
 use crate::path::PathEnd;
 use crate::time_parametrization::TimeParametrizationError;
 
+/// Joint values beyond a full turn (2π, rounded up) where the limits are within one are probably degrees, rad.
+const FULL_TURN_RAD: f64 = 6.3;
+
 /// Unit of a joint's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointUnit {
@@ -30,7 +33,7 @@ pub enum RrtConnectError {
     /// An end beyond the joint limits.
     #[error(
         "{end}: joint `{joint}` is {value} {unit}, outside its limits: write a value from {lower} to {upper} {unit}{}",
-        if *unit == JointUnit::Radians && value.abs() > 6.3 && *upper < 6.3 { " (are these degrees?)" } else { "" }
+        if *unit == JointUnit::Radians && value.abs() > FULL_TURN_RAD && *upper < FULL_TURN_RAD { " (are these degrees?)" } else { "" }
     )]
     OutOfLimits {
         /// Start or goal.

@@ -10,6 +10,9 @@ use crate::time_parametrization::{KinematicLimits, PathElement, PathSegments, Tr
 
 /// The blend distance of a corner is halved this often before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 5;
+/// Where a sample lies on the border of two elements, its element is determined this share of a period beside it: a stop is
+/// the end of one segment and the beginning of the next.
+const INSET_PERIODS: f64 = 1e-6;
 
 impl RrtConnect<'_> {
     /// Time parametrization of a path within limits: straight along its segments, corners blended where that is proven free,
@@ -74,8 +77,7 @@ impl RrtConnect<'_> {
         let mut unproven = Vec::new();
         for pair in samples.windows(2) {
             let ((t, a), (next, b)) = (&pair[0], &pair[1]);
-            // Slightly inside, as a stop is the end of one segment and the beginning of the next.
-            let inset = 1e-6 * period;
+            let inset = INSET_PERIODS * period;
             let (first, last) = match (trajectory.element_at(t + inset), trajectory.element_at(next - inset)) {
                 // Both on one segment, which is proven.
                 (Some(Segment(m)), Some(Segment(n))) if m == n => continue,

@@ -7,6 +7,8 @@ use super::settings::ShortcuttingSettings;
 
 /// Shares of the distance by which a corner is pulled towards the line between its neighbours.
 const PULL_RATIOS: [f64; 4] = [0.9, 0.5, 0.25, 0.1];
+/// A corner is pulled where that shortens its two segments by more than this share: rounding errors pull no corner.
+const MIN_PULL_GAIN: f64 = 1e-9;
 
 /// Shortens a path.
 pub(super) struct Shortcutting<'w, 's> {
@@ -79,7 +81,7 @@ impl Shortcutting<'_, '_> {
                 }
                 let moved = pulled_corner(&path[n - 1], &path[n], &path[n + 1], share);
                 let around = |q: &[f64]| length(&path[n - 1], q) + length(q, &path[n + 1]);
-                if around(&moved) < around(&path[n]) * (1.0 - 1e-9)
+                if around(&moved) < around(&path[n]) * (1.0 - MIN_PULL_GAIN)
                     && self.validator.is_valid_motion(&path[n - 1], &moved)
                     && self.validator.is_valid_motion(&moved, &path[n + 1])
                 {

@@ -10,6 +10,11 @@ use super::tree::Tree;
 
 /// Samples after which the whole region is sampled; before, the neighbourhood of the ends.
 const WIDENING_ROUNDS: f64 = 300.0;
+/// Share of the region, about the ends, that is sampled first.
+const FIRST_SHARE: f64 = 0.1;
+/// One in so many samples stays near the ends, in this share of the region: exits of narrow starts and goals are there.
+const NEAR_ROUNDS: u32 = 3;
+const NEAR_SHARE: f64 = 0.3;
 
 /// Two trees that grow towards each other.
 pub(super) struct BidirectionalSearch<'w, 's> {
@@ -47,7 +52,8 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
                 break;
             }
             // At first near the ends; later anywhere, and still near the ends in every third round.
-            let share = if round % 3 == 2 { 0.3 } else { (0.1 + f64::from(round) / WIDENING_ROUNDS).min(1.0) };
+            let is_near = round % NEAR_ROUNDS == NEAR_ROUNDS - 1;
+            let share = if is_near { NEAR_SHARE } else { (FIRST_SHARE + f64::from(round) / WIDENING_ROUNDS).min(1.0) };
             self.region.sample(share, self.random, &mut sample);
             let from = self.trees[0].nearest(&sample, &self.validator.weights);
             if let Some((node, _)) = self.extend(0, from, &sample) {

@@ -5,6 +5,9 @@ use super::limits::TimeParametrizationError;
 use super::segments::{Corner, PathSegments, point_along};
 use super::speed_profile::SpeedProfile;
 
+/// Rounding error of a number of periods that is ignored.
+const PERIOD_ROUNDING: f64 = 1e-9;
+
 /// State of the joints at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrajectoryPoint {
@@ -183,7 +186,7 @@ impl Trajectory {
 
 /// Number of periods, rounded up; a rounding error above a whole number is ignored.
 fn periods(seconds: f64, period: f64) -> f64 {
-    (seconds / period - 1e-9).ceil()
+    (seconds / period - PERIOD_ROUNDING).ceil()
 }
 
 fn validate_period(period: f64) -> Result<(), TimeParametrizationError> {

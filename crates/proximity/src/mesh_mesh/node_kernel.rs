@@ -49,13 +49,20 @@ pub(super) fn expand_sides<const MODE: u8>(
     })
 }
 
+/// The box of a node in its own tree's frame and units.
+#[derive(Clone, Copy)]
+struct NodeBox {
+    center: [f32; 3],
+    half: [f32; 3],
+}
+
 /// A node, of which the lanes in `mask` are tested.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     node: &'a Node,
     mask: u32,
     /// The box of the node itself.
-    own: ([f32; 3], [f32; 3]),
+    own: NodeBox,
 }
 
 /// All children of a node to be expanded; of one that is not, its own lane in its parent.
@@ -64,7 +71,7 @@ fn side(tree: &Bvh16, number: u32, height: u8, expanded: bool) -> Side<'_> {
     let (number, height) = (number as usize, height as usize);
     let (parent, lane) = tree.parent(height, number);
     let at = |p: &[[f32; ARITY]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
-    let own = (at(&parent.center), at(&parent.half));
+    let own = NodeBox { center: at(&parent.center), half: at(&parent.half) };
     if expanded {
         Side { node: tree.node(height, number), mask: tree.children(height, number), own }
     } else {
@@ -214,11 +221,11 @@ fn beyond<S: Simd, const MODE: u8>(
     simd: S,
     c: V3<W16<S>>,
     h: V3<W16<S>>,
-    own: ([f32; 3], [f32; 3]),
+    own: NodeBox,
     limit: f32,
     squared: f32,
 ) -> u32 {
-    let (gap, square) = gaps::<S, MODE>(simd, c, h, own.0, own.1);
+    let (gap, square) = gaps::<S, MODE>(simd, c, h, own.center, own.half);
     if MODE == INTERSECTION {
         gap.simd_gt(limit).to_bitmask() as u32
     } else {
@@ -354,7 +361,7 @@ impl<S: Simd> WitnessIntervals<S> {
 /// Middle and half width of a node's own box along an axis.
 #[inline(always)]
 fn own_across(side: &Side, d: [f32; 3]) -> (f32, f32) {
-    let (c, h) = &side.own;
+    let NodeBox { center: c, half: h } = &side.own;
     let e = absolute(d);
     (c[0] * d[0] + c[1] * d[1] + c[2] * d[2], h[0] * e[0] + h[1] * e[1] + h[2] * e[2])
 }

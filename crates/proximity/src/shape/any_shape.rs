@@ -1,5 +1,6 @@
 //! A shape of any kind.
 
+use std::fmt;
 use std::sync::Arc;
 
 use elbowroom_spatial::{Aabb, Pose, Vec3};
@@ -34,6 +35,46 @@ pub enum Shape {
     Mesh(Arc<TriMesh>),
 }
 
+/// Kind of a [`Shape`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ShapeKind {
+    /// [`Shape::Sphere`].
+    Sphere,
+    /// [`Shape::Capsule`].
+    Capsule,
+    /// [`Shape::Cylinder`].
+    Cylinder,
+    /// [`Shape::Cuboid`].
+    Cuboid,
+    /// [`Shape::HalfSpace`].
+    HalfSpace,
+    /// [`Shape::Hull`].
+    Hull,
+    /// [`Shape::Mesh`].
+    Mesh,
+}
+
+impl ShapeKind {
+    /// Word for messages: `sphere`, `capsule`, `cylinder`, `box`, `plane`, `hull`, `mesh`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Capsule => "capsule",
+            Self::Cylinder => "cylinder",
+            Self::Cuboid => "box",
+            Self::HalfSpace => "plane",
+            Self::Hull => "hull",
+            Self::Mesh => "mesh",
+        }
+    }
+}
+
+impl fmt::Display for ShapeKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
 /// Why a shape cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShapeError {
@@ -41,7 +82,7 @@ pub enum ShapeError {
     #[error("{shape}: {dimension} is {value}, it must be a finite number of metres, 0 or more")]
     Dimension {
         /// Kind of shape.
-        shape: &'static str,
+        shape: ShapeKind,
         /// Which dimension.
         dimension: &'static str,
         /// Its value, metres.
@@ -50,16 +91,16 @@ pub enum ShapeError {
 }
 
 impl Shape {
-    /// Word for messages: `sphere`, `capsule`, `cylinder`, `box`, `plane`, `hull`, `mesh`.
-    pub fn kind(&self) -> &'static str {
+    /// Its kind.
+    pub fn kind(&self) -> ShapeKind {
         match self {
-            Self::Sphere(_) => "sphere",
-            Self::Capsule(_) => "capsule",
-            Self::Cylinder(_) => "cylinder",
-            Self::Cuboid(_) => "box",
-            Self::HalfSpace(_) => "plane",
-            Self::Hull(_) => "hull",
-            Self::Mesh(_) => "mesh",
+            Self::Sphere(_) => ShapeKind::Sphere,
+            Self::Capsule(_) => ShapeKind::Capsule,
+            Self::Cylinder(_) => ShapeKind::Cylinder,
+            Self::Cuboid(_) => ShapeKind::Cuboid,
+            Self::HalfSpace(_) => ShapeKind::HalfSpace,
+            Self::Hull(_) => ShapeKind::Hull,
+            Self::Mesh(_) => ShapeKind::Mesh,
         }
     }
 

@@ -15,7 +15,7 @@ pub(crate) mod topology;
 mod tri_mesh;
 mod validity;
 
-pub use any_shape::{Shape, ShapeError};
+pub use any_shape::{Shape, ShapeError, ShapeKind};
 pub use capsule::Capsule;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;

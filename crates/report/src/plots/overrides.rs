@@ -1,5 +1,6 @@
 //! Override with the governing region, and the distance to it.
 
+use elbowroom_cell::CellRegionId;
 use elbowroom_monitor::OverrideReason;
 use elbowroom_sim::{Recording, RobotTrack, Sample};
 use serde_json::json;
@@ -60,18 +61,18 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
 }
 
 /// Cause of a band: the governing region, or another reason.
-fn cause(sample: &Sample) -> Option<Result<usize, OverrideReason>> {
+fn cause(sample: &Sample) -> Option<Result<CellRegionId, OverrideReason>> {
     match (sample.region, sample.reason) {
         (_, reason @ OverrideReason::Fault(_)) => Some(Err(reason)),
         (Some(region), _) => Some(Ok(region)),
-        (None, reason) => reason.region().map(|r| Ok(r.0)),
+        (None, reason) => reason.region().map(|r| Ok(CellRegionId(r.0))),
     }
 }
 
 fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: usize, who: &str) {
     let mut found = equal_runs(samples.iter().map(cause));
     found.truncate(MAX_BANDS);
-    let mut causes: Vec<Result<usize, OverrideReason>> = Vec::new();
+    let mut causes: Vec<Result<CellRegionId, OverrideReason>> = Vec::new();
     for (cause, ..) in &found {
         if !causes.contains(cause) {
             causes.push(*cause);
@@ -84,7 +85,10 @@ fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: us
             .map(|&(_, from, to)| (samples[from].t_s, samples[to - 1].t_s + recording.tick_s))
             .collect();
         let (text, color) = match cause {
-            Ok(i) => (recording.regions.get(i).map_or_else(|| "?".into(), |r| r.name.clone()), palette::of_index(i)),
+            Ok(region) => (
+                recording.regions.get(region.0).map_or_else(|| "?".into(), |r| r.name.clone()),
+                palette::of_index(region.0),
+            ),
             Err(reason) => (reason_text(reason, recording), "#000000"),
         };
         let text = plain(&text);

@@ -75,7 +75,7 @@ fn rows_of(recording: &Recording, index: usize, region: &RegionTrack) -> Vec<Tim
     for (robot, track) in recording.robots.iter().enumerate() {
         let who = if recording.robots.len() > 1 { format!(" ({})", plain(&track.name)) } else { String::new() };
         let of = |spans: &[Span]| -> Vec<(f64, f64)> {
-            let mine = spans.iter().filter(|s| s.robot == robot);
+            let mine = spans.iter().filter(|s| s.robot.0 == robot);
             mine.map(|s| (s.from_s, s.to_s.max(s.from_s + recording.tick_s))).collect()
         };
         let between = |on: &[&str], off: &[&str]| {

@@ -1,10 +1,11 @@
 //! A synthetic run after the paper's figure 12, without simulation, to test the report on its own.
 
+use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionId};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, project_point};
 use elbowroom_report::ReportScene;
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_sim::{
     Collision, EventRow, RecordedRegionKind, Recording, RegionPoses, RegionTrack, RobotTrack, RunEvent, Sample, Span,
@@ -121,7 +122,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             tcp_speed: v,
             programmed_speed: programmed,
             speed_override: law,
-            region: near.then_some(0),
+            region: near.then_some(CellRegionId(0)),
             distance_m: near.then_some(distance),
             reason: if near { OverrideReason::Region(RegionId(0)) } else { OverrideReason::Free },
         });
@@ -131,7 +132,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
     let spans = |marks: &[(f64, bool)]| -> Vec<Span> {
         let on: Vec<f64> = marks.iter().filter(|m| m.1).map(|m| m.0).collect();
         let ends = on.first().zip(on.last());
-        ends.map(|(&from_s, &to_s)| Span { robot: 0, from_s, to_s }).into_iter().collect()
+        ends.map(|(&from_s, &to_s)| Span { robot: RobotId(0), from_s, to_s }).into_iter().collect()
     };
     let (warning_spans, inside_spans) = (spans(&warning), spans(&inside));
     let mut events = Vec::new();

@@ -5,7 +5,7 @@ use elbowroom_robot::GeometryId;
 
 use super::core::CheckerCore;
 use super::pair_list::PairList;
-use super::result::CollisionPoint;
+use super::result::{ColliderId, CollisionPoint};
 use crate::{Level, SceneState, pair_weight};
 
 impl CheckerCore<'_> {
@@ -28,7 +28,11 @@ impl CheckerCore<'_> {
             self.used(Level::L3);
             let [a, b] = sides;
             let contact = self.narrow.contact_point(&a, &b, ContactSettings { limit: pair.margin, detail });
-            found = contact.map(|(colliders, c)| CollisionPoint::new((a.model.id, b.model.id), colliders, &c, detail));
+            found = contact.map(|((of_a, of_b), c)| {
+                let a = ColliderId { geometry: a.model.id, collider: of_a };
+                let b = ColliderId { geometry: b.model.id, collider: of_b };
+                CollisionPoint::new(a, b, &c, detail)
+            });
             if found.is_some() {
                 break;
             }
@@ -42,7 +46,7 @@ impl CheckerCore<'_> {
     fn link_first(&self, c: CollisionPoint, state: &SceneState) -> CollisionPoint {
         let depth = |id: GeometryId| {
             let carrier = state.carrier(id);
-            carrier.map_or(usize::MAX, |carrier| pair_weight::link_depth(&self.scene.robots, carrier))
+            carrier.map_or(usize::MAX, |(robot, link)| pair_weight::link_depth(&self.scene.robots, robot, link))
         };
         if depth(c.other) < depth(c.link) { c.swapped() } else { c }
     }

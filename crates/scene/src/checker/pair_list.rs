@@ -27,7 +27,7 @@ pub(crate) struct GeometryPair {
 
 impl GeometryPair {
     /// A pair without a proof; `None` where one has no shape.
-    pub fn of(scene: &Scene, (a, b): (GeometryId, GeometryId), margin: f64) -> Option<Self> {
+    pub fn of(scene: &Scene, a: GeometryId, b: GeometryId, margin: f64) -> Option<Self> {
         let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
         Some(Self { a, b, margin, proven_least_m: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })
     }
@@ -117,7 +117,7 @@ impl PairList {
                 Some((_, Reason::NeverInSamples { .. })) => f64::INFINITY,
                 _ => continue,
             };
-            self.push(scene, (e.a, e.b), e.margin_m, proven_least_m, e.weight);
+            self.push(scene, e.a, e.b, e.margin_m, proven_least_m, e.weight);
         }
     }
 
@@ -136,21 +136,21 @@ impl PairList {
                 };
                 if tested && self.selects(state, a, b) {
                     let margin = [i, j].map(|o| scene.models[scene.first_object + o].padding_m).iter().sum();
-                    self.push(scene, (a, b), margin, 0.0, 1.0);
+                    self.push(scene, a, b, margin, 0.0, 1.0);
                 }
             }
         }
     }
 
-    fn push(&mut self, scene: &Scene, ids: (GeometryId, GeometryId), margin: f64, proven_least_m: f64, weight: f64) {
-        self.pairs.extend(GeometryPair::of(scene, ids, margin).map(|p| GeometryPair { proven_least_m, weight, ..p }));
+    fn push(&mut self, scene: &Scene, a: GeometryId, b: GeometryId, margin: f64, proven_least_m: f64, weight: f64) {
+        self.pairs.extend(GeometryPair::of(scene, a, b, margin).map(|p| GeometryPair { proven_least_m, weight, ..p }));
     }
 
     /// Orders the pairs by the hierarchy: nearest to a base first, in the order of the matrix among equals.
     fn rank(&mut self, scene: &Scene, state: &SceneState) {
         let depth = |model: u32| {
             let carrier = state.carrier(scene.models[model as usize].id);
-            carrier.map(|carrier| pair_weight::link_depth(&scene.robots, carrier))
+            carrier.map(|(robot, link)| pair_weight::link_depth(&scene.robots, robot, link))
         };
         self.pairs.sort_by_cached_key(|p| {
             let (a, b) = (depth(p.a), depth(p.b));

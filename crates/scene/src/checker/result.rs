@@ -67,22 +67,25 @@ pub struct CollisionPoint {
     pub touching: bool,
 }
 
+/// One collider of a link, or the shape of an object.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ColliderId {
+    pub geometry: GeometryId,
+    /// Index of the collider; 0 for an object.
+    pub collider: usize,
+}
+
 impl CollisionPoint {
-    /// Of the given colliders of `a` and `b`.
-    pub(super) fn new(
-        (a, b): (GeometryId, GeometryId),
-        colliders: (usize, usize),
-        found: &ContactPoint,
-        detail: Detail,
-    ) -> Self {
+    /// A contact of `a` and `b`.
+    pub(super) fn new(a: ColliderId, b: ColliderId, found: &ContactPoint, detail: Detail) -> Self {
         Self {
-            link: a,
-            collider: colliders.0,
+            link: a.geometry,
+            collider: a.collider,
             triangle: found.triangle_a,
             on_link: found.on_a,
             normal: found.normal_a,
-            other: b,
-            other_collider: colliders.1,
+            other: b.geometry,
+            other_collider: b.collider,
             other_triangle: found.triangle_b,
             on_other: found.on_b,
             other_normal: found.normal_b,

@@ -97,7 +97,8 @@ impl LinkBounds {
     /// left out from the root on, from none to all. Returns the sum of the lengths that its pose is computed from, metres.
     pub fn append_bounds(
         &self,
-        (robot, link): (RobotId, LinkId),
+        robot: RobotId,
+        link: LinkId,
         model: usize,
         in_link: Option<Pose>,
         rates: JointRates,

@@ -149,7 +149,7 @@ impl SweepSearch {
                 let (a, b) = (m.id, GeometryId::Object(object));
                 let entry = scene.matrix.get(a, b).filter(|e| e.reason == Reason::NoJointBetween);
                 if let Some(e) = entry.filter(|_| list.selects(&trajectory.state, a, b)) {
-                    self.extra.extend(GeometryPair::of(scene, (a, b), e.margin_m));
+                    self.extra.extend(GeometryPair::of(scene, a, b, e.margin_m));
                 }
             }
         }

@@ -143,7 +143,7 @@ impl SweepTrajectory {
                 let segment = &self.segments[robot.0];
                 let in_link = self.state.attachment_of(m.id).map(|a| a.in_link);
                 let rates = JointRates { from: &segment.from, rate: &segment.rate };
-                let size = self.link_bounds.append_bounds((robot, link), model, in_link, rates, &mut self.bounds);
+                let size = self.link_bounds.append_bounds(robot, link, model, in_link, rates, &mut self.bounds);
                 size + scene.robots[robot.0].base_in_world.translation.length()
             } else {
                 self.bounds.push(self.free_object_bound(m.id, model, moves));

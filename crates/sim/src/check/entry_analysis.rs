@@ -1,10 +1,11 @@
 //! Decides whether a robot is kept out of a region, by which law, and what is missing where it is not.
 
-use elbowroom_cell::{Cell, CellRegion, CellRobot};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, CellRobot};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::JointKind;
 use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_proximity::Shape;
+use elbowroom_robot::RobotId;
 
 use super::program::RobotProgram;
 use super::stopping_profile::{StoppingProfile, response_delay};
@@ -15,8 +16,8 @@ const ROUNDING_M: f64 = 1e-6;
 /// One region and one robot that it guards.
 pub(super) struct EntryAnalysis<'a> {
     pub cell: &'a Cell,
-    pub region: usize,
-    pub robot: usize,
+    pub region: CellRegionId,
+    pub robot: RobotId,
     pub program: &'a RobotProgram,
     /// Largest speed of any point of the region, m/s.
     pub region_speed_m_s: f64,
@@ -76,11 +77,11 @@ impl EntryAnalysis<'_> {
     }
 
     fn region(&self) -> &CellRegion {
-        &self.cell.regions[self.region]
+        &self.cell.regions[self.region.0]
     }
 
     fn robot(&self) -> &CellRobot {
-        &self.cell.robots[self.robot]
+        &self.cell.robots[self.robot.0]
     }
 
     fn stopping_profiles(&self) -> impl Iterator<Item = &StoppingProfile> {
@@ -130,7 +131,7 @@ impl EntryAnalysis<'_> {
             let write = format!("warning_output = 1 in [region.{name}], wired to a stop of the carrier of the region");
             return Some(MissingGuarantee::new(why, write));
         }
-        if self.cell.avoidance.get(self.robot).is_some_and(Option::is_some) {
+        if self.cell.avoidance.get(self.robot.0).is_some_and(Option::is_some) {
             return Some(MissingGuarantee::new(
                 "the robot has avoidance: its speeds off its program are not known in advance",
                 format!("no [avoidance.{}]", self.robot().name),
@@ -206,14 +207,14 @@ impl EntryAnalysis<'_> {
     fn never_reverses(&self) -> bool {
         let is_prismatic_or_fixed =
             |j: &elbowroom_kinematics::Joint| matches!(j.kind, JointKind::Prismatic | JointKind::Fixed);
-        let program = self.cell.programs.get(self.robot).and_then(Option::as_ref);
+        let program = self.cell.programs.get(self.robot.0).and_then(Option::as_ref);
         self.robot().robot.chain.joints().iter().all(is_prismatic_or_fixed)
             && program.is_none_or(is_one_move)
             && !matches!(self.region().region.shape, Shape::Mesh(_))
     }
 
     fn plays_trajectory(&self) -> bool {
-        let program = self.cell.programs.get(self.robot).and_then(Option::as_ref);
+        let program = self.cell.programs.get(self.robot.0).and_then(Option::as_ref);
         program.is_some_and(|p| matches!(p.body, elbowroom_cell::ProgramBody::Trajectory(_)))
     }
 

@@ -1,16 +1,17 @@
 //! Result of `check` for one region and one robot.
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, CellRegionId};
 use elbowroom_formats::Warning;
 use elbowroom_monitor::RegionKind;
+use elbowroom_robot::RobotId;
 
 /// Result of [`check`](super::check) for one region and one robot that it guards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntryCheck {
-    /// Index of the region in the cell.
-    pub region: usize,
-    /// Index of the robot in the cell.
-    pub robot: usize,
+    /// The region.
+    pub region: CellRegionId,
+    /// The robot.
+    pub robot: RobotId,
     /// True where the active laws keep the robot out, under the assumptions in `reason`. False for a monitored region,
     /// which does not exclude entry.
     pub excluded: bool,
@@ -28,6 +29,6 @@ pub struct EntryCheck {
 impl EntryCheck {
     /// True where a robot can enter a region that forbids it.
     pub fn is_bad(&self, cell: &Cell) -> bool {
-        !self.excluded && !matches!(cell.regions[self.region].region.kind, RegionKind::Monitored { .. })
+        !self.excluded && !matches!(cell.regions[self.region.0].region.kind, RegionKind::Monitored { .. })
     }
 }

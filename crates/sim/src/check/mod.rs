@@ -42,8 +42,9 @@ mod table;
 mod thickness;
 
 use elbowroom_cell::trajectory::recording_warnings;
-use elbowroom_cell::{Cell, configure};
+use elbowroom_cell::{Cell, CellRegionId, configure};
 use elbowroom_formats::{FormatError, Warning};
+use elbowroom_robot::RobotId;
 
 use entry_analysis::{EntryAnalysis, EntryDecision};
 use initial_overlaps::initial_overlaps;
@@ -64,29 +65,21 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
     let mut checks = Vec::new();
     for (index, region) in cell.regions.iter().enumerate() {
         let region_speed_m_s = max_region_speed_m_s(cell, region)?;
-        for robot in &region.robots {
-            let shares = |other: &usize| slots[*other].is_some() && slots[*other] == slots[index];
+        let id = CellRegionId(index);
+        for &robot in &region.robots {
+            let shares = |other: CellRegionId| slots[other.0].is_some() && slots[other.0] == slots[index];
             let analysis = EntryAnalysis {
                 cell,
-                region: index,
-                robot: *robot,
-                program: &programs[*robot],
+                region: id,
+                robot,
+                program: &programs[robot.0],
                 region_speed_m_s,
-                starts_inside: overlaps.contains(&(index, *robot)),
-                shared_at_start: overlaps.iter().any(|(r, other)| other != robot && shares(r)),
+                starts_inside: overlaps.contains(&(id, robot)),
+                shared_at_start: overlaps.iter().any(|(r, other)| *other != robot && shares(*r)),
             };
             let EntryDecision { excluded, reason, write_instead, needed_warning_m } = analysis.decide();
             let overrun = analysis.overrun();
-            let robot = *robot;
-            checks.push(EntryCheck {
-                region: index,
-                robot,
-                excluded,
-                reason,
-                write_instead,
-                needed_warning_m,
-                overrun,
-            });
+            checks.push(EntryCheck { region: id, robot, excluded, reason, write_instead, needed_warning_m, overrun });
         }
     }
     Ok(checks)
@@ -103,5 +96,5 @@ pub fn overruns(cell: &Cell) -> Result<Vec<Warning>, FormatError> {
 
 /// Warnings for recordings that exceed the joint limits of the cell; a run repeats them in its notes.
 pub fn recordings(cell: &Cell) -> Vec<Warning> {
-    (0..cell.robots.len()).flat_map(|robot| recording_warnings(cell, robot)).collect()
+    (0..cell.robots.len()).flat_map(|robot| recording_warnings(cell, RobotId(robot))).collect()
 }

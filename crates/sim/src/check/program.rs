@@ -3,6 +3,7 @@
 use elbowroom_cell::Cell;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{Guards, Volume};
+use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile, StoppingProfile};
@@ -31,7 +32,7 @@ pub(super) fn programs(cell: &Cell) -> Result<Vec<RobotProgram>, FormatError> {
             .iter()
             .map(|v| LinkSolid { link: v.link, hull: SphereSweptHull::new(&v.shape, &v.in_link) })
             .collect();
-        Ok(RobotProgram { profile: Profile::of(cell, index, &solids)?, volumes })
+        Ok(RobotProgram { profile: Profile::of(cell, RobotId(index), &solids)?, volumes })
     };
     (0..cell.robots.len()).map(of).collect()
 }

@@ -7,6 +7,7 @@ use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{Cell, JointLimits};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
+use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::thickness::{Braking, ResponseDelay, thickness};
@@ -56,20 +57,20 @@ struct OverrideResponse {
 }
 
 impl Profile {
-    /// Samples the program of a robot (by index).
+    /// Samples the program of a robot.
     ///
     /// # Errors
     /// [`FormatError`] at the line of an infeasible step.
-    pub fn of(cell: &Cell, robot: usize, solids: &[LinkSolid]) -> Result<Self, FormatError> {
+    pub fn of(cell: &Cell, robot: RobotId, solids: &[LinkSolid]) -> Result<Self, FormatError> {
         let plan = plan(cell, robot, 1, &mut Vec::new())?;
         let mut profile = Self {
             start: plan.start.clone(),
             stopping_profiles: vec![StoppingProfile::default(); solids.len()],
             braking_s: 0.0,
         };
-        let chain = &cell.robots[robot].robot.chain;
+        let chain = &cell.robots[robot.0].robot.chain;
         let mut sampler =
-            MoveSampler { limits: &cell.robots[robot].limits, solids, chain, state: ChainState::new(chain) };
+            MoveSampler { limits: &cell.robots[robot.0].limits, solids, chain, state: ChainState::new(chain) };
         let response = OverrideResponse {
             response_delay: response_delay(cell),
             rate: Some(cell.laws.laws.override_rate).filter(|r| *r > 0.0).unwrap_or(f64::INFINITY),

@@ -47,7 +47,7 @@ pub fn table(cell: &Cell, checks: &[EntryCheck]) -> String {
 }
 
 fn row(text: &mut String, cell: &Cell, check: &EntryCheck) {
-    let region = &cell.regions[check.region].region;
+    let region = &cell.regions[check.region.0].region;
     let entry = match (region.kind, check.excluded) {
         (RegionKind::Monitored { .. }, _) => "allowed",
         (_, true) => "excluded",
@@ -58,7 +58,7 @@ fn row(text: &mut String, cell: &Cell, check: &EntryCheck) {
         text,
         "  {:NAME$} {:NAME$} {:10} {:9} {:>12} {:>12}",
         shortened(&region.name, NAME),
-        shortened(&cell.robots[check.robot].name, NAME),
+        shortened(&cell.robots[check.robot.0].name, NAME),
         region.kind.name(),
         entry,
         length(region.warning_m),

@@ -1,7 +1,7 @@
 //! Execution of a program in time: scaled by the override, within the joints' decelerations, never backwards.
 
-use elbowroom_cell::JointLimits;
 use elbowroom_cell::trajectory::PathPoint;
+use elbowroom_cell::{CellRegionId, JointLimits};
 
 use super::{Geometry, PlanStep, ProgramPlan};
 
@@ -15,8 +15,8 @@ const LOOKAHEAD_S: f64 = 0.05;
 /// A program switches a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RegionSwitch {
-    /// Index of the region.
-    pub region: usize,
+    /// The region.
+    pub region: CellRegionId,
     /// On or off.
     pub active: bool,
 }

@@ -52,7 +52,7 @@ impl TcpLine {
     /// The line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`.
     ///
     /// # Errors
-    /// [`LineError`] with the position and the cause of the failure.
+    /// `LineError` with the position and the cause of the failure.
     pub fn new(robot: &CellRobot, q: &[f64], to: Pose) -> Result<Self, LineError> {
         let whole = Self::with_task(robot, q, to, IkTask::Pose);
         let few = robot.robot.chain.path(robot.flange).len() < 6 || robot.robot.chain.dof() < 6;

@@ -3,10 +3,11 @@
 use std::rc::Rc;
 
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings};
-use elbowroom_cell::{Cell, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction};
+use elbowroom_cell::{Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_robot::RobotId;
 
 use super::{Geometry, Segment, TcpLine};
 
@@ -31,10 +32,10 @@ pub enum PlanStep {
     Move(Rc<Segment>),
     /// A recording.
     Play(Rc<Playback>),
-    /// Switches the region with this index.
+    /// Switches a region.
     Switch {
-        /// Index in the cell.
-        region: usize,
+        /// The region.
+        region: CellRegionId,
         /// On or off.
         active: bool,
     },
@@ -48,9 +49,9 @@ pub enum PlanStep {
 ///
 /// # Errors
 /// [`FormatError`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
-pub fn plan(cell: &Cell, robot: usize, repeat: u32, notes: &mut Vec<Warning>) -> Result<ProgramPlan, FormatError> {
-    let at = &cell.robots[robot];
-    let Some(program) = &cell.programs[robot] else {
+pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) -> Result<ProgramPlan, FormatError> {
+    let at = &cell.robots[robot.0];
+    let Some(program) = &cell.programs[robot.0] else {
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);

@@ -67,7 +67,7 @@ const SURFACE_SAMPLES: usize = 33;
 pub(super) struct AvoidingRobot<'s> {
     avoider: Avoider<'s>,
     spec: &'s AvoidanceSpec,
-    robot: usize,
+    robot: RobotId,
     output: AvoiderOutput,
     /// Zero velocity of every joint.
     rest: Vec<f64>,
@@ -88,21 +88,20 @@ impl<'s> AvoidingRobot<'s> {
         clocks: &[ProgramClock],
     ) -> Result<Vec<Option<Self>>, FormatError> {
         let each = cell.avoidance.iter().enumerate();
-        each.map(|(robot, spec)| spec.as_ref().map(|s| Self::new(cell, scene, robot, s, &clocks[robot])).transpose())
+        each.map(|(i, spec)| spec.as_ref().map(|s| Self::new(cell, scene, RobotId(i), s, &clocks[i])).transpose())
             .collect()
     }
 
     fn new(
         cell: &Cell,
         scene: &'s Scene,
-        robot: usize,
+        robot: RobotId,
         spec: &'s AvoidanceSpec,
         clock: &ProgramClock,
     ) -> Result<Self, FormatError> {
-        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot].line, e.to_string());
+        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot.0].line, e.to_string());
         let (q, limits) = (&clock.point().q, limits(cell, robot));
-        let avoider =
-            Avoider::new(scene, RobotId(robot), q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
+        let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
         Ok(Self {
             avoider,
             spec,
@@ -153,7 +152,7 @@ impl<'s> AvoidingRobot<'s> {
     /// A warning where a tick failed and the robot was stopped; `None` where all succeeded.
     pub fn fault_warning(&self, cell: &Cell) -> Option<Warning> {
         let (t_s, why) = self.fault.as_ref()?;
-        let robot = &cell.robots[self.robot];
+        let robot = &cell.robots[self.robot.0];
         Some(Warning {
             file: cell.file.clone(),
             line: Some(robot.line),
@@ -207,26 +206,26 @@ impl<'s> AvoidingRobot<'s> {
     }
 
     fn step(&mut self, cell: &Cell, clock: &ProgramClock, states: &[ChainState], t_s: f64, allowed: f64) {
-        let evaded = |object: usize| self.spec.objects.contains(&object);
+        let evaded = |object: ObjectId| self.spec.objects.contains(&object);
         let moving = cell.moving_objects.iter().map(|m| ObservedObject {
-            object: ObjectId(m.object),
+            object: m.object,
             in_world: m.pose(t_s),
             motion: m.motion(t_s),
             known: !evaded(m.object),
         });
-        let is_fixed = |o: &&usize| !cell.moving_objects.iter().any(|m| m.object == **o);
+        let is_fixed = |o: &&ObjectId| !cell.moving_objects.iter().any(|m| m.object == **o);
         let fixed = self.spec.objects.iter().filter(is_fixed).map(|&object| ObservedObject {
-            object: ObjectId(object),
-            in_world: cell.objects[object].in_world,
+            object,
+            in_world: cell.objects[object.0].in_world,
             motion: FrameMotion::REST,
             known: false,
         });
         let objects: Vec<ObservedObject> = moving.chain(fixed).collect();
-        let others = states.iter().enumerate().filter(|(i, _)| *i != self.robot);
-        let known = |robot: usize| !self.spec.robots.contains(&robot);
-        let robots: Vec<Neighbour<'_>> = others
-            .map(|(robot, s)| Neighbour { robot: RobotId(robot), q: &s.q, qd: &s.qd, known: known(robot) })
-            .collect();
+        let all = states.iter().enumerate().map(|(i, s)| (RobotId(i), s));
+        let others = all.filter(|(robot, _)| *robot != self.robot);
+        let known = |robot: RobotId| !self.spec.robots.contains(&robot);
+        let robots: Vec<Neighbour<'_>> =
+            others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd, known: known(robot) }).collect();
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
         let reference = Reference { q: &clock.point().q, qd: &clock.point().dq, path };
         let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
@@ -291,8 +290,8 @@ fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
     (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE_SAMPLES)).collect()
 }
 
-fn limits(cell: &Cell, robot: usize) -> Vec<JointLimit> {
-    let robot = &cell.robots[robot];
+fn limits(cell: &Cell, robot: RobotId) -> Vec<JointLimit> {
+    let robot = &cell.robots[robot.0];
     let chain = &robot.robot.chain;
     let bounds = chain.lower().into_iter().zip(chain.upper());
     let limit = |((lower, upper), l): ((f64, f64), &elbowroom_cell::JointLimits)| JointLimit {

@@ -69,5 +69,5 @@ fn waited_for(robot: usize, slot: SlotId, cell: &Cell, setups: &[MonitorSetup], 
     let regions = setups[robot].configuration.regions().iter().enumerate();
     let of_slot = regions.filter(|(_, r)| r.kind == RegionKind::Exchange { slot });
     let near = of_slot.filter(|(i, _)| monitors[robot].is_warned(RegionId(*i)));
-    near.map(|(i, _)| cell.regions[setups[robot].regions[i]].region.name.clone()).collect()
+    near.map(|(i, _)| cell.regions[setups[robot].regions[i].0].region.name.clone()).collect()
 }

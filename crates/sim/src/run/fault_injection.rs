@@ -6,12 +6,13 @@
 use std::collections::VecDeque;
 
 use elbowroom_monitor::Snapshot;
+use elbowroom_robot::RobotId;
 
 /// One fault of the input of one robot's monitor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputFault {
-    /// Index of the robot.
-    pub robot: usize,
+    /// The robot.
+    pub robot: RobotId,
     /// Start of the fault, s, inclusive.
     pub from_s: f64,
     /// End of the fault, s, exclusive; infinite for no end.
@@ -50,7 +51,7 @@ pub enum InputFaultKind {
 }
 
 impl InputFault {
-    fn is_active(&self, robot: usize, t_s: f64) -> bool {
+    fn is_active(&self, robot: RobotId, t_s: f64) -> bool {
         self.robot == robot && self.from_s <= t_s && t_s < self.to_s
     }
 }
@@ -81,7 +82,7 @@ impl<'a> FaultInjector<'a> {
     }
 
     /// The snapshot for the robot's monitor at this instant; `None` where none arrives.
-    pub fn apply<'s>(&'s mut self, robot: usize, actual: &Snapshot<'s>) -> Option<Snapshot<'s>> {
+    pub fn apply<'s>(&'s mut self, robot: RobotId, actual: &Snapshot<'s>) -> Option<Snapshot<'s>> {
         if !self.faults.iter().any(|f| f.robot == robot) {
             return Some(*actual);
         }
@@ -93,7 +94,7 @@ impl<'a> FaultInjector<'a> {
             InputFaultKind::Frozen => (fault.from_s, true),
             InputFaultKind::Jump { .. } | InputFaultKind::NotANumber => (actual.now_s, true),
         };
-        let past = &self.past[robot];
+        let past = &self.past[robot.0];
         let source = past.iter().rev().find(|i| i.stamp_s <= source_s + 1e-9).or(past.front())?;
         self.faulty.clone_from(source);
         if is_fresh {
@@ -108,16 +109,16 @@ impl<'a> FaultInjector<'a> {
     }
 
     /// True where the controller, without an answer from its monitor, still applies the last override.
-    pub fn keeps_last_override(&self, robot: usize, t_s: f64) -> bool {
+    pub fn keeps_last_override(&self, robot: RobotId, t_s: f64) -> bool {
         let lost = self.active_fault(robot, t_s);
         lost.is_some_and(|f| matches!(f.kind, InputFaultKind::Lost { timeout_s } if t_s < f.from_s + timeout_s - 1e-9))
     }
 
-    fn active_fault(&self, robot: usize, t_s: f64) -> Option<InputFault> {
+    fn active_fault(&self, robot: RobotId, t_s: f64) -> Option<InputFault> {
         self.faults.iter().find(|f| f.is_active(robot, t_s)).copied()
     }
 
-    fn store(&mut self, robot: usize, actual: &Snapshot<'_>) {
+    fn store(&mut self, robot: RobotId, actual: &Snapshot<'_>) {
         // The oldest snapshot that any fault of this robot may still need.
         let needed = |f: &InputFault| match f.kind {
             InputFaultKind::Delayed { by_s } => actual.now_s - by_s,
@@ -125,7 +126,7 @@ impl<'a> FaultInjector<'a> {
             _ => actual.now_s,
         };
         let oldest_s = self.faults.iter().filter(|f| f.robot == robot).map(needed).fold(actual.now_s, f64::min);
-        let past = &mut self.past[robot];
+        let past = &mut self.past[robot.0];
         past.push_back(StoredSnapshot::of(actual));
         // Keep one before the oldest needed one: fault times rarely coincide with ticks.
         while past.len() > 1 && past[1].stamp_s <= oldest_s {
@@ -165,12 +166,12 @@ mod tests {
     use super::*;
 
     fn faulty(kind: InputFaultKind, ticks: u32) -> Vec<Option<(f64, f64)>> {
-        let faults = [InputFault { robot: 0, from_s: 0.01, to_s: 0.03, kind }];
+        let faults = [InputFault { robot: RobotId(0), from_s: 0.01, to_s: 0.03, kind }];
         let mut injector = FaultInjector::new(&faults, 1);
         let one = |i: u32| {
             let t_s = f64::from(i) * 0.005;
             let q = [f64::from(i)];
-            injector.apply(0, &Snapshot::stationary(t_s, &q)).map(|s| (s.stamp_s, s.q[0]))
+            injector.apply(RobotId(0), &Snapshot::stationary(t_s, &q)).map(|s| (s.stamp_s, s.q[0]))
         };
         (0..ticks).map(one).collect()
     }

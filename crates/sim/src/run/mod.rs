@@ -16,13 +16,14 @@ use std::time::Instant;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, Frames, MovingObject, ObjectMotion, OutOfReachProofs, QueryModel};
+use elbowroom_cell::{Cell, CellRegionId, Frames, MovingObject, ObjectMotion, OutOfReachProofs, QueryModel};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
-    AccessClass, EventKind, Monitor, OverrideReason, RegionKind, Snapshot, SourceState, VirtualTcp, ZoneArbiter,
+    AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp,
+    ZoneArbiter,
 };
-use elbowroom_robot::{GeometryId, ObjectId};
+use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 
 use crate::motion::{ProgramClock, RegionSwitch, plan};
@@ -48,11 +49,26 @@ pub struct RunOptions {
     pub avoidance: bool,
     /// Number of repetitions of the programs, times their own `repeat`.
     pub repeat: u32,
-    /// Fault injection: robots (by index) that are silent and stopped from a time (s) on.
-    pub silent_from: Vec<(usize, f64)>,
+    /// Fault injection: robots that become silent and stop.
+    pub silent_from: Vec<SilentFrom>,
     /// Fault injection: faulty inputs of the robots' monitors. Where two faults of one robot overlap, the first one in
     /// this list applies.
     pub faults: Vec<InputFault>,
+}
+
+/// A robot that is silent and stopped from a time on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SilentFrom {
+    /// The robot.
+    pub robot: RobotId,
+    /// The time, s.
+    pub t_s: f64,
+}
+
+impl RunOptions {
+    fn is_silent(&self, robot: RobotId, t_s: f64) -> bool {
+        self.silent_from.iter().any(|s| s.robot == robot && t_s >= s.t_s)
+    }
 }
 
 impl Default for RunOptions {
@@ -118,7 +134,7 @@ pub fn simulate_with(
     let monitors = configure::monitors_with(cell, &setups, arbiter.as_ref())?;
     let mut claims = Vec::new();
     for (i, robot) in cell.robots.iter().enumerate() {
-        let plan = plan(cell, i, options.repeat, &mut notes)?;
+        let plan = plan(cell, RobotId(i), options.repeat, &mut notes)?;
         // A robot with avoidance leaves its program: its claims are not known.
         let keeps_to_plan =
             options.apply_override && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
@@ -222,7 +238,7 @@ impl<'a> Simulation<'a> {
                 cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
                 &cell.objects,
             )
-            .moving(&cell.moving_objects.iter().map(|m| ObjectId(m.object)).collect::<Vec<_>>()),
+            .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>()),
             tracks: cell.robots.iter().map(track).collect(),
             objects: cell.moving_objects.iter().map(|m| object_track(cell, m)).collect(),
             checked_s: 0.0,
@@ -240,7 +256,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn is_silent(&self, robot: usize, t_s: f64) -> bool {
-        self.options.silent_from.iter().any(|(r, from)| *r == robot && t_s >= *from)
+        self.options.is_silent(RobotId(robot), t_s)
     }
 
     fn event(&mut self, t_s: f64, robot: usize, region: &str, event: RunEvent) {
@@ -308,7 +324,7 @@ impl<'a> Simulation<'a> {
             let state = &mut self.states[i];
             state.q.copy_from_slice(&clock.point().q);
             // A silent robot is assumed to be stationary.
-            let is_silent = self.options.silent_from.iter().any(|(r, from)| *r == i && t_s >= *from);
+            let is_silent = self.options.is_silent(RobotId(i), t_s);
             let scale = if is_silent { 0.0 } else { 1.0 };
             state.qd.iter_mut().zip(clock.velocity()).for_each(|(to, v)| *to = v * scale);
             state.qdd.iter_mut().zip(clock.acceleration()).for_each(|(to, v)| *to = v * scale);
@@ -330,13 +346,13 @@ impl<'a> Simulation<'a> {
                 self.event(
                     t_s,
                     robot,
-                    &cell.regions[region].region.name,
+                    &cell.regions[region.0].region.name,
                     if active { RunEvent::On } else { RunEvent::Off },
                 );
                 for (setup, monitor) in self.setups.iter().zip(&mut self.monitors) {
                     let Some(local) = setup.regions.iter().position(|r| *r == region) else { continue };
                     // The cell file refuses switching of permanent regions, so this cannot fail.
-                    let _ = monitor.switch(elbowroom_monitor::RegionId(local), active, AccessClass::Programmer);
+                    let _ = monitor.switch(RegionId(local), active, AccessClass::Programmer);
                 }
             }
         }
@@ -356,7 +372,9 @@ impl<'a> Simulation<'a> {
             intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |a| a.intent(clock))),
             sources: &sources,
         };
-        let Some(snapshot) = self.fault_injector.apply(i, &snapshot) else { return self.record_without_input(i, t_s) };
+        let Some(snapshot) = self.fault_injector.apply(RobotId(i), &snapshot) else {
+            return self.record_without_input(i, t_s);
+        };
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
@@ -368,10 +386,13 @@ impl<'a> Simulation<'a> {
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
         let distance_m = region.and(report.governing).map(|g| g.distance_m);
-        let reason = if self.options.apply_override { report.reason } else { OverrideReason::Free };
+        // The monitor counts its own regions, a recording those of the cell.
+        let in_cell = |r: RegionId| RegionId(self.setups[i].regions[r.0].0);
+        let reason =
+            if self.options.apply_override { report.reason.with_region(in_cell) } else { OverrideReason::Free };
         self.record(i, t_s, applied, region, distance_m, reason);
         if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
-            let region = region.map_or("", |r| self.cell.regions[r].region.name.as_str());
+            let region = region.map_or("", |r| self.cell.regions[r.0].region.name.as_str());
             self.event(t_s, i, region, event);
         }
         if self.stop_states[i].stopped {
@@ -386,7 +407,7 @@ impl<'a> Simulation<'a> {
             if matches!(e.kind, EventKind::On | EventKind::Off) {
                 continue;
             }
-            let region = e.region.map(|r| self.cell.regions[self.setups[i].regions[r.0]].region.name.clone());
+            let region = e.region.map(|r| self.cell.regions[self.setups[i].regions[r.0].0].region.name.clone());
             let region = region.unwrap_or_default();
             self.events.push(EventRow { t_s, robot: robot.clone(), region, event: RunEvent::Monitor(e.kind) });
         }
@@ -399,7 +420,7 @@ impl<'a> Simulation<'a> {
 
     /// Records a tick without input of the monitor.
     fn record_without_input(&mut self, i: usize, t_s: f64) {
-        if self.options.apply_override && !self.fault_injector.keeps_last_override(i, t_s) {
+        if self.options.apply_override && !self.fault_injector.keeps_last_override(RobotId(i), t_s) {
             self.applied[i] = 0.0;
         }
         self.record(i, t_s, self.applied[i], None, None, OverrideReason::Fault(elbowroom_monitor::Fault::Stale));
@@ -410,11 +431,11 @@ impl<'a> Simulation<'a> {
         i: usize,
         t_s: f64,
         speed_override: f64,
-        region: Option<usize>,
+        region: Option<CellRegionId>,
         distance_m: Option<f64>,
         reason: OverrideReason,
     ) {
-        let (tcp, tcp_speed) = self.frames.tcp(i, &self.states[i]);
+        let (tcp, tcp_speed) = self.frames.tcp(RobotId(i), &self.states[i]);
         // Off its path a robot does not move by its program's time.
         let off_path = self.avoiding[i].as_ref().is_some_and(|a| !a.is_on_path());
         let rate = if off_path { 1.0 } else { self.clocks[i].rate() };
@@ -428,7 +449,7 @@ impl<'a> Simulation<'a> {
             scratch.q.copy_from_slice(&self.states[i].q);
             scratch.qd.copy_from_slice(&self.clocks[i].point().dq);
             self.cell.robots[i].robot.chain.forward_motion(scratch);
-            self.frames.tcp(i, &self.scratch[i]).1
+            self.frames.tcp(RobotId(i), &self.scratch[i]).1
         };
         let track = &mut self.tracks[i];
         track.min_override = track.min_override.min(speed_override);
@@ -456,7 +477,7 @@ impl<'a> Simulation<'a> {
             .moving_objects
             .iter()
             .zip(&motions)
-            .map(|(m, motion)| MovedObject { object: ObjectId(m.object), path: motion, jumps: motion.jumps() })
+            .map(|(m, motion)| MovedObject { object: m.object, path: motion, jumps: motion.jumps() })
             .collect();
         objects.iter_mut().zip(&cell.moving_objects).for_each(|(track, m)| track.poses.push(m.pose(t_s)));
         let name = |m: GeometryId| match m {
@@ -533,7 +554,8 @@ impl<'a> Simulation<'a> {
         for (i, track) in robots.iter_mut().enumerate() {
             // Collisions within one tick are found in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
-            let region = track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r].region.name.as_str());
+            let region =
+                track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r.0].region.name.as_str());
             let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
@@ -558,7 +580,7 @@ impl<'a> Simulation<'a> {
 }
 
 fn object_track(cell: &Cell, moving_object: &MovingObject) -> ObjectTrack {
-    ObjectTrack { name: cell.objects[moving_object.object].name.clone(), poses: Vec::new() }
+    ObjectTrack { name: cell.objects[moving_object.object.0].name.clone(), poses: Vec::new() }
 }
 
 /// Time of a tick, s, rounded to nanoseconds.

@@ -2,9 +2,10 @@
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::trajectory::volume_motion_bounds;
-use elbowroom_cell::{Cell, Frames};
+use elbowroom_cell::{Cell, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep};
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
 use crate::recording::{RegionPoses, RegionTrack, Span};
@@ -29,9 +30,9 @@ pub(super) struct RegionRecorder<'a> {
 
 /// Observes one robot at one region.
 struct RegionObserver {
-    robot: usize,
+    robot: RobotId,
     local: RegionId,
-    region: usize,
+    region: CellRegionId,
     /// The last measured distance; `None` where there is none.
     measured: Option<MeasuredDistance>,
     /// A proven distance at the last tick, m; `None` where the region was inactive or there was no tick.
@@ -66,7 +67,7 @@ impl<'a> RegionRecorder<'a> {
             .enumerate()
             .flat_map(|(robot, setup)| {
                 setup.regions.iter().enumerate().map(move |(local, region)| RegionObserver {
-                    robot,
+                    robot: RobotId(robot),
                     local: RegionId(local),
                     region: *region,
                     measured: None,
@@ -81,8 +82,8 @@ impl<'a> RegionRecorder<'a> {
     }
 
     /// Switches a region; false where it had this state already.
-    pub fn switch(&mut self, region: usize, t_s: f64, active: bool) -> bool {
-        let list = &mut self.tracks[region].active;
+    pub fn switch(&mut self, region: CellRegionId, t_s: f64, active: bool) -> bool {
+        let list = &mut self.tracks[region.0].active;
         if list.last().is_some_and(|last| last.1 == active) {
             return false;
         }
@@ -106,10 +107,11 @@ impl<'a> RegionRecorder<'a> {
         }
         self.warned.fill(false);
         for observer in &mut self.observers {
-            let track = &mut self.tracks[observer.region];
-            let region = &self.cell.regions[observer.region];
-            let (sweep, config) = (&mut self.sweeps[observer.robot], &self.setups[observer.robot].configuration);
-            let distances = if monitors[observer.robot].is_active(observer.local) {
+            let track = &mut self.tracks[observer.region.0];
+            let region = &self.cell.regions[observer.region.0];
+            let robot = observer.robot.0;
+            let (sweep, config) = (&mut self.sweeps[robot], &self.setups[robot].configuration);
+            let distances = if monitors[robot].is_active(observer.local) {
                 observer.measure(sweep, config, track, region.follow.is_some())
             } else {
                 observer.before_m = None;
@@ -122,8 +124,8 @@ impl<'a> RegionRecorder<'a> {
                 track.min_distance_m = Some(track.min_distance_m.map_or(d, |m| m.min(d)));
             }
             let exchange = matches!(region.region.kind, RegionKind::Exchange { .. });
-            track.entered |= (inside || passed) && !(exchange && monitors[observer.robot].holds(observer.local));
-            self.warned[observer.region] |= warned || distances.passed_m.is_some();
+            track.entered |= (inside || passed) && !(exchange && monitors[robot].holds(observer.local));
+            self.warned[observer.region.0] |= warned || distances.passed_m.is_some();
             // A region that was passed through was occupied for a part of the tick; the recording has the whole tick.
             let tick_span = Span { robot: observer.robot, from_s: before_s, to_s: t_s };
             if distances.passed_m.is_some() && !warned && observer.warned_since.is_none() {
@@ -142,7 +144,7 @@ impl<'a> RegionRecorder<'a> {
 
     pub fn finish(mut self, t_s: f64) -> Vec<RegionTrack> {
         for observer in &mut self.observers {
-            let track = &mut self.tracks[observer.region];
+            let track = &mut self.tracks[observer.region.0];
             span(&mut observer.warned_since, false, t_s, observer.robot, &mut track.warning_spans);
             span(&mut observer.inside_since, false, t_s, observer.robot, &mut track.inside_spans);
         }
@@ -190,7 +192,7 @@ impl RegionObserver {
     }
 }
 
-fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: usize, spans: &mut Vec<Span>) {
+fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: RobotId, spans: &mut Vec<Span>) {
     match (*since, now) {
         (None, true) => *since = Some(t_s),
         (Some(from_s), false) => {

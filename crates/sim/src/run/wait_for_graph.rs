@@ -2,7 +2,7 @@
 //! exchange region is blocked by a region that the robot waiting for it carries.
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::{Cell, Follow};
+use elbowroom_cell::{Cell, CellRegionId, Follow};
 use elbowroom_monitor::{RegionKind, RobotSlot, ZoneArbiter};
 
 use super::outcome::stopped_at;
@@ -12,7 +12,7 @@ use crate::recording::{Deadlock, RobotTrack};
 /// Why a stopped, unfinished robot cannot continue.
 #[derive(Debug)]
 struct Blocked {
-    region: usize,
+    region: CellRegionId,
     /// The robots that would have to move first.
     by: Vec<usize>,
 }
@@ -82,7 +82,7 @@ impl<'a> WaitForGraph<'a> {
     fn deadlock(&self, cycle: &[usize]) -> Deadlock {
         let mut regions: Vec<String> = Vec::new();
         for blocked in cycle.iter().filter_map(|r| self.blocked[*r].as_ref()) {
-            let name = &self.cell.regions[blocked.region].region.name;
+            let name = &self.cell.regions[blocked.region.0].region.name;
             if !regions.contains(name) {
                 regions.push(name.clone());
             }
@@ -98,10 +98,10 @@ fn blockers(
     setup: &MonitorSetup,
     arbiter: Option<&ZoneArbiter>,
     robot: usize,
-    region: usize,
+    region: CellRegionId,
 ) -> Vec<usize> {
-    let carrier = match cell.regions[region].follow {
-        Some(Follow::Robot { robot, .. }) => Some(robot),
+    let carrier = match cell.regions[region.0].follow {
+        Some(Follow::Robot { robot, .. }) => Some(robot.0),
         _ => None,
     };
     let local = setup.regions.iter().position(|r| *r == region);

@@ -23,13 +23,15 @@ pub(super) struct VoxelGrid {
 /// Bits per axis of a key; indices stay away from the ends of the range, so that neighbours do not wrap.
 const BITS: u32 = 21;
 const HALF: f64 = (1 << (BITS - 1)) as f64;
+/// First length of the table, a power of two; it grows with the cloud.
+const FIRST_SLOTS: usize = 1 << 10;
 
 impl VoxelGrid {
     pub(super) fn clear(&mut self) {
         self.list.clear();
         self.table.fill(0);
         if self.table.is_empty() {
-            self.table.resize(1 << 10, 0);
+            self.table.resize(FIRST_SLOTS, 0);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Random faults of the input of the monitors.
 
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind};
 
 use crate::fuzz_cells::random::Random;
@@ -26,7 +27,7 @@ pub fn add(spec: &mut CellSpec, random: &mut Random) {
                 }
                 _ => InputFaultKind::NotANumber,
             };
-            spec.faults.push(InputFault { robot, from_s, to_s, kind });
+            spec.faults.push(InputFault { robot: RobotId(robot), from_s, to_s, kind });
             from_s = to_s;
         }
     }

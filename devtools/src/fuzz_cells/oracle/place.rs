@@ -50,17 +50,17 @@ impl Place {
                 let in_link = Frame::of(in_link);
                 let radius = in_link.then(&at).at.length() + solid.reach_from(Vec3::ZERO);
                 Carrier::Robot {
-                    robot: *robot,
+                    robot: robot.0,
                     link: link.0,
                     in_link,
-                    lever_arms: arms[*robot].lever_arms(link.0, radius),
+                    lever_arms: arms[robot.0].lever_arms(link.0, radius),
                 }
             }
         };
         Ok(Self {
             solid,
             guards: r.region.guards,
-            robots: r.robots.clone(),
+            robots: r.robots.iter().map(|robot| robot.0).collect(),
             kind: r.region.kind,
             at,
             carrier,
