@@ -81,7 +81,7 @@
 //!
 //! # A collision-free path
 //!
-//! RRT-Connect for any number of joints, on the exact scene; every segment is proven by continuous collision detection:
+//! Found by RRT-Connect, for any number of joints, on the exact scene; continuous collision detection proves every segment:
 //!
 //! ```
 //! use elbowroom::prelude::*;
