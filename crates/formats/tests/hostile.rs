@@ -153,3 +153,14 @@ fn overflowing_counts_are_refused() {
         assert!(run("gltf", text.replace("\"count\":3", &format!("\"count\":{count}")).as_bytes()).is_err());
     }
 }
+
+/// A primitive that is left out would be free space.
+#[test]
+fn a_primitive_of_an_unknown_mode_is_refused() {
+    let text = String::from_utf8(samples("gltf").remove(0)).unwrap();
+    for mode in ["7", "4294967295"] {
+        let error = run("gltf", text.replace("\"mode\":5", &format!("\"mode\":{mode}")).as_bytes()).unwrap_err();
+        assert!(error.what.contains(&format!("has the mode {mode}, which does not exist")), "{}", error.what);
+    }
+    assert!(run("gltf", text.replace("\"mode\":5", "\"mode\":1").as_bytes()).is_ok());
+}
