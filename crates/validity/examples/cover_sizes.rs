@@ -1,0 +1,32 @@
+//! Sphere covers of a robot's links: number of spheres and time.
+//!
+//! `cargo run --release -p elbowroom-validity --example cover_sizes -- ROBOT.urdf [SLACK_MM]`
+
+use std::time::Instant;
+
+use elbowroom_formats::robot::{LoadOptions, load};
+use elbowroom_validity::SphereCover;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("a URDF file is missing")?;
+    let slack_m = arguments.next().map_or(Ok(5.0), |s| s.parse::<f64>())? / 1000.0;
+    let robot = load(path.as_ref(), &LoadOptions::default())?.robot;
+    let all = Instant::now();
+    let mut total = 0;
+    for link in robot.links_with_colliders() {
+        let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
+        let begin = Instant::now();
+        let Some(cover) = SphereCover::new(&shapes, slack_m) else { continue };
+        total += cover.outer.len();
+        println!(
+            "{:<28} outer {:>5}, inner {:>3}, {:>7.1} ms",
+            robot.chain.links()[link.0],
+            cover.outer.len(),
+            cover.inner.len(),
+            begin.elapsed().as_secs_f64() * 1e3
+        );
+    }
+    println!("{total} outer spheres, {:.0} ms", all.elapsed().as_secs_f64() * 1e3);
+    Ok(())
+}

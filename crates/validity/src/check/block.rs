@@ -1,0 +1,290 @@
+//! The kernel: a block of sixteen configurations against obstacles and against itself.
+
+#![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
+
+use fearless_simd::{Simd, f32x16, prelude::*};
+
+use super::workspace::Workspace;
+use crate::lanes::V3;
+use crate::model::{BodyPair, CoveredRobot, SphereNode};
+use crate::obstacles::{Bounds, BoxTree, ObstacleSet, RoundedSolid};
+
+/// What a block is tested for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BlockRequest {
+    /// True where neighbouring lanes are configurations on one straight segment, and the motion between them counts, too.
+    pub chords: bool,
+    /// One bit per lane that counts.
+    pub active: u32,
+}
+
+/// What was found, one bit per lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct BlockResult {
+    /// Configurations at which a sphere touches something.
+    pub touching: u32,
+    /// Configurations from which the motion to the next is not proven free, though neither end touches anything.
+    pub unproven: u32,
+}
+
+impl BlockResult {
+    /// True where all that counts is proven free.
+    pub fn is_free(self) -> bool {
+        self.touching == 0 && self.unproven == 0
+    }
+}
+
+/// Two things that are not certainly apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum NearPair {
+    /// Entries of the bodies.
+    Bodies(u32, u32),
+    /// A body and an obstacle's number.
+    Obstacle(u32, u32),
+}
+
+/// A robot among obstacles.
+#[derive(Clone, Copy)]
+pub(crate) struct BlockModel<'m> {
+    pub robot: &'m CoveredRobot,
+    pub obstacles: &'m ObstacleSet,
+    pub tree: &'m BoxTree,
+    /// Per body and obstacle, true where the pair is not checked; empty where every pair is.
+    pub skipped: &'m [bool],
+}
+
+/// Margins of a pair of spheres or of a sphere and an obstacle.
+#[derive(Clone, Copy)]
+struct Reach {
+    /// Sum of both radii.
+    radius: f32,
+    half_chord: f32,
+    sag: f32,
+}
+
+impl BlockModel<'_> {
+    /// Tests the block whose joint values are in the workspace. Stops as soon as the answer is known: where chords count, at the
+    /// first lane that touches, otherwise when all lanes do.
+    #[inline(always)]
+    pub fn check<S: Simd>(
+        &self,
+        simd: S,
+        workspace: &mut Workspace,
+        request: BlockRequest,
+        pairs: Option<&mut Vec<NearPair>>,
+    ) -> BlockResult {
+        workspace.begin_block();
+        self.robot.chain.forward(simd, &workspace.values, &mut workspace.frames);
+        let mut kernel = Kernel { simd, model: *self, workspace, request, result: BlockResult::default(), pairs };
+        kernel.obstacles();
+        if !kernel.is_done() {
+            kernel.self_collision();
+        }
+        let BlockResult { touching, unproven } = kernel.result;
+        BlockResult { touching: touching & request.active, unproven: unproven & request.active }
+    }
+}
+
+struct Kernel<'k, 'm, 'p, S: Simd> {
+    simd: S,
+    model: BlockModel<'m>,
+    workspace: &'k mut Workspace,
+    request: BlockRequest,
+    result: BlockResult,
+    /// Where given, every pair is listed and nothing ends early.
+    pairs: Option<&'p mut Vec<NearPair>>,
+}
+
+impl<S: Simd> Kernel<'_, '_, '_, S> {
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        let touching = self.result.touching & self.request.active;
+        self.pairs.is_none() && (touching == self.request.active || (self.request.chords && touching != 0))
+    }
+
+    #[inline(always)]
+    fn obstacles(&mut self) {
+        let robot = self.model.robot;
+        for (index, body) in robot.bodies.iter().enumerate() {
+            if body.frame == 0 {
+                continue;
+            }
+            for &root in &body.broad_phase {
+                self.obstacles_near(index, root);
+                if self.is_done() {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The broad phase of a node, and what is below it against the obstacles that are found.
+    #[inline(always)]
+    fn obstacles_near(&mut self, body: usize, root: u32) {
+        let node = &self.model.robot.nodes[root as usize];
+        let half_chord = self.workspace.half_chord_m[body];
+        let centre = self.workspace.centre(self.simd, self.model.robot, root);
+        let bounds = bounds(centre, node.radius + half_chord);
+        let mut found = std::mem::take(&mut self.workspace.found);
+        self.model.tree.overlapping(self.simd, &bounds, &mut self.workspace.open, &mut found);
+        for &obstacle in &found {
+            let source = self.model.obstacles.outer_source[obstacle as usize];
+            let skipped = self.model.skipped;
+            if !skipped.is_empty() && skipped[body * self.model.obstacles.len() + source as usize] {
+                continue;
+            }
+            if self.tree_against(body, root, &self.model.obstacles.outer[obstacle as usize]) {
+                self.note(NearPair::Obstacle(body as u32, source));
+            }
+            if self.is_done() {
+                break;
+            }
+        }
+        self.workspace.found = found;
+    }
+
+    #[inline(always)]
+    fn note(&mut self, pair: NearPair) {
+        if let Some(pairs) = &mut self.pairs {
+            pairs.push(pair);
+        }
+    }
+
+    /// Descends from a node to the spheres near an obstacle. True where one is not proven apart.
+    #[inline(always)]
+    fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid) -> bool {
+        let (simd, robot) = (self.simd, self.model.robot);
+        let (half_chord, sag) = (self.workspace.half_chord_m[body], self.workspace.sag_m[body]);
+        let end = robot.nodes[root as usize].end;
+        let mut is_near = false;
+        let mut at = root;
+        while at < end {
+            let node = &robot.nodes[at as usize];
+            let centre = self.workspace.centre(simd, robot, at);
+            let from = obstacle.from_core(simd, centre);
+            let reach = Reach { radius: node.radius + obstacle.radius, half_chord, sag };
+            let near = within(simd, from.vector, reach.radius + reach.half_chord);
+            if near & self.request.active == 0 {
+                at = node.end;
+                continue;
+            }
+            at += 1;
+            if is_leaf(node, at) {
+                let is_apart = self.settle(from.vector, reach, |direction| {
+                    let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
+                    a.min(b) - obstacle.support(simd, direction)
+                });
+                is_near |= !is_apart;
+                if self.is_done() {
+                    return is_near;
+                }
+            }
+        }
+        is_near
+    }
+
+    /// A sphere that is near: records touching lanes and unproven motions. `height` is the least height of both ends of each
+    /// motion over the core, along a direction that is not normalized. True where all is proven apart.
+    #[inline(always)]
+    fn settle(&mut self, vector: V3<S>, reach: Reach, height: impl FnOnce(V3<S>) -> f32x16<S>) -> bool {
+        let touching = within(self.simd, vector, reach.radius) & self.request.active;
+        self.result.touching |= touching;
+        if !self.request.chords || touching != 0 {
+            return touching == 0;
+        }
+        // The mean of the directions at both ends: a plane across it separates the chord from the core, if any does nearly.
+        let direction = vector.plus(vector.next_lane());
+        let height = height(direction);
+        let radius = f32x16::splat(self.simd, reach.radius + reach.sag);
+        let is_above = height.simd_gt(f32x16::splat(self.simd, 0.0));
+        let is_apart = (height * height).simd_ge(radius * radius * direction.dot(direction)) & is_above;
+        let unproven = !(is_apart.to_bitmask() as u32) & self.request.active;
+        self.result.unproven |= unproven;
+        unproven == 0
+    }
+
+    #[inline(always)]
+    fn self_collision(&mut self) {
+        let robot = self.model.robot;
+        for pair in &robot.pairs {
+            if self.bodies_near(pair) {
+                self.note(NearPair::Bodies(pair.a.0 as u32, pair.b.0 as u32));
+            }
+            if self.is_done() {
+                return;
+            }
+        }
+    }
+
+    /// Descends in the trees of two bodies. True where they are not proven apart.
+    #[inline(always)]
+    fn bodies_near(&mut self, pair: &BodyPair) -> bool {
+        let (simd, robot) = (self.simd, self.model.robot);
+        let (a, b) = (&robot.bodies[pair.a.0], &robot.bodies[pair.b.0]);
+        if a.nodes.is_empty() || b.nodes.is_empty() {
+            return false;
+        }
+        let sum = |v: &[f32]| v[pair.a.0] + v[pair.b.0];
+        let (half_chord, sag) = (sum(&self.workspace.half_chord_m), sum(&self.workspace.sag_m));
+        let mut open = std::mem::take(&mut self.workspace.node_pairs);
+        open.clear();
+        open.push((a.nodes.start, b.nodes.start));
+        let mut is_near = false;
+        while let Some((i, j)) = open.pop() {
+            let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);
+            let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
+            let reach = Reach { radius: m.radius + n.radius + pair.margin_m, half_chord, sag };
+            if within(simd, from_b, reach.radius + half_chord) & self.request.active == 0 {
+                continue;
+            }
+            match (is_leaf(m, i + 1), is_leaf(n, j + 1)) {
+                (true, true) => {
+                    let is_apart =
+                        self.settle(from_b, reach, |d| d.dot(from_b).min(d.dot(from_b.next_lane())));
+                    is_near |= !is_apart;
+                    if self.is_done() {
+                        break;
+                    }
+                }
+                // The larger one is divided.
+                (leaf, other) if !leaf && (other || m.radius >= n.radius) => {
+                    push_children(robot, i, |child| open.push((child, j)));
+                }
+                _ => push_children(robot, j, |child| open.push((i, child))),
+            }
+        }
+        self.workspace.node_pairs = open;
+        is_near
+    }
+}
+
+/// Calls `push` with the children of a node.
+#[inline(always)]
+fn push_children(robot: &CoveredRobot, parent: u32, mut push: impl FnMut(u32)) {
+    let end = robot.nodes[parent as usize].end;
+    let mut child = parent + 1;
+    while child < end {
+        push(child);
+        child = robot.nodes[child as usize].end;
+    }
+}
+
+#[inline(always)]
+fn is_leaf(node: &SphereNode, next: u32) -> bool {
+    node.end == next
+}
+
+/// One bit per lane whose vector is shorter than a length; NaN counts.
+#[inline(always)]
+fn within<S: Simd>(simd: S, vector: V3<S>, length: f32) -> u32 {
+    let is_beyond = vector.dot(vector).simd_ge(f32x16::splat(simd, length * length));
+    !(is_beyond.to_bitmask() as u32) & 0xffff
+}
+
+/// A box around all lanes, enlarged.
+#[inline(always)]
+fn bounds<S: Simd>(v: V3<S>, margin: f32) -> Bounds {
+    let axis = |v: f32x16<S>| (v.reduce_min() - margin, v.reduce_max() + margin);
+    let (x, y, z) = (axis(v.0), axis(v.1), axis(v.2));
+    Bounds { min: [x.0, y.0, z.0], max: [x.1, y.1, z.1] }
+}

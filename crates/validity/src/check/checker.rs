@@ -1,0 +1,281 @@
+//! The validity checker.
+
+use fearless_simd::{Level as SimdLevel, dispatch};
+
+use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
+use super::segment::{Stretch, displacement_m};
+use super::workspace::Workspace;
+use crate::error::ValidityError;
+use crate::lanes::{LANES, detected_simd_level};
+use crate::model::{BodyId, CoveredRobot};
+use crate::obstacles::{BoxTree, ObstacleSet};
+use crate::validity::Validity;
+
+/// Motion of the robot's fastest point within one block of an edge, m. Longer edges are tested block by block from the start.
+const BLOCK_LENGTH_M: f64 = 1.2;
+/// A stretch whose chords are shorter than this and not proven free is not divided further, m.
+const SHORTEST_CHORD_M: f64 = 0.004;
+
+/// Two things that are not proven apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum NotCertain {
+    /// Two bodies of the robot.
+    Bodies(BodyId, BodyId),
+    /// A body and the number of an obstacle.
+    Obstacle(BodyId, usize),
+}
+
+/// Answers whether configurations and edges of a robot are free; each thread has its own.
+///
+/// Free and hit are proven: no rounding, no sample between two others and no gap of a cover makes a collision free. Assumes that
+/// prismatic joints are within their limits.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// use elbowroom_validity::{CoveredRobot, ObstacleSet, Validity, ValidityChecker};
+/// let arm = CoveredRobot::new(&elbowroom_robot::example::arm()?, Pose::IDENTITY)?;
+/// let mut obstacles = ObstacleSet::default();
+/// obstacles.add_shape(&Shape::Sphere(Sphere { radius: 0.1 }), &Pose::from_translation(Vec3::X * 5.0), 0.0);
+/// let mut checker = ValidityChecker::new(&arm, &obstacles);
+/// let (from, to) = (vec![0.0; arm.dof()], vec![0.3; arm.dof()]);
+/// assert_eq!(checker.state(&from)?, Validity::Free);
+/// assert!(checker.edge_is_free(&from, &to)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ValidityChecker<'m> {
+    robot: &'m CoveredRobot,
+    obstacles: &'m ObstacleSet,
+    outer: BoxTree,
+    inner: BoxTree,
+    /// Per body and obstacle, true where the pair is not checked; empty where all are.
+    skipped: Vec<bool>,
+    workspace: Workspace,
+    pairs: Vec<NearPair>,
+    simd_level: SimdLevel,
+    blocks: u64,
+}
+
+impl<'m> ValidityChecker<'m> {
+    /// A checker of a robot among obstacles.
+    pub fn new(robot: &'m CoveredRobot, obstacles: &'m ObstacleSet) -> Self {
+        let tree = |solids: &[crate::obstacles::RoundedSolid]| {
+            BoxTree::new(&solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect::<Vec<_>>())
+        };
+        Self {
+            robot,
+            obstacles,
+            outer: tree(&obstacles.outer),
+            inner: tree(&obstacles.inner),
+            skipped: Vec::new(),
+            workspace: Workspace::new(robot),
+            pairs: Vec::new(),
+            simd_level: detected_simd_level(),
+            blocks: 0,
+        }
+    }
+
+    /// With an instruction set other than the best of this processor. Answers do not depend on it.
+    #[must_use]
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.simd_level = level;
+        self
+    }
+
+    /// A body and an obstacle that may touch.
+    pub fn skip(&mut self, body: BodyId, obstacle: usize) {
+        let count = self.obstacles.len();
+        if body.0 < self.robot.bodies.len() && obstacle < count {
+            self.skipped.resize(self.robot.bodies.len() * count, false);
+            self.skipped[body.0 * count + obstacle] = true;
+        }
+    }
+
+    /// Blocks of sixteen configurations that were tested.
+    pub fn blocks(&self) -> u64 {
+        self.blocks
+    }
+
+    /// Whether a configuration (rad, m for prismatic joints) is free.
+    ///
+    /// # Errors
+    /// Too few or too many values. Values that are NaN or infinite are uncertain.
+    pub fn state(&mut self, q: &[f64]) -> Result<Validity, ValidityError> {
+        self.expect_count(q)?;
+        let mut answer = [Validity::Uncertain];
+        self.block_of_states(q, &mut answer);
+        Ok(answer[0])
+    }
+
+    /// Whether each of several configurations is free; `q` has their values one after the other.
+    ///
+    /// # Errors
+    /// A number of values that is no multiple of the robot's.
+    pub fn states(&mut self, q: &[f64], answers: &mut Vec<Validity>) -> Result<(), ValidityError> {
+        let dof = self.robot.dof();
+        if dof == 0 || !q.len().is_multiple_of(dof) {
+            return Err(ValidityError::WrongCount { found: q.len(), expected: dof });
+        }
+        answers.clear();
+        answers.resize(q.len() / dof, Validity::Uncertain);
+        for (block, out) in q.chunks(LANES * dof).zip(answers.chunks_mut(LANES)) {
+            self.block_of_states(block, out);
+        }
+        Ok(())
+    }
+
+    /// True where the straight segment in joint space between two configurations is proven free. False proves nothing.
+    ///
+    /// # Errors
+    /// Too few or too many values. Values that are NaN or infinite are not free.
+    pub fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> Result<bool, ValidityError> {
+        self.expect_count(from)?;
+        self.expect_count(to)?;
+        Ok(self.segment(from, to))
+    }
+
+    /// The pairs that are not proven apart on a segment, each once; empty where it is proven free. The answer is complete: the
+    /// segment is free where these pairs are.
+    ///
+    /// # Errors
+    /// As [`edge_is_free`](Self::edge_is_free).
+    pub fn uncertain_pairs(
+        &mut self,
+        from: &[f64],
+        to: &[f64],
+        found: &mut Vec<NotCertain>,
+    ) -> Result<(), ValidityError> {
+        self.expect_count(from)?;
+        self.expect_count(to)?;
+        found.clear();
+        let blocks = self.block_count(from, to).saturating_mul(4);
+        for i in 0..blocks {
+            let share = |i: usize| i as f64 / blocks as f64;
+            let stretch = Stretch { from, to, begin: share(i), end: share(i + 1) };
+            self.pairs.clear();
+            if !self.workspace.set_stretch(self.robot, &stretch) || self.obstacles.has_unknown {
+                self.every_pair(found);
+                return Ok(());
+            }
+            let mut pairs = std::mem::take(&mut self.pairs);
+            self.run(BlockRequest { chords: true, active: 0xffff }, Some(&mut pairs));
+            found.extend(pairs.iter().map(public));
+            self.pairs = pairs;
+        }
+        found.sort_unstable();
+        found.dedup();
+        Ok(())
+    }
+
+    fn every_pair(&self, found: &mut Vec<NotCertain>) {
+        found.clear();
+        for (b, body) in self.robot.bodies.iter().enumerate() {
+            if body.frame != 0 {
+                found.extend((0..self.obstacles.len()).map(|o| NotCertain::Obstacle(BodyId(b), o)));
+            }
+        }
+        found.extend(self.robot.pairs.iter().map(|p| NotCertain::Bodies(p.a, p.b)));
+    }
+
+    fn expect_count(&self, q: &[f64]) -> Result<(), ValidityError> {
+        let expected = self.robot.dof();
+        if q.len() == expected { Ok(()) } else { Err(ValidityError::WrongCount { found: q.len(), expected }) }
+    }
+
+    fn block_of_states(&mut self, q: &[f64], answers: &mut [Validity]) {
+        let dof = self.robot.dof();
+        answers.fill(Validity::Uncertain);
+        if self.obstacles.has_unknown {
+            return;
+        }
+        let mut active = 0;
+        let mut padding = None;
+        for lane in 0..answers.len() {
+            let values = &q[lane * dof..(lane + 1) * dof];
+            if self.workspace.set_lane(self.robot, lane, values) {
+                active |= 1 << lane;
+                padding.get_or_insert(values);
+            }
+        }
+        let Some(padding) = padding else { return };
+        // Lanes that do not count repeat one that does.
+        for lane in (0..LANES).filter(|lane| active >> lane & 1 == 0) {
+            self.workspace.set_lane(self.robot, lane, padding);
+        }
+        self.workspace.set_no_motion();
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        let result = self.run(BlockRequest { chords: false, active }, Some(&mut pairs));
+        let hits = if result.touching == 0 { 0 } else { self.hits(&pairs) };
+        self.pairs = pairs;
+        for (lane, answer) in answers.iter_mut().enumerate().filter(|(lane, _)| active >> lane & 1 == 1) {
+            *answer = match (result.touching >> lane & 1, hits >> lane & 1) {
+                (0, _) => Validity::Free,
+                (_, 0) => Validity::Uncertain,
+                _ => Validity::Hit,
+            };
+        }
+    }
+
+    fn block_count(&self, from: &[f64], to: &[f64]) -> usize {
+        let blocks = (displacement_m(self.robot, from, to) / BLOCK_LENGTH_M).ceil();
+        // NaN counts as 1: the block rejects it.
+        if blocks > 1.0 { blocks.min(1e6) as usize } else { 1 }
+    }
+
+    fn segment(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let blocks = self.block_count(from, to);
+        let share = |i: usize| i as f64 / blocks as f64;
+        let length_m = displacement_m(self.robot, from, to);
+        (0..blocks).all(|i| self.stretch(&Stretch { from, to, begin: share(i), end: share(i + 1) }, length_m))
+    }
+
+    /// Tests a stretch in one block; where only the motion between its lanes is not proven, each half in a block of its own.
+    fn stretch(&mut self, stretch: &Stretch, length_m: f64) -> bool {
+        if self.obstacles.has_unknown || !self.workspace.set_stretch(self.robot, stretch) {
+            return false;
+        }
+        let result = self.run(BlockRequest { chords: true, active: 0xffff }, None);
+        if result.is_free() {
+            return true;
+        }
+        let chord_m = length_m * (stretch.end - stretch.begin) / LANES as f64;
+        if result.touching != 0 || !(chord_m > SHORTEST_CHORD_M) {
+            return false;
+        }
+        let middle = 0.5 * (stretch.begin + stretch.end);
+        self.stretch(&Stretch { end: middle, ..*stretch }, length_m)
+            && self.stretch(&Stretch { begin: middle, ..*stretch }, length_m)
+    }
+
+    fn run(&mut self, request: BlockRequest, pairs: Option<&mut Vec<NearPair>>) -> BlockResult {
+        self.blocks += 1;
+        let model = BlockModel {
+            robot: self.robot,
+            obstacles: self.obstacles,
+            tree: &self.outer,
+            skipped: &self.skipped,
+        };
+        let workspace = &mut self.workspace;
+        dispatch!(self.simd_level, simd => model.check(simd, workspace, request, pairs))
+    }
+
+    fn hits(&mut self, pairs: &[NearPair]) -> u32 {
+        let model = BlockModel {
+            robot: self.robot,
+            obstacles: self.obstacles,
+            tree: &self.outer,
+            skipped: &self.skipped,
+        };
+        let (inner, workspace) = (&self.inner, &mut self.workspace);
+        dispatch!(self.simd_level, simd => model.hits(simd, inner, workspace, pairs))
+    }
+}
+
+fn public(pair: &NearPair) -> NotCertain {
+    match *pair {
+        NearPair::Bodies(a, b) => NotCertain::Bodies(BodyId(a as usize), BodyId(b as usize)),
+        NearPair::Obstacle(body, obstacle) => NotCertain::Obstacle(BodyId(body as usize), obstacle as usize),
+    }
+}

@@ -1,0 +1,9 @@
+//! Checks of states and edges of a robot among obstacles.
+
+mod block;
+mod checker;
+mod hits;
+mod segment;
+mod workspace;
+
+pub use checker::{NotCertain, ValidityChecker};

@@ -1,0 +1,77 @@
+//! Memory of a checker.
+
+use crate::lanes::{PointRow, Row};
+use crate::model::{CoveredRobot, FrameLanes};
+
+/// What a check of sixteen configurations writes.
+#[derive(Debug, Clone)]
+pub(crate) struct Workspace {
+    /// Per moving joint, its values.
+    pub values: Vec<Row>,
+    pub frames: Vec<FrameLanes>,
+    /// Per sphere node its centres in the world, where `stamps` has the number of the present block.
+    centres: Vec<PointRow>,
+    stamps: Vec<u32>,
+    stamp: u32,
+    /// Per body, half of the longest chord.
+    pub half_chord_m: Vec<f32>,
+    /// Per body, the largest deviation of a point from its chord.
+    pub sag_m: Vec<f32>,
+    /// Per frame, how much the turning joints that carry it change between lanes, rad.
+    pub turned: Vec<f32>,
+    /// Packs still to visit.
+    pub open: Vec<(u32, u32)>,
+    /// Obstacles found by the broad phase.
+    pub found: Vec<u32>,
+    /// Pairs of nodes still to visit.
+    pub node_pairs: Vec<(u32, u32)>,
+}
+
+impl Workspace {
+    pub fn new(robot: &CoveredRobot) -> Self {
+        let bodies = robot.bodies.len();
+        Self {
+            values: vec![Row::ZERO; robot.chain.steps.len()],
+            frames: robot.chain.frames(),
+            centres: vec![PointRow::ZERO; robot.nodes.len()],
+            stamps: vec![0; robot.nodes.len()],
+            stamp: 0,
+            half_chord_m: vec![0.0; bodies],
+            sag_m: vec![0.0; bodies],
+            turned: vec![0.0; robot.chain.steps.len() + 1],
+            open: Vec::new(),
+            found: Vec::new(),
+            node_pairs: Vec::new(),
+        }
+    }
+
+    /// Configurations that do not belong together: no motion between lanes.
+    pub fn set_no_motion(&mut self) {
+        self.half_chord_m.fill(0.0);
+        self.sag_m.fill(0.0);
+    }
+
+    /// Forgets the centres of the last block.
+    pub fn begin_block(&mut self) {
+        if self.stamp == u32::MAX {
+            self.stamps.fill(0);
+            self.stamp = 0;
+        }
+        self.stamp += 1;
+    }
+
+    /// Centres of a node in the world.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn centre<S: fearless_simd::Simd>(&mut self, simd: S, robot: &CoveredRobot, node: u32) -> crate::lanes::V3<S> {
+        let i = node as usize;
+        if self.stamps[i] == self.stamp {
+            return self.centres[i].load(simd);
+        }
+        let n = &robot.nodes[i];
+        let centre = self.frames[n.frame as usize].point(simd, n.centre);
+        self.stamps[i] = self.stamp;
+        self.centres[i].store(centre);
+        centre
+    }
+}

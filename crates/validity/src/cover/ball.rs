@@ -1,0 +1,65 @@
+//! A ball: centre and radius.
+
+use elbowroom_spatial::Vec3;
+
+/// A ball in the frame of its link or obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// Centre, m.
+    pub centre: Vec3,
+    /// Radius, m.
+    pub radius: f64,
+}
+
+/// Rounding errors of radii and of clipped triangles are below this, m, for solids of up to 100 m.
+pub(crate) const ROUNDING_M: f64 = 1e-9;
+
+impl Ball {
+    /// True where the point lies in the ball.
+    pub fn contains(&self, p: Vec3) -> bool {
+        self.centre.distance(p) <= self.radius
+    }
+
+    /// True where the ball contains an axis-aligned box, with room for rounding errors.
+    pub(crate) fn contains_box(&self, centre: Vec3, half: Vec3) -> bool {
+        farthest_squared(self.centre, centre, half) <= (self.radius - ROUNDING_M).powi(2) && self.radius > ROUNDING_M
+    }
+
+    /// The ball with a centre that single precision represents, enlarged by the distance that the centre moved.
+    pub(crate) fn rounded_up(self) -> Self {
+        let c = self.centre;
+        let centre = Vec3::new(f64::from(c.x as f32), f64::from(c.y as f32), f64::from(c.z as f32));
+        Self { centre, radius: self.radius + c.distance(centre) + ROUNDING_M }
+    }
+}
+
+/// Square of the distance from a point to the farthest corner of a box.
+pub(crate) fn farthest_squared(from: Vec3, centre: Vec3, half: Vec3) -> f64 {
+    ((from - centre).abs() + half).length_squared()
+}
+
+/// A ball that encloses others (Bădoiu, Clarkson: *Smaller core-sets for balls*, 2003, extended to balls). Empty: radius 0.
+pub(crate) fn enclosing(balls: &[Ball]) -> Ball {
+    let Some(first) = balls.first() else { return Ball { centre: Vec3::ZERO, radius: 0.0 } };
+    let mut centre = balls.iter().fold(Vec3::ZERO, |sum, b| sum + b.centre) * (1.0 / balls.len() as f64);
+    if !centre.is_finite() {
+        centre = first.centre;
+    }
+    let reach = |c: Vec3, b: &Ball| c.distance(b.centre) + b.radius;
+    let farthest = |c: Vec3| balls.iter().fold(first, |far, b| if reach(c, b) > reach(c, far) { b } else { far });
+    let mut best = (reach(centre, farthest(centre)), centre);
+    for step in 1..=64 {
+        let far = farthest(centre);
+        let toward = (far.centre - centre).try_normalize().unwrap_or(Vec3::ZERO);
+        // The farthest point of the farthest ball pulls the centre.
+        let pull = far.centre + toward * far.radius - centre;
+        centre = centre + pull * (1.0 / f64::from(step + 1));
+        let radius = reach(centre, farthest(centre));
+        if radius < best.0 {
+            best = (radius, centre);
+        }
+    }
+    let ball = Ball { centre: best.1, radius: best.0 }.rounded_up();
+    let radius = balls.iter().map(|b| reach(ball.centre, b)).fold(0.0, f64::max) + ROUNDING_M;
+    Ball { radius, ..ball }
+}

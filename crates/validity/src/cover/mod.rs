@@ -1,0 +1,74 @@
+//! Sphere covers of solids: outer spheres that enclose a solid, inner spheres that lie in it.
+//!
+//! The outer cover is complete by construction. The solid is divided into voxels; the content of every voxel that the surface
+//! crosses (the clipped triangles and the corners that are not outside) and every voxel inside lies in one sphere of the
+//! cover. A sphere is never larger than the distance of its centre from the surface plus the slack, so that no point of the
+//! cover is farther from the solid than the slack.
+
+mod ball;
+mod inner;
+mod placement;
+mod selection;
+mod surface_voxels;
+mod triangle_slices;
+mod voxel_grid;
+
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::Pose;
+
+pub use ball::Ball;
+pub(crate) use ball::{ROUNDING_M, enclosing};
+
+use self::placement::PlacedShapes;
+use self::selection::CoverSelection;
+use self::voxel_grid::VoxelGrid;
+
+/// Outer and inner spheres of a solid made of shapes.
+///
+/// ```
+/// use elbowroom_proximity::{Cuboid, Shape};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// use elbowroom_validity::SphereCover;
+/// let block = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.05, 0.05) });
+/// let cover = SphereCover::new(&[(&block, Pose::IDENTITY)], 0.005).expect("a bounded solid");
+/// let corner = Vec3::new(0.1, 0.05, 0.05);
+/// assert!(cover.outer.iter().any(|ball| ball.contains(corner)));
+/// assert!(cover.inner.iter().all(|ball| !ball.contains(corner)));
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SphereCover {
+    /// Their union encloses the solid.
+    pub outer: Vec<Ball>,
+    /// Each lies in the solid. None for surfaces that are not closed.
+    pub inner: Vec<Ball>,
+}
+
+impl SphereCover {
+    /// Covers the union of shapes, each with its pose in the frame of the cover. No outer sphere protrudes from the solid by
+    /// more than `slack_m`; gaps in open surfaces count as solid where the surface encloses them.
+    ///
+    /// `None` where a shape is unbounded or has NaN or infinite numbers: no spheres enclose it. No shapes: an empty cover.
+    pub fn new(shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<Self> {
+        let mut cover = Self::default();
+        let mut others = Vec::new();
+        for &(shape, pose) in shapes {
+            if shape.validate().is_err() || !pose.is_finite() || !shape.aabb(&pose).extent().is_finite() {
+                return None;
+            }
+            match shape {
+                Shape::Sphere(s) => {
+                    let ball = Ball { centre: pose.translation, radius: s.radius };
+                    cover.outer.push(ball.rounded_up());
+                    cover.inner.push(ball);
+                }
+                _ => others.push((shape, pose)),
+            }
+        }
+        let placed = PlacedShapes::new(others);
+        if let Some(grid) = VoxelGrid::new(&placed, slack_m) {
+            cover.outer.extend(CoverSelection::new(&placed, &grid, slack_m).run());
+            cover.inner.extend(inner::inner_balls(&placed, &grid));
+        }
+        Some(cover)
+    }
+}

@@ -1,0 +1,107 @@
+//! Bodies: the covers of a robot's links as trees of spheres.
+
+use elbowroom_kinematics::LinkId;
+
+use super::joint_step::{LinkFrame, single};
+use crate::cover::{Ball, ROUNDING_M, enclosing};
+
+/// Children of an inner node.
+const FAN_OUT: usize = 4;
+/// The broad phase tests the nodes of a tree at which the radius has fallen to this, m.
+const BROAD_PHASE_RADIUS_M: f64 = 0.15;
+
+/// A sphere of a tree; it encloses all spheres below it.
+#[derive(Debug, Clone)]
+pub(crate) struct SphereNode {
+    /// In the frame of the body's joint, m.
+    pub centre: [f32; 3],
+    /// m, rounding errors included.
+    pub radius: f32,
+    /// The frame that moves it.
+    pub frame: u32,
+    /// Index of the node after all that are below this one.
+    pub end: u32,
+}
+
+/// A link (or what is attached to it) with a cover.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub link: LinkId,
+    /// Frame of its joint; 0 where none moves it.
+    pub frame: usize,
+    /// Its tree in the list of all nodes; the first is the root.
+    pub nodes: std::ops::Range<u32>,
+    /// Nodes that the broad phase tests; every leaf is below one.
+    pub broad_phase: Vec<u32>,
+    /// Its inner spheres in the list of all.
+    pub inner: std::ops::Range<u32>,
+    /// Per step of the chain: no point of the body moves farther per rad, or per m; 0 where the joint does not move it.
+    pub lever_m: Vec<f32>,
+}
+
+/// Appends the tree of a cover; returns its nodes and those for the broad phase.
+pub(crate) fn push_tree(
+    nodes: &mut Vec<SphereNode>,
+    balls: &[Ball],
+    at: LinkFrame,
+    rounding_m: f64,
+) -> (std::ops::Range<u32>, Vec<u32>) {
+    let first = nodes.len() as u32;
+    let mut in_frame: Vec<Ball> = balls
+        .iter()
+        .map(|b| Ball { centre: at.in_frame.transform_point(b.centre), ..*b }.rounded_up())
+        .map(|b| Ball { radius: b.radius + rounding_m, ..b })
+        .collect();
+    let mut tree = TreeBuilder { nodes, frame: at.frame as u32, broad_phase: Vec::new() };
+    if !in_frame.is_empty() {
+        tree.push(&mut in_frame, false);
+    }
+    let broad_phase = tree.broad_phase;
+    (first..nodes.len() as u32, broad_phase)
+}
+
+struct TreeBuilder<'n> {
+    nodes: &'n mut Vec<SphereNode>,
+    frame: u32,
+    broad_phase: Vec<u32>,
+}
+
+impl TreeBuilder<'_> {
+    /// Appends the tree of some balls; `is_below` is true below a node of the broad phase.
+    fn push(&mut self, balls: &mut [Ball], is_below: bool) {
+        let ball = if let [only] = balls { *only } else { enclosing(balls) };
+        let index = self.nodes.len();
+        // Rounding to single precision never makes it smaller.
+        let radius = ((ball.radius + ROUNDING_M) as f32).next_up();
+        self.nodes.push(SphereNode { centre: single(ball.centre), radius, frame: self.frame, end: 0 });
+        let is_leaf = balls.len() == 1;
+        let is_root = !is_below && (is_leaf || ball.radius <= BROAD_PHASE_RADIUS_M);
+        if is_root {
+            self.broad_phase.push(index as u32);
+        }
+        if !is_leaf {
+            for part in split(balls, FAN_OUT) {
+                self.push(part, is_below || is_root);
+            }
+        }
+        self.nodes[index].end = self.nodes.len() as u32;
+    }
+}
+
+/// Splits balls at medians along the longest axis into at most `parts` groups, none empty.
+fn split(balls: &mut [Ball], parts: usize) -> Vec<&mut [Ball]> {
+    if parts == 1 || balls.len() == 1 {
+        return vec![balls];
+    }
+    let range = |axis: usize| {
+        let values = balls.iter().map(|b| b.centre[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+        high - low
+    };
+    let axis = (0..3).fold(0, |best, k| if range(k) > range(best) { k } else { best });
+    balls.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+    let (low, high) = balls.split_at_mut(balls.len() / 2);
+    let mut groups = split(low, parts / 2);
+    groups.extend(split(high, parts / 2));
+    groups
+}

@@ -1,0 +1,140 @@
+//! Batched forward kinematics: the frames of all moving joints for sixteen configurations at once.
+
+use elbowroom_kinematics::Chain;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+use fearless_simd::{Simd, f32x16, prelude::*};
+
+use super::joint_step::{FixedRotation, JointStep, LinkFrame, axis_rotation, moves, single};
+use crate::lanes::{LANES, PointRow, Row, V3, sin_cos};
+
+/// A chain prepared for batched forward kinematics: fixed joints are folded into the poses of links.
+#[derive(Debug, Clone)]
+pub(crate) struct BatchedChain {
+    /// Moving joints from the root outwards; step `i` moves frame `i + 1`.
+    pub steps: Vec<JointStep>,
+    /// Per link of the chain.
+    pub links: Vec<LinkFrame>,
+    base_in_world: Pose,
+}
+
+/// Poses of frames in the world, one per lane: columns of the rotation, origin.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrameLanes {
+    pub columns: [PointRow; 3],
+    pub origin: PointRow,
+}
+
+impl BatchedChain {
+    pub fn new(chain: &Chain, base_in_world: Pose) -> Self {
+        let root = LinkFrame { frame: 0, in_frame: Pose::IDENTITY };
+        let mut links = vec![root; chain.links().len()];
+        let mut steps = Vec::new();
+        for &id in chain.topological_order() {
+            let joint = &chain.joints()[id.0];
+            let parent = links[joint.parent.0];
+            let at_zero = parent.in_frame * joint.origin;
+            let Some(coupling) = chain.coupling(id).filter(|_| moves(joint.kind)) else {
+                links[joint.child.0] = LinkFrame { frame: parent.frame, in_frame: at_zero };
+                continue;
+            };
+            let axis = axis_rotation(joint.axis);
+            steps.push(JointStep {
+                parent: parent.frame,
+                is_prismatic: !joint.kind.turns(),
+                rotation: FixedRotation::new(at_zero.rotation * axis),
+                translation: single(at_zero.translation),
+                index: coupling.index,
+                multiplier: coupling.multiplier,
+                offset: coupling.offset,
+            });
+            let in_frame = Pose::new(axis.inverse(), Vec3::ZERO);
+            links[joint.child.0] = LinkFrame { frame: steps.len(), in_frame };
+        }
+        Self { steps, links, base_in_world }
+    }
+
+    /// Memory for the frames, the root's in place.
+    pub fn frames(&self) -> Vec<FrameLanes> {
+        vec![constant_frame(&self.base_in_world); self.steps.len() + 1]
+    }
+
+    /// Computes all frames from the values of the joints, one row per step.
+    #[inline(always)]
+    pub fn forward<S: Simd>(&self, simd: S, values: &[Row], frames: &mut [FrameLanes]) {
+        for (i, step) in self.steps.iter().enumerate() {
+            let moved = step.moved(simd, values[i].load(simd), &frames[step.parent]);
+            frames[i + 1] = moved;
+        }
+    }
+}
+
+impl JointStep {
+    #[inline(always)]
+    fn moved<S: Simd>(&self, simd: S, value: f32x16<S>, parent: &FrameLanes) -> FrameLanes {
+        let columns = [parent.columns[0].load(simd), parent.columns[1].load(simd), parent.columns[2].load(simd)];
+        let mut origin = parent.origin.load(simd);
+        for k in 0..3 {
+            if self.translation[k] != 0.0 {
+                origin = columns[k].times_plus(f32x16::splat(simd, self.translation[k]), origin);
+            }
+        }
+        let [mut x, mut y, z] = self.rotation.applied(simd, columns);
+        if self.is_prismatic {
+            origin = z.times_plus(value, origin);
+        } else {
+            let (sin, cos) = sin_cos(simd, value);
+            let negative = f32x16::splat(simd, 0.0) - sin;
+            (x, y) = (sum(x, cos, y, sin), sum(x, negative, y, cos));
+        }
+        let mut frame = FrameLanes { columns: [PointRow::ZERO; 3], origin: PointRow::ZERO };
+        frame.columns[0].store(x);
+        frame.columns[1].store(y);
+        frame.columns[2].store(z);
+        frame.origin.store(origin);
+        frame
+    }
+}
+
+impl FixedRotation {
+    /// Columns of the product of the rotation with these columns and this rotation.
+    #[inline(always)]
+    fn applied<S: Simd>(&self, simd: S, columns: [V3<S>; 3]) -> [V3<S>; 3] {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        match self {
+            Self::Permutation { axis, sign } => [0, 1, 2].map(|k| {
+                let (c, s) = (columns[axis[k]], splat(sign[k]));
+                V3(c.0 * s, c.1 * s, c.2 * s)
+            }),
+            Self::Matrix(m) => [0, 1, 2].map(|k| {
+                let partial = sum(columns[0], splat(m[k][0]), columns[1], splat(m[k][1]));
+                columns[2].times_plus(splat(m[k][2]), partial)
+            }),
+        }
+    }
+}
+
+/// `a·s + b·t`.
+#[inline(always)]
+fn sum<S: Simd>(a: V3<S>, s: f32x16<S>, b: V3<S>, t: f32x16<S>) -> V3<S> {
+    b.times_plus(t, V3(a.0 * s, a.1 * s, a.2 * s))
+}
+
+impl FrameLanes {
+    /// A point given in the frame, in the world.
+    #[inline(always)]
+    pub fn point<S: Simd>(&self, simd: S, p: [f32; 3]) -> V3<S> {
+        let mut at = self.origin.load(simd);
+        for k in 0..3 {
+            at = self.columns[k].load(simd).times_plus(f32x16::splat(simd, p[k]), at);
+        }
+        at
+    }
+}
+
+/// The same pose in every lane.
+fn constant_frame(pose: &Pose) -> FrameLanes {
+    let row = |v: f64| Row([v as f32; LANES]);
+    let point = |v: Vec3| PointRow([row(v.x), row(v.y), row(v.z)]);
+    let r: Rotation = pose.rotation;
+    FrameLanes { columns: [point(r.x_axis()), point(r.y_axis()), point(r.z_axis())], origin: point(pose.translation) }
+}

@@ -1,0 +1,78 @@
+//! A moving joint prepared for batched forward kinematics.
+
+use elbowroom_kinematics::JointKind;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+/// Entries of a rotation this near to 0 or ±1 count as exact.
+const PRINCIPAL_TOLERANCE: f64 = 1e-9;
+
+/// A moving joint. The frame that it moves has its z axis along the joint's axis.
+#[derive(Debug, Clone)]
+pub(crate) struct JointStep {
+    /// Index of the frame that carries the joint; 0 is that of the root.
+    pub parent: usize,
+    pub is_prismatic: bool,
+    /// Rotation of the joint's frame at value 0 in the parent frame.
+    pub rotation: FixedRotation,
+    /// Origin of the joint's frame in the parent frame, m.
+    pub translation: [f32; 3],
+    /// The joint's value is `multiplier·q[index] + offset`.
+    pub index: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+/// A constant rotation, by columns.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum FixedRotation {
+    /// Column `k` is `sign` times the coordinate axis `axis`.
+    Permutation { axis: [usize; 3], sign: [f32; 3] },
+    /// Any other.
+    Matrix([[f32; 3]; 3]),
+}
+
+impl FixedRotation {
+    pub fn new(rotation: Rotation) -> Self {
+        let columns = [rotation.x_axis(), rotation.y_axis(), rotation.z_axis()];
+        match columns.map(principal) {
+            [Some(x), Some(y), Some(z)] => Self::Permutation { axis: [x.0, y.0, z.0], sign: [x.1, y.1, z.1] },
+            _ => Self::Matrix(columns.map(single)),
+        }
+    }
+}
+
+/// A rotation that turns the z axis to a joint's axis, along coordinate axes where the axis is one.
+pub(crate) fn axis_rotation(axis: Vec3) -> Rotation {
+    match principal(axis) {
+        Some((k, sign)) => {
+            let unit = |i: usize| [Vec3::X, Vec3::Y, Vec3::Z][i % 3];
+            let (z, x) = (unit(k) * f64::from(sign), unit(k + 1));
+            Rotation::from_columns(x, z.cross(x), z).unwrap_or_else(|| Rotation::from_z(axis))
+        }
+        None => Rotation::from_z(axis),
+    }
+}
+
+/// The coordinate axis along which a unit vector lies, and its sign.
+fn principal(v: Vec3) -> Option<(usize, f32)> {
+    let k = (0..3).find(|&k| (v[k].abs() - 1.0).abs() <= PRINCIPAL_TOLERANCE)?;
+    let others = (0..3).all(|i| i == k || v[i].abs() <= PRINCIPAL_TOLERANCE);
+    others.then_some((k, 1.0_f32.copysign(v[k] as f32)))
+}
+
+/// A vector in single precision.
+pub(crate) fn single(v: Vec3) -> [f32; 3] {
+    [v.x as f32, v.y as f32, v.z as f32]
+}
+
+/// Where a link is: in a frame that a joint moves, at a constant pose.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LinkFrame {
+    pub frame: usize,
+    pub in_frame: Pose,
+}
+
+/// True where the kind has a step of its own.
+pub(crate) fn moves(kind: JointKind) -> bool {
+    kind != JointKind::Fixed
+}

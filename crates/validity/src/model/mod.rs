@@ -1,0 +1,186 @@
+//! A robot prepared for validity checks: a chain for batched forward kinematics, and bodies covered by spheres.
+
+mod body;
+mod forward;
+mod joint_step;
+
+use elbowroom_kinematics::motion_bound::{joint_reaches, max_stroke_m};
+use elbowroom_kinematics::{Chain, JointKind, LinkId};
+use elbowroom_proximity::Shape;
+use elbowroom_robot::{GeometryId, Robot, collision_pairs};
+use elbowroom_spatial::Pose;
+
+pub(crate) use body::{Body, SphereNode};
+pub(crate) use forward::{BatchedChain, FrameLanes};
+pub(crate) use joint_step::single;
+
+use self::body::push_tree;
+use crate::cover::{Ball, ROUNDING_M, SphereCover};
+use crate::error::ValidityError;
+
+/// Largest protrusion of the cover of a link, m.
+const SLACK_M: f64 = 0.005;
+/// The same of small links and parts, such as those of grippers.
+const FINE_SLACK_M: f64 = 0.002;
+/// Links whose bounding box has a shorter diagonal than this are small, m.
+const FINE_DIAGONAL_M: f64 = 0.3;
+
+/// Largest error of a joint's rotation in single precision, rad: of its angle (up to 8 rad), of sine and cosine, and of the
+/// products of rotations. Counted in README.md of this crate.
+const ROTATION_ERROR_RAD: f64 = 4e-6;
+/// Rounding errors of coordinates, per metre that they can reach.
+const ROUNDING_SHARE: f64 = 2e-6;
+
+/// Index of a body in a [`CoveredRobot`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(pub usize);
+
+/// Two bodies of the robot that must not touch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyPair {
+    pub a: BodyId,
+    pub b: BodyId,
+    pub margin_m: f32,
+}
+
+/// A sphere that lies in a body.
+#[derive(Debug, Clone)]
+pub(crate) struct InnerSphere {
+    pub centre: [f32; 3],
+    pub radius: f32,
+}
+
+/// A robot with a sphere cover for each link: what a [`ValidityChecker`](crate::ValidityChecker) moves. Constant; any number of
+/// checkers may share one.
+///
+/// ```
+/// use elbowroom_spatial::Pose;
+/// use elbowroom_validity::CoveredRobot;
+/// let arm = elbowroom_robot::example::arm()?;
+/// let covered = CoveredRobot::new(&arm, Pose::IDENTITY)?;
+/// assert_eq!(covered.dof(), arm.chain.dof());
+/// assert_eq!(covered.bodies().len(), arm.links_with_colliders().count());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CoveredRobot {
+    pub(crate) chain: BatchedChain,
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) nodes: Vec<SphereNode>,
+    pub(crate) inner: Vec<InnerSphere>,
+    pub(crate) pairs: Vec<BodyPair>,
+    dof: usize,
+}
+
+impl CoveredRobot {
+    /// A robot with its base at a pose. Pairs of links are those of [`collision_pairs`], without margins.
+    ///
+    /// # Errors
+    /// A link that no spheres enclose: it is unbounded, or has NaN or infinite numbers.
+    pub fn new(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
+        let mut covered = Self::without_pairs(robot, base_in_world)?;
+        let body = |id: GeometryId| match id {
+            GeometryId::Link { link, .. } => covered.bodies.iter().position(|b| b.link == link).map(BodyId),
+            GeometryId::Object(_) => None,
+        };
+        let pairs: Vec<_> = collision_pairs(&[robot], 0)
+            .into_iter()
+            .filter_map(|(a, b)| Some(BodyPair { a: body(a)?, b: body(b)?, margin_m: 0.0 }))
+            .collect();
+        covered.pairs = pairs;
+        Ok(covered)
+    }
+
+    /// As [`new`](Self::new), without any pair of links; they are added by [`add_pair`](Self::add_pair).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
+        let chain = BatchedChain::new(&robot.chain, base_in_world);
+        let dof = robot.chain.dof();
+        let mut covered =
+            Self { chain, bodies: Vec::new(), nodes: Vec::new(), inner: Vec::new(), pairs: Vec::new(), dof };
+        for link in robot.links_with_colliders() {
+            let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
+            covered.add_body(&robot.chain, link, &shapes)?;
+        }
+        Ok(covered)
+    }
+
+    /// Adds a body that moves with a link: a tool, or a part that the robot holds. Its shapes are given with their poses in the
+    /// link's frame.
+    ///
+    /// # Errors
+    /// No such link, or a shape that no spheres enclose.
+    pub fn add_body(&mut self, chain: &Chain, link: LinkId, shapes: &[(&Shape, Pose)]) -> Result<BodyId, ValidityError> {
+        let name = || chain.links().get(link.0).cloned().unwrap_or_else(|| format!("number {}", link.0));
+        let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
+        let cover = SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
+        let radius_m = cover.outer.iter().map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
+        let levers = levers_m(chain, link, radius_m);
+        let rounding_m = rounding_m(&levers, radius_m, at.in_frame);
+        if !rounding_m.is_finite() {
+            return Err(ValidityError::NotCovered { link: name() });
+        }
+        let first_inner = self.inner.len() as u32;
+        self.inner.extend(cover.inner.iter().filter_map(|ball| inner_sphere(ball, &at.in_frame, rounding_m)));
+        let inner = first_inner..self.inner.len() as u32;
+        let (nodes, broad_phase) = push_tree(&mut self.nodes, &cover.outer, at, rounding_m);
+        let lever_m = levers.iter().map(|&l| (l as f32).next_up()).map(|l| if l > f32::from_bits(1) { l } else { 0.0 });
+        let lever_m = lever_m.collect();
+        self.bodies.push(Body { link, frame: at.frame, nodes, broad_phase, inner, lever_m });
+        Ok(BodyId(self.bodies.len() - 1))
+    }
+
+    /// Two bodies must stay farther apart than a margin, m.
+    pub fn add_pair(&mut self, a: BodyId, b: BodyId, margin_m: f64) {
+        if a.0 < self.bodies.len() && b.0 < self.bodies.len() {
+            self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up() });
+        }
+    }
+
+    /// Number of values of a configuration.
+    pub fn dof(&self) -> usize {
+        self.dof
+    }
+
+    /// The link of each body.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = LinkId> + '_ {
+        self.bodies.iter().map(|b| b.link)
+    }
+
+    /// Number of spheres that enclose a body.
+    pub fn spheres(&self, body: BodyId) -> usize {
+        let Some(b) = self.bodies.get(body.0) else { return 0 };
+        b.nodes.clone().filter(|&i| self.nodes[i as usize].end == i + 1).count()
+    }
+}
+
+/// The slack of a cover by the size of what it covers.
+fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
+    let bounds = shapes.iter().map(|(s, p)| s.aabb(p)).reduce(|a, b| a.union(&b));
+    let is_small = bounds.is_some_and(|b| b.extent().length() < FINE_DIAGONAL_M);
+    if is_small { FINE_SLACK_M } else { SLACK_M }
+}
+
+/// Per moving joint in topological order, how far it moves points within a radius of a link, per rad or m.
+fn levers_m(chain: &Chain, link: LinkId, radius_m: f64) -> Vec<f64> {
+    let reaches: Vec<_> = joint_reaches(chain, link, radius_m, |j| max_stroke_m(chain, j)).collect();
+    let moving = chain.topological_order().iter().filter(|j| {
+        chain.joints()[j.0].kind != JointKind::Fixed && chain.coupling(**j).is_some()
+    });
+    moving.map(|j| reaches.iter().find(|r| r.joint == *j).map_or(0.0, |r| r.lever_arm())).collect()
+}
+
+/// Bound of the rounding errors of a point of a body.
+fn rounding_m(levers: &[f64], radius_m: f64, in_frame: Pose) -> f64 {
+    let finite: f64 = levers.iter().filter(|l| l.is_finite()).sum();
+    let reach = levers.iter().copied().filter(|l| l.is_finite()).fold(radius_m, f64::max);
+    ROTATION_ERROR_RAD * finite + ROUNDING_SHARE * (reach + in_frame.translation.length() + 1.0) + ROUNDING_M
+}
+
+fn inner_sphere(ball: &Ball, in_frame: &Pose, rounding_m: f64) -> Option<InnerSphere> {
+    let radius = (ball.radius - rounding_m) as f32;
+    let centre = single(in_frame.transform_point(ball.centre));
+    (radius > 0.0).then_some(InnerSphere { centre, radius: radius.next_down() })
+}

@@ -1,0 +1,146 @@
+//! A convex obstacle with rounded edges: a box, point, segment or half-space, or a cylinder, with a radius around it.
+
+use elbowroom_spatial::{Pose, Vec3};
+use fearless_simd::{Select, Simd, f32x16, prelude::*};
+
+use super::box_tree::Bounds;
+use crate::lanes::V3;
+use crate::model::single;
+
+/// Stands for unbounded: zero times it is zero.
+const FAR: f32 = 1e30;
+
+/// All points within `radius` of a core.
+#[derive(Debug, Clone)]
+pub(crate) struct RoundedSolid {
+    /// Origin of its frame in the world, m.
+    origin: [f32; 3],
+    /// Columns of its rotation; `None` where its axes are those of the world.
+    columns: Option<[[f32; 3]; 3]>,
+    core: Core,
+    /// m.
+    pub radius: f32,
+}
+
+/// What the radius is around, in the frame of the solid.
+#[derive(Debug, Clone, Copy)]
+enum Core {
+    /// A box; a point, a segment and a half-space are boxes without or with unbounded extents.
+    Box { low: [f32; 3], high: [f32; 3] },
+    /// A cylinder about z.
+    Cylinder { radius: f32, half_length: f32 },
+}
+
+/// What separates the sphere about a point from a solid: the shortest vector from the core to the point.
+pub(crate) struct FromCore<S: Simd> {
+    /// The point in the frame of the solid.
+    pub point: V3<S>,
+    /// From the nearest point of the core.
+    pub vector: V3<S>,
+}
+
+impl RoundedSolid {
+    pub fn point(centre: Vec3, radius: f32) -> Self {
+        Self::with_core(Core::Box { low: [0.0; 3], high: [0.0; 3] }, None, centre, radius)
+    }
+
+    pub fn cuboid(half: Vec3, in_world: &Pose, radius: f32) -> Self {
+        let half = single(half);
+        Self::with_core(Core::Box { low: half.map(|h| -h), high: half }, Some(in_world), in_world.translation, radius)
+    }
+
+    pub fn segment(half_length: f64, in_world: &Pose, radius: f32) -> Self {
+        Self::cuboid(Vec3::Z * half_length, in_world, radius)
+    }
+
+    pub fn half_space(in_world: &Pose, radius: f32) -> Self {
+        let core = Core::Box { low: [-FAR; 3], high: [FAR, FAR, 0.0] };
+        Self::with_core(core, Some(in_world), in_world.translation, radius)
+    }
+
+    pub fn cylinder(core_radius: f64, half_length: f64, in_world: &Pose, radius: f32) -> Self {
+        let core = Core::Cylinder { radius: core_radius as f32, half_length: half_length as f32 };
+        Self::with_core(core, Some(in_world), in_world.translation, radius)
+    }
+
+    fn with_core(core: Core, in_world: Option<&Pose>, origin: Vec3, radius: f32) -> Self {
+        let columns = in_world.map(|p| p.rotation).map(|r| [r.x_axis(), r.y_axis(), r.z_axis()].map(single));
+        let columns = columns.filter(|c| *c != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        Self { origin: single(origin), columns, core, radius }
+    }
+
+    /// A box around it in the world.
+    pub fn bounds(&self) -> Bounds {
+        let (centre, half) = self.core.centre_and_half();
+        let axes = self.columns.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        let mut bounds = Bounds::EMPTY;
+        for k in 0..3 {
+            let middle: f32 = self.origin[k] + (0..3).map(|i| axes[i][k] * centre[i]).sum::<f32>();
+            let reach: f32 = (0..3).map(|i| (axes[i][k] * half[i]).abs()).sum::<f32>() + self.radius;
+            // Rounding errors of this sum, generously.
+            let reach = reach + 1e-6 * (reach + middle.abs() + self.origin[k].abs());
+            (bounds.min[k], bounds.max[k]) = (middle - reach, middle + reach);
+        }
+        bounds
+    }
+
+    /// The vector from the core to a point of the world.
+    #[inline(always)]
+    pub fn from_core<S: Simd>(&self, simd: S, at: V3<S>) -> FromCore<S> {
+        let offset = at.minus(V3::splat(simd, self.origin));
+        let point = match &self.columns {
+            None => offset,
+            Some(c) => V3(
+                offset.dot(V3::splat(simd, c[0])),
+                offset.dot(V3::splat(simd, c[1])),
+                offset.dot(V3::splat(simd, c[2])),
+            ),
+        };
+        FromCore { point, vector: self.core.vector_to(simd, point) }
+    }
+
+    /// The largest product of a point of the core with a direction, both in the frame of the solid.
+    #[inline(always)]
+    pub fn support<S: Simd>(&self, simd: S, direction: V3<S>) -> f32x16<S> {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        match self.core {
+            Core::Box { low, high } => {
+                let axis = |d: f32x16<S>, k: usize| (d * splat(low[k])).max(d * splat(high[k]));
+                axis(direction.0, 0) + axis(direction.1, 1) + axis(direction.2, 2)
+            }
+            Core::Cylinder { radius, half_length } => {
+                let across = direction.1.mul_add_precise(direction.1, direction.0 * direction.0).sqrt();
+                across.mul_add_precise(splat(radius), direction.2.abs() * splat(half_length))
+            }
+        }
+    }
+}
+
+impl Core {
+    fn centre_and_half(&self) -> ([f32; 3], [f32; 3]) {
+        match *self {
+            Self::Box { low, high } => {
+                ([0, 1, 2].map(|k| 0.5 * (low[k] + high[k])), [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])))
+            }
+            Self::Cylinder { radius, half_length } => ([0.0; 3], [radius, radius, half_length]),
+        }
+    }
+
+    #[inline(always)]
+    fn vector_to<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        match *self {
+            Self::Box { low, high } => {
+                let axis = |p: f32x16<S>, k: usize| p - p.max(splat(low[k])).min(splat(high[k]));
+                V3(axis(p.0, 0), axis(p.1, 1), axis(p.2, 2))
+            }
+            Self::Cylinder { radius, half_length } => {
+                let across = p.1.mul_add_precise(p.1, p.0 * p.0).sqrt();
+                let beyond = (across - splat(radius)).max(splat(0.0));
+                let share = across.simd_gt(splat(0.0)).select(beyond / across, splat(0.0));
+                let along = p.2 - p.2.max(splat(-half_length)).min(splat(half_length));
+                V3(p.0 * share, p.1 * share, along)
+            }
+        }
+    }
+}
