@@ -4,6 +4,7 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 
+use super::segment::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::V3;
 use crate::model::{BodyPair, CoveredRobot, SphereNode};
@@ -49,6 +50,7 @@ pub(crate) struct BlockModel<'m> {
     pub robot: &'m CoveredRobot,
     pub obstacles: &'m ObstacleSet,
     pub tree: &'m BoxTree,
+    pub motion: &'m MotionTable,
     /// Per body and obstacle, true where the pair is not checked; empty where every pair is.
     pub skipped: &'m [bool],
 }
@@ -63,7 +65,7 @@ struct Reach {
 }
 
 impl BlockModel<'_> {
-    /// Tests the block whose joint values are in the workspace. Stops as soon as the answer is known: where chords count, at the
+    /// Tests the block that the workspace was prepared for. Stops as soon as the answer is known: where chords count, at the
     /// first lane that touches, otherwise when all lanes do.
     #[inline(always)]
     pub fn check<S: Simd>(
@@ -74,6 +76,9 @@ impl BlockModel<'_> {
         pairs: Option<&mut Vec<NearPair>>,
     ) -> BlockResult {
         workspace.begin_block();
+        if request.chords {
+            workspace.spread(simd, self.robot, self.motion);
+        }
         self.robot.chain.forward(simd, &workspace.values, &mut workspace.frames);
         let mut kernel = Kernel { simd, model: *self, workspace, request, result: BlockResult::default(), pairs };
         kernel.obstacles();
@@ -122,7 +127,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn obstacles_near(&mut self, body: usize, root: u32) {
         let node = &self.model.robot.nodes[root as usize];
-        let half_chord = self.workspace.half_chord_m[body];
+        let (half_chord, _) = self.workspace.body_motion(body);
         let centre = self.workspace.centre(self.simd, self.model.robot, root);
         let bounds = bounds(centre, node.radius + half_chord);
         let mut found = std::mem::take(&mut self.workspace.found);
@@ -154,7 +159,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
-        let (half_chord, sag) = (self.workspace.half_chord_m[body], self.workspace.sag_m[body]);
+        let (half_chord, sag) = self.workspace.body_motion(body);
         let end = robot.nodes[root as usize].end;
         let mut is_near = false;
         let mut at = root;
@@ -206,8 +211,8 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn self_collision(&mut self) {
         let robot = self.model.robot;
-        for pair in &robot.pairs {
-            if self.bodies_near(pair) {
+        for (index, pair) in robot.pairs.iter().enumerate() {
+            if self.bodies_near(index, pair) {
                 self.note(NearPair::Bodies(pair.a.0 as u32, pair.b.0 as u32));
             }
             if self.is_done() {
@@ -218,17 +223,22 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
 
     /// Descends in the trees of two bodies. True where they are not proven apart.
     #[inline(always)]
-    fn bodies_near(&mut self, pair: &BodyPair) -> bool {
+    fn bodies_near(&mut self, index: usize, pair: &BodyPair) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
         let (a, b) = (&robot.bodies[pair.a.0], &robot.bodies[pair.b.0]);
         if a.nodes.is_empty() || b.nodes.is_empty() {
             return false;
         }
-        let sum = |v: &[f32]| v[pair.a.0] + v[pair.b.0];
-        let (half_chord, sag) = (sum(&self.workspace.half_chord_m), sum(&self.workspace.sag_m));
+        let (half_chord, sag) = self.workspace.pair_motion(self.model.motion.pair(index), pair.common_frame);
+        let (i, j) = (a.nodes.start, b.nodes.start);
+        let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
+        let radius = robot.nodes[i as usize].radius + robot.nodes[j as usize].radius + pair.margin_m;
+        if within(simd, from_b, radius + half_chord) & self.request.active == 0 {
+            return false;
+        }
         let mut open = std::mem::take(&mut self.workspace.node_pairs);
         open.clear();
-        open.push((a.nodes.start, b.nodes.start));
+        open.push((i, j));
         let mut is_near = false;
         while let Some((i, j)) = open.pop() {
             let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);
@@ -239,6 +249,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             }
             match (is_leaf(m, i + 1), is_leaf(n, j + 1)) {
                 (true, true) => {
+                    let from_b = self.workspace.frames[pair.common_frame].local_direction(simd, from_b);
                     let is_apart =
                         self.settle(from_b, reach, |d| d.dot(from_b).min(d.dot(from_b.next_lane())));
                     is_near |= !is_apart;

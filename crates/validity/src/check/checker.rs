@@ -3,7 +3,7 @@
 use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
-use super::segment::{Stretch, displacement_m};
+use super::segment::{MotionTable, Stretch};
 use super::workspace::Workspace;
 use crate::error::ValidityError;
 use crate::lanes::{LANES, detected_simd_level};
@@ -51,6 +51,7 @@ pub struct ValidityChecker<'m> {
     inner: BoxTree,
     /// Per body and obstacle, true where the pair is not checked; empty where all are.
     skipped: Vec<bool>,
+    motion: MotionTable,
     workspace: Workspace,
     pairs: Vec<NearPair>,
     simd_level: SimdLevel,
@@ -63,13 +64,15 @@ impl<'m> ValidityChecker<'m> {
         let tree = |solids: &[crate::obstacles::RoundedSolid]| {
             BoxTree::new(&solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect::<Vec<_>>())
         };
+        let motion = MotionTable::new(robot);
         Self {
             robot,
             obstacles,
             outer: tree(&obstacles.outer),
             inner: tree(&obstacles.inner),
             skipped: Vec::new(),
-            workspace: Workspace::new(robot),
+            workspace: Workspace::new(robot, &motion),
+            motion,
             pairs: Vec::new(),
             simd_level: detected_simd_level(),
             blocks: 0,
@@ -149,7 +152,7 @@ impl<'m> ValidityChecker<'m> {
         self.expect_count(from)?;
         self.expect_count(to)?;
         found.clear();
-        let blocks = self.block_count(from, to).saturating_mul(4);
+        let blocks = block_count(self.displacement_m(from, to)).saturating_mul(4);
         for i in 0..blocks {
             let share = |i: usize| i as f64 / blocks as f64;
             let stretch = Stretch { from, to, begin: share(i), end: share(i + 1) };
@@ -218,16 +221,14 @@ impl<'m> ValidityChecker<'m> {
         }
     }
 
-    fn block_count(&self, from: &[f64], to: &[f64]) -> usize {
-        let blocks = (displacement_m(self.robot, from, to) / BLOCK_LENGTH_M).ceil();
-        // NaN counts as 1: the block rejects it.
-        if blocks > 1.0 { blocks.min(1e6) as usize } else { 1 }
+    fn displacement_m(&self, from: &[f64], to: &[f64]) -> f64 {
+        self.motion.displacement_m(&self.robot.chain, from, to)
     }
 
     fn segment(&mut self, from: &[f64], to: &[f64]) -> bool {
-        let blocks = self.block_count(from, to);
+        let length_m = self.displacement_m(from, to);
+        let blocks = block_count(length_m);
         let share = |i: usize| i as f64 / blocks as f64;
-        let length_m = displacement_m(self.robot, from, to);
         (0..blocks).all(|i| self.stretch(&Stretch { from, to, begin: share(i), end: share(i + 1) }, length_m))
     }
 
@@ -255,6 +256,7 @@ impl<'m> ValidityChecker<'m> {
             robot: self.robot,
             obstacles: self.obstacles,
             tree: &self.outer,
+            motion: &self.motion,
             skipped: &self.skipped,
         };
         let workspace = &mut self.workspace;
@@ -266,11 +268,19 @@ impl<'m> ValidityChecker<'m> {
             robot: self.robot,
             obstacles: self.obstacles,
             tree: &self.outer,
+            motion: &self.motion,
             skipped: &self.skipped,
         };
         let (inner, workspace) = (&self.inner, &mut self.workspace);
         dispatch!(self.simd_level, simd => model.hits(simd, inner, workspace, pairs))
     }
+}
+
+/// Number of blocks in which a segment is tested first.
+fn block_count(length_m: f64) -> usize {
+    let blocks = (length_m / BLOCK_LENGTH_M).ceil();
+    // NaN counts as 1: the block rejects it.
+    if blocks > 1.0 { blocks.min(1e6) as usize } else { 1 }
 }
 
 fn public(pair: &NearPair) -> NotCertain {

@@ -6,17 +6,36 @@
 //! `z_i × (z_j × (p − o_j))` where both turn, at most `ρ_j`; `z_i × z_j`, at most 1, where `i` turns and `j` slides; and 0 where
 //! `i` slides. So no point leaves its chord farther than an eighth of `Σ_j ρ_j |Δ_j| (|Δ_j| + 2 Σ |Δ_i|)`, the inner sum over the
 //! turning joints before `j`, the first term in brackets for turning joints only.
+//!
+//! Two bodies of the robot are seen from the frame of the last joint that moves both: what moves both does not move one against
+//! the other. The same sums over the joints behind it bound their relative motion.
+//!
+//! All sums are matrix products: a row of lever arms per joint ([`MotionTable`]), a lane per body or pair.
+
+#![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
+
+use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::workspace::Workspace;
-use crate::lanes::LANES;
-use crate::model::CoveredRobot;
+use crate::lanes::{LANES, Row};
+use crate::model::{BatchedChain, CoveredRobot};
 
 /// Intervals between the lanes of a block.
 pub(crate) const INTERVALS: usize = LANES - 1;
 /// Rounding of the sums in single precision.
-const ROUNDED_UP: f32 = 1.000_01;
+const ROUNDED_UP: f32 = 1.000_02;
 /// A joint value that changes by more than this within one block is not tested, rad or m.
 const MAX_CHANGE: f64 = 4.5;
+/// Shares of a stretch at which the lanes are.
+const SHARES: Row = {
+    let mut shares = [0.0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        shares[lane] = lane as f32 / INTERVALS as f32;
+        lane += 1;
+    }
+    Row(shares)
+};
 
 /// A stretch of a straight segment from `from` to `to`.
 #[derive(Debug, Clone, Copy)]
@@ -28,40 +47,137 @@ pub(crate) struct Stretch<'q> {
     pub end: f64,
 }
 
+/// The first value of a joint in a stretch, and how it changes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct JointStretch {
+    first: f32,
+    change: f32,
+}
+
+impl JointStretch {
+    /// The values in the lanes.
+    #[inline(always)]
+    pub fn values<S: Simd>(self, simd: S) -> f32x16<S> {
+        SHARES.load(simd).mul_add_precise(f32x16::splat(simd, self.change), f32x16::splat(simd, self.first))
+    }
+}
+
+/// Lever arms of all bodies and pairs, sixteen columns at a time.
+#[derive(Debug, Clone)]
+pub(crate) struct MotionTable {
+    /// Number of columns, a multiple of the lanes.
+    columns: usize,
+    /// Column of the first pair; the bodies are before it.
+    first_pair: usize,
+    /// Per step and sixteen columns.
+    lever_m: Vec<Row>,
+    /// Per step, the longest lever arm of any body.
+    longest_m: Vec<f64>,
+}
+
+impl MotionTable {
+    pub fn new(robot: &CoveredRobot) -> Self {
+        let first_pair = robot.bodies.len();
+        let columns = (first_pair + robot.pairs.len()).next_multiple_of(LANES);
+        let rows = columns / LANES;
+        let mut lever_m = vec![Row::ZERO; robot.chain.steps.len() * rows];
+        let mut set = |step: usize, column: usize, lever: f32| {
+            lever_m[step * rows + column / LANES].0[column % LANES] = lever;
+        };
+        let mut longest_m = vec![0.0_f64; robot.chain.steps.len()];
+        for (column, body) in robot.bodies.iter().enumerate() {
+            for (step, &lever) in body.lever_m.iter().enumerate() {
+                set(step, column, lever);
+                longest_m[step] = longest_m[step].max(f64::from(lever));
+            }
+        }
+        for (p, pair) in robot.pairs.iter().enumerate() {
+            pair.joints.iter().for_each(|joint| set(joint.step, first_pair + p, joint.lever_m));
+        }
+        Self { columns, first_pair, lever_m, longest_m }
+    }
+
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Column of a pair of bodies; that of a body is its number.
+    pub fn pair(&self, index: usize) -> usize {
+        self.first_pair + index
+    }
+
+    /// No point of the robot moves farther between two configurations, m.
+    pub fn displacement_m(&self, chain: &BatchedChain, from: &[f64], to: &[f64]) -> f64 {
+        let mut length = 0.0;
+        for (step, lever) in chain.steps.iter().zip(&self.longest_m) {
+            let change = (step.multiplier * (to[step.index] - from[step.index])).abs();
+            if change != 0.0 {
+                length += change * lever;
+            }
+        }
+        length
+    }
+}
+
 impl Workspace {
-    /// Sets the joint values of the lanes to evenly spaced configurations of a stretch, and the bounds of the motion between
-    /// them. False where values change too much or are not finite.
+    /// Prepares a block of evenly spaced configurations of a stretch. False where values change too much or are not finite.
     pub fn set_stretch(&mut self, robot: &CoveredRobot, stretch: &Stretch) -> bool {
-        self.half_chord_m.fill(0.0);
-        self.sag_m.fill(0.0);
-        // Per frame: how much the turning joints that carry it change between lanes.
-        self.turned.fill(0.0);
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
             let (from, to) = (stretch.from[step.index], stretch.to[step.index]);
-            let value = |t: f64| step.multiplier * (from + t * (to - from)) + step.offset;
-            let first = value(stretch.begin);
+            let first = step.multiplier * (from + stretch.begin * (to - from)) + step.offset;
             let change = step.multiplier * (to - from) * (stretch.end - stretch.begin);
             is_valid &= change.abs() <= MAX_CHANGE && first.is_finite();
             let first = if step.is_prismatic { first } else { reduced(first) };
-            for (lane, v) in self.values[i].0.iter_mut().enumerate() {
-                *v = (first + change * (lane as f64 / INTERVALS as f64)) as f32;
-            }
-            let delta = (change.abs() / INTERVALS as f64) as f32 * ROUNDED_UP;
+            self.stretch[i] = JointStretch { first: first as f32, change: change as f32 };
+        }
+        is_valid
+    }
+
+    /// Values of the joints in the lanes, and the bounds of the motion between them.
+    #[inline(always)]
+    pub fn spread<S: Simd>(&mut self, simd: S, robot: &CoveredRobot, table: &MotionTable) {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let rows = table.columns / LANES;
+        self.half_chord_m.fill(Row::ZERO);
+        self.sag_m.fill(Row::ZERO);
+        for (i, step) in robot.chain.steps.iter().enumerate() {
+            let joint = self.stretch[i];
+            self.values[i].store(joint.values(simd));
+            let delta = joint.change.abs() * (ROUNDED_UP / INTERVALS as f32);
             let before = self.turned[step.parent];
             self.turned[i + 1] = if step.is_prismatic { before } else { before + delta };
             if delta == 0.0 {
                 continue;
             }
             let own = if step.is_prismatic { 0.0 } else { delta };
-            let curved = delta * (own + 2.0 * before) * (0.125 * ROUNDED_UP);
-            for (b, body) in robot.bodies.iter().enumerate() {
-                let lever = body.lever_m[i];
-                self.half_chord_m[b] += 0.5 * delta * lever * ROUNDED_UP;
-                self.sag_m[b] += curved * lever;
+            let (chord, curved) = (splat(0.5 * delta * ROUNDED_UP), splat(0.125 * delta * (own + 2.0 * before) * ROUNDED_UP));
+            for r in 0..rows {
+                let lever = table.lever_m[i * rows + r].load(simd);
+                let (half_chord, sag) = (self.half_chord_m[r].load(simd), self.sag_m[r].load(simd));
+                self.half_chord_m[r].store(lever.mul_add_precise(chord, half_chord));
+                self.sag_m[r].store(lever.mul_add_precise(curved, sag));
             }
         }
-        is_valid
+    }
+
+    /// Half of the longest chord and the largest deviation from a chord, of a body.
+    #[inline(always)]
+    pub fn body_motion(&self, body: usize) -> (f32, f32) {
+        let at = |rows: &[Row]| rows[body / LANES].0[body % LANES];
+        (at(&self.half_chord_m), at(&self.sag_m))
+    }
+
+    /// The same of the motion of two bodies against each other. What turns both is not in their deviation.
+    #[inline(always)]
+    pub fn pair_motion(&self, column: usize, common_frame: usize) -> (f32, f32) {
+        let (half_chord, sag) = self.body_motion(column);
+        if !half_chord.is_finite() {
+            return (f32::INFINITY, f32::INFINITY);
+        }
+        let common = 0.5 * half_chord * self.turned[common_frame];
+        // The sum has the rounding errors of what is taken away, too.
+        (half_chord, (sag * ROUNDED_UP - common).max(0.0))
     }
 
     /// Sets the joint values of one lane. False where they are not finite.
@@ -79,20 +195,4 @@ impl Workspace {
 /// The angle less whole turns.
 fn reduced(angle: f64) -> f64 {
     angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round_ties_even()
-}
-
-/// Largest displacement of any point of the robot on the way between two configurations, m.
-pub(crate) fn displacement_m(robot: &CoveredRobot, from: &[f64], to: &[f64]) -> f64 {
-    let mut longest = 0.0_f64;
-    for body in &robot.bodies {
-        let mut length = 0.0;
-        for (step, &lever) in robot.chain.steps.iter().zip(&body.lever_m) {
-            let change = (step.multiplier * (to[step.index] - from[step.index])).abs();
-            if change > 0.0 {
-                length += change * f64::from(lever);
-            }
-        }
-        longest = longest.max(length);
-    }
-    longest
 }

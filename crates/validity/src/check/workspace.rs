@@ -1,6 +1,7 @@
 //! Memory of a checker.
 
-use crate::lanes::{PointRow, Row};
+use super::segment::{JointStretch, MotionTable};
+use crate::lanes::{LANES, PointRow, Row};
 use crate::model::{CoveredRobot, FrameLanes};
 
 /// What a check of sixteen configurations writes.
@@ -13,10 +14,12 @@ pub(crate) struct Workspace {
     centres: Vec<PointRow>,
     stamps: Vec<u32>,
     stamp: u32,
-    /// Per body, half of the longest chord.
-    pub half_chord_m: Vec<f32>,
-    /// Per body, the largest deviation of a point from its chord.
-    pub sag_m: Vec<f32>,
+    /// Per moving joint, its values in a stretch.
+    pub stretch: Vec<JointStretch>,
+    /// Per body, then per pair of bodies: half of the longest chord, m.
+    pub half_chord_m: Vec<Row>,
+    /// The same: the largest deviation of a point from its chord, m.
+    pub sag_m: Vec<Row>,
     /// Per frame, how much the turning joints that carry it change between lanes, rad.
     pub turned: Vec<f32>,
     /// Packs still to visit.
@@ -28,16 +31,17 @@ pub(crate) struct Workspace {
 }
 
 impl Workspace {
-    pub fn new(robot: &CoveredRobot) -> Self {
-        let bodies = robot.bodies.len();
+    pub fn new(robot: &CoveredRobot, table: &MotionTable) -> Self {
+        let rows = table.columns() / LANES;
         Self {
             values: vec![Row::ZERO; robot.chain.steps.len()],
             frames: robot.chain.frames(),
             centres: vec![PointRow::ZERO; robot.nodes.len()],
             stamps: vec![0; robot.nodes.len()],
             stamp: 0,
-            half_chord_m: vec![0.0; bodies],
-            sag_m: vec![0.0; bodies],
+            stretch: vec![JointStretch::default(); robot.chain.steps.len()],
+            half_chord_m: vec![Row::ZERO; rows],
+            sag_m: vec![Row::ZERO; rows],
             turned: vec![0.0; robot.chain.steps.len() + 1],
             open: Vec::new(),
             found: Vec::new(),
@@ -47,8 +51,8 @@ impl Workspace {
 
     /// Configurations that do not belong together: no motion between lanes.
     pub fn set_no_motion(&mut self) {
-        self.half_chord_m.fill(0.0);
-        self.sag_m.fill(0.0);
+        self.half_chord_m.fill(Row::ZERO);
+        self.sag_m.fill(Row::ZERO);
     }
 
     /// Forgets the centres of the last block.

@@ -22,23 +22,21 @@ pub(super) struct CoverSelection<'g, 's> {
     balls: Vec<Ball>,
     /// How many balls contain the content of each surface voxel.
     surface_counts: Vec<u16>,
-    /// How many balls contain each voxel; of use where it is inside.
-    inside_counts: Vec<u16>,
 }
 
 impl<'g, 's> CoverSelection<'g, 's> {
     pub fn new(placed: &'g PlacedShapes<'s>, grid: &'g VoxelGrid, slack_m: f64) -> Self {
         let slack_m = (slack_m - placed.chord_error_m - 2.0 * ROUNDING_M).max(ROUNDING_M);
         let surface_counts = vec![0; grid.surface.len()];
-        Self { placed, grid, slack_m, balls: Vec::new(), surface_counts, inside_counts: vec![0; grid.len()] }
+        Self { placed, grid, slack_m, balls: Vec::new(), surface_counts }
     }
 
     /// The balls.
     pub fn run(mut self) -> Vec<Ball> {
         self.cover_surface();
-        self.cover_inside();
         self.remove_redundant();
         self.shrink();
+        self.cover_inside();
         let chord_error_m = self.placed.chord_error_m;
         self.balls.into_iter().map(|b| Ball { radius: b.radius + chord_error_m, ..b }.rounded_up()).collect()
     }
@@ -132,27 +130,27 @@ impl<'g, 's> CoverSelection<'g, 's> {
         (radius > 0.0).then_some(Ball { centre, radius })
     }
 
+    /// Adds balls for voxels inside that no ball contains.
     fn cover_inside(&mut self) {
         let [nx, ny, nz] = self.grid.counts;
         let half = Vec3::splat(0.5 * self.grid.lattice.step_m);
-        for z in 0..nz {
-            for y in 0..ny {
-                for x in 0..nx {
-                    let index = (z * ny + y) * nx + x;
-                    if self.inside_counts[index] > 0 || self.grid.state(index) != Voxel::Inside {
-                        continue;
-                    }
-                    let centre = self.grid.centre([x, y, z]);
-                    let smallest = Ball { centre, radius: half.length() + 2.0 * ROUNDING_M };
-                    let ball = self.largest_ball(centre).filter(|b| b.contains_box(centre, half)).unwrap_or(smallest);
-                    self.count(&ball, 1);
-                    self.balls.push(ball);
-                }
+        let mut is_covered = vec![false; self.grid.len()];
+        for ball in &self.balls {
+            mark_columns(self.grid, ball, &mut is_covered);
+        }
+        for index in 0..nx * ny * nz {
+            if is_covered[index] || self.grid.state(index) != Voxel::Inside {
+                continue;
             }
+            let centre = self.grid.centre([index % nx, index / nx % ny, index / (nx * ny)]);
+            let smallest = Ball { centre, radius: half.length() + 2.0 * ROUNDING_M };
+            let ball = self.largest_ball(centre).filter(|b| b.contains_box(centre, half)).unwrap_or(smallest);
+            mark_columns(self.grid, &ball, &mut is_covered);
+            self.balls.push(ball);
         }
     }
 
-    /// Removes balls whose voxels are all in others, the smallest first.
+    /// Removes balls whose surface voxels are all in others, the smallest first.
     fn remove_redundant(&mut self) {
         let mut order: Vec<usize> = (0..self.balls.len()).collect();
         order.sort_by(|&i, &j| self.balls[i].radius.total_cmp(&self.balls[j].radius));
@@ -168,7 +166,7 @@ impl<'g, 's> CoverSelection<'g, 's> {
         self.balls.retain(|_| kept.next().unwrap_or(true));
     }
 
-    /// Shrinks each ball to the voxels that no other contains.
+    /// Shrinks each ball to the surface voxels that no other contains.
     fn shrink(&mut self) {
         for i in 0..self.balls.len() {
             let ball = self.balls[i];
@@ -180,47 +178,41 @@ impl<'g, 's> CoverSelection<'g, 's> {
         }
     }
 
-    /// Radius that a ball needs for the voxels that it alone contains; `None` where there are none.
+    /// Radius that a ball needs for the surface voxels that it alone contains; `None` where there are none.
     fn needed_radius(&self, ball: &Ball) -> Option<f64> {
         let mut needed: Option<f64> = None;
-        let half = Vec3::splat(0.5 * self.grid.lattice.step_m);
-        let mut add = |centre: Vec3, half: Vec3| {
-            let radius = farthest_squared(ball.centre, centre, half).sqrt();
-            needed = Some(needed.map_or(radius, |n| n.max(radius)));
-        };
-        for_each_row(self.grid, ball, |y, z, columns| {
+        for_each_row(self.grid, ball, |y, z, _| {
             for i in self.grid.row(y, z) {
                 let v = &self.grid.surface[i];
                 if self.surface_counts[i] == 1 && ball.contains_box(v.centre(), v.half()) {
-                    add(v.centre(), v.half());
-                }
-            }
-            for x in columns {
-                let index = (z * self.grid.counts[1] + y) * self.grid.counts[0] + x;
-                if self.inside_counts[index] == 1 && self.grid.state(index) == Voxel::Inside {
-                    add(self.grid.centre([x, y, z]), half);
+                    let radius = farthest_squared(ball.centre, v.centre(), v.half()).sqrt();
+                    needed = Some(needed.map_or(radius, |n| n.max(radius)));
                 }
             }
         });
         needed
     }
 
-    /// Adds 1 or −1 to the counts of all voxels that a ball contains.
-    fn count(&mut self, ball: &Ball, change: i32) {
-        let grid = self.grid;
-        let apply = |count: &mut u16| *count = (i32::from(*count) + change).clamp(0, i32::from(u16::MAX)) as u16;
-        let (surface_counts, inside_counts) = (&mut self.surface_counts, &mut self.inside_counts);
-        for_each_row(grid, ball, |y, z, columns| {
+    /// Adds 1 or −1 to the counts of all surface voxels whose content a ball contains.
+    fn count(&mut self, ball: &Ball, change: i16) {
+        let (grid, counts) = (self.grid, &mut self.surface_counts);
+        for_each_row(grid, ball, |y, z, _| {
             for i in grid.row(y, z) {
                 let v = &grid.surface[i];
                 if ball.contains_box(v.centre(), v.half()) {
-                    apply(&mut surface_counts[i]);
+                    counts[i] = counts[i].saturating_add_signed(change);
                 }
             }
-            let row = (z * grid.counts[1] + y) * grid.counts[0];
-            inside_counts[row + columns.start..row + columns.end].iter_mut().for_each(apply);
         });
     }
+}
+
+/// Marks the voxels that a ball contains.
+fn mark_columns(grid: &VoxelGrid, ball: &Ball, marks: &mut [bool]) {
+    for_each_row(grid, ball, |y, z, columns| {
+        let row = (z * grid.counts[1] + y) * grid.counts[0];
+        marks[row + columns.start..row + columns.end].fill(true);
+    });
 }
 
 /// Calls `visit` with every row that a ball may touch, and the columns of the row whose voxels it contains.

@@ -53,6 +53,18 @@ impl BatchedChain {
         Self { steps, links, base_in_world }
     }
 
+    /// The steps that move a frame, from the root outwards.
+    pub fn steps_to(&self, frame: usize) -> Vec<usize> {
+        let mut steps = Vec::new();
+        let mut at = frame;
+        while let Some(step) = at.checked_sub(1) {
+            steps.push(step);
+            at = self.steps[step].parent;
+        }
+        steps.reverse();
+        steps
+    }
+
     /// Memory for the frames, the root's in place.
     pub fn frames(&self) -> Vec<FrameLanes> {
         vec![constant_frame(&self.base_in_world); self.steps.len() + 1]
@@ -128,6 +140,15 @@ impl FrameLanes {
             at = self.columns[k].load(simd).times_plus(f32x16::splat(simd, p[k]), at);
         }
         at
+    }
+}
+
+impl FrameLanes {
+    /// A direction of the world, in the frame.
+    #[inline(always)]
+    pub fn local_direction<S: Simd>(&self, simd: S, v: V3<S>) -> V3<S> {
+        let column = |k: usize| self.columns[k].load(simd).dot(v);
+        V3(column(0), column(1), column(2))
     }
 }
 

@@ -23,7 +23,7 @@ const SLACK_M: f64 = 0.005;
 /// The same of small links and parts, such as those of grippers.
 const FINE_SLACK_M: f64 = 0.002;
 /// Links whose bounding box has a shorter diagonal than this are small, m.
-const FINE_DIAGONAL_M: f64 = 0.3;
+const FINE_DIAGONAL_M: f64 = 0.25;
 
 /// Largest error of a joint's rotation in single precision, rad: of its angle (up to 8 rad), of sine and cosine, and of the
 /// products of rotations. Counted in README.md of this crate.
@@ -36,11 +36,24 @@ const ROUNDING_SHARE: f64 = 2e-6;
 pub struct BodyId(pub usize);
 
 /// Two bodies of the robot that must not touch.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct BodyPair {
     pub a: BodyId,
     pub b: BodyId,
     pub margin_m: f32,
+    /// The frame in which both are seen: that of the last joint which moves both.
+    pub common_frame: usize,
+    /// The joints that move one against the other.
+    pub joints: Vec<RelativeJoint>,
+}
+
+/// A joint that moves one body of a pair and not the other.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RelativeJoint {
+    /// Its step in the chain.
+    pub step: usize,
+    /// Its lever arm for the body that it moves, m per rad or m.
+    pub lever_m: f32,
 }
 
 /// A sphere that lies in a body.
@@ -85,9 +98,9 @@ impl CoveredRobot {
         };
         let pairs: Vec<_> = collision_pairs(&[robot], 0)
             .into_iter()
-            .filter_map(|(a, b)| Some(BodyPair { a: body(a)?, b: body(b)?, margin_m: 0.0 }))
+            .filter_map(|(a, b)| Some((body(a)?, body(b)?)))
             .collect();
-        covered.pairs = pairs;
+        pairs.into_iter().for_each(|(a, b)| covered.add_pair(a, b, 0.0));
         Ok(covered)
     }
 
@@ -134,9 +147,14 @@ impl CoveredRobot {
 
     /// Two bodies must stay farther apart than a margin, m.
     pub fn add_pair(&mut self, a: BodyId, b: BodyId, margin_m: f64) {
-        if a.0 < self.bodies.len() && b.0 < self.bodies.len() {
-            self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up() });
-        }
+        let (Some(one), Some(other)) = (self.bodies.get(a.0), self.bodies.get(b.0)) else { return };
+        let (of_a, of_b) = (self.chain.steps_to(one.frame), self.chain.steps_to(other.frame));
+        let common = of_a.iter().zip(&of_b).take_while(|(i, j)| i == j).count();
+        let joint = |body: &Body, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
+        let joints = of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
+        let joints = joints.collect();
+        let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
+        self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up(), common_frame, joints });
     }
 
     /// Number of values of a configuration.
