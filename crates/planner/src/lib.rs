@@ -13,6 +13,7 @@
 mod cell_blocks;
 mod cell_group_graph;
 mod cell_path;
+mod cover_rrt_connect;
 mod exact_check;
 pub mod example;
 mod graph_components;
@@ -29,6 +30,7 @@ mod rrt_connect;
 mod theta_star;
 mod time_parametrization;
 
+pub use cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect};
 pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};

@@ -13,7 +13,7 @@ const LIMIT_TOLERANCE: f64 = 1e-9;
 
 /// The limits of a robot's values.
 #[derive(Debug, Clone)]
-pub(super) struct JointBounds {
+pub(crate) struct JointBounds {
     lower: Vec<f64>,
     upper: Vec<f64>,
     names: Vec<String>,
@@ -95,7 +95,7 @@ impl JointBounds {
 
 /// Per value: lower bound, the smaller end, the greater end, upper bound.
 #[derive(Debug, Clone)]
-pub(super) struct SamplingRegion {
+pub(crate) struct SamplingRegion {
     each: Vec<[f64; 4]>,
 }
 
@@ -105,6 +105,13 @@ impl SamplingRegion {
         for (value, [least, low, high, most]) in out.iter_mut().zip(&self.each) {
             let (from, to) = (low + (least - low) * share, high + (most - high) * share);
             *value = random.between(from, to).clamp(*least, *most);
+        }
+    }
+
+    /// A sample within a distance of a configuration in each value.
+    pub fn around(&self, q: &[f64], distance: f64, random: &mut Random, out: &mut [f64]) {
+        for ((value, &at), [least, _, _, most]) in out.iter_mut().zip(q).zip(&self.each) {
+            *value = random.between((at - distance).max(*least), (at + distance).min(*most));
         }
     }
 }

@@ -17,6 +17,13 @@ mod shortcutting;
 mod tree;
 mod tree_search;
 
+pub(crate) use interpolation::{length, lerp, path_length};
+pub(crate) use joint_bounds::{JointBounds, SamplingRegion};
+pub(crate) use joint_weights::joint_weights;
+pub(crate) use motion_validator::MotionValidator;
+pub(crate) use planner::deadline;
+pub(crate) use random::Random;
+
 pub use error::{JointUnit, RrtConnectError};
 pub use path_constraint::PathConstraint;
 pub use planned_path::PlannedPath;

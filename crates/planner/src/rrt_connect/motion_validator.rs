@@ -14,7 +14,7 @@ use super::path_constraint::ConstraintChecker;
 
 /// Validates motions of one robot; all else stays as in a state.
 #[derive(Debug)]
-pub(super) struct MotionValidator<'s> {
+pub(crate) struct MotionValidator<'s> {
     scene: &'s Scene,
     robot: RobotId,
     checker: Checker<'s>,
@@ -150,6 +150,24 @@ impl<'s> MotionValidator<'s> {
     pub fn proves_departure(&mut self, a: &[f64], b: &[f64]) -> bool {
         let constrained = self.constraint.as_mut().is_none_or(|constraint| constraint.proves_departure(a, b));
         constrained && self.sweep_is_free(a, b)
+    }
+
+    /// True where the constraint, if any, is proven to be satisfied on the straight segment from `a` to `b`.
+    pub fn constraint_allows(&mut self, a: &[f64], b: &[f64]) -> bool {
+        self.constraint.as_mut().is_none_or(|constraint| constraint.proves_motion(a, b))
+    }
+
+    /// True where one pair is proven to stay apart while the robot moves straight from a configuration.
+    pub fn pair_sweep_is_free(
+        &mut self,
+        a: GeometryId,
+        b: GeometryId,
+        from: &[f64],
+        to: SweepMove,
+        options: &SweepOptions,
+    ) -> bool {
+        let mut pair = self.checker.between(a.into(), b.into());
+        self.state.set_q(self.scene, self.robot, from).is_ok() && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
     }
 
     /// The proof in the scene.

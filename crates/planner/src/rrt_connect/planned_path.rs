@@ -23,7 +23,7 @@ pub struct PlannedPath {
 
 impl PlannedPath {
     /// Adds segments to other ends.
-    pub(super) fn with_ends(mut self, [from, to]: [Vec<f64>; 2]) -> Self {
+    pub(crate) fn with_ends(mut self, [from, to]: [Vec<f64>; 2]) -> Self {
         let before = path_length(&self.waypoints);
         self.waypoints.insert(0, from);
         self.waypoints.push(to);

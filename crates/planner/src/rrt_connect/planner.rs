@@ -22,6 +22,11 @@ use crate::path::PathEnd;
 /// Longest time limit, a year: instants cannot be as far apart as durations can be long.
 const MAX_TIME_LIMIT: Duration = Duration::from_hours(365 * 24);
 
+/// When a search ends that begins at a time.
+pub(crate) fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
+    begin + settings.time_limit.min(MAX_TIME_LIMIT)
+}
+
 /// Plans for one robot of a scene; all else stays as in a state.
 ///
 /// Two trees of configurations grow from start and goal until they meet (RRT-Connect). Edges are checked at discrete
@@ -196,7 +201,7 @@ impl<'s> RrtConnect<'s> {
         }
         let clearance_m = settings.clearance_m;
         self.validator.set_start(start, goal)?;
-        self.validator.deadline = Instant::now() + settings.time_limit.min(MAX_TIME_LIMIT);
+        self.validator.deadline = deadline(Instant::now(), settings);
         self.validator.max_states = settings.max_states;
         self.validator.check_resolution = settings.check_resolution;
         self.validator.sweep = SweepOptions { clearance_m, ..Default::default() };

@@ -90,7 +90,7 @@ impl std::fmt::Display for RrtConnectSetting {
 
 impl RrtConnectSettings {
     /// The first invalid setting and its value.
-    pub(super) fn invalid(&self) -> Option<(RrtConnectSetting, f64)> {
+    pub(crate) fn invalid(&self) -> Option<(RrtConnectSetting, f64)> {
         let clearance_is_valid = self.clearance_m.is_finite() && self.clearance_m >= 0.0;
         let positive = |value: f64| value.is_finite() && value > 0.0;
         if !clearance_is_valid {

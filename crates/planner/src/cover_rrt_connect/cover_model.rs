@@ -1,0 +1,131 @@
+//! A robot of a scene covered by spheres, and the solids around it.
+
+use elbowroom_kinematics::LinkId;
+use elbowroom_proximity::Shape;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_scene::{PairState, Scene, SceneState};
+use elbowroom_spatial::Pose;
+use elbowroom_validity::{BodyId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError};
+
+/// One robot of a scene with sphere covers of its links and of what it holds. Built once; serves all scenes with the same robot,
+/// whatever their objects are.
+#[derive(Debug, Clone)]
+pub struct CoverModel {
+    pub(super) robot: CoveredRobot,
+    /// The geometry of each body.
+    bodies: Vec<GeometryId>,
+    index: RobotId,
+}
+
+impl CoverModel {
+    /// Covers a robot with what it holds in a state; pairs of its bodies are those that the scene tests, kept farther apart than
+    /// their margins and the clearance (m).
+    ///
+    /// # Errors
+    /// A link or held object that no spheres enclose.
+    ///
+    /// # Panics
+    /// The scene has no such robot.
+    pub fn new(scene: &Scene, state: &SceneState, robot: RobotId, clearance_m: f64) -> Result<Self, ValidityError> {
+        let r = &scene.robots()[robot.0];
+        let mut covered = CoveredRobot::without_pairs(&r.robot, r.base_in_world)?;
+        let link = |link: LinkId| GeometryId::Link { robot, link };
+        let mut bodies: Vec<GeometryId> = covered.bodies().map(link).collect();
+        for (i, object) in scene.objects().iter().enumerate() {
+            let id = ObjectId(i);
+            let Some(held) = state.attachment(id).filter(|a| a.robot == robot) else { continue };
+            covered.add_body(&r.robot.chain, held.link, &[(&object.shape, held.in_link)])?;
+            bodies.push(GeometryId::Object(id));
+        }
+        for i in 0..bodies.len() {
+            for j in i + 1..bodies.len() {
+                if let Some(margin_m) = tested_margin(scene, state, bodies[i], bodies[j]) {
+                    covered.add_pair(BodyId(i), BodyId(j), margin_m + clearance_m);
+                }
+            }
+        }
+        Ok(Self { robot: covered, bodies, index: robot })
+    }
+}
+
+/// The solids that a robot must not touch: objects and other robots, as they are in a state.
+#[derive(Debug, Clone)]
+pub struct CoverObstacles {
+    pub(super) set: ObstacleSet,
+    /// The geometry of each obstacle.
+    sources: Vec<GeometryId>,
+    /// Pairs that the scene does not test.
+    skipped: Vec<(BodyId, usize)>,
+}
+
+impl CoverObstacles {
+    /// The obstacles of a model in a state, each with the largest margin that the scene has for a pair of it, and the clearance
+    /// (m).
+    pub fn new(model: &CoverModel, scene: &Scene, state: &SceneState, clearance_m: f64) -> Self {
+        let mut obstacles = Self { set: ObstacleSet::default(), sources: Vec::new(), skipped: Vec::new() };
+        for (i, object) in scene.objects().iter().enumerate() {
+            let id = GeometryId::Object(ObjectId(i));
+            if model.bodies.contains(&id) {
+                continue;
+            }
+            let Some(in_world) = state.pose(scene, id) else { continue };
+            obstacles.add(model, scene, state, id, &[(&object.shape, in_world)], clearance_m);
+        }
+        for (r, other) in scene.robots().iter().enumerate().filter(|(r, _)| *r != model.index.0) {
+            for link in other.robot.links_with_colliders() {
+                let id = GeometryId::Link { robot: RobotId(r), link };
+                let Some(link_in_world) = state.pose(scene, id) else { continue };
+                let colliders = &other.robot.colliders[link.0];
+                let shapes: Vec<_> = colliders.iter().map(|c| (&c.shape, link_in_world * c.in_link)).collect();
+                obstacles.add(model, scene, state, id, &shapes, clearance_m);
+            }
+        }
+        obstacles
+    }
+
+    fn add(
+        &mut self,
+        model: &CoverModel,
+        scene: &Scene,
+        state: &SceneState,
+        id: GeometryId,
+        shapes: &[(&Shape, Pose)],
+        clearance_m: f64,
+    ) {
+        let margins: Vec<_> = model.bodies.iter().map(|&body| tested_margin(scene, state, body, id)).collect();
+        let Some(largest) = margins.iter().flatten().copied().reduce(f64::max) else { return };
+        for (shape, in_world) in shapes {
+            let number = self.set.add_shape(shape, in_world, largest + clearance_m);
+            self.sources.push(id);
+            let untested = margins.iter().enumerate().filter(|(_, m)| m.is_none());
+            self.skipped.extend(untested.map(|(body, _)| (BodyId(body), number)));
+        }
+    }
+
+    /// A checker of the model among these obstacles.
+    pub(super) fn checker<'m>(&'m self, model: &'m CoverModel) -> ValidityChecker<'m> {
+        let mut checker = ValidityChecker::new(&model.robot, &self.set);
+        for &(body, obstacle) in &self.skipped {
+            checker.skip(body, obstacle);
+        }
+        checker
+    }
+
+    /// The geometries of a pair.
+    pub(super) fn pair(&self, model: &CoverModel, pair: NotCertain) -> (GeometryId, GeometryId) {
+        match pair {
+            NotCertain::Bodies(a, b) => (model.bodies[a.0], model.bodies[b.0]),
+            NotCertain::Obstacle(body, obstacle) => (model.bodies[body.0], self.sources[obstacle]),
+        }
+    }
+}
+
+/// The margin of a pair in metres; `None` where the scene does not test it.
+fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId) -> Option<f64> {
+    let (pair_state, _) = state.pair(scene, a, b)?;
+    if pair_state != PairState::Tested {
+        return None;
+    }
+    let entry = scene.allowed_collision_matrix().get(a, b);
+    Some(entry.map_or(0.0, |e| e.margin_m))
+}

@@ -1,0 +1,19 @@
+//! RRT-Connect on sphere covers: edges are proven sixteen configurations at a time; the exact scene settles what the covers
+//! leave open at the ends.
+
+mod cover_model;
+mod edge_validator;
+mod planner;
+mod shortcutting;
+mod tree;
+mod tree_search;
+
+use crate::rrt_connect::{Random, length, lerp, path_length};
+
+pub use cover_model::{CoverModel, CoverObstacles};
+pub use planner::CoverRrtConnect;
+
+/// Draws configurations.
+trait PlannerSample {
+    fn sample(&mut self, out: &mut [f64]);
+}

@@ -1,0 +1,85 @@
+//! A tree of configurations with a nearest-neighbour search over all nodes, in single precision.
+
+/// Nodes whose coordinates are together in memory.
+const LANES: usize = 16;
+
+/// A tree of configurations.
+#[derive(Debug)]
+pub(super) struct Tree {
+    dof: usize,
+    /// The configurations, one after the other.
+    q: Vec<f64>,
+    /// Per sixteen nodes, the values of each joint; unused nodes are far away.
+    packs: Vec<Vec<[f32; LANES]>>,
+    parents: Vec<u32>,
+    /// Per node, samples that are farther away are not extended to: its dynamic domain.
+    pub radii: Vec<f32>,
+}
+
+impl Tree {
+    pub fn new(root: &[f64]) -> Self {
+        let mut tree =
+            Self { dof: root.len(), q: Vec::new(), packs: Vec::new(), parents: Vec::new(), radii: Vec::new() };
+        tree.add(0, root);
+        tree
+    }
+
+    pub fn len(&self) -> usize {
+        self.parents.len()
+    }
+
+    pub fn q(&self, node: usize) -> &[f64] {
+        &self.q[node * self.dof..(node + 1) * self.dof]
+    }
+
+    /// Adds a node; returns its index.
+    pub fn add(&mut self, parent: usize, q: &[f64]) -> usize {
+        let node = self.len();
+        if node % LANES == 0 {
+            self.packs.push(vec![[f32::INFINITY; LANES]; self.dof]);
+        }
+        if let Some(pack) = self.packs.last_mut() {
+            for (row, &v) in pack.iter_mut().zip(q) {
+                row[node % LANES] = v as f32;
+            }
+        }
+        self.q.extend_from_slice(q);
+        self.parents.push(parent as u32);
+        self.radii.push(f32::INFINITY);
+        node
+    }
+
+    /// The nearest node and its Euclidean distance.
+    pub fn nearest(&self, q: &[f64]) -> (usize, f64) {
+        let mut best = [f32::INFINITY; LANES];
+        let mut best_pack = [0_u32; LANES];
+        for (i, pack) in self.packs.iter().enumerate() {
+            let mut squares = [0.0_f32; LANES];
+            for (row, &v) in pack.iter().zip(q) {
+                let v = v as f32;
+                for (square, &x) in squares.iter_mut().zip(row) {
+                    *square += (x - v) * (x - v);
+                }
+            }
+            for lane in 0..LANES {
+                let is_nearer = squares[lane] < best[lane];
+                best[lane] = if is_nearer { squares[lane] } else { best[lane] };
+                best_pack[lane] = if is_nearer { i as u32 } else { best_pack[lane] };
+            }
+        }
+        let lane = (0..LANES).fold(0, |least, lane| if best[lane] < best[least] { lane } else { least });
+        let node = best_pack[lane] as usize * LANES + lane;
+        (node, super::length(self.q(node), q))
+    }
+
+    /// The nodes from one to the root.
+    pub fn branch(&self, node: usize) -> Vec<usize> {
+        let mut branch = vec![node];
+        let mut at = node;
+        while at != 0 {
+            at = self.parents[at] as usize;
+            branch.push(at);
+        }
+        branch
+    }
+}

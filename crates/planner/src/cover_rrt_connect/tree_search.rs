@@ -1,0 +1,103 @@
+//! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with a dynamic
+//! domain (Yershova, Jaillet, Siméon, `LaValle`: *Dynamic-domain RRTs*, 2005): a node from which an extension failed is extended
+//! only towards samples near by.
+
+use super::edge_validator::EdgeValidator;
+use super::tree::Tree;
+use super::{PlannerSample, lerp};
+
+/// Longest edge, rad (and m).
+const EDGE_LENGTH: f64 = 1.0;
+/// Dynamic domain of a node after its first failure, rad (and m).
+const DOMAIN_RADIUS: f64 = 4.0;
+
+/// Two trees that grow towards each other.
+pub(super) struct TreeSearch<'v, V> {
+    pub validator: &'v mut V,
+    trees: [Tree; 2],
+    /// True where the first tree is that of the goal.
+    is_swapped: bool,
+}
+
+impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
+    pub fn new(validator: &'v mut V, start: &[f64], goal: &[f64]) -> Self {
+        Self { validator, trees: [Tree::new(start), Tree::new(goal)], is_swapped: false }
+    }
+
+    /// Number of nodes in both trees.
+    pub fn nodes(&self) -> usize {
+        self.trees.iter().map(Tree::len).sum()
+    }
+
+    /// Waypoints of a path; `None` where a limit is reached.
+    pub fn run(&mut self, sampler: &mut impl PlannerSample) -> Option<Vec<Vec<f64>>> {
+        let mut sample = self.trees[0].q(0).to_vec();
+        while !self.validator.is_exhausted() {
+            if self.trees[0].len() > self.trees[1].len() {
+                self.trees.swap(0, 1);
+                self.is_swapped = !self.is_swapped;
+            }
+            sampler.sample(&mut sample);
+            let (near, distance) = self.trees[0].nearest(&sample);
+            if distance == 0.0 || f64::from(self.trees[0].radii[near]) < distance {
+                continue;
+            }
+            let Some(node) = self.extend(0, near, &sample, distance) else { continue };
+            if let Some(other) = self.connect(node) {
+                return Some(self.path(node, other));
+            }
+        }
+        None
+    }
+
+    /// One edge towards a target. Returns the new node.
+    fn extend(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<usize> {
+        let mut next = target.to_vec();
+        let from = &self.trees[tree];
+        if distance > EDGE_LENGTH {
+            lerp(from.q(near), target, EDGE_LENGTH / distance, &mut next);
+        }
+        if !self.validator.edge_is_free(from.q(near), &next) {
+            let radius = &mut self.trees[tree].radii[near];
+            *radius = radius.min(DOMAIN_RADIUS as f32) * 0.999_9;
+            if !radius.is_finite() {
+                *radius = DOMAIN_RADIUS as f32;
+            }
+            return None;
+        }
+        Some(self.trees[tree].add(near, &next))
+    }
+
+    /// Grows the other tree straight to a node of the first. Returns the node that reaches it.
+    fn connect(&mut self, node: usize) -> Option<usize> {
+        let target = self.trees[0].q(node).to_vec();
+        let (mut near, mut distance) = self.trees[1].nearest(&target);
+        loop {
+            if distance == 0.0 {
+                return Some(near);
+            }
+            near = self.extend(1, near, &target, distance)?;
+            if distance <= EDGE_LENGTH {
+                return Some(near);
+            }
+            distance = super::length(self.trees[1].q(near), &target);
+            if self.validator.is_exhausted() {
+                return None;
+            }
+        }
+    }
+
+    fn path(&self, node: usize, other: usize) -> Vec<Vec<f64>> {
+        let branch = |tree: usize, node: usize| {
+            self.trees[tree].branch(node).into_iter().map(move |n| self.trees[tree].q(n).to_vec())
+        };
+        let mut path: Vec<Vec<f64>> = branch(0, node).collect();
+        path.reverse();
+        path.extend(branch(1, other));
+        path.dedup();
+        if self.is_swapped {
+            path.reverse();
+        }
+        path
+    }
+}
