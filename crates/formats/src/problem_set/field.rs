@@ -65,8 +65,7 @@ impl<'a> Field<'a> {
         let Value::Array(values) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "a list: […]"));
         };
-        let element =
-            |(i, value)| Self { location: self.location, path: format!("{}[{i}]", self.path), value };
+        let element = |(i, value)| Self { location: self.location, path: format!("{}[{i}]", self.path), value };
         Ok(values.iter().enumerate().map(element).collect())
     }
 
