@@ -4,9 +4,6 @@ use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection};
 
 use super::problem_scene::{ProblemScene, ROBOT};
 
-/// Values beyond a limit by no more than this are within it, rad or m: rounding.
-const LIMIT_TOLERANCE: f64 = 1e-9;
-
 /// Removes the goals that are not free.
 ///
 /// # Errors
@@ -28,8 +25,7 @@ pub(super) fn keep_free_goals(problem: &mut ProblemScene) -> Result<(), String> 
 
 fn why_invalid(problem: &ProblemScene, q: &[f64]) -> Option<String> {
     let chain = &problem.scene.robots()[0].robot.chain;
-    let is_beyond =
-        |(v, (lower, upper)): (&f64, &(f64, f64))| *v < lower - LIMIT_TOLERANCE || *v > upper + LIMIT_TOLERANCE;
+    let is_beyond = |(v, (lower, upper)): (&f64, &(f64, f64))| !(lower..=upper).contains(&v);
     if let Some(i) = q.iter().zip(problem.limits()).position(is_beyond) {
         let (lower, upper) = problem.limits()[i];
         let name = &chain.joints()[chain.active_joints()[i].0].name;

@@ -8,6 +8,8 @@ use super::model::{Notes, ProblemKey, Result};
 
 /// Values of a mimic joint farther from those that follow from its source are reported, rad or m.
 const MIMIC_TOLERANCE: f64 = 1e-6;
+/// A value beyond a limit by no more than this is on it, rad or m: models round π to 3.14159.
+const LIMIT_ROUNDING: f64 = 1e-5;
 
 /// Start and goals of a problem, in the order of the chain.
 #[derive(Debug, Clone)]
@@ -18,6 +20,8 @@ pub(super) struct JointValues {
     pub goals: Vec<Vec<f64>>,
     /// True for the joints that a goal names.
     pub planned: Vec<bool>,
+    /// Lowest and highest value of each joint; equal for a joint that no goal names.
+    pub limits: Vec<(f64, f64)>,
 }
 
 /// The values of a problem, for joints with these limits in the model.
@@ -39,7 +43,19 @@ pub(super) fn of_problem(
         }
         goals.push(q);
     }
-    Ok(JointValues { start, goals, planned })
+    let ends = || goals.iter().chain([&start]);
+    let limit = |(i, model): (usize, &(f64, f64))| match planned[i] {
+        true => ends().fold(*model, |limits, q| with_rounding(limits, q[i])),
+        false => (start[i], start[i]),
+    };
+    let limits = limits.iter().enumerate().map(limit).collect();
+    Ok(JointValues { start, goals, planned, limits })
+}
+
+/// Limits that include a value which is beyond them by rounding.
+fn with_rounding((lower, upper): (f64, f64), value: f64) -> (f64, f64) {
+    let is_near = value >= lower - LIMIT_ROUNDING && value <= upper + LIMIT_ROUNDING;
+    if is_near { (lower.min(value), upper.max(value)) } else { (lower, upper) }
 }
 
 /// The start: zero, or the limit nearest to it, where the problem has no value.
@@ -79,7 +95,8 @@ fn check_dependent(chain: &Chain, key: ProblemKey<'_>, (id, value): (JointId, f6
     let actual = if joint.kind == JointKind::Fixed { 0.0 } else { chain.joint_value(id, q) };
     if (actual - value).abs() > MIMIC_TOLERANCE {
         let name = &joint.name;
-        notes.once(key, &format!("the start has {value} for `{name}`, which follows another joint and is at {actual}"));
+        let why = if joint.kind == JointKind::Fixed { "is fixed" } else { "follows another joint" };
+        notes.once(key, &format!("the start has {value} for `{name}`, which {why} and is at {actual}"));
     }
 }
 

@@ -98,14 +98,14 @@ fn without_speed(chain: &Chain, values: &[JointValues]) -> Vec<String> {
     unknown.map(|j| j.name.clone()).collect()
 }
 
-/// The chain with limits that include the values at which problems hold joints.
+/// The chain with limits that include those of every problem.
 fn widened(chain: &Chain, values: &[JointValues]) -> std::result::Result<Chain, elbowroom_kinematics::ChainError> {
     let mut joints = chain.joints().to_vec();
     for (i, id) in chain.active_joints().iter().enumerate() {
         let limits = &mut joints[id.0].limits;
-        for held in values.iter().filter(|v| !v.planned[i]).map(|v| v.start[i]) {
-            limits.lower = limits.lower.min(held);
-            limits.upper = limits.upper.max(held);
+        for (lower, upper) in values.iter().map(|v| v.limits[i]) {
+            limits.lower = limits.lower.min(lower);
+            limits.upper = limits.upper.max(upper);
         }
     }
     Chain::new(chain.name(), chain.links().to_vec(), joints)

@@ -11,7 +11,7 @@ use elbowroom_scene::{Attachment, Object, Scene, SceneError, SceneState};
 use elbowroom_spatial::Pose;
 
 use super::frames::Frames;
-use super::joint_values;
+use super::joint_values::{self, JointValues};
 use super::matrix::skip_allowed;
 use super::model::{Notes, ProblemKey, ProblemModel, Result};
 
@@ -68,10 +68,8 @@ pub(super) fn build(model: &ProblemModel, problem: &PlanningProblem, notes: &mut
     let mut start = SceneState::new(&scene);
     start.set_q(&scene, ROBOT, &values.start).map_err(refused)?;
     attach(problem, key, &scene, &ids, &mut start)?;
-    let held = |i: usize| (values.start[i], values.start[i]);
-    let limit = |(i, limits): (usize, &(f64, f64))| if values.planned[i] { *limits } else { held(i) };
-    let limits = model.limits.iter().enumerate().map(limit).collect();
-    Ok(ProblemScene { scene, start, goals: values.goals, limits, planned: values.planned })
+    let JointValues { goals, planned, limits, .. } = values;
+    Ok(ProblemScene { scene, start, goals, limits, planned })
 }
 
 /// One object of the scene per solid.
