@@ -241,7 +241,7 @@ fn data() -> Option<PathBuf> {
     if data.is_dir() {
         return Some(data);
     }
-    println!("skipped: no data at {}", data.display());
+    eprintln!("skipped: no data at {}", data.display());
     None
 }
 
@@ -257,7 +257,7 @@ fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize) {
     let options = LoadOptions { srdf: Some(srdf.to_owned()), ..LoadOptions::default() };
     let robot = robot::load(urdf, &options).unwrap_or_else(|e| panic!("{e}")).robot;
     let model = ProblemModel::new(urdf, robot, file, &problems).unwrap_or_else(|e| panic!("{e}"));
-    let settings = ProblemSettings { time_limit: std::time::Duration::from_secs(60), ..ProblemSettings::default() };
+    let settings = ProblemSettings { time_limit: std::time::Duration::from_mins(1), ..ProblemSettings::default() };
     let mut n = 0;
     let results = run(&model, &problems, &settings, &mut RrtConnectEngine, &mut |_, motion| {
         let (problem, motion) = (model.problem_scene(&problems[n]).unwrap(), motion.expect("a timed path"));
@@ -274,7 +274,7 @@ fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize) {
         true
     });
     let summary = ProblemSummary::of(&results.unwrap());
-    println!("{}", serde_json::to_string(&summary.all).unwrap());
+    eprintln!("{}", serde_json::to_string(&summary.all).unwrap());
     assert_eq!((summary.sets.len(), summary.all.proven), (7, 7 * per_set));
 }
 

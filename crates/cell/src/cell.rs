@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
-use elbowroom_kinematics::{ChainState, Joint, LinkId};
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
@@ -12,7 +12,6 @@ use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use crate::file::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
 use crate::seal::Seal;
 use crate::{Encoder, MovingObject, PoseTrack};
 
@@ -125,16 +124,6 @@ pub struct JointLimits {
     pub jerk: f64,
     /// Deceleration of the joint when the override falls.
     pub stop: f64,
-}
-
-impl JointLimits {
-    /// Those of a model, with the defaults of a cell file for what it does not state. `None` where it states no speed.
-    pub fn of_joint(joint: &Joint) -> Option<Self> {
-        let sane = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
-        let velocity = sane(joint.limits.velocity)?;
-        let acceleration = sane(joint.limits.acceleration).unwrap_or(velocity / ACCELERATION_TIME_S);
-        Some(Self { velocity, acceleration, jerk: acceleration / JERK_TIME_S, stop: velocity / STOP_TIME_S })
-    }
 }
 
 /// Index of a region in [`Cell::regions`]. A monitor's [`RegionId`](elbowroom_monitor::RegionId) is another:

@@ -5,7 +5,7 @@ use elbowroom_formats::problem_set::PlanningProblem;
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 
-use super::model::{ProblemKey, Result};
+use super::messages::{ProblemKey, Result};
 
 /// Frames of a problem with the robot at its start.
 pub(super) struct Frames<'a> {

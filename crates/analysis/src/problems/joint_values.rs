@@ -4,7 +4,7 @@ use elbowroom_cell::suggest;
 use elbowroom_formats::problem_set::{JointValue, PlanningProblem};
 use elbowroom_kinematics::{Chain, JointId, JointKind};
 
-use super::model::{Notes, ProblemKey, Result};
+use super::messages::{Notes, ProblemKey, Result};
 
 /// Values of a mimic joint farther from those that follow from its source are reported, rad or m.
 const MIMIC_TOLERANCE: f64 = 1e-6;
@@ -44,11 +44,9 @@ pub(super) fn of_problem(
         goals.push(q);
     }
     let ends = || goals.iter().chain([&start]);
-    let limit = |(i, model): (usize, &(f64, f64))| match planned[i] {
-        true => ends().fold(*model, |limits, q| with_rounding(limits, q[i])),
-        false => (start[i], start[i]),
-    };
-    let limits = limits.iter().enumerate().map(limit).collect();
+    let planned_limits = |i: usize, model| ends().fold(model, |limits, q: &Vec<f64>| with_rounding(limits, q[i]));
+    let limit = |(i, model): (usize, _)| if planned[i] { planned_limits(i, model) } else { (start[i], start[i]) };
+    let limits = limits.iter().copied().enumerate().map(limit).collect();
     Ok(JointValues { start, goals, planned, limits })
 }
 

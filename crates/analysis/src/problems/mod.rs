@@ -36,6 +36,7 @@ mod engine;
 mod frames;
 mod joint_values;
 mod matrix;
+mod messages;
 mod model;
 mod motion_limits;
 mod problem_scene;

@@ -1,7 +1,6 @@
 //! The robot of a set of problems, prepared once.
 
-use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::problem_set::PlanningProblem;
@@ -11,22 +10,13 @@ use elbowroom_robot::Robot;
 use elbowroom_scene::Scene;
 
 use super::joint_values::{self, JointValues};
-use super::problem_scene::{self, ProblemScene};
-
-pub(super) type Result<T> = std::result::Result<T, FormatError>;
-
-/// Different warnings that are kept.
-const MAX_WARNINGS: usize = 50;
+use super::messages::{Notes, ProblemKey, Result};
+use super::problem_scene::{self, BaseScene, ProblemScene};
 
 /// The robot of a set of problems, with what is the same for all of them. Its root link is the world frame.
 #[derive(Debug)]
 pub struct ProblemModel {
-    /// The robot alone.
-    pub(super) scene: Scene,
-    /// Position limits of the robot's joints, rad or m.
-    pub(super) limits: Vec<(f64, f64)>,
-    /// The file of the problems, for messages.
-    pub(super) problem_file: PathBuf,
+    base: BaseScene,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
     /// Joints that a problem plans and that have no largest speed: their paths cannot be timed.
@@ -61,12 +51,17 @@ impl ProblemModel {
         notes.warnings.extend(query_model.touching_at_rest());
         let scene = query_model.scene(OutOfReachProofs::Compute)?;
         let problem_file = problem_file.to_owned();
-        let mut model = Self { scene, limits, problem_file, joints, joints_without_speed, warnings: Vec::new() };
+        let base = BaseScene { scene, limits, problem_file };
         for problem in problems {
-            problem_scene::build(&model, problem, &mut notes)?;
+            problem_scene::build(&base, problem, &mut notes)?;
         }
-        model.warnings = notes.warnings;
-        Ok(model)
+        Ok(Self { base, joints, joints_without_speed, warnings: notes.warnings })
+    }
+
+    /// The robot alone, for what a planner prepares once. Limits of joints that some problem holds beyond them are wider than
+    /// in the model; [`ProblemScene::limits`] has those of a problem.
+    pub fn scene(&self) -> &Scene {
+        &self.base.scene
     }
 
     /// The scene of a problem, with its start and goals.
@@ -74,12 +69,7 @@ impl ProblemModel {
     /// # Errors
     /// As [`Self::new`], for problems that were not checked there.
     pub fn problem_scene(&self, problem: &PlanningProblem) -> Result<ProblemScene> {
-        problem_scene::build(self, problem, &mut Notes::default())
-    }
-
-    /// The robot's joints and links. Limits of joints that some problem holds beyond them are wider than in the model.
-    pub(super) fn chain(&self) -> &Chain {
-        &self.scene.robots()[0].robot.chain
+        problem_scene::build(&self.base, problem, &mut Notes::default())
     }
 }
 
@@ -118,40 +108,6 @@ fn report_beyond_limits(chain: &Chain, key: ProblemKey<'_>, values: &JointValues
         if !values.planned[i] && !joint.limits.contains(value, 0.0) {
             let (name, lower, upper) = (&joint.name, joint.limits.lower, joint.limits.upper);
             notes.once(key, &format!("`{name}` is held at {value}, beyond its limits {lower} to {upper}"));
-        }
-    }
-}
-
-/// A problem, for messages.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ProblemKey<'a> {
-    file: &'a Path,
-    set: &'a str,
-    id: &'a str,
-}
-
-impl<'a> ProblemKey<'a> {
-    pub(super) fn new(file: &'a Path, problem: &'a PlanningProblem) -> Self {
-        Self { file, set: &problem.set, id: &problem.id }
-    }
-
-    pub(super) fn error(self, what: impl std::fmt::Display) -> FormatError {
-        FormatError::new(self.file, None, format!("set `{}`, problem `{}`: {what}", self.set, self.id))
-    }
-}
-
-/// Warnings, each once: the problems of a file resemble each other.
-#[derive(Debug, Default)]
-pub(super) struct Notes {
-    seen: HashSet<String>,
-    pub warnings: Vec<Warning>,
-}
-
-impl Notes {
-    /// Warns at the first problem.
-    pub(super) fn once(&mut self, key: ProblemKey<'_>, what: &str) {
-        if self.seen.len() < MAX_WARNINGS && self.seen.insert(what.to_owned()) {
-            self.warnings.push(key.error(format!("{what} (reported once)")).into());
         }
     }
 }

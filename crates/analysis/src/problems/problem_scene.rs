@@ -1,6 +1,7 @@
 //! A problem as a scene with a start and goals.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 use elbowroom_cell::suggest;
 use elbowroom_formats::problem_set::{PlanningProblem, ProblemObject};
@@ -13,10 +14,21 @@ use elbowroom_spatial::Pose;
 use super::frames::Frames;
 use super::joint_values::{self, JointValues};
 use super::matrix::skip_allowed;
-use super::model::{Notes, ProblemKey, ProblemModel, Result};
+use super::messages::{Notes, ProblemKey, Result};
 
 /// The only robot.
 pub(super) const ROBOT: RobotId = RobotId(0);
+
+/// The robot alone, with what is the same for all problems of a file.
+#[derive(Debug)]
+pub(super) struct BaseScene {
+    /// Limits of joints that some problem holds beyond them are wider than in the base.
+    pub scene: Scene,
+    /// Position limits of the robot's joints in the model, rad or m.
+    pub limits: Vec<(f64, f64)>,
+    /// The file of the problems, for messages.
+    pub problem_file: PathBuf,
+}
 
 /// A problem as a scene: the robot among the objects, its start and goals. Coordinates are those of the root link.
 #[derive(Debug, Clone)]
@@ -56,13 +68,14 @@ impl ProblemScene {
 }
 
 /// Builds the scene of a problem.
-pub(super) fn build(model: &ProblemModel, problem: &PlanningProblem, notes: &mut Notes) -> Result<ProblemScene> {
-    let key = ProblemKey::new(&model.problem_file, problem);
+pub(super) fn build(base: &BaseScene, problem: &PlanningProblem, notes: &mut Notes) -> Result<ProblemScene> {
+    let key = ProblemKey::new(&base.problem_file, problem);
     let refused = |e: SceneError| key.error(e).hint("objects with names, shapes and poses of their own");
-    let values = joint_values::of_problem(model.chain(), &model.limits, key, problem, notes)?;
-    let frames = Frames::new(key, problem, model.chain(), &values.start);
+    let chain = &base.scene.robots()[0].robot.chain;
+    let values = joint_values::of_problem(chain, &base.limits, key, problem, notes)?;
+    let frames = Frames::new(key, problem, chain, &values.start);
     let SceneObjects { objects, ids } = scene_objects(problem, &frames)?;
-    let scene = model.scene.with_objects(objects).map_err(refused)?;
+    let scene = base.scene.with_objects(objects).map_err(refused)?;
     let matrix = skip_allowed(&scene, &problem.matrix, &ids);
     let scene = scene.with_allowed_collision_matrix(matrix).map_err(|e| key.error(e))?;
     let mut start = SceneState::new(&scene);

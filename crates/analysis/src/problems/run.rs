@@ -5,7 +5,8 @@ use std::time::Duration;
 use elbowroom_formats::problem_set::PlanningProblem;
 use elbowroom_planner::{KinematicLimits, PlannedPath};
 
-use super::model::{ProblemModel, Result};
+use super::messages::Result;
+use super::model::ProblemModel;
 use super::problem_scene::ProblemScene;
 use super::rrt_connect::rrt_settings;
 use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};

@@ -84,8 +84,8 @@ impl ProblemSummary {
             }
         }
         let of_set = |name: &&str| {
-            let members: Vec<&ProblemResult> = results.iter().filter(|r| r.set == *name).collect();
-            SetSummary::of(name, &members)
+            let of_name: Vec<&ProblemResult> = results.iter().filter(|r| r.set == *name).collect();
+            SetSummary::of(name, &of_name)
         };
         let all: Vec<&ProblemResult> = results.iter().collect();
         Self { sets: names.iter().map(of_set).collect(), all: SetSummary::of("all", &all) }

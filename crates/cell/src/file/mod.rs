@@ -26,7 +26,6 @@ use elbowroom_robot::RobotId;
 pub use document::CellFile;
 use read::{Table, Value};
 use robot::robot_of;
-pub(crate) use robot::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
 
 use crate::{Cell, CellLaws, MapSpec, Units, configure, seal, suggest};
 

@@ -8,8 +8,10 @@ use std::path::Path;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde_json::error::Category;
 
-use super::LAYOUT;
 use crate::FormatError;
+
+/// The layout, for messages.
+pub(super) const LAYOUT: &str = "{\"SET\": {\"ID\": {\"scene\": {…}, \"request\": {…}}}}";
 
 /// The entries of a JSON object. A key that occurs twice is an error: the first entry would be lost.
 #[derive(Debug)]

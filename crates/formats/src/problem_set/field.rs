@@ -7,6 +7,9 @@ use serde_json::Value;
 
 use crate::{FormatError, Warning};
 
+/// Larger values of joints are refused, rad or m: poses computed from them would not be finite.
+const MAX_JOINT_VALUE: f64 = 1e6;
+
 /// The problem that a field belongs to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Location<'a> {
@@ -111,6 +114,15 @@ impl<'a> Field<'a> {
     pub(super) fn number(&self) -> Result<f64, FormatError> {
         let number = self.value.as_f64().filter(|v| v.is_finite());
         number.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a finite number, as 0.25"))
+    }
+
+    /// The value of a joint, rad or m.
+    pub(super) fn joint_value(&self) -> Result<f64, FormatError> {
+        let value = self.number()?;
+        if value.abs() <= MAX_JOINT_VALUE {
+            return Ok(value);
+        }
+        Err(self.error(format!("is {value}"), "radians, metres for a prismatic joint: 0.25"))
     }
 
     /// A whole number from 0 up.

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::JointValue;
 use super::field::Field;
+use super::problem::JointValue;
 use crate::FormatError;
 
 /// Constraints of a message that are not about joint values.
@@ -39,7 +39,7 @@ fn goal(field: &Field<'_>) -> Result<Vec<JointValue>, FormatError> {
     let mut values = Vec::new();
     for constraint in field.list("joint_constraints")? {
         let joint = constraint.require("joint_name", JOINTS)?;
-        let value = constraint.require("position", JOINTS)?.number()?;
+        let value = constraint.require("position", JOINTS)?.joint_value()?;
         if !known.insert(joint.name()?) {
             return Err(joint.error(format!("names {} a second time", joint.shown()), "each joint once"));
         }

@@ -6,7 +6,8 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
 use super::field::{Field, Notes};
-use super::{AttachedObject, ProblemObject, pose, solid};
+use super::problem::{AttachedObject, ProblemObject};
+use super::{pose, solid};
 use crate::FormatError;
 
 /// The objects of `scene.world`.

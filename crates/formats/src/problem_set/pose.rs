@@ -2,8 +2,8 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::FixedFrame;
 use super::field::Field;
+use super::problem::FixedFrame;
 use crate::FormatError;
 
 /// Quaternions shorter than this have no direction that their writer meant.

@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use elbowroom_spatial::Pose;
 
 use super::field::{Field, Notes};
-use super::{AttachedObject, JointValue, object, pose};
+use super::problem::{AttachedObject, JointValue};
+use super::{object, pose};
 use crate::FormatError;
 
 /// Rotations (rad) and translations (m) up to this are none.
@@ -51,7 +52,7 @@ fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, F
         if !known.insert(name.name()?) {
             return Err(name.error(format!("names {} a second time", name.shown()), "each joint once"));
         }
-        values.push(JointValue { joint: name.name()?.to_owned(), value: value.number()? });
+        values.push(JointValue { joint: name.name()?.to_owned(), value: value.joint_value()? });
     }
     Ok(values)
 }
