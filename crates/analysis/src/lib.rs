@@ -1,7 +1,8 @@
-//! Analysis of a cell without a run: `query`, `map` and `plan`.
+//! Analysis of a cell without a run: `query`, `map` and `plan`; sets of planning problems.
 //!
 //! [`query`] evaluates collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
-//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
+//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state. [`problems`]
+//! solves the planning problems of a file.
 //!
 //! ```
 //! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};
@@ -30,4 +31,5 @@
 
 pub mod map;
 pub mod plan;
+pub mod problems;
 pub mod query;

@@ -34,7 +34,7 @@ pub(crate) enum Command {
     Convert(ConvertArgs),
     /// Compute the joint-space occupancy of a cell's objects for one robot
     Map(MapArgs),
-    /// Find a collision-free, timed path of a robot from one joint state to another
+    /// Find a collision-free, timed path of a robot from one joint state to another, or solve a file of planning problems
     Plan(PlanArgs),
     /// Print the fuzzy rules of obstacle avoidance, or write them to a file for editing
     Rules(RulesArgs),
@@ -305,15 +305,19 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
+  elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
+  elbowroom plan --urdf arm.urdf --problems problems.json --only shelf,cage --limit 10 --paths paths --json
 
 --out writes timed samples for the controller.
 Obstacles are the objects, the other robots at their start, and the robot itself with tool and
 load, by the allowed collision matrix of the cell; the volumes that the monitor guards stay out of
 permanent forbidden regions.
-Exit status: 1 if no path was found; a path may exist nevertheless (docs/plan.md).")]
+Exit status: 1 if no path was found; a path may exist nevertheless (docs/plan.md). With --problems:
+1 if a problem with a free start and a free goal was not solved.")]
 pub(crate) struct PlanArgs {
-    /// The cell file
-    pub(crate) cell: PathBuf,
+    /// The cell file; or --urdf with --problems
+    #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
+    pub(crate) cell: Option<PathBuf>,
     /// Name of the robot; optional if there is only one
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
@@ -322,15 +326,15 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
     pub(crate) from: Option<Numbers>,
     /// Goal configuration, likewise
-    #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
-    pub(crate) to: Numbers,
+    #[arg(long, value_name = "q,…", allow_hyphen_values = true, required_unless_present = "urdf")]
+    pub(crate) to: Option<Numbers>,
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Sampling period in seconds; default: the cell's control period
+    /// Sampling period in seconds; default: the cell's control period, 0.002 with --problems
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) period: Option<f64>,
-    /// Time limit of the search in seconds
+    /// Time limit of the search in seconds; with --problems, of each problem
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: f64,
     /// Security margin to all obstacles, in metres
@@ -339,6 +343,8 @@ pub(crate) struct PlanArgs {
     /// Seed of the random sampling; the same seed gives the same path
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) problems: crate::plan_problems::args::ProblemArgs,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub(crate) json: bool,

@@ -11,6 +11,7 @@ mod inspect;
 mod map;
 mod output;
 mod plan;
+mod plan_problems;
 mod query;
 mod region;
 mod rules;

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 use std::time::Duration;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathRequest, TimedPath};
@@ -11,14 +12,19 @@ use elbowroom::planner::RrtConnectSettings;
 
 use crate::args::PlanArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::plan_problems;
 
 pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
-    let cell = Cell::load(&args.cell)?;
+    if let (Some(urdf), Some(file)) = (&args.problems.urdf, &args.problems.problems) {
+        return plan_problems::run(urdf, file, args);
+    }
+    // clap requires a cell and a goal where there are no problems.
+    let cell = Cell::load(args.cell.as_deref().unwrap_or(Path::new("")))?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let request = PathRequest {
         robot: args.robot.clone(),
         from: args.from.as_ref().map(|q| q.0.clone()),
-        to: args.to.0.clone(),
+        to: args.to.as_ref().map(|q| q.0.clone()).unwrap_or_default(),
         options: RrtConnectSettings {
             time_limit: Duration::from_secs_f64(args.time_limit),
             clearance_m: args.clearance,

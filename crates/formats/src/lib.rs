@@ -14,6 +14,7 @@
 //! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
 //! | joint states, trajectories | [`joint_states`] | CSV; columns in any order, errors with file and line |
 //! | tables of numbers | [`number_table`] | CSV with a header |
+//! | planning problems | [`problem_set`] | JSON in the layout of `MotionBenchMaker` |
 //! | PNG | [`png`] | grey, RGB, alpha, palettes, 8 and 16 bits, interlaced; written too |
 //! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
 //!
@@ -57,6 +58,7 @@ pub mod ply;
 pub mod png;
 pub mod pnm;
 mod polygon;
+pub mod problem_set;
 mod resolve;
 pub mod robot;
 pub mod srdf;

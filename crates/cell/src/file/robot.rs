@@ -2,7 +2,7 @@
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::{Chain, JointKind, Limits, LinkId};
+use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
@@ -49,6 +49,16 @@ pub(crate) const JERK_TIME_S: f64 = 0.1;
 const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 /// Default speed of prismatic joints, m/s.
 const PRISMATIC_SPEED: f64 = 1.0;
+
+impl JointLimits {
+    /// Those of a model, with the defaults of a cell file for what it does not state. `None` where it states no speed.
+    pub fn of_joint(joint: &Joint) -> Option<Self> {
+        let sane = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
+        let velocity = sane(joint.limits.velocity)?;
+        let acceleration = sane(joint.limits.acceleration).unwrap_or(velocity / ACCELERATION_TIME_S);
+        Some(Self { velocity, acceleration, jerk: acceleration / JERK_TIME_S, stop: velocity / STOP_TIME_S })
+    }
+}
 
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
     t.only(KEYS)?;

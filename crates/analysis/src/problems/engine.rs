@@ -1,0 +1,52 @@
+//! What a planner has to offer to solve a set of problems.
+
+use std::time::Duration;
+
+use super::ProblemScene;
+
+/// A planner that solves problems one after the other. It may keep what it computes for the robot from one to the next.
+pub trait PlanningEngine {
+    /// Plans from the start to one of the goals, all of which are free.
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution;
+}
+
+/// Settings of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProblemSettings {
+    /// Time limit of search and shortcutting per problem.
+    pub time_limit: Duration,
+    /// Distance that pairs keep, m.
+    pub clearance_m: f64,
+    /// Seed of the random numbers of each problem.
+    pub seed: u64,
+    /// Period of the samples of timed paths, s.
+    pub period_s: f64,
+}
+
+impl Default for ProblemSettings {
+    /// 5 s, no clearance, seed 1, samples every 2 ms.
+    fn default() -> Self {
+        Self { time_limit: Duration::from_secs(5), clearance_m: 0.0, seed: 1, period_s: 0.002 }
+    }
+}
+
+/// The answer of a planner to one problem.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Solution {
+    /// True where a path was found.
+    pub found: bool,
+    /// True where every stretch of the path is proven free, not sampled.
+    pub proven: bool,
+    /// Time of the search.
+    pub planning: Duration,
+    /// Time of shortcutting.
+    pub simplification: Duration,
+    /// Length in joint space before shortcutting, rad (and m).
+    pub cost_raw_rad: f64,
+    /// Length of the path, rad (and m).
+    pub cost_rad: f64,
+    /// All values of the robot at each waypoint, straight in joint space in between; empty where none was found.
+    pub waypoints: Vec<Vec<f64>>,
+    /// Why no path was found.
+    pub reason: Option<String>,
+}

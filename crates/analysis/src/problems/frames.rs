@@ -1,0 +1,47 @@
+//! Frames of objects: links at the start, fixed frames, the world.
+
+use elbowroom_cell::suggest;
+use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_kinematics::{Chain, ChainState};
+use elbowroom_spatial::Pose;
+
+use super::messages::{ProblemKey, Result};
+
+/// Frames of a problem with the robot at its start.
+pub(super) struct Frames<'a> {
+    key: ProblemKey<'a>,
+    problem: &'a PlanningProblem,
+    chain: &'a Chain,
+    state: ChainState,
+}
+
+impl<'a> Frames<'a> {
+    pub(super) fn new(key: ProblemKey<'a>, problem: &'a PlanningProblem, chain: &'a Chain, start: &[f64]) -> Self {
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(start);
+        chain.forward(&mut state);
+        Self { key, problem, chain, state }
+    }
+
+    /// The pose of a frame in the root link.
+    pub(super) fn in_root(&self, name: &str) -> Result<Pose> {
+        let (mut name, mut pose) = (name, Pose::IDENTITY);
+        for _ in 0..=self.problem.frames.len() {
+            if let Some(link) = self.chain.link(name) {
+                return Ok(self.state.link_in_root(link) * pose);
+            }
+            let fixed = self.problem.frames.iter().find(|f| f.name == name && f.parent != name);
+            match fixed {
+                Some(frame) => (name, pose) = (&frame.parent, frame.in_parent * pose),
+                None if name.is_empty() || name == "world" => {
+                    return Ok(self.problem.base_in_world.inverse() * pose);
+                }
+                None => break,
+            }
+        }
+        let known = self.problem.frames.iter().map(|f| f.name.as_str());
+        let known = known.chain(["world"]).chain(self.chain.links().iter().map(String::as_str));
+        let what = format!("the frame `{name}` is no link of the robot, and `fixed_frame_transforms` do not define it");
+        Err(self.key.error(what).hint(suggest::hint(name, known)))
+    }
+}

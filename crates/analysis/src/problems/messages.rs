@@ -1,0 +1,46 @@
+//! Messages about problems: which problem, and each warning once.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_formats::{FormatError, Warning};
+
+pub(super) type Result<T> = std::result::Result<T, FormatError>;
+
+/// Different warnings that are kept.
+const MAX_WARNINGS: usize = 50;
+
+/// A problem, for messages.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ProblemKey<'a> {
+    file: &'a Path,
+    set: &'a str,
+    id: &'a str,
+}
+
+impl<'a> ProblemKey<'a> {
+    pub(super) fn new(file: &'a Path, problem: &'a PlanningProblem) -> Self {
+        Self { file, set: &problem.set, id: &problem.id }
+    }
+
+    pub(super) fn error(self, what: impl std::fmt::Display) -> FormatError {
+        FormatError::new(self.file, None, format!("set `{}`, problem `{}`: {what}", self.set, self.id))
+    }
+}
+
+/// Warnings, each once: the problems of a file resemble each other.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    seen: HashSet<String>,
+    pub warnings: Vec<Warning>,
+}
+
+impl Notes {
+    /// Warns at the first problem.
+    pub(super) fn once(&mut self, key: ProblemKey<'_>, what: &str) {
+        if self.seen.len() < MAX_WARNINGS && self.seen.insert(what.to_owned()) {
+            self.warnings.push(key.error(format!("{what} (reported once)")).into());
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Result of one problem.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::Solution;
+
+/// Result of one problem. What does not exist is null: times of an invalid problem, lengths where no path was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ProblemResult {
+    /// Name of the set.
+    pub set: String,
+    /// Key in the set.
+    pub id: String,
+    /// True where the start and at least one goal are free.
+    pub valid: bool,
+    /// True where a path was found.
+    pub found: bool,
+    /// True where every stretch of the path is proven free.
+    pub proven: bool,
+    /// Why the problem is invalid, why no path was found, or why the path is not timed.
+    pub reason: Option<String>,
+    /// Time of the search, µs.
+    pub planning_us: Option<f64>,
+    /// Time of shortcutting, µs.
+    pub simplify_us: Option<f64>,
+    /// Length in joint space before shortcutting, rad (and m).
+    pub cost_raw_rad: Option<f64>,
+    /// Length in joint space, rad (and m).
+    pub cost_rad: Option<f64>,
+    /// Duration of the timed path, s.
+    pub duration_s: Option<f64>,
+}
+
+impl ProblemResult {
+    pub(super) fn invalid(set: &str, id: &str, reason: String) -> Self {
+        Self {
+            set: set.to_owned(),
+            id: id.to_owned(),
+            valid: false,
+            found: false,
+            proven: false,
+            reason: Some(reason),
+            planning_us: None,
+            simplify_us: None,
+            cost_raw_rad: None,
+            cost_rad: None,
+            duration_s: None,
+        }
+    }
+
+    pub(super) fn of(set: &str, id: &str, solution: &Solution) -> Self {
+        let found = solution.found;
+        Self {
+            valid: true,
+            found,
+            proven: found && solution.proven,
+            planning_us: Some(micros(solution.planning)),
+            simplify_us: found.then(|| micros(solution.simplification)),
+            cost_raw_rad: found.then_some(solution.cost_raw_rad),
+            cost_rad: found.then_some(solution.cost_rad),
+            reason: solution.reason.clone().filter(|_| !found),
+            ..Self::invalid(set, id, String::new())
+        }
+    }
+}
+
+/// Microseconds with their fraction.
+fn micros(time: Duration) -> f64 {
+    time.as_nanos() as f64 / 1000.0
+}

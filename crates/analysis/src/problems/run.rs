@@ -1,0 +1,98 @@
+//! The run over the problems of a file.
+
+use std::time::Duration;
+
+use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_planner::{KinematicLimits, PlannedPath};
+
+use super::messages::Result;
+use super::model::ProblemModel;
+use super::problem_scene::ProblemScene;
+use super::rrt_connect::rrt_settings;
+use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};
+use crate::plan::TimedPath;
+
+/// Solves problems one after the other and times the paths. Building the scenes and timing are in no time of a result.
+/// `each` is called after each problem, with the timed path where there is one; `false` ends the run.
+///
+/// # Errors
+/// As [`ProblemModel::problem_scene`].
+pub fn run(
+    model: &ProblemModel,
+    problems: &[PlanningProblem],
+    settings: &ProblemSettings,
+    engine: &mut dyn PlanningEngine,
+    each: &mut dyn FnMut(&ProblemResult, Option<&TimedPath>) -> bool,
+) -> Result<Vec<ProblemResult>> {
+    let mut results = Vec::new();
+    for problem in problems {
+        let (set, id) = (&problem.set, &problem.id);
+        let mut scene = model.problem_scene(problem)?;
+        let (result, motion) = if let Err(reason) = end_validity::keep_free_goals(&mut scene) {
+            (ProblemResult::invalid(set, id, reason), None)
+        } else {
+            let solution = engine.solve(&scene, settings);
+            let mut result = ProblemResult::of(set, id, &solution);
+            let motion = if solution.found { timed(&scene, solution, settings, &mut result) } else { None };
+            (result, motion)
+        };
+        let goes_on = each(&result, motion.as_ref());
+        results.push(result);
+        if !goes_on {
+            break;
+        }
+    }
+    Ok(results)
+}
+
+/// The timed path; `None`, with the reason in the result, where there is none.
+fn timed(
+    problem: &ProblemScene,
+    solution: Solution,
+    settings: &ProblemSettings,
+    result: &mut ProblemResult,
+) -> Option<TimedPath> {
+    let limits = motion_limits::of_chain(&problem.scene.robots()[0].robot.chain, &problem.planned);
+    let motion = match limits {
+        None => Err("not timed: a joint has no largest speed".into()),
+        Some(limits) => time(problem, solution, settings, &limits),
+    };
+    match motion {
+        Ok(motion) => {
+            result.duration_s = Some(motion.duration_s);
+            Some(motion)
+        }
+        Err(why) => {
+            result.reason = Some(why);
+            None
+        }
+    }
+}
+
+fn time(
+    problem: &ProblemScene,
+    solution: Solution,
+    settings: &ProblemSettings,
+    limits: &KinematicLimits,
+) -> std::result::Result<TimedPath, String> {
+    let refused = |e: &dyn std::fmt::Display| format!("not timed: {e}");
+    let mut planner = problem.planner().map_err(|e| refused(&e))?;
+    let path = PlannedPath {
+        waypoints: solution.waypoints,
+        length_rad: solution.cost_rad,
+        raw_length_rad: solution.cost_raw_rad,
+        planning_time: solution.planning,
+        simplification_time: solution.simplification,
+        states_checked: 0,
+    };
+    let rrt = rrt_settings(settings, Duration::MAX);
+    let trajectory = planner.time_parametrize(problem.start(), &path, limits, settings.period_s, &rrt);
+    let trajectory = trajectory.map_err(|e| refused(&e))?;
+    Ok(TimedPath {
+        duration_s: trajectory.seconds(),
+        stops: trajectory.stops(),
+        rows: trajectory.samples(settings.period_s).map_err(|e| refused(&e))?,
+        waypoints: path.waypoints,
+        cost_rad: path.length_rad,
+    })
+}

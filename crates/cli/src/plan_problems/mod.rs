@@ -1,0 +1,100 @@
+//! `elbowroom plan --problems`: sets of planning problems for one robot.
+
+pub(crate) mod args;
+mod path_files;
+mod progress;
+mod selection;
+mod table;
+
+use std::path::Path;
+use std::time::Duration;
+
+use elbowroom::analysis::problems::{
+    ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run as run_problems,
+};
+use elbowroom::formats::problem_set;
+use elbowroom::formats::robot::{self, LoadOptions};
+use serde::Serialize;
+
+use crate::args::PlanArgs;
+use crate::output::{ExitStatus, Failure, note, print, print_json, width};
+use path_files::PathFiles;
+use progress::Progress;
+
+/// Loads, plans and prints.
+pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatus, Failure> {
+    let settings = settings(args)?;
+    let read = problem_set::read(file)?;
+    read.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let problems = selection::select(file, read.problems, &args.problems)?;
+    let options = LoadOptions { srdf: args.problems.srdf.clone(), ..LoadOptions::default() };
+    let loaded = robot::load(urdf, &options)?;
+    loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let model = ProblemModel::new(urdf, loaded.robot, file, &problems)?;
+    model.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    check_speeds(urdf, &model, args)?;
+    let mut files = args.problems.paths.as_deref().map(PathFiles::create).transpose()?;
+    let mut progress = Progress::new(problems.len());
+    let mut written = Ok(());
+    // The planner; another one takes its place here.
+    let mut engine = RrtConnectEngine;
+    let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, motion| {
+        progress.next(result);
+        if let (Some(files), Some(motion)) = (&mut files, motion) {
+            written = files.write(result, &model.joints, motion);
+        }
+        written.is_ok()
+    })?;
+    progress.end();
+    written?;
+    print_results(args, &results)?;
+    let all_solved = results.iter().all(|r| r.found || !r.valid);
+    Ok(if all_solved { ExitStatus::Success } else { ExitStatus::NegativeResult })
+}
+
+fn settings(args: &PlanArgs) -> Result<ProblemSettings, Failure> {
+    if !(args.clearance >= 0.0 && args.clearance.is_finite()) {
+        let what = format!("--clearance is {}\n  write: a finite number of metres, 0 or more", args.clearance);
+        return Err(Failure::Wrong(what));
+    }
+    let defaults = ProblemSettings::default();
+    Ok(ProblemSettings {
+        time_limit: Duration::from_secs_f64(args.time_limit),
+        clearance_m: args.clearance,
+        seed: args.seed,
+        period_s: args.period.unwrap_or(defaults.period_s),
+    })
+}
+
+/// Joints without a speed: no path can be timed. That is an error where timed paths are to be written.
+fn check_speeds(urdf: &Path, model: &ProblemModel, args: &PlanArgs) -> Result<(), Failure> {
+    if model.joints_without_speed.is_empty() {
+        return Ok(());
+    }
+    let what = format!(
+        "{}: has no largest speed for {}: paths are not timed\n  write: <limit velocity=\"…\"/> in each of these \
+         joints, in radians or, where it slides, metres per second",
+        urdf.display(),
+        model.joints_without_speed.join(", ")
+    );
+    if args.problems.paths.is_some() {
+        return Err(Failure::Wrong(what));
+    }
+    note(format_args!("warning: {what}"));
+    Ok(())
+}
+
+/// The JSON document.
+#[derive(Serialize)]
+struct Document<'a> {
+    problems: &'a [ProblemResult],
+    summary: &'a ProblemSummary,
+}
+
+fn print_results(args: &PlanArgs, results: &[ProblemResult]) -> Result<(), Failure> {
+    let summary = ProblemSummary::of(results);
+    if args.json {
+        return print_json(&Document { problems: results, summary: &summary });
+    }
+    print(&table::text(&summary, results, width()))
+}

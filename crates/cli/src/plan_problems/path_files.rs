@@ -1,0 +1,67 @@
+//! Files of timed paths: `SET-ID.csv`.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use elbowroom::analysis::plan::TimedPath;
+use elbowroom::analysis::problems::ProblemResult;
+
+use crate::output::{Failure, cannot_write};
+
+/// Longer names are cut: file systems allow 255 bytes.
+const MAX_CHARS: usize = 100;
+
+/// A folder of timed paths.
+#[derive(Debug)]
+pub(super) struct PathFiles {
+    dir: PathBuf,
+    names: HashSet<String>,
+}
+
+impl PathFiles {
+    pub(super) fn create(dir: &Path) -> Result<Self, Failure> {
+        std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
+        Ok(Self { dir: dir.to_owned(), names: HashSet::new() })
+    }
+
+    /// Writes the path of a problem.
+    pub(super) fn write(&mut self, of: &ProblemResult, joints: &[String], motion: &TimedPath) -> Result<(), Failure> {
+        let name = self.unused_name(&of.set, &of.id);
+        let path = self.dir.join(name);
+        let file = File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))?;
+        motion.write_csv(joints, file).map_err(cannot_write(&path))
+    }
+
+    /// `SET-ID.csv`. Characters that could lead to another folder become `_`; a name that was given gets a number.
+    fn unused_name(&mut self, set: &str, id: &str) -> String {
+        let safe = |text: &str| -> String {
+            let allowed = |c: char| if c.is_alphanumeric() || "._-+ ".contains(c) { c } else { '_' };
+            text.chars().take(MAX_CHARS).map(allowed).collect()
+        };
+        let stem = format!("{}-{}", safe(set), safe(id)).trim_start_matches('.').to_owned();
+        let mut name = format!("{stem}.csv");
+        let mut number = 2;
+        while !self.names.insert(name.to_lowercase()) {
+            name = format!("{stem}-{number}.csv");
+            number += 1;
+        }
+        name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_in_the_folder_and_differ() {
+        let mut files = PathFiles { dir: PathBuf::new(), names: HashSet::new() };
+        assert_eq!(files.unused_name("shelf", "0001"), "shelf-0001.csv");
+        assert_eq!(files.unused_name("../..", "/etc/x"), "_..-_etc_x.csv");
+        assert_eq!(files.unused_name("a-b", "c"), "a-b-c.csv");
+        assert_eq!(files.unused_name("a", "b-C"), "a-b-C-2.csv");
+        assert!(files.unused_name(&"x".repeat(5000), "1").len() < 255);
+    }
+}

@@ -1,0 +1,49 @@
+//! Goals of a request.
+
+use std::collections::HashSet;
+
+use super::field::Field;
+use super::problem::JointValue;
+use crate::FormatError;
+
+/// Constraints of a message that are not about joint values.
+const OTHER_CONSTRAINTS: [&str; 3] = ["position_constraints", "orientation_constraints", "visibility_constraints"];
+/// What a goal is made of, for messages.
+const JOINTS: &str = "\"joint_constraints\": [{\"joint_name\": \"NAME\", \"position\": 0.5}, …]";
+
+/// The alternative goals of a request, each as joint values.
+pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, FormatError> {
+    if let Some(constraints) = request.get("path_constraints")? {
+        for key in OTHER_CONSTRAINTS.into_iter().chain(["joint_constraints"]) {
+            if !constraints.list(key)?.is_empty() {
+                let hint = "no constraint, or an empty list: a path could violate it";
+                return Err(constraints.error(format!("has `{key}`, which are not supported"), hint));
+            }
+        }
+    }
+    let goals = request.list("goal_constraints")?;
+    if goals.is_empty() {
+        let hint = format!("\"goal_constraints\": [{{{JOINTS}}}]");
+        return Err(request.error("has no `goal_constraints`", hint));
+    }
+    goals.iter().map(goal).collect()
+}
+
+fn goal(field: &Field<'_>) -> Result<Vec<JointValue>, FormatError> {
+    for key in OTHER_CONSTRAINTS {
+        if !field.list(key)?.is_empty() {
+            return Err(field.error(format!("has `{key}`: goals are joint values only"), JOINTS));
+        }
+    }
+    let mut known = HashSet::new();
+    let mut values = Vec::new();
+    for constraint in field.list("joint_constraints")? {
+        let joint = constraint.require("joint_name", JOINTS)?;
+        let value = constraint.require("position", JOINTS)?.joint_value()?;
+        if !known.insert(joint.name()?) {
+            return Err(joint.error(format!("names {} a second time", joint.shown()), "each joint once"));
+        }
+        values.push(JointValue { joint: joint.name()?.to_owned(), value });
+    }
+    if values.is_empty() { Err(field.error("has no `joint_constraints`", JOINTS)) } else { Ok(values) }
+}

@@ -1,0 +1,120 @@
+//! Sets of planning problems in the layout of `MotionBenchMaker`: `{set: {id: {scene, request}}}`, with scenes and requests as
+//! `MoveIt` writes its messages.
+//!
+//! | read | meaning |
+//! | --- | --- |
+//! | `scene.world.collision_objects` | boxes, spheres, cylinders, meshes with their vertices, planes; a cone becomes its cylinder |
+//! | `scene.fixed_frame_transforms` | frames of the objects |
+//! | `scene.allowed_collision_matrix` | pairs that may touch |
+//! | `scene.robot_state`, `request.start_state` | joint values, pose of the base, attached objects; the latter overrides |
+//! | `request.goal_constraints` | joint values; several are alternatives |
+//!
+//! All else is ignored, except for what would make an answer wrong, which is refused: an octomap with data, goals that are
+//! poses, path constraints.
+
+mod collision_matrix;
+mod document;
+mod field;
+mod goal;
+mod object;
+mod pose;
+mod problem;
+mod robot_state;
+mod solid;
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_spatial::Pose;
+use serde_json::Value;
+
+use crate::{FormatError, Warning, input};
+use document::{Entries, LAYOUT};
+use field::{Field, Location, Notes};
+
+pub use collision_matrix::ProblemMatrix;
+pub use problem::{AttachedObject, FixedFrame, JointValue, PlanningProblem, ProblemObject};
+
+/// Larger files are refused: a parsed document takes several times the memory of its text.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// The problems of a file.
+#[derive(Debug, Clone)]
+pub struct ProblemFile {
+    /// The file, for messages.
+    pub file: PathBuf,
+    /// In the order of the file.
+    pub problems: Vec<PlanningProblem>,
+    /// What the user should know; each kind of warning once.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a file of at most 256 MiB.
+///
+/// # Errors
+/// As [`parse`], and a file that cannot be read.
+pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
+    let smaller = "fewer problems per file: the sets can be in files of their own";
+    parse(path, &input::read_file(path, MAX_BYTES, smaller)?)
+}
+
+/// Parses such a file; `file` is named in messages.
+///
+/// ```
+/// use elbowroom_formats::problem_set;
+/// let text = br#"{"shelf": {"0001": {
+///   "scene": {"world": {"collision_objects": [{"id": "board",
+///     "primitives": [{"type": "box", "dimensions": [0.6, 0.3, 0.02]}],
+///     "primitive_poses": [{"position": [0.7, 0, 0.4], "orientation": [0, 0, 0, 1]}]}]}},
+///   "request": {
+///     "start_state": {"joint_state": {"name": ["waist"], "position": [0.5]}},
+///     "goal_constraints": [{"joint_constraints": [{"joint_name": "waist", "position": -0.5}]}]}}}}"#;
+/// let file = problem_set::parse("shelf.json".as_ref(), text)?;
+/// let problem = &file.problems[0];
+/// assert_eq!((problem.set.as_str(), problem.objects[0].solids.len()), ("shelf", 1));
+/// assert_eq!(problem.goals[0][0].value, -0.5);
+/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// ```
+///
+/// # Errors
+/// Text that is no JSON of this layout: the message has the line, or set, problem and field.
+pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
+    input::check_content(bytes, file)?;
+    let text = input::text(bytes, file)?;
+    let sets: Entries<Entries<Value>> = document::parse(&text, file)?;
+    let mut notes = Notes::default();
+    let mut problems = Vec::new();
+    for (set, entries) in &sets.0 {
+        for (id, value) in &entries.0 {
+            let location = Location { file, set, id };
+            problems.push(problem(&Field::root(&location, value), &mut notes)?);
+        }
+    }
+    if problems.is_empty() {
+        return Err(FormatError::new(file, None, "has no planning problem").hint(LAYOUT));
+    }
+    Ok(ProblemFile { file: file.to_owned(), problems, warnings: notes.warnings })
+}
+
+fn problem(root: &Field<'_>, notes: &mut Notes) -> Result<PlanningProblem, FormatError> {
+    let scene = root.require("scene", LAYOUT)?;
+    let request = root.require("request", LAYOUT)?;
+    let mut state = robot_state::RobotState::default();
+    for at in [scene.get("robot_state")?, request.get("start_state")?].into_iter().flatten() {
+        state.overlay(robot_state::parse(&at, notes)?);
+    }
+    let objects = object::world(&scene, notes)?;
+    object::check_ids(root, &objects, &state.attached)?;
+    Ok(PlanningProblem {
+        set: root.location.set.to_owned(),
+        id: root.location.id.to_owned(),
+        frames: pose::fixed_frames(&scene)?,
+        objects,
+        attached: state.attached,
+        matrix: collision_matrix::parse(&scene, notes)?,
+        base_in_world: state.base_in_world.unwrap_or(Pose::IDENTITY),
+        start: state.joints,
+        goals: goal::goals(&request)?,
+    })
+}
