@@ -31,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cover_rrt_connect;
 mod end_validity;
 mod engine;
 mod frames;
@@ -45,6 +46,7 @@ mod rrt_connect;
 mod run;
 mod summary;
 
+pub use cover_rrt_connect::CoverRrtConnectEngine;
 pub use engine::{PlanningEngine, ProblemSettings, Solution};
 pub use model::ProblemModel;
 pub use problem_scene::ProblemScene;

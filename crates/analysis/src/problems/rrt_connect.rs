@@ -39,7 +39,7 @@ pub(super) fn rrt_settings(settings: &ProblemSettings, time_limit: Duration) -> 
 }
 
 /// A path, after a time that was spent on other goals.
-fn found(path: PlannedPath, before: Duration) -> Solution {
+pub(super) fn found(path: PlannedPath, before: Duration) -> Solution {
     Solution {
         found: true,
         proven: true,
@@ -53,6 +53,6 @@ fn found(path: PlannedPath, before: Duration) -> Solution {
 }
 
 /// The reason without the prefix of the only robot's links.
-fn reason(e: &RrtConnectError) -> String {
+pub(super) fn reason(e: &RrtConnectError) -> String {
     e.to_string().replace("`/", "`")
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use elbowroom::analysis::problems::{
-    ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run as run_problems,
+    ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, CoverRrtConnectEngine, run as run_problems,
 };
 use elbowroom::formats::problem_set;
 use elbowroom::formats::robot::{self, LoadOptions};
@@ -37,7 +37,7 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
     let mut progress = Progress::new(problems.len());
     let mut written = Ok(());
     // The planner; another one takes its place here.
-    let mut engine = RrtConnectEngine;
+    let mut engine = CoverRrtConnectEngine::default();
     let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, motion| {
         progress.next(result);
         if let (Some(files), Some(motion)) = (&mut files, motion) {

@@ -14,6 +14,8 @@ pub struct CoverModel {
     pub(super) robot: CoveredRobot,
     /// The geometry of each body.
     bodies: Vec<GeometryId>,
+    /// Bodies that the scene tests, and their margins.
+    pairs: Vec<(usize, usize, f64)>,
     index: RobotId,
 }
 
@@ -37,15 +39,30 @@ impl CoverModel {
             covered.add_body(&r.robot.chain, held.link, &[(&object.shape, held.in_link)])?;
             bodies.push(GeometryId::Object(id));
         }
-        for i in 0..bodies.len() {
-            for j in i + 1..bodies.len() {
-                if let Some(margin_m) = tested_margin(scene, state, bodies[i], bodies[j]) {
-                    covered.add_pair(BodyId(i), BodyId(j), margin_m + clearance_m);
-                }
-            }
+        let pairs = tested_pairs(scene, state, &bodies);
+        for &(a, b, margin_m) in &pairs {
+            covered.add_pair(BodyId(a), BodyId(b), margin_m + clearance_m);
         }
-        Ok(Self { robot: covered, bodies, index: robot })
+        Ok(Self { robot: covered, bodies, pairs, index: robot })
     }
+
+    /// True where the model was made for the same pairs, and nothing is held: then it serves another scene with the same robot.
+    pub fn serves(&self, scene: &Scene, state: &SceneState) -> bool {
+        let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
+        let held = self.bodies.iter().any(|b| matches!(b, GeometryId::Object(_)));
+        !holds && !held && self.pairs == tested_pairs(scene, state, &self.bodies)
+    }
+}
+
+/// Pairs of bodies that the scene tests, each with its margin in metres.
+fn tested_pairs(scene: &Scene, state: &SceneState, bodies: &[GeometryId]) -> Vec<(usize, usize, f64)> {
+    let mut pairs = Vec::new();
+    for i in 0..bodies.len() {
+        for j in i + 1..bodies.len() {
+            pairs.extend(tested_margin(scene, state, bodies[i], bodies[j]).map(|margin_m| (i, j, margin_m)));
+        }
+    }
+    pairs
 }
 
 /// The solids that a robot must not touch: objects and other robots, as they are in a state.

@@ -53,7 +53,7 @@ impl<C: PathConstraint + ?Sized> PathConstraint for &mut C {
 
 /// Checks configurations and motions against a constraint.
 #[derive(Debug)]
-pub(super) struct ConstraintChecker<'c> {
+pub(crate) struct ConstraintChecker<'c> {
     constraint: Box<dyn PathConstraint + 'c>,
 }
 
