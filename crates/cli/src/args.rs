@@ -306,7 +306,7 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
   elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
-  elbowroom plan --urdf arm.urdf --problems problems.json --only shelf,cage --limit 10 --paths paths --json
+  elbowroom plan --urdf arm.urdf --problems problems.json --only shelf --limit 10 --paths paths
 
 --out writes timed samples for the controller.
 Obstacles are the objects, the other robots at their start, and the robot itself with tool and
