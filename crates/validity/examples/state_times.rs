@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let blocks = checker.blocks();
         let mut per_edge = f64::INFINITY;
         let mut per_state = f64::INFINITY;
-        for _ in 0..7 {
+        for _ in 0..60 {
             let begin = Instant::now();
             let mut free = 0;
             for (a, b) in &edges {
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
             per_state = per_state.min(begin.elapsed().as_secs_f64() / states.len() as f64);
         }
-        let per_round = (checker.blocks() - blocks - 7 * states.len() as u64) as f64 / 7.0 / edges.len() as f64;
+        let per_round = (checker.blocks() - blocks - 60 * states.len() as u64) as f64 / 60.0 / edges.len() as f64;
         println!(
             "{count:>5} obstacles: {:.1} ns per state on an edge ({per_round:.2} blocks per edge, {} edges of {tried}), {:.0} ns alone",
             per_edge / STATES_PER_RADIAN * 1e9,

@@ -77,6 +77,7 @@ impl<'m> CoverRrtConnect<'m> {
             self.bounds.clamped_end(PathEnd::Goal, goal)?,
         ];
         let [from, to] = [self.exit(&mut validator, &ends, 0, &mut random, settings)?, self.exit(&mut validator, &ends, 1, &mut random, settings)?];
+        let exit_time = begin.elapsed();
         let mut waypoints = if validator.edge_is_free(&from, &to) {
             vec![from, to]
         } else {
@@ -92,9 +93,11 @@ impl<'m> CoverRrtConnect<'m> {
             })?
         };
         let planning_time = begin.elapsed();
+        let (e0, b0) = (validator.edges, validator.checker.blocks());
         let raw_length_rad = path_length(&waypoints);
         Shortcutting { validator: &mut validator, random: &mut random }.run(&mut waypoints);
         let simplification_time = begin.elapsed().saturating_sub(planning_time);
+        eprintln!("TRACE exit {:.1} edges {e0} blocks {b0} plan {:.1} | edges {} blocks {} simp {:.1}", exit_time.as_secs_f64() * 1e6, planning_time.as_secs_f64() * 1e6, validator.edges - e0, validator.checker.blocks() - b0, simplification_time.as_secs_f64() * 1e6);
         let path = PlannedPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,
