@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::segment::MotionTable;
 use super::workspace::Workspace;
-use crate::lanes::V3;
+use crate::lanes::{V3, splat};
 use crate::model::{BodyPair, CoveredRobot, SphereNode};
 use crate::obstacles::{Bounds, BoxTree, ObstacleSet, RoundedSolid};
 
@@ -90,6 +90,25 @@ impl BlockModel<'_> {
     }
 }
 
+impl BlockModel<'_> {
+    /// Lanes in which two bodies are not farther apart than their margin and more.
+    #[inline(always)]
+    pub fn check_pair<S: Simd>(
+        &self,
+        simd: S,
+        workspace: &mut Workspace,
+        request: BlockRequest,
+        pair: usize,
+        more_m: f32,
+    ) -> u32 {
+        workspace.begin_block();
+        self.robot.chain.forward(simd, &workspace.values, &mut workspace.frames);
+        let mut kernel = Kernel { simd, model: *self, workspace, request, result: BlockResult::default(), pairs: None };
+        kernel.bodies_near(pair, &self.robot.pairs[pair], more_m);
+        kernel.result.touching
+    }
+}
+
 struct Kernel<'k, 'm, 'p, S: Simd> {
     simd: S,
     model: BlockModel<'m>,
@@ -129,7 +148,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         let node = &self.model.robot.nodes[root as usize];
         let (half_chord, _) = self.workspace.body_motion(body);
         let centre = self.workspace.centre(self.simd, self.model.robot, root);
-        let bounds = bounds(centre, node.radius + half_chord);
+        let bounds = Bounds::around(centre, node.radius + half_chord);
         let mut found = std::mem::take(&mut self.workspace.found);
         self.model.tree.overlapping(self.simd, &bounds, &mut self.workspace.open, &mut found);
         for &obstacle in &found {
@@ -175,11 +194,13 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             }
             at += 1;
             if is_leaf(node, at) {
-                let is_apart = self.settle(from.vector, reach, |direction| {
+                if self.touches(from.vector, reach) {
+                    is_near = true;
+                } else if self.request.chords {
+                    let direction = from.vector.plus(from.vector.next_lane());
                     let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
-                    a.min(b) - obstacle.support(simd, direction)
-                });
-                is_near |= !is_apart;
+                    is_near |= !self.chords_apart(direction, a.min(b) - obstacle.support(simd, direction), reach);
+                }
                 if self.is_done() {
                     return is_near;
                 }
@@ -188,20 +209,21 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         is_near
     }
 
-    /// A sphere that is near: records touching lanes and unproven motions. `height` is the least height of both ends of each
-    /// motion over the core, along a direction that is not normalized. True where all is proven apart.
+    /// Records the lanes that touch.
     #[inline(always)]
-    fn settle(&mut self, vector: V3<S>, reach: Reach, height: impl FnOnce(V3<S>) -> f32x16<S>) -> bool {
+    fn touches(&mut self, vector: V3<S>, reach: Reach) -> bool {
         let touching = within(self.simd, vector, reach.radius) & self.request.active;
         self.result.touching |= touching;
-        if !self.request.chords || touching != 0 {
-            return touching == 0;
-        }
-        // The mean of the directions at both ends: a plane across it separates the chord from the core, if any does nearly.
-        let direction = vector.plus(vector.next_lane());
-        let height = height(direction);
-        let radius = f32x16::splat(self.simd, reach.radius + reach.sag);
-        let is_above = height.simd_gt(f32x16::splat(self.simd, 0.0));
+        touching != 0
+    }
+
+    /// Records the lanes from which the motion to the next is not proven. `height` is the least height of both ends of each
+    /// motion over the core, along a direction that is not normalized: best the mean of the directions at both ends, as a plane
+    /// across it separates the chord from the core, if any does nearly.
+    #[inline(always)]
+    fn chords_apart(&mut self, direction: V3<S>, height: f32x16<S>, reach: Reach) -> bool {
+        let radius = splat(self.simd, reach.radius + reach.sag);
+        let is_above = height.simd_gt(splat(self.simd, 0.0));
         let is_apart = (height * height).simd_ge(radius * radius * direction.dot(direction)) & is_above;
         let unproven = !(is_apart.to_bitmask() as u32) & self.request.active;
         self.result.unproven |= unproven;
@@ -211,8 +233,21 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn self_collision(&mut self) {
         let robot = self.model.robot;
+        if let Some(tables) = robot.tables.get() {
+            self.workspace.near_pairs.fill(true);
+            for table in tables {
+                let deltas = table.steps.map(|step| self.workspace.deltas[step]);
+                let near = table.near(self.simd, &self.workspace.values, deltas);
+                for (bit, &pair) in table.pairs.iter().enumerate() {
+                    self.workspace.near_pairs[pair] = near >> bit & 1 == 1;
+                }
+            }
+        }
         for (index, pair) in robot.pairs.iter().enumerate() {
-            if self.bodies_near(index, pair) {
+            if !self.workspace.near_pairs[index] {
+                continue;
+            }
+            if self.bodies_near(index, pair, 0.0) {
                 self.note(NearPair::Bodies(pair.a.0 as u32, pair.b.0 as u32));
             }
             if self.is_done() {
@@ -223,7 +258,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
 
     /// Descends in the trees of two bodies. True where they are not proven apart.
     #[inline(always)]
-    fn bodies_near(&mut self, index: usize, pair: &BodyPair) -> bool {
+    fn bodies_near(&mut self, index: usize, pair: &BodyPair, more_m: f32) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
         let (a, b) = (&robot.bodies[pair.a.0], &robot.bodies[pair.b.0]);
         if a.nodes.is_empty() || b.nodes.is_empty() {
@@ -232,7 +267,8 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         let (half_chord, sag) = self.workspace.pair_motion(self.model.motion.pair(index), pair.common_frame);
         let (i, j) = (a.nodes.start, b.nodes.start);
         let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
-        let radius = robot.nodes[i as usize].radius + robot.nodes[j as usize].radius + pair.margin_m;
+        let margin_m = pair.margin_m + more_m;
+        let radius = robot.nodes[i as usize].radius + robot.nodes[j as usize].radius + margin_m;
         if within(simd, from_b, radius + half_chord) & self.request.active == 0 {
             return false;
         }
@@ -243,16 +279,20 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         while let Some((i, j)) = open.pop() {
             let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);
             let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
-            let reach = Reach { radius: m.radius + n.radius + pair.margin_m, half_chord, sag };
+            let reach = Reach { radius: m.radius + n.radius + margin_m, half_chord, sag };
             if within(simd, from_b, reach.radius + half_chord) & self.request.active == 0 {
                 continue;
             }
             match (is_leaf(m, i + 1), is_leaf(n, j + 1)) {
                 (true, true) => {
                     let from_b = self.workspace.frames[pair.common_frame].local_direction(simd, from_b);
-                    let is_apart =
-                        self.settle(from_b, reach, |d| d.dot(from_b).min(d.dot(from_b.next_lane())));
-                    is_near |= !is_apart;
+                    if self.touches(from_b, reach) {
+                        is_near = true;
+                    } else if self.request.chords {
+                        let direction = from_b.plus(from_b.next_lane());
+                        let height = direction.dot(from_b).min(direction.dot(from_b.next_lane()));
+                        is_near |= !self.chords_apart(direction, height, reach);
+                    }
                     if self.is_done() {
                         break;
                     }
@@ -288,14 +328,6 @@ fn is_leaf(node: &SphereNode, next: u32) -> bool {
 /// One bit per lane whose vector is shorter than a length; NaN counts.
 #[inline(always)]
 fn within<S: Simd>(simd: S, vector: V3<S>, length: f32) -> u32 {
-    let is_beyond = vector.dot(vector).simd_ge(f32x16::splat(simd, length * length));
+    let is_beyond = vector.dot(vector).simd_ge(splat(simd, length * length));
     !(is_beyond.to_bitmask() as u32) & 0xffff
-}
-
-/// A box around all lanes, enlarged.
-#[inline(always)]
-fn bounds<S: Simd>(v: V3<S>, margin: f32) -> Bounds {
-    let axis = |v: f32x16<S>| (v.reduce_min() - margin, v.reduce_max() + margin);
-    let (x, y, z) = (axis(v.0), axis(v.1), axis(v.2));
-    Bounds { min: [x.0, y.0, z.0], max: [x.1, y.1, z.1] }
 }

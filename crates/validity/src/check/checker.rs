@@ -3,6 +3,7 @@
 use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
+use super::pair_table_builder::pair_tables;
 use super::segment::{MotionTable, Stretch};
 use super::workspace::Workspace;
 use crate::error::ValidityError;
@@ -65,6 +66,7 @@ impl<'m> ValidityChecker<'m> {
             BoxTree::new(&solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect::<Vec<_>>())
         };
         let motion = MotionTable::new(robot);
+        robot.tables.get_or_init(|| pair_tables(robot));
         Self {
             robot,
             obstacles,

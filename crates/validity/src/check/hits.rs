@@ -2,11 +2,11 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
-use fearless_simd::{Simd, f32x16, prelude::*};
+use fearless_simd::{Simd, prelude::*};
 
 use super::block::{BlockModel, NearPair};
 use super::workspace::Workspace;
-use crate::lanes::V3;
+use crate::lanes::{V3, splat};
 use crate::model::{Body, CoveredRobot, InnerSphere};
 use crate::obstacles::{Bounds, BoxTree};
 
@@ -37,7 +37,7 @@ impl BlockModel<'_> {
         let mut hits = 0;
         for sphere in inner_spheres(self.robot, body) {
             let centre = workspace.frames[body.frame].point(simd, sphere.centre);
-            let bounds = bounds_of(centre, sphere.radius);
+            let bounds = Bounds::around(centre, sphere.radius);
             let mut found = std::mem::take(&mut workspace.found);
             inner.overlapping(simd, &bounds, &mut workspace.open, &mut found);
             for &i in found.iter().filter(|&&i| self.obstacles.inner_source[i as usize] == obstacle) {
@@ -74,12 +74,5 @@ fn shorter<S: Simd>(simd: S, vector: V3<S>, length: f32) -> u32 {
     if !(length > 0.0) {
         return 0;
     }
-    vector.dot(vector).simd_lt(f32x16::splat(simd, length * length)).to_bitmask() as u32
-}
-
-#[inline(always)]
-fn bounds_of<S: Simd>(v: V3<S>, margin: f32) -> Bounds {
-    let axis = |v: f32x16<S>| (v.reduce_min() - margin, v.reduce_max() + margin);
-    let (x, y, z) = (axis(v.0), axis(v.1), axis(v.2));
-    Bounds { min: [x.0, y.0, z.0], max: [x.1, y.1, z.1] }
+    vector.dot(vector).simd_lt(splat(simd, length * length)).to_bitmask() as u32
 }

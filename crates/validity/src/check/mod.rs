@@ -3,6 +3,7 @@
 mod block;
 mod checker;
 mod hits;
+mod pair_table_builder;
 mod segment;
 mod workspace;
 

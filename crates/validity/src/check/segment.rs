@@ -17,7 +17,7 @@
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::workspace::Workspace;
-use crate::lanes::{LANES, Row};
+use crate::lanes::{LANES, Row, splat};
 use crate::model::{BatchedChain, CoveredRobot};
 
 /// Intervals between the lanes of a block.
@@ -58,7 +58,7 @@ impl JointStretch {
     /// The values in the lanes.
     #[inline(always)]
     pub fn values<S: Simd>(self, simd: S) -> f32x16<S> {
-        SHARES.load(simd).mul_add_precise(f32x16::splat(simd, self.change), f32x16::splat(simd, self.first))
+        SHARES.load(simd).mul_add_precise(splat(simd, self.change), splat(simd, self.first))
     }
 }
 
@@ -137,7 +137,6 @@ impl Workspace {
     /// Values of the joints in the lanes, and the bounds of the motion between them.
     #[inline(always)]
     pub fn spread<S: Simd>(&mut self, simd: S, robot: &CoveredRobot, table: &MotionTable) {
-        let splat = |v: f32| f32x16::splat(simd, v);
         let rows = table.columns / LANES;
         self.half_chord_m.fill(Row::ZERO);
         self.sag_m.fill(Row::ZERO);
@@ -145,13 +144,14 @@ impl Workspace {
             let joint = self.stretch[i];
             self.values[i].store(joint.values(simd));
             let delta = joint.change.abs() * (ROUNDED_UP / INTERVALS as f32);
+            self.deltas[i] = delta;
             let before = self.turned[step.parent];
             self.turned[i + 1] = if step.is_prismatic { before } else { before + delta };
             if delta == 0.0 {
                 continue;
             }
             let own = if step.is_prismatic { 0.0 } else { delta };
-            let (chord, curved) = (splat(0.5 * delta * ROUNDED_UP), splat(0.125 * delta * (own + 2.0 * before) * ROUNDED_UP));
+            let (chord, curved) = (splat(simd, 0.5 * delta * ROUNDED_UP), splat(simd, 0.125 * delta * (own + 2.0 * before) * ROUNDED_UP));
             for r in 0..rows {
                 let lever = table.lever_m[i * rows + r].load(simd);
                 let (half_chord, sag) = (self.half_chord_m[r].load(simd), self.sag_m[r].load(simd));

@@ -22,6 +22,10 @@ pub(crate) struct Workspace {
     pub sag_m: Vec<Row>,
     /// Per frame, how much the turning joints that carry it change between lanes, rad.
     pub turned: Vec<f32>,
+    /// Per step, how much its joint changes between lanes, rad or m.
+    pub deltas: Vec<f32>,
+    /// Per pair of bodies, true where it must be checked in this block.
+    pub near_pairs: Vec<bool>,
     /// Packs still to visit.
     pub open: Vec<(u32, u32)>,
     /// Obstacles found by the broad phase.
@@ -42,6 +46,8 @@ impl Workspace {
             stretch: vec![JointStretch::default(); robot.chain.steps.len()],
             half_chord_m: vec![Row::ZERO; rows],
             sag_m: vec![Row::ZERO; rows],
+            deltas: vec![0.0; robot.chain.steps.len()],
+            near_pairs: vec![true; robot.pairs.len()],
             turned: vec![0.0; robot.chain.steps.len() + 1],
             open: Vec::new(),
             found: Vec::new(),
@@ -53,6 +59,7 @@ impl Workspace {
     pub fn set_no_motion(&mut self) {
         self.half_chord_m.fill(Row::ZERO);
         self.sag_m.fill(Row::ZERO);
+        self.deltas.fill(0.0);
     }
 
     /// Forgets the centres of the last block.

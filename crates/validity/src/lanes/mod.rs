@@ -2,6 +2,8 @@
 //!
 //! Multiplications are fused with additions on every instruction set (where the processor cannot, in software), so that an
 //! answer never depends on it.
+//!
+//! No closures in kernels: a closure is compiled for the lowest instruction set unless it is inlined.
 
 // A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
 #![allow(clippy::inline_always)]
@@ -22,6 +24,12 @@ pub(crate) const LANES: usize = 16;
 pub(crate) fn detected_simd_level() -> SimdLevel {
     static DETECTED: OnceLock<SimdLevel> = OnceLock::new();
     *DETECTED.get_or_init(SimdLevel::new)
+}
+
+/// The same number in all lanes.
+#[inline(always)]
+pub(crate) fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
+    f32x16::splat(simd, v)
 }
 
 /// One number per lane, in memory.

@@ -2,10 +2,10 @@
 
 use elbowroom_kinematics::Chain;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use fearless_simd::{Simd, f32x16, prelude::*};
+use fearless_simd::{Simd, f32x16};
 
 use super::joint_step::{FixedRotation, JointStep, LinkFrame, axis_rotation, moves, single};
-use crate::lanes::{LANES, PointRow, Row, V3, sin_cos};
+use crate::lanes::{LANES, PointRow, Row, V3, sin_cos, splat};
 
 /// A chain prepared for batched forward kinematics: fixed joints are folded into the poses of links.
 #[derive(Debug, Clone)]
@@ -38,14 +38,19 @@ impl BatchedChain {
                 continue;
             };
             let axis = axis_rotation(joint.axis);
+            let limits = chain.joints()[chain.active_joints()[coupling.index].0].limits;
+            let ends = [limits.lower, limits.upper].map(|q| coupling.multiplier * q + coupling.offset);
             steps.push(JointStep {
                 parent: parent.frame,
                 is_prismatic: !joint.kind.turns(),
                 rotation: FixedRotation::new(at_zero.rotation * axis),
                 translation: single(at_zero.translation),
+                at_zero: Pose::new(at_zero.rotation * axis, at_zero.translation),
                 index: coupling.index,
                 multiplier: coupling.multiplier,
                 offset: coupling.offset,
+                lower: ends[0].min(ends[1]),
+                upper: ends[0].max(ends[1]),
             });
             let in_frame = Pose::new(axis.inverse(), Vec3::ZERO);
             links[joint.child.0] = LinkFrame { frame: steps.len(), in_frame };
@@ -74,53 +79,52 @@ impl BatchedChain {
     #[inline(always)]
     pub fn forward<S: Simd>(&self, simd: S, values: &[Row], frames: &mut [FrameLanes]) {
         for (i, step) in self.steps.iter().enumerate() {
-            let moved = step.moved(simd, values[i].load(simd), &frames[step.parent]);
-            frames[i + 1] = moved;
+            let (before, after) = frames.split_at_mut(i + 1);
+            step.move_frame(simd, values[i].load(simd), &before[step.parent], &mut after[0]);
         }
     }
 }
 
 impl JointStep {
     #[inline(always)]
-    fn moved<S: Simd>(&self, simd: S, value: f32x16<S>, parent: &FrameLanes) -> FrameLanes {
-        let columns = [parent.columns[0].load(simd), parent.columns[1].load(simd), parent.columns[2].load(simd)];
+    fn move_frame<S: Simd>(&self, simd: S, value: f32x16<S>, parent: &FrameLanes, frame: &mut FrameLanes) {
         let mut origin = parent.origin.load(simd);
         for k in 0..3 {
             if self.translation[k] != 0.0 {
-                origin = columns[k].times_plus(f32x16::splat(simd, self.translation[k]), origin);
+                origin = parent.columns[k].load(simd).times_plus(splat(simd, self.translation[k]), origin);
             }
         }
-        let [mut x, mut y, z] = self.rotation.applied(simd, columns);
+        let x = self.rotation.column(simd, parent, 0);
+        let y = self.rotation.column(simd, parent, 1);
+        let z = self.rotation.column(simd, parent, 2);
+        frame.columns[2].store(z);
         if self.is_prismatic {
-            origin = z.times_plus(value, origin);
+            frame.columns[0].store(x);
+            frame.columns[1].store(y);
+            frame.origin.store(z.times_plus(value, origin));
         } else {
             let (sin, cos) = sin_cos(simd, value);
-            let negative = f32x16::splat(simd, 0.0) - sin;
-            (x, y) = (sum(x, cos, y, sin), sum(x, negative, y, cos));
+            frame.columns[0].store(sum(x, cos, y, sin));
+            frame.columns[1].store(sum(x, splat(simd, 0.0) - sin, y, cos));
+            frame.origin.store(origin);
         }
-        let mut frame = FrameLanes { columns: [PointRow::ZERO; 3], origin: PointRow::ZERO };
-        frame.columns[0].store(x);
-        frame.columns[1].store(y);
-        frame.columns[2].store(z);
-        frame.origin.store(origin);
-        frame
     }
 }
 
 impl FixedRotation {
-    /// Columns of the product of the rotation with these columns and this rotation.
+    /// A column of the product of a frame's rotation and this one.
     #[inline(always)]
-    fn applied<S: Simd>(&self, simd: S, columns: [V3<S>; 3]) -> [V3<S>; 3] {
-        let splat = |v: f32| f32x16::splat(simd, v);
+    fn column<S: Simd>(&self, simd: S, parent: &FrameLanes, k: usize) -> V3<S> {
         match self {
-            Self::Permutation { axis, sign } => [0, 1, 2].map(|k| {
-                let (c, s) = (columns[axis[k]], splat(sign[k]));
+            Self::Permutation { axis, sign } => {
+                let (c, s) = (parent.columns[axis[k]].load(simd), splat(simd, sign[k]));
                 V3(c.0 * s, c.1 * s, c.2 * s)
-            }),
-            Self::Matrix(m) => [0, 1, 2].map(|k| {
-                let partial = sum(columns[0], splat(m[k][0]), columns[1], splat(m[k][1]));
-                columns[2].times_plus(splat(m[k][2]), partial)
-            }),
+            }
+            Self::Matrix(m) => {
+                let (x, y) = (parent.columns[0].load(simd), parent.columns[1].load(simd));
+                let partial = sum(x, splat(simd, m[k][0]), y, splat(simd, m[k][1]));
+                parent.columns[2].load(simd).times_plus(splat(simd, m[k][2]), partial)
+            }
         }
     }
 }
@@ -137,7 +141,7 @@ impl FrameLanes {
     pub fn point<S: Simd>(&self, simd: S, p: [f32; 3]) -> V3<S> {
         let mut at = self.origin.load(simd);
         for k in 0..3 {
-            at = self.columns[k].load(simd).times_plus(f32x16::splat(simd, p[k]), at);
+            at = self.columns[k].load(simd).times_plus(splat(simd, p[k]), at);
         }
         at
     }
@@ -147,8 +151,9 @@ impl FrameLanes {
     /// A direction of the world, in the frame.
     #[inline(always)]
     pub fn local_direction<S: Simd>(&self, simd: S, v: V3<S>) -> V3<S> {
-        let column = |k: usize| self.columns[k].load(simd).dot(v);
-        V3(column(0), column(1), column(2))
+        let x = self.columns[0].load(simd).dot(v);
+        let y = self.columns[1].load(simd).dot(v);
+        V3(x, y, self.columns[2].load(simd).dot(v))
     }
 }
 

@@ -16,10 +16,15 @@ pub(crate) struct JointStep {
     pub rotation: FixedRotation,
     /// Origin of the joint's frame in the parent frame, m.
     pub translation: [f32; 3],
+    /// Both, in double precision.
+    pub at_zero: Pose,
     /// The joint's value is `multiplier·q[index] + offset`.
     pub index: usize,
     pub multiplier: f64,
     pub offset: f64,
+    /// Lowest and highest value within the limits, rad or m.
+    pub lower: f64,
+    pub upper: f64,
 }
 
 /// A constant rotation, by columns.

@@ -3,9 +3,12 @@
 mod body;
 mod forward;
 mod joint_step;
+mod lever_arms;
+mod pair_table;
 
-use elbowroom_kinematics::motion_bound::{joint_reaches, max_stroke_m};
-use elbowroom_kinematics::{Chain, JointKind, LinkId};
+use std::sync::OnceLock;
+
+use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::Pose;
@@ -13,8 +16,10 @@ use elbowroom_spatial::Pose;
 pub(crate) use body::{Body, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
 pub(crate) use joint_step::single;
+pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
+use self::lever_arms::lever_arms;
 use crate::cover::{Ball, ROUNDING_M, SphereCover};
 use crate::error::ValidityError;
 
@@ -82,6 +87,8 @@ pub struct CoveredRobot {
     pub(crate) nodes: Vec<SphereNode>,
     pub(crate) inner: Vec<InnerSphere>,
     pub(crate) pairs: Vec<BodyPair>,
+    /// Built at first use.
+    pub(crate) tables: OnceLock<Vec<PairTable>>,
     dof: usize,
 }
 
@@ -112,7 +119,7 @@ impl CoveredRobot {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
         let mut covered =
-            Self { chain, bodies: Vec::new(), nodes: Vec::new(), inner: Vec::new(), pairs: Vec::new(), dof };
+            Self { chain, bodies: Vec::new(), nodes: Vec::new(), inner: Vec::new(), pairs: Vec::new(), tables: OnceLock::new(), dof };
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
             covered.add_body(&robot.chain, link, &shapes)?;
@@ -130,7 +137,8 @@ impl CoveredRobot {
         let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
         let cover = SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
         let radius_m = cover.outer.iter().map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
-        let levers = levers_m(chain, link, radius_m);
+        let in_frame = |b: &Ball| Ball { centre: at.in_frame.transform_point(b.centre), ..*b };
+        let levers = lever_arms(&self.chain, at.frame, cover.outer.iter().map(in_frame));
         let rounding_m = rounding_m(&levers, radius_m, at.in_frame);
         if !rounding_m.is_finite() {
             return Err(ValidityError::NotCovered { link: name() });
@@ -153,6 +161,7 @@ impl CoveredRobot {
         let joint = |body: &Body, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
         let joints = of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
         let joints = joints.collect();
+        self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
         self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up(), common_frame, joints });
     }
@@ -179,15 +188,6 @@ fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
     let bounds = shapes.iter().map(|(s, p)| s.aabb(p)).reduce(|a, b| a.union(&b));
     let is_small = bounds.is_some_and(|b| b.extent().length() < FINE_DIAGONAL_M);
     if is_small { FINE_SLACK_M } else { SLACK_M }
-}
-
-/// Per moving joint in topological order, how far it moves points within a radius of a link, per rad or m.
-fn levers_m(chain: &Chain, link: LinkId, radius_m: f64) -> Vec<f64> {
-    let reaches: Vec<_> = joint_reaches(chain, link, radius_m, |j| max_stroke_m(chain, j)).collect();
-    let moving = chain.topological_order().iter().filter(|j| {
-        chain.joints()[j.0].kind != JointKind::Fixed && chain.coupling(**j).is_some()
-    });
-    moving.map(|j| reaches.iter().find(|r| r.joint == *j).map_or(0.0, |r| r.lever_arm())).collect()
 }
 
 /// Bound of the rounding errors of a point of a body.

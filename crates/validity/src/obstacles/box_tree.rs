@@ -1,8 +1,10 @@
 //! Broad phase: a tree of bounding boxes, sixteen children wide, tested a node at a time.
 
-use fearless_simd::{Simd, f32x16, prelude::*};
+#![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
-use crate::lanes::{LANES, Row};
+use fearless_simd::{Simd, prelude::*};
+
+use crate::lanes::{LANES, Row, V3, splat};
 
 /// An axis-aligned box in single precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +15,14 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
+    /// Around the points of all lanes, enlarged.
+    #[inline(always)]
+    pub fn around<S: Simd>(v: V3<S>, margin: f32) -> Self {
+        let min = [v.0.reduce_min() - margin, v.1.reduce_min() - margin, v.2.reduce_min() - margin];
+        let max = [v.0.reduce_max() + margin, v.1.reduce_max() + margin, v.2.reduce_max() + margin];
+        Self { min, max }
+    }
 
     fn union(&self, o: &Self) -> Self {
         let mut all = *self;
@@ -92,11 +102,17 @@ impl Pack {
     /// One bit per child whose box overlaps; boxes that touch overlap.
     #[inline(always)]
     fn overlaps<S: Simd>(&self, simd: S, b: &Bounds) -> u32 {
-        let splat = |v: f32| f32x16::splat(simd, v);
-        let axis = |k: usize| {
-            self.min[k].load(simd).simd_le(splat(b.max[k])) & self.max[k].load(simd).simd_ge(splat(b.min[k]))
-        };
-        (axis(0) & axis(1) & axis(2)).to_bitmask() as u32
+        let x = self.overlaps_along(simd, b, 0);
+        let y = self.overlaps_along(simd, b, 1);
+        let z = self.overlaps_along(simd, b, 2);
+        x & y & z
+    }
+
+    #[inline(always)]
+    fn overlaps_along<S: Simd>(&self, simd: S, b: &Bounds, k: usize) -> u32 {
+        let starts_before = self.min[k].load(simd).simd_le(splat(simd, b.max[k]));
+        let ends_after = self.max[k].load(simd).simd_ge(splat(simd, b.min[k]));
+        (starts_before & ends_after).to_bitmask() as u32
     }
 }
 

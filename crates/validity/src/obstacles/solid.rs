@@ -4,7 +4,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::{Select, Simd, f32x16, prelude::*};
 
 use super::box_tree::Bounds;
-use crate::lanes::V3;
+use crate::lanes::{V3, splat};
 use crate::model::single;
 
 /// Stands for unbounded: zero times it is zero.
@@ -101,19 +101,30 @@ impl RoundedSolid {
 
     /// The largest product of a point of the core with a direction, both in the frame of the solid.
     #[inline(always)]
-    pub fn support<S: Simd>(&self, simd: S, direction: V3<S>) -> f32x16<S> {
-        let splat = |v: f32| f32x16::splat(simd, v);
+    pub fn support<S: Simd>(&self, simd: S, d: V3<S>) -> f32x16<S> {
         match self.core {
             Core::Box { low, high } => {
-                let axis = |d: f32x16<S>, k: usize| (d * splat(low[k])).max(d * splat(high[k]));
-                axis(direction.0, 0) + axis(direction.1, 1) + axis(direction.2, 2)
+                support_along(simd, d.0, low[0], high[0])
+                    + support_along(simd, d.1, low[1], high[1])
+                    + support_along(simd, d.2, low[2], high[2])
             }
             Core::Cylinder { radius, half_length } => {
-                let across = direction.1.mul_add_precise(direction.1, direction.0 * direction.0).sqrt();
-                across.mul_add_precise(splat(radius), direction.2.abs() * splat(half_length))
+                let across = d.1.mul_add_precise(d.1, d.0 * d.0).sqrt();
+                across.mul_add_precise(splat(simd, radius), d.2.abs() * splat(simd, half_length))
             }
         }
     }
+}
+
+#[inline(always)]
+fn support_along<S: Simd>(simd: S, d: f32x16<S>, low: f32, high: f32) -> f32x16<S> {
+    (d * splat(simd, low)).max(d * splat(simd, high))
+}
+
+/// A coordinate less the nearest one between two.
+#[inline(always)]
+fn beyond<S: Simd>(simd: S, p: f32x16<S>, low: f32, high: f32) -> f32x16<S> {
+    p - p.max(splat(simd, low)).min(splat(simd, high))
 }
 
 impl Core {
@@ -128,18 +139,18 @@ impl Core {
 
     #[inline(always)]
     fn vector_to<S: Simd>(&self, simd: S, p: V3<S>) -> V3<S> {
-        let splat = |v: f32| f32x16::splat(simd, v);
         match *self {
-            Self::Box { low, high } => {
-                let axis = |p: f32x16<S>, k: usize| p - p.max(splat(low[k])).min(splat(high[k]));
-                V3(axis(p.0, 0), axis(p.1, 1), axis(p.2, 2))
-            }
+            Self::Box { low, high } => V3(
+                beyond(simd, p.0, low[0], high[0]),
+                beyond(simd, p.1, low[1], high[1]),
+                beyond(simd, p.2, low[2], high[2]),
+            ),
             Self::Cylinder { radius, half_length } => {
+                let zero = splat(simd, 0.0);
                 let across = p.1.mul_add_precise(p.1, p.0 * p.0).sqrt();
-                let beyond = (across - splat(radius)).max(splat(0.0));
-                let share = across.simd_gt(splat(0.0)).select(beyond / across, splat(0.0));
-                let along = p.2 - p.2.max(splat(-half_length)).min(splat(half_length));
-                V3(p.0 * share, p.1 * share, along)
+                let outside = (across - splat(simd, radius)).max(zero);
+                let share = across.simd_gt(zero).select(outside / across, zero);
+                V3(p.0 * share, p.1 * share, beyond(simd, p.2, -half_length, half_length))
             }
         }
     }

@@ -1,0 +1,52 @@
+//! Tables of what can touch: for bodies that at most two turning joints move against each other, whether they are apart for
+//! certain, cell by cell over the values of these joints.
+
+use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
+
+use crate::lanes::{LANES, Row, splat};
+
+/// Cells per turn of a joint.
+pub(crate) const CELLS: usize = 112;
+/// Width of a cell, rad.
+pub(crate) const CELL_RAD: f64 = std::f64::consts::TAU / CELLS as f64;
+/// A cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long at most.
+pub(crate) const BEYOND_RAD: f32 = 0.025;
+/// Pairs of one table, a bit each.
+pub(crate) const MAX_PAIRS: usize = 8;
+
+/// What can touch over the values of two joints (or of one: then both are the same).
+#[derive(Debug, Clone)]
+pub(crate) struct PairTable {
+    /// Steps of the joints.
+    pub steps: [usize; 2],
+    /// The pairs, by their numbers.
+    pub pairs: Vec<usize>,
+    /// Per cell of the first joint and cell of the second, a bit per pair that may touch.
+    pub cells: Vec<u8>,
+}
+
+impl PairTable {
+    /// The pairs that may touch in a block, or between its lanes; joint values and their changes between lanes in rad.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn near<S: Simd>(&self, simd: S, values: &[Row], deltas: [f32; 2]) -> u8 {
+        if !(deltas[0] <= 2.0 * BEYOND_RAD && deltas[1] <= 2.0 * BEYOND_RAD) {
+            return u8::MAX;
+        }
+        let row: i32x16<S> = cell(simd, values[self.steps[0]].load(simd)).to_int();
+        let column: i32x16<S> = cell(simd, values[self.steps[1]].load(simd)).to_int();
+        let index = row * i32x16::splat(simd, CELLS as i32) + column;
+        let mut at = [0_i32; LANES];
+        index.store_slice(&mut at);
+        at.iter().fold(0, |near, &i| near | self.cells.get(i as usize).copied().unwrap_or(u8::MAX))
+    }
+}
+
+/// The cell of an angle, not rounded down yet.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a kernel")]
+fn cell<S: Simd>(simd: S, angle: f32x16<S>) -> f32x16<S> {
+    let turns = angle * splat(simd, std::f32::consts::TAU.recip());
+    let share = (turns - turns.floor()) * splat(simd, CELLS as f32);
+    share.min(splat(simd, CELLS as f32 - 0.5)).max(splat(simd, 0.0))
+}
