@@ -1,0 +1,260 @@
+//! Interior-point method: the speed spline of least duration under limits of velocity, acceleration and jerk.
+//!
+//! A primal-dual method whose iterates all satisfy the constraints strictly. The only constraint that is not convex, jerk, reads
+//! `|ℓ(x, b, c)| ≤ 1/√x`; the right-hand side is convex, so that its tangent at an iterate is a stronger constraint. With it,
+//! each step is one of a convex problem (sequential convex programming), and stays admissible. A step costs O(N): the matrix
+//! is banded.
+
+use super::banded_matrix::BandedMatrix;
+use super::jerk_constraints::{JerkConstraints, JointRow};
+use super::speed_spline::{LocalMap, apply};
+
+/// The duality gap, as a share of the duration, at which it ends.
+const RELATIVE_GAP: f64 = 3e-3;
+/// Change of the duration by a step, as a share, at which it ends.
+const RELATIVE_STEP: f64 = 1e-3;
+const MAX_ITERATIONS: usize = 40;
+/// Share of the distance to the nearest constraint that a step covers.
+const TO_BOUNDARY: f64 = 0.95;
+
+/// Slack of a constraint (its reciprocal), multiplier, and the multiplier's step.
+#[derive(Debug, Clone, Copy)]
+struct Multiplier<const N: usize> {
+    dual: [f64; N],
+    inverse: [f64; N],
+    step: [f64; N],
+}
+
+impl<const N: usize> Multiplier<N> {
+    const NEW: Self = Self { dual: [0.0; N], inverse: [0.0; N], step: [0.0; N] };
+
+    /// The weights `dual / slack` in the matrix. A first dual is the barrier's.
+    fn set_slacks(&mut self, slacks: [f64; N], first: Option<f64>, gap: &mut f64) -> [f64; N] {
+        let mut weights = [0.0; N];
+        for i in 0..N {
+            self.inverse[i] = 1.0 / slacks[i];
+            if let Some(barrier) = first {
+                self.dual[i] = barrier * self.inverse[i];
+            }
+            *gap += self.dual[i] * slacks[i];
+            weights[i] = self.dual[i] * self.inverse[i];
+        }
+        weights
+    }
+
+    /// The multiplier's step for a step of the slacks; the greatest shares of slack and multiplier that are used up.
+    fn set_step(&mut self, slack_steps: [f64; N], barrier: f64, used: &mut [f64; 2]) {
+        for i in 0..N {
+            let relative = slack_steps[i] * self.inverse[i];
+            self.step[i] = barrier * self.inverse[i] - self.dual[i] * (1.0 + relative);
+            used[0] = used[0].max(-relative);
+            used[1] = used[1].max(-self.step[i] / self.dual[i]);
+        }
+    }
+
+    fn advance(&mut self, share: f64) {
+        for i in 0..N {
+            self.dual[i] += share * self.step[i];
+        }
+    }
+}
+
+/// Gradients and the matrix of one point, by x, b and c.
+#[derive(Debug, Default)]
+struct LocalSystem {
+    /// Of the duration.
+    objective: f64,
+    /// Of the barrier.
+    barrier: [f64; 3],
+    matrix: [[f64; 3]; 3],
+}
+
+/// The method's state.
+#[derive(Debug)]
+pub(super) struct InteriorPoint<'c> {
+    constraints: &'c JerkConstraints,
+    coefficients: Vec<f64>,
+    positive: Vec<Multiplier<1>>,
+    speed: Vec<Multiplier<1>>,
+    /// Acceleration from above and below, then jerk.
+    joint: Vec<Multiplier<4>>,
+    matrix: BandedMatrix,
+    /// Gradients of the duration and of the barrier.
+    gradients: Vec<[f64; 2]>,
+    seconds: f64,
+    gap: f64,
+}
+
+/// The fastest coefficients, from ones that satisfy all constraints strictly.
+pub(super) fn fastest(constraints: &JerkConstraints, coefficients: Vec<f64>) -> Vec<f64> {
+    let mut state = InteriorPoint::new(constraints, coefficients);
+    let mut steps = Vec::new();
+    let mut last_share = 0.0;
+    for iteration in 0..MAX_ITERATIONS {
+        state.assemble(iteration == 0);
+        let centring = if last_share > 0.8 { 0.1 } else { 0.4 };
+        let barrier = centring * state.gap / state.count() as f64;
+        steps.clear();
+        steps.extend(state.gradients.iter().map(|[t, b]| barrier * b - t));
+        if !state.matrix.solve(&mut steps) || !steps.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        let used = state.multiplier_steps(&steps, barrier);
+        let [primal, dual] = used.map(|used| (TO_BOUNDARY / used).min(1.0));
+        let change: f64 = primal * state.gradients.iter().zip(&steps).map(|(g, p)| g[0] * p).sum::<f64>();
+        state.advance(&steps, primal, dual);
+        if state.gap < RELATIVE_GAP * state.seconds && change.abs() < RELATIVE_STEP * state.seconds {
+            break;
+        }
+        last_share = primal.min(dual);
+    }
+    state.coefficients
+}
+
+impl<'c> InteriorPoint<'c> {
+    fn new(constraints: &'c JerkConstraints, coefficients: Vec<f64>) -> Self {
+        Self {
+            constraints,
+            positive: vec![Multiplier::NEW; coefficients.len()],
+            speed: vec![Multiplier::NEW; constraints.points.len()],
+            joint: vec![Multiplier::NEW; constraints.rows.len()],
+            matrix: BandedMatrix::default(),
+            gradients: Vec::new(),
+            seconds: 0.0,
+            gap: 0.0,
+            coefficients,
+        }
+    }
+
+    /// Number of constraints.
+    fn count(&self) -> usize {
+        self.positive.len() + self.speed.len() + 4 * self.joint.len()
+    }
+
+    /// Gradients and matrix at the iterate. At first, the multipliers are those of a barrier.
+    fn assemble(&mut self, is_first: bool) {
+        self.matrix.clear(self.coefficients.len());
+        self.gradients.clear();
+        self.gradients.resize(self.coefficients.len(), [0.0; 2]);
+        let duration = |all: &JerkConstraints, coefficients: &[f64]| {
+            let each = all
+                .points
+                .iter()
+                .map(|p| p.weight / apply(&p.map, &coefficients[p.interval - 1..=p.interval + 1])[0].sqrt());
+            each.sum::<f64>()
+        };
+        let first = is_first.then(|| duration(self.constraints, &self.coefficients) / self.count() as f64);
+        (self.seconds, self.gap) = (0.0, 0.0);
+        for (i, multiplier) in self.positive.iter_mut().enumerate() {
+            let [weight] = multiplier.set_slacks([self.coefficients[i]], first, &mut self.gap);
+            self.matrix.rows[i][0] += weight;
+            self.gradients[i][1] += multiplier.inverse[0];
+        }
+        for (n, point) in self.constraints.points.iter().enumerate() {
+            let y = apply(&point.map, &self.coefficients[point.interval - 1..=point.interval + 1]);
+            let mut local = LocalSystem::default();
+            let root = 1.0 / y[0].sqrt();
+            self.seconds += point.weight * root;
+            local.add_duration(point.weight, y[0], root);
+            let [weight] = self.speed[n].set_slacks([1.0 - y[0] / point.x_max], first, &mut self.gap);
+            local.matrix[0][0] += weight / (point.x_max * point.x_max);
+            local.barrier[0] -= self.speed[n].inverse[0] / point.x_max;
+            let rows = self.constraints.rows[point.rows.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.joint[point.rows.clone()]) {
+                local.add_row(row, multiplier, y, root, first, &mut self.gap);
+            }
+            local.add_to(&point.map, point.interval, &mut self.matrix, &mut self.gradients);
+        }
+    }
+
+    /// Steps of all multipliers, and the greatest shares of slacks and multipliers that a full step uses up.
+    fn multiplier_steps(&mut self, steps: &[f64], barrier: f64) -> [f64; 2] {
+        let mut used = [0.0; 2];
+        for (multiplier, step) in self.positive.iter_mut().zip(steps) {
+            multiplier.set_step([*step], barrier, &mut used);
+        }
+        for (n, point) in self.constraints.points.iter().enumerate() {
+            let around = point.interval - 1..=point.interval + 1;
+            let dy = apply(&point.map, &steps[around.clone()]);
+            let x = apply(&point.map, &self.coefficients[around])[0];
+            self.speed[n].set_step([-dy[0] / point.x_max], barrier, &mut used);
+            let root_step = -0.5 * dy[0] / (x * x.sqrt());
+            let rows = self.constraints.rows[point.rows.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.joint[point.rows.clone()]) {
+                let a = row.acceleration[0] * dy[0] + row.acceleration[1] * dy[1];
+                let j = row.jerk[0] * dy[0] + row.jerk[1] * dy[1] + row.jerk[2] * dy[2];
+                multiplier.set_step([-a, a, root_step - j, root_step + j], barrier, &mut used);
+            }
+        }
+        used
+    }
+
+    fn advance(&mut self, steps: &[f64], primal: f64, dual: f64) {
+        for (x, step) in self.coefficients.iter_mut().zip(steps) {
+            *x += primal * step;
+        }
+        self.positive.iter_mut().chain(&mut self.speed).for_each(|m| m.advance(dual));
+        self.joint.iter_mut().for_each(|m| m.advance(dual));
+    }
+}
+
+impl LocalSystem {
+    fn add_duration(&mut self, weight: f64, x: f64, root: f64) {
+        self.objective -= 0.5 * weight * root / x;
+        self.matrix[0][0] += 0.75 * weight * root / (x * x);
+    }
+
+    fn add_row(
+        &mut self,
+        row: &JointRow,
+        multiplier: &mut Multiplier<4>,
+        [x, b, c]: [f64; 3],
+        root: f64,
+        first: Option<f64>,
+        gap: &mut f64,
+    ) {
+        let a = row.acceleration[0] * x + row.acceleration[1] * b;
+        let j = row.jerk[0] * x + row.jerk[1] * b + row.jerk[2] * c;
+        let weights = multiplier.set_slacks([1.0 - a, 1.0 + a, root - j, root + j], first, gap);
+        let root_slope = -0.5 * root / x;
+        let [up, down, j_up, j_down] = multiplier.inverse;
+        let (a_barrier, j_barrier) = (down - up, j_down - j_up);
+        let a_weight = weights[0] + weights[1];
+        let (j_weight, j_skew) = (weights[2] + weights[3], root_slope * (weights[3] - weights[2]));
+        self.barrier[0] += root_slope * (j_up + j_down);
+        self.matrix[0][0] += root_slope * root_slope * j_weight;
+        for i in 0..3 {
+            let a_i = row.acceleration.get(i).copied().unwrap_or(0.0);
+            self.barrier[i] += a_barrier * a_i + j_barrier * row.jerk[i];
+            for k in 0..=i {
+                let a_k = row.acceleration.get(k).copied().unwrap_or(0.0);
+                self.matrix[i][k] += a_weight * a_i * a_k + j_weight * row.jerk[i] * row.jerk[k];
+            }
+            self.matrix[i][0] += j_skew * row.jerk[i];
+        }
+        self.matrix[0][0] += j_skew * row.jerk[0];
+    }
+
+    /// Adds what is by x, b and c as by the coefficients around an interval.
+    fn add_to(&self, map: &LocalMap, interval: usize, matrix: &mut BandedMatrix, gradients: &mut [[f64; 2]]) {
+        let m = &self.matrix;
+        let full = [[m[0][0], m[1][0], m[2][0]], [m[1][0], m[1][1], m[2][1]], [m[2][0], m[2][1], m[2][2]]];
+        let mut product = [[0.0; 3]; 3];
+        for (i, row) in full.iter().enumerate() {
+            for k in 0..3 {
+                product[i][k] = row[0] * map[0][k] + row[1] * map[1][k] + row[2] * map[2][k];
+            }
+        }
+        for i in 0..3 {
+            let index = interval - 1 + i;
+            let column = [map[0][i], map[1][i], map[2][i]];
+            for k in 0..=i {
+                matrix.rows[index][i - k] +=
+                    column[0] * product[0][k] + column[1] * product[1][k] + column[2] * product[2][k];
+            }
+            gradients[index][0] += self.objective * column[0];
+            gradients[index][1] +=
+                self.barrier[0] * column[0] + self.barrier[1] * column[1] + self.barrier[2] * column[2];
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Time-optimal path parametrization by reachability analysis (TOPP-RA) under limits of velocity and acceleration.
+//!
+//! H. Pham, Q.-C. Pham: *A New Approach to Time-Optimal Path Parameterization Based on Reachability Analysis*, IEEE
+//! Transactions on Robotics 34(3), 2018. With `x = ṡ²` and `u = s̈`, constant over an interval, constraints are linear in
+//! (u, x). The backward pass computes the controllable sets, which are intervals from 0 as rest is always admissible; the
+//! forward pass takes the greatest `u` that stays in them.
+
+use super::super::limits::KinematicLimits;
+use super::blended_path::PathSection;
+use super::path_grid::PathGrid;
+
+/// Newton steps for the greatest controllable `x`: each leaves one line of a polygon.
+const MAX_STEPS: usize = 64;
+
+/// `−1 ≤ u·a + x·b ≤ 1`, see [`control_range`].
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    a: f64,
+    b: f64,
+}
+
+/// The constraints of all intervals.
+#[derive(Debug, Default)]
+struct Constraints {
+    rows: Vec<Row>,
+    /// Index of the first row of each interval, and the number of rows at last.
+    first: Vec<usize>,
+    /// Greatest `x` at each node by velocity, and by what does not depend on `u`.
+    x_max: Vec<f64>,
+}
+
+/// A bound of `u` that is linear in x: at x, and its slope.
+#[derive(Debug, Clone, Copy)]
+struct Bound {
+    value: f64,
+    slope: f64,
+}
+
+/// The greatest squared speed at each node of the grid, from rest to rest.
+pub(super) fn squared_speeds(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Vec<f64> {
+    let constraints = Constraints::new(section, grid, limits);
+    let count = grid.intervals();
+    let mut controllable = vec![0.0; count + 1];
+    for n in (0..count).rev() {
+        let rows = constraints.of(n);
+        controllable[n] = greatest_controllable(rows, grid.spacing(n), controllable[n + 1], constraints.x_max[n]);
+    }
+    let mut x = vec![0.0; count + 1];
+    for n in 0..count {
+        let spacing = grid.spacing(n);
+        let [low, high] = control_range(constraints.of(n), spacing, controllable[n + 1], x[n]);
+        let u = high.value.max(low.value);
+        x[n + 1] = (x[n] + 2.0 * spacing * u).clamp(0.0, controllable[n + 1]);
+    }
+    x
+}
+
+impl Constraints {
+    fn new(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Self {
+        let mut all = Self { x_max: vec![f64::INFINITY; grid.nodes.len()], ..Self::default() };
+        for n in 0..grid.intervals() {
+            all.first.push(all.rows.len());
+            let element = &section.elements[grid.elements[n] as usize];
+            if element.is_straight() {
+                let along = limits.in_direction(&element.direction);
+                for x in &mut all.x_max[n..=n + 1] {
+                    *x = x.min(along.speed * along.speed);
+                }
+                all.rows.push(Row { a: 1.0 / along.acceleration, b: 0.0 });
+                continue;
+            }
+            for joint in 0..limits.velocity.len() {
+                let [v, a] = [limits.velocity[joint], limits.acceleration[joint]];
+                for node in [n, n + 1] {
+                    let [_, p, c, _] = element.at(grid.nodes[node], joint);
+                    let x = &mut all.x_max[node];
+                    *x = x.min((v / p).powi(2)).min(a / c.abs());
+                    // At the end of the interval, x is greater by 2·spacing·u.
+                    let ahead = if node == n { 0.0 } else { 2.0 * grid.spacing(n) };
+                    all.rows.push(Row { a: (p + ahead * c) / a, b: c / a });
+                }
+            }
+        }
+        all.first.push(all.rows.len());
+        all
+    }
+
+    fn of(&self, interval: usize) -> &[Row] {
+        &self.rows[self.first[interval]..self.first[interval + 1]]
+    }
+}
+
+/// Bounds of `u` at a squared speed, such that the next one is in `0..=next`.
+fn control_range(rows: &[Row], spacing: f64, next: f64, x: f64) -> [Bound; 2] {
+    let slope = -0.5 / spacing;
+    let mut low = Bound { value: x * slope, slope };
+    let mut high = Bound { value: (x - next) * slope, slope };
+    for row in rows {
+        let (inverse, shift) = (1.0 / row.a.abs(), -row.b / row.a);
+        let (below, above) = (x * shift - inverse, x * shift + inverse);
+        if below > low.value {
+            low = Bound { value: below, slope: shift };
+        }
+        if above < high.value {
+            high = Bound { value: above, slope: shift };
+        }
+    }
+    [low, high]
+}
+
+/// The greatest squared speed from which some `u` leads into `0..=next`: the width of the range of `u` is concave in x, so that
+/// Newton's method from above ends at its root.
+fn greatest_controllable(rows: &[Row], spacing: f64, next: f64, x_max: f64) -> f64 {
+    let mut x = x_max;
+    for _ in 0..MAX_STEPS {
+        let [low, high] = control_range(rows, spacing, next, x);
+        let (width, slope) = (high.value - low.value, high.slope - low.slope);
+        if width >= 0.0 {
+            return x;
+        }
+        let step = width / slope;
+        if !(slope < 0.0) || x - step <= 0.0 {
+            return 0.0;
+        }
+        if step <= 4.0 * f64::EPSILON * x {
+            return x - step;
+        }
+        x -= step;
+    }
+    x
+}
