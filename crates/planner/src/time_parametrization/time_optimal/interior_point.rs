@@ -6,7 +6,7 @@
 //! is banded.
 
 use super::banded_matrix::BandedMatrix;
-use super::jerk_constraints::{JerkConstraints, JointRow};
+use super::jerk_constraints::{AccelerationRow, JerkConstraints, JerkRow};
 use super::speed_spline::{LocalMap, apply};
 
 /// The duality gap, as a share of the duration, at which it ends.
@@ -76,8 +76,9 @@ pub(super) struct InteriorPoint<'c> {
     coefficients: Vec<f64>,
     positive: Vec<Multiplier<1>>,
     speed: Vec<Multiplier<1>>,
-    /// Acceleration from above and below, then jerk.
-    joint: Vec<Multiplier<4>>,
+    /// From above and below.
+    acceleration: Vec<Multiplier<2>>,
+    jerk: Vec<Multiplier<2>>,
     matrix: BandedMatrix,
     /// Gradients of the duration and of the barrier.
     gradients: Vec<[f64; 2]>,
@@ -103,10 +104,17 @@ pub(super) fn fastest(constraints: &JerkConstraints, coefficients: Vec<f64>) -> 
         let [primal, dual] = used.map(|used| (TO_BOUNDARY / used).min(1.0));
         let change: f64 = primal * state.gradients.iter().zip(&steps).map(|(g, p)| g[0] * p).sum::<f64>();
         state.advance(&steps, primal, dual);
+        if std::env::var("DBG").is_ok() {
+            eprintln!("it {iteration} T {} gap {} p {primal} d {dual} change {change}", state.seconds, state.gap);
+        }
         if state.gap < RELATIVE_GAP * state.seconds && change.abs() < RELATIVE_STEP * state.seconds {
             break;
         }
         last_share = primal.min(dual);
+    }
+    if std::env::var("DBG").is_ok() {
+        state.assemble(false);
+        eprintln!("END T {} gap {}", state.seconds, state.gap);
     }
     state.coefficients
 }
@@ -117,7 +125,8 @@ impl<'c> InteriorPoint<'c> {
             constraints,
             positive: vec![Multiplier::NEW; coefficients.len()],
             speed: vec![Multiplier::NEW; constraints.points.len()],
-            joint: vec![Multiplier::NEW; constraints.rows.len()],
+            acceleration: vec![Multiplier::NEW; constraints.accelerations.len()],
+            jerk: vec![Multiplier::NEW; constraints.jerks.len()],
             matrix: BandedMatrix::default(),
             gradients: Vec::new(),
             seconds: 0.0,
@@ -128,7 +137,7 @@ impl<'c> InteriorPoint<'c> {
 
     /// Number of constraints.
     fn count(&self) -> usize {
-        self.positive.len() + self.speed.len() + 4 * self.joint.len()
+        self.positive.len() + self.speed.len() + 2 * (self.acceleration.len() + self.jerk.len())
     }
 
     /// Gradients and matrix at the iterate. At first, the multipliers are those of a barrier.
@@ -159,9 +168,17 @@ impl<'c> InteriorPoint<'c> {
             let [weight] = self.speed[n].set_slacks([1.0 - y[0] / point.x_max], first, &mut self.gap);
             local.matrix[0][0] += weight / (point.x_max * point.x_max);
             local.barrier[0] -= self.speed[n].inverse[0] / point.x_max;
-            let rows = self.constraints.rows[point.rows.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.joint[point.rows.clone()]) {
-                local.add_row(row, multiplier, y, root, first, &mut self.gap);
+            let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
+                let a = row[0] * y[0] + row[1] * y[1];
+                let weights = multiplier.set_slacks([1.0 - a, 1.0 + a], first, &mut self.gap);
+                local.add_acceleration(row, weights, multiplier.inverse);
+            }
+            let rows = self.constraints.jerks[point.jerks.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
+                let j = row[0] * y[0] + row[1] * y[1] + row[2] * y[2];
+                let weights = multiplier.set_slacks([root - j, root + j], first, &mut self.gap);
+                local.add_jerk(row, weights, multiplier.inverse, -0.5 * root / y[0]);
             }
             local.add_to(&point.map, point.interval, &mut self.matrix, &mut self.gradients);
         }
@@ -179,11 +196,15 @@ impl<'c> InteriorPoint<'c> {
             let x = apply(&point.map, &self.coefficients[around])[0];
             self.speed[n].set_step([-dy[0] / point.x_max], barrier, &mut used);
             let root_step = -0.5 * dy[0] / (x * x.sqrt());
-            let rows = self.constraints.rows[point.rows.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.joint[point.rows.clone()]) {
-                let a = row.acceleration[0] * dy[0] + row.acceleration[1] * dy[1];
-                let j = row.jerk[0] * dy[0] + row.jerk[1] * dy[1] + row.jerk[2] * dy[2];
-                multiplier.set_step([-a, a, root_step - j, root_step + j], barrier, &mut used);
+            let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
+                let a = row[0] * dy[0] + row[1] * dy[1];
+                multiplier.set_step([-a, a], barrier, &mut used);
+            }
+            let rows = self.constraints.jerks[point.jerks.clone()].iter();
+            for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
+                let j = row[0] * dy[0] + row[1] * dy[1] + row[2] * dy[2];
+                multiplier.set_step([root_step - j, root_step + j], barrier, &mut used);
             }
         }
         used
@@ -194,7 +215,7 @@ impl<'c> InteriorPoint<'c> {
             *x += primal * step;
         }
         self.positive.iter_mut().chain(&mut self.speed).for_each(|m| m.advance(dual));
-        self.joint.iter_mut().for_each(|m| m.advance(dual));
+        self.acceleration.iter_mut().chain(&mut self.jerk).for_each(|m| m.advance(dual));
     }
 }
 
@@ -204,35 +225,27 @@ impl LocalSystem {
         self.matrix[0][0] += 0.75 * weight * root / (x * x);
     }
 
-    fn add_row(
-        &mut self,
-        row: &JointRow,
-        multiplier: &mut Multiplier<4>,
-        [x, b, c]: [f64; 3],
-        root: f64,
-        first: Option<f64>,
-        gap: &mut f64,
-    ) {
-        let a = row.acceleration[0] * x + row.acceleration[1] * b;
-        let j = row.jerk[0] * x + row.jerk[1] * b + row.jerk[2] * c;
-        let weights = multiplier.set_slacks([1.0 - a, 1.0 + a, root - j, root + j], first, gap);
-        let root_slope = -0.5 * root / x;
-        let [up, down, j_up, j_down] = multiplier.inverse;
-        let (a_barrier, j_barrier) = (down - up, j_down - j_up);
-        let a_weight = weights[0] + weights[1];
-        let (j_weight, j_skew) = (weights[2] + weights[3], root_slope * (weights[3] - weights[2]));
-        self.barrier[0] += root_slope * (j_up + j_down);
-        self.matrix[0][0] += root_slope * root_slope * j_weight;
+    fn add_acceleration(&mut self, [x, b]: &AccelerationRow, weights: [f64; 2], [up, down]: [f64; 2]) {
+        let weight = weights[0] + weights[1];
+        self.barrier[0] += (down - up) * x;
+        self.barrier[1] += (down - up) * b;
+        self.matrix[0][0] += weight * x * x;
+        self.matrix[1][0] += weight * x * b;
+        self.matrix[1][1] += weight * b * b;
+    }
+
+    /// `slope` is the derivative of 1/√x.
+    fn add_jerk(&mut self, row: &JerkRow, weights: [f64; 2], [up, down]: [f64; 2], slope: f64) {
+        let (weight, skew) = (weights[0] + weights[1], slope * (weights[1] - weights[0]));
+        self.barrier[0] += slope * (up + down);
+        self.matrix[0][0] += slope * slope * weight + skew * row[0];
         for i in 0..3 {
-            let a_i = row.acceleration.get(i).copied().unwrap_or(0.0);
-            self.barrier[i] += a_barrier * a_i + j_barrier * row.jerk[i];
+            self.barrier[i] += (down - up) * row[i];
+            self.matrix[i][0] += skew * row[i];
             for k in 0..=i {
-                let a_k = row.acceleration.get(k).copied().unwrap_or(0.0);
-                self.matrix[i][k] += a_weight * a_i * a_k + j_weight * row.jerk[i] * row.jerk[k];
+                self.matrix[i][k] += weight * row[i] * row[k];
             }
-            self.matrix[i][0] += j_skew * row.jerk[i];
         }
-        self.matrix[0][0] += j_skew * row.jerk[0];
     }
 
     /// Adds what is by x, b and c as by the coefficients around an interval.

@@ -3,6 +3,8 @@
 //! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk
 //! `√x·(q‴x + 3q″b + q′c)`: divided by √x, all but the bound of the jerk is linear in (x, b, c).
 
+use std::ops::Range;
+
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
 use super::path_element::PathElement;
@@ -14,14 +16,10 @@ const REST_FACTOR: f64 = 2.725_680_889_248_209;
 /// Share of a limit that the first profile uses.
 const FIRST_SHARE: f64 = 0.8;
 
-/// A joint's coefficients of acceleration and jerk, each divided by its limit.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct JointRow {
-    /// By x and b.
-    pub acceleration: [f64; 2],
-    /// By x, b and c.
-    pub jerk: [f64; 3],
-}
+/// A joint's acceleration by x and b, divided by its limit.
+pub(super) type AccelerationRow = [f64; 2];
+/// A joint's jerk by x, b and c, divided by √x and its limit.
+pub(super) type JerkRow = [f64; 3];
 
 /// A point at which constraints are evaluated.
 #[derive(Debug, Clone)]
@@ -31,18 +29,20 @@ pub(super) struct Collocation {
     /// Duration is the sum of `weight/√x`.
     pub weight: f64,
     pub x_max: f64,
-    pub rows: std::ops::Range<usize>,
+    pub accelerations: Range<usize>,
+    pub jerks: Range<usize>,
 }
 
 /// All constraints of a section.
 #[derive(Debug, Default)]
 pub(super) struct JerkConstraints {
     pub points: Vec<Collocation>,
-    pub rows: Vec<JointRow>,
+    pub accelerations: Vec<AccelerationRow>,
+    pub jerks: Vec<JerkRow>,
 }
 
 impl JerkConstraints {
-    /// The middle of each interval of a blend, both ends of those of straight segments.
+    /// On straight segments both ends of each interval; in blends its beginning for acceleration, its middle for jerk.
     pub fn new(section: &PathSection, grid: &PathGrid, spline: &SpeedSpline, limits: &KinematicLimits) -> Self {
         let mut all = Self::default();
         let last = grid.intervals() - 1;
@@ -52,13 +52,12 @@ impl JerkConstraints {
             if element.is_straight() {
                 all.add_straight(element, interval, h, spline, limits);
             } else {
-                let middle = 0.5 * (grid.nodes[interval] + grid.nodes[interval + 1]);
-                all.add_blend(element, middle, interval, h, spline, limits);
+                all.add_blend(element, interval, grid.nodes[interval], h, spline, limits);
             }
         }
         let count = all.points.len();
         for (point, rest) in [(0, 0), (count - 1, last)] {
-            let jerk = all.rows[all.points[point].rows.start].jerk[2].recip();
+            let jerk = all.jerks[all.points[point].jerks.start][2].recip();
             let (s, point) = (grid.spacing(rest), &mut all.points[point]);
             point.x_max = point.x_max.min(REST_FACTOR * (jerk * jerk * s).cbrt() * s);
             point.weight += 3.0 * s;
@@ -75,33 +74,50 @@ impl JerkConstraints {
         limits: &KinematicLimits,
     ) {
         let along = limits.in_direction(&element.direction);
-        let row = JointRow { acceleration: [0.0, along.acceleration.recip()], jerk: [0.0, 0.0, along.jerk.recip()] };
         for share in [0.0, 1.0] {
-            self.rows.push(row);
-            let rows = self.rows.len() - 1..self.rows.len();
-            let map = spline.local_map(interval, share);
-            self.points.push(Collocation { interval, map, weight: 0.5 * h, x_max: along.speed * along.speed, rows });
+            let first = self.rows();
+            self.accelerations.push([0.0, along.acceleration.recip()]);
+            self.jerks.push([0.0, 0.0, along.jerk.recip()]);
+            self.add_point(interval, spline.local_map(interval, share), 0.5 * h, along.speed * along.speed, first);
         }
     }
 
     fn add_blend(
         &mut self,
         element: &PathElement,
-        s: f64,
         interval: usize,
+        s: f64,
         h: f64,
         spline: &SpeedSpline,
         limits: &KinematicLimits,
     ) {
-        let first = self.rows.len();
-        let mut x_max = f64::INFINITY;
-        for (joint, (a, j)) in limits.acceleration.iter().zip(&limits.jerk).enumerate() {
-            let [_, p, c, d] = element.at(s, joint);
-            x_max = x_max.min((limits.velocity[joint] / p).powi(2)).min(a / c.abs());
-            self.rows.push(JointRow { acceleration: [c / a, p / a], jerk: [d / j, 3.0 * c / j, p / j] });
+        for (share, weight) in [(0.0, 0.5), (0.5, 0.0), (1.0, 0.5)] {
+            let first = self.rows();
+            let mut x_max = f64::INFINITY;
+            for joint in 0..limits.velocity.len() {
+                let [v, a, j] = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]];
+                let [_, p, c, d] = element.at(s + share * h, joint);
+                x_max = x_max.min((v / p).powi(2)).min(a / c.abs());
+                if share < 1.0 {
+                    self.accelerations.push([c / a, p / a]);
+                }
+                if share != 0.5 {
+                    self.jerks.push([d / j, 3.0 * c / j, p / j]);
+                }
+            }
+            self.add_point(interval, spline.local_map(interval, share), weight * h, x_max, first);
         }
-        let (map, rows) = (spline.local_map(interval, 0.5), first..self.rows.len());
-        self.points.push(Collocation { interval, map, weight: h, x_max, rows });
+    }
+
+    /// Numbers of rows of acceleration and jerk.
+    fn rows(&self) -> [usize; 2] {
+        [self.accelerations.len(), self.jerks.len()]
+    }
+
+    /// A point with all rows from `first` on.
+    fn add_point(&mut self, interval: usize, map: LocalMap, weight: f64, x_max: f64, first: [usize; 2]) {
+        let [accelerations, jerks] = [first[0]..self.rows()[0], first[1]..self.rows()[1]];
+        self.points.push(Collocation { interval, map, weight, x_max, accelerations, jerks });
     }
 
     /// Coefficients that satisfy all constraints strictly: a profile that keeps the jerk's limit at every constant speed, made
@@ -126,10 +142,12 @@ impl JerkConstraints {
     fn largest_factor(&self, point: &Collocation, coefficients: &[f64]) -> f64 {
         let [x, b, c] = apply(&point.map, &coefficients[point.interval - 1..=point.interval + 1]);
         let mut factor = FIRST_SHARE * point.x_max / x;
-        for row in &self.rows[point.rows.clone()] {
-            let acceleration = row.acceleration[0] * x + row.acceleration[1] * b;
-            let jerk = x.sqrt() * (row.jerk[0] * x + row.jerk[1] * b + row.jerk[2] * c);
-            factor = factor.min(FIRST_SHARE / acceleration.abs()).min((FIRST_SHARE / jerk.abs()).powi(2).cbrt());
+        for row in &self.accelerations[point.accelerations.clone()] {
+            factor = factor.min(FIRST_SHARE / (row[0] * x + row[1] * b).abs());
+        }
+        for row in &self.jerks[point.jerks.clone()] {
+            let jerk = x.sqrt() * (row[0] * x + row[1] * b + row[2] * c);
+            factor = factor.min((FIRST_SHARE / jerk.abs()).powi(2).cbrt());
         }
         factor
     }

@@ -39,6 +39,9 @@ pub(super) fn time_stretch(
     }
     let [v, a, j] = ratios;
     let stretch = v.max(a.sqrt()).max(if orders > 2 { j.cbrt() } else { 0.0 });
+    if std::env::var("DBG").is_ok() {
+        eprintln!("ratios {ratios:?} {orders}");
+    }
     // NaN must not be lost.
     if stretch <= 1.0 { 1.0 + MARGIN } else { stretch * (1.0 + MARGIN) }
 }

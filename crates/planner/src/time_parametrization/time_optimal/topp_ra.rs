@@ -69,15 +69,17 @@ impl Constraints {
                 all.rows.push(Row { a: 1.0 / along.acceleration, b: 0.0 });
                 continue;
             }
+            let h = grid.spacing(n);
             for joint in 0..limits.velocity.len() {
                 let [v, a] = [limits.velocity[joint], limits.acceleration[joint]];
-                for node in [n, n + 1] {
-                    let [_, p, c, _] = element.at(grid.nodes[node], joint);
-                    let x = &mut all.x_max[node];
-                    *x = x.min((v / p).powi(2)).min(a / c.abs());
-                    // At the end of the interval, x is greater by 2·spacing·u.
-                    let ahead = if node == n { 0.0 } else { 2.0 * grid.spacing(n) };
-                    all.rows.push(Row { a: (p + ahead * c) / a, b: c / a });
+                for share in [0.0, 0.5, 1.0] {
+                    let [_, p, c, _] = element.at(grid.nodes[n] + share * h, joint);
+                    // There, x is greater by 2·share·h·u.
+                    all.rows.push(Row { a: (p + 2.0 * share * h * c) / a, b: c / a });
+                    if share != 0.5 {
+                        let x = &mut all.x_max[n + share as usize];
+                        *x = x.min((v / p).powi(2)).min(a / c.abs());
+                    }
                 }
             }
         }
