@@ -6,18 +6,18 @@
 //! is banded.
 
 use super::banded_matrix::BandedMatrix;
-use super::jerk_constraints::{AccelerationRow, JerkConstraints, JerkRow};
-use super::speed_spline::{LocalMap, apply};
+use super::jerk_constraints::{AccelerationRow, Collocation, JerkConstraints, JerkRow};
+use super::speed_spline::{LocalMap, apply, around};
 
 /// The duality gap, as a share of the duration, at which it ends.
-const RELATIVE_GAP: f64 = 3e-3;
+const RELATIVE_GAP: f64 = 1e-2;
 /// Change of the duration by a step, as a share, at which it ends.
-const RELATIVE_STEP: f64 = 1e-3;
+const RELATIVE_STEP: f64 = 3e-3;
 const MAX_ITERATIONS: usize = 40;
 /// Share of the distance to the nearest constraint that a step covers.
-const TO_BOUNDARY: f64 = 0.95;
+const TO_BOUNDARY: f64 = 0.99;
 
-/// Slack of a constraint (its reciprocal), multiplier, and the multiplier's step.
+/// Slacks of one or two bounds (their reciprocals), multipliers, and the multipliers' steps.
 #[derive(Debug, Clone, Copy)]
 struct Multiplier<const N: usize> {
     dual: [f64; N],
@@ -25,30 +25,45 @@ struct Multiplier<const N: usize> {
     step: [f64; N],
 }
 
+/// The multipliers that a barrier has at first, and the sum of multipliers times slacks.
+#[derive(Debug, Clone, Copy, Default)]
+struct Gap {
+    first: Option<f64>,
+    sum: f64,
+}
+
 impl<const N: usize> Multiplier<N> {
     const NEW: Self = Self { dual: [0.0; N], inverse: [0.0; N], step: [0.0; N] };
 
-    /// The weights `dual / slack` in the matrix. A first dual is the barrier's.
-    fn set_slacks(&mut self, slacks: [f64; N], first: Option<f64>, gap: &mut f64) -> [f64; N] {
+    /// The weights `dual / slack` in the matrix.
+    #[inline]
+    fn set_slacks(&mut self, slacks: [f64; N], gap: &mut Gap) -> [f64; N] {
+        // One division for two slacks.
+        let inverse = 1.0 / slacks.iter().product::<f64>();
         let mut weights = [0.0; N];
         for i in 0..N {
-            self.inverse[i] = 1.0 / slacks[i];
-            if let Some(barrier) = first {
+            self.inverse[i] = if N == 2 { slacks[1 - i] * inverse } else { inverse };
+            if let Some(barrier) = gap.first {
                 self.dual[i] = barrier * self.inverse[i];
             }
-            *gap += self.dual[i] * slacks[i];
+            gap.sum += self.dual[i] * slacks[i];
             weights[i] = self.dual[i] * self.inverse[i];
         }
         weights
     }
 
-    /// The multiplier's step for a step of the slacks; the greatest shares of slack and multiplier that are used up.
+    /// The multipliers' steps for a step of the slacks; the greatest shares of slack and multiplier that are used up.
+    #[inline]
     fn set_step(&mut self, slack_steps: [f64; N], barrier: f64, used: &mut [f64; 2]) {
         for i in 0..N {
             let relative = slack_steps[i] * self.inverse[i];
             self.step[i] = barrier * self.inverse[i] - self.dual[i] * (1.0 + relative);
-            used[0] = used[0].max(-relative);
-            used[1] = used[1].max(-self.step[i] / self.dual[i]);
+            if -relative > used[0] {
+                used[0] = -relative;
+            }
+            if -self.step[i] > used[1] * self.dual[i] {
+                used[1] = -self.step[i] / self.dual[i];
+            }
         }
     }
 
@@ -63,7 +78,7 @@ impl<const N: usize> Multiplier<N> {
 #[derive(Debug, Default)]
 struct LocalSystem {
     /// Of the duration.
-    objective: f64,
+    objective: [f64; 3],
     /// Of the barrier.
     barrier: [f64; 3],
     matrix: [[f64; 3]; 3],
@@ -79,11 +94,13 @@ pub(super) struct InteriorPoint<'c> {
     /// From above and below.
     acceleration: Vec<Multiplier<2>>,
     jerk: Vec<Multiplier<2>>,
+    /// Derivative of 1/√x at each point.
+    root_slopes: Vec<f64>,
     matrix: BandedMatrix,
     /// Gradients of the duration and of the barrier.
     gradients: Vec<[f64; 2]>,
     seconds: f64,
-    gap: f64,
+    gap: Gap,
 }
 
 /// The fastest coefficients, from ones that satisfy all constraints strictly.
@@ -94,7 +111,7 @@ pub(super) fn fastest(constraints: &JerkConstraints, coefficients: Vec<f64>) -> 
     for iteration in 0..MAX_ITERATIONS {
         state.assemble(iteration == 0);
         let centring = if last_share > 0.8 { 0.1 } else { 0.4 };
-        let barrier = centring * state.gap / state.count() as f64;
+        let barrier = centring * state.gap.sum / state.count() as f64;
         steps.clear();
         steps.extend(state.gradients.iter().map(|[t, b]| barrier * b - t));
         if !state.matrix.solve(&mut steps) || !steps.iter().all(|x| x.is_finite()) {
@@ -104,17 +121,10 @@ pub(super) fn fastest(constraints: &JerkConstraints, coefficients: Vec<f64>) -> 
         let [primal, dual] = used.map(|used| (TO_BOUNDARY / used).min(1.0));
         let change: f64 = primal * state.gradients.iter().zip(&steps).map(|(g, p)| g[0] * p).sum::<f64>();
         state.advance(&steps, primal, dual);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("it {iteration} T {} gap {} p {primal} d {dual} change {change}", state.seconds, state.gap);
-        }
-        if state.gap < RELATIVE_GAP * state.seconds && change.abs() < RELATIVE_STEP * state.seconds {
+        if state.gap.sum < RELATIVE_GAP * state.seconds && change.abs() < RELATIVE_STEP * state.seconds {
             break;
         }
         last_share = primal.min(dual);
-    }
-    if std::env::var("DBG").is_ok() {
-        state.assemble(false);
-        eprintln!("END T {} gap {}", state.seconds, state.gap);
     }
     state.coefficients
 }
@@ -127,10 +137,11 @@ impl<'c> InteriorPoint<'c> {
             speed: vec![Multiplier::NEW; constraints.points.len()],
             acceleration: vec![Multiplier::NEW; constraints.accelerations.len()],
             jerk: vec![Multiplier::NEW; constraints.jerks.len()],
+            root_slopes: vec![0.0; constraints.points.len()],
             matrix: BandedMatrix::default(),
             gradients: Vec::new(),
             seconds: 0.0,
-            gap: 0.0,
+            gap: Gap::default(),
             coefficients,
         }
     }
@@ -145,43 +156,49 @@ impl<'c> InteriorPoint<'c> {
         self.matrix.clear(self.coefficients.len());
         self.gradients.clear();
         self.gradients.resize(self.coefficients.len(), [0.0; 2]);
-        let duration = |all: &JerkConstraints, coefficients: &[f64]| {
-            let each = all
-                .points
-                .iter()
-                .map(|p| p.weight / apply(&p.map, &coefficients[p.interval - 1..=p.interval + 1])[0].sqrt());
-            each.sum::<f64>()
-        };
-        let first = is_first.then(|| duration(self.constraints, &self.coefficients) / self.count() as f64);
-        (self.seconds, self.gap) = (0.0, 0.0);
+        let first = is_first.then(|| self.constraints.duration(&self.coefficients) / self.count() as f64);
+        (self.seconds, self.gap) = (0.0, Gap { first, sum: 0.0 });
         for (i, multiplier) in self.positive.iter_mut().enumerate() {
-            let [weight] = multiplier.set_slacks([self.coefficients[i]], first, &mut self.gap);
+            let [weight] = multiplier.set_slacks([self.coefficients[i]], &mut self.gap);
             self.matrix.rows[i][0] += weight;
             self.gradients[i][1] += multiplier.inverse[0];
         }
-        for (n, point) in self.constraints.points.iter().enumerate() {
-            let y = apply(&point.map, &self.coefficients[point.interval - 1..=point.interval + 1]);
-            let mut local = LocalSystem::default();
-            let root = 1.0 / y[0].sqrt();
-            self.seconds += point.weight * root;
-            local.add_duration(point.weight, y[0], root);
-            let [weight] = self.speed[n].set_slacks([1.0 - y[0] / point.x_max], first, &mut self.gap);
-            local.matrix[0][0] += weight / (point.x_max * point.x_max);
-            local.barrier[0] -= self.speed[n].inverse[0] / point.x_max;
-            let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
-                let a = row[0] * y[0] + row[1] * y[1];
-                let weights = multiplier.set_slacks([1.0 - a, 1.0 + a], first, &mut self.gap);
-                local.add_acceleration(row, weights, multiplier.inverse);
+        for interval in &self.constraints.intervals {
+            let begin = apply(&interval.map, around(&self.coefficients, interval.index));
+            let mut system = LocalSystem::default();
+            for n in interval.points.clone() {
+                let point = &self.constraints.points[n];
+                let local = self.assemble_point(n, point, point.from_begin(begin));
+                system.add_shifted(&local, point.offset);
             }
-            let rows = self.constraints.jerks[point.jerks.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
-                let j = row[0] * y[0] + row[1] * y[1] + row[2] * y[2];
-                let weights = multiplier.set_slacks([root - j, root + j], first, &mut self.gap);
-                local.add_jerk(row, weights, multiplier.inverse, -0.5 * root / y[0]);
-            }
-            local.add_to(&point.map, point.interval, &mut self.matrix, &mut self.gradients);
+            system.add_to(&interval.map, interval.index, &mut self.matrix, &mut self.gradients);
         }
+    }
+
+    /// Gradients and matrix of a point by its own x, b and c.
+    #[inline]
+    fn assemble_point(&mut self, n: usize, point: &Collocation, y: [f64; 3]) -> LocalSystem {
+        let mut local = LocalSystem::default();
+        let (inverse, root) = (1.0 / y[0], 1.0 / y[0].sqrt());
+        self.root_slopes[n] = -0.5 * root * inverse;
+        self.seconds += point.weight * root;
+        local.objective[0] = -0.5 * point.weight * root * inverse;
+        let [weight] = self.speed[n].set_slacks([1.0 - y[0] * point.x_factor], &mut self.gap);
+        local.matrix[0][0] = 0.75 * point.weight * root * inverse * inverse + weight * point.x_factor * point.x_factor;
+        local.barrier[0] = -self.speed[n].inverse[0] * point.x_factor;
+        let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
+        for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
+            let a = row[0] * y[0] + row[1] * y[1];
+            let weights = multiplier.set_slacks([1.0 - a, 1.0 + a], &mut self.gap);
+            local.add_acceleration(row, weights, multiplier.inverse);
+        }
+        let rows = self.constraints.jerks[point.jerks.clone()].iter();
+        for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
+            let j = row[0] * y[0] + row[1] * y[1] + row[2] * y[2];
+            let weights = multiplier.set_slacks([root - j, root + j], &mut self.gap);
+            local.add_jerk(row, weights, multiplier.inverse, self.root_slopes[n]);
+        }
+        local
     }
 
     /// Steps of all multipliers, and the greatest shares of slacks and multipliers that a full step uses up.
@@ -190,21 +207,23 @@ impl<'c> InteriorPoint<'c> {
         for (multiplier, step) in self.positive.iter_mut().zip(steps) {
             multiplier.set_step([*step], barrier, &mut used);
         }
-        for (n, point) in self.constraints.points.iter().enumerate() {
-            let around = point.interval - 1..=point.interval + 1;
-            let dy = apply(&point.map, &steps[around.clone()]);
-            let x = apply(&point.map, &self.coefficients[around])[0];
-            self.speed[n].set_step([-dy[0] / point.x_max], barrier, &mut used);
-            let root_step = -0.5 * dy[0] / (x * x.sqrt());
-            let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
-                let a = row[0] * dy[0] + row[1] * dy[1];
-                multiplier.set_step([-a, a], barrier, &mut used);
-            }
-            let rows = self.constraints.jerks[point.jerks.clone()].iter();
-            for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
-                let j = row[0] * dy[0] + row[1] * dy[1] + row[2] * dy[2];
-                multiplier.set_step([root_step - j, root_step + j], barrier, &mut used);
+        for interval in &self.constraints.intervals {
+            let begin = apply(&interval.map, around(steps, interval.index));
+            for n in interval.points.clone() {
+                let point = &self.constraints.points[n];
+                let dy = point.from_begin(begin);
+                self.speed[n].set_step([-dy[0] * point.x_factor], barrier, &mut used);
+                let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
+                for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
+                    let a = row[0] * dy[0] + row[1] * dy[1];
+                    multiplier.set_step([-a, a], barrier, &mut used);
+                }
+                let root_step = self.root_slopes[n] * dy[0];
+                let rows = self.constraints.jerks[point.jerks.clone()].iter();
+                for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
+                    let j = row[0] * dy[0] + row[1] * dy[1] + row[2] * dy[2];
+                    multiplier.set_step([root_step - j, root_step + j], barrier, &mut used);
+                }
             }
         }
         used
@@ -220,11 +239,26 @@ impl<'c> InteriorPoint<'c> {
 }
 
 impl LocalSystem {
-    fn add_duration(&mut self, weight: f64, x: f64, root: f64) {
-        self.objective -= 0.5 * weight * root / x;
-        self.matrix[0][0] += 0.75 * weight * root / (x * x);
+    /// Adds a system by x, b and c at an offset from where this one's are: `x + 2·offset·b + offset²·c` and so on.
+    #[inline]
+    fn add_shifted(&mut self, other: &Self, offset: f64) {
+        let (twice, square) = (2.0 * offset, offset * offset);
+        let shift = |v: [f64; 3]| [v[0], v[1] + twice * v[0], v[2] + offset * v[1] + square * v[0]];
+        let (objective, barrier) = (shift(other.objective), shift(other.barrier));
+        let m = &other.matrix;
+        // Columns, then rows.
+        let rows = [[m[0][0], m[1][0], m[2][0]], [m[1][0], m[1][1], m[2][1]], [m[2][0], m[2][1], m[2][2]]].map(shift);
+        for i in 0..3 {
+            self.objective[i] += objective[i];
+            self.barrier[i] += barrier[i];
+            let column = shift([rows[0][i], rows[1][i], rows[2][i]]);
+            for k in i..3 {
+                self.matrix[k][i] += column[k];
+            }
+        }
     }
 
+    #[inline]
     fn add_acceleration(&mut self, [x, b]: &AccelerationRow, weights: [f64; 2], [up, down]: [f64; 2]) {
         let weight = weights[0] + weights[1];
         self.barrier[0] += (down - up) * x;
@@ -234,6 +268,7 @@ impl LocalSystem {
         self.matrix[1][1] += weight * b * b;
     }
 
+    #[inline]
     /// `slope` is the derivative of 1/√x.
     fn add_jerk(&mut self, row: &JerkRow, weights: [f64; 2], [up, down]: [f64; 2], slope: f64) {
         let (weight, skew) = (weights[0] + weights[1], slope * (weights[1] - weights[0]));
@@ -265,7 +300,8 @@ impl LocalSystem {
                 matrix.rows[index][i - k] +=
                     column[0] * product[0][k] + column[1] * product[1][k] + column[2] * product[2][k];
             }
-            gradients[index][0] += self.objective * column[0];
+            gradients[index][0] +=
+                self.objective[0] * column[0] + self.objective[1] * column[1] + self.objective[2] * column[2];
             gradients[index][1] +=
                 self.barrier[0] * column[0] + self.barrier[1] * column[1] + self.barrier[2] * column[2];
         }

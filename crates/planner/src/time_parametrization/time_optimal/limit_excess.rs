@@ -22,10 +22,10 @@ pub(super) fn time_stretch(
     orders: usize,
 ) -> f64 {
     let mut ratios: Ratios = [0.0; 3];
-    for (piece, element) in pieces.iter().zip(elements) {
+    for (n, (piece, element)) in pieces.iter().zip(elements).enumerate() {
         let element = &section.elements[*element as usize];
-        let states: [PathState; SAMPLES + 1] =
-            std::array::from_fn(|n| piece.at(piece.seconds * n as f64 / SAMPLES as f64));
+        let end = pieces.get(n + 1).map_or(section.length, |next| next.position);
+        let states: [PathState; SAMPLES + 1] = piece.over(end - piece.position);
         if element.is_straight() {
             let along = limits.in_direction(&element.direction);
             let scales = [along.speed, along.acceleration, along.jerk].map(f64::recip);
@@ -39,9 +39,6 @@ pub(super) fn time_stretch(
     }
     let [v, a, j] = ratios;
     let stretch = v.max(a.sqrt()).max(if orders > 2 { j.cbrt() } else { 0.0 });
-    if std::env::var("DBG").is_ok() {
-        eprintln!("ratios {ratios:?} {orders}");
-    }
     // NaN must not be lost.
     if stretch <= 1.0 { 1.0 + MARGIN } else { stretch * (1.0 + MARGIN) }
 }

@@ -7,7 +7,7 @@ use super::path_element::PathElement;
 /// Ratio of neighbouring spacings on a straight segment.
 const GROWTH: f64 = 1.4;
 /// Intervals per corner blend.
-const BLEND_INTERVALS: usize = 10;
+const BLEND_INTERVALS: usize = 8;
 /// Greatest and least number of spacings, where they are equal, on a straight segment.
 const STRAIGHT_INTERVALS: [f64; 2] = [8.0, 32.0];
 /// Least share of the section, and greatest of its segment, that the first interval after a rest has.

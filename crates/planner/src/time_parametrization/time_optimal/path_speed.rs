@@ -59,6 +59,21 @@ impl SpeedLaw {
 }
 
 impl SpeedPiece {
+    /// States at equal steps of the path position over a length, ends included.
+    pub fn over<const N: usize>(&self, length: f64) -> [PathState; N] {
+        std::array::from_fn(|n| {
+            let share = n as f64 / (N - 1) as f64;
+            match self.law {
+                SpeedLaw::Linear { speed, b, c } => {
+                    let offset = share * length;
+                    let v = (speed * speed + offset * (2.0 * b + offset * c)).max(0.0).sqrt();
+                    [self.position + offset, v, b + offset * c, c * v]
+                }
+                SpeedLaw::FromRest { .. } | SpeedLaw::ToRest { .. } => self.at(share * self.seconds),
+            }
+        })
+    }
+
     /// State at a time since its beginning.
     pub fn at(&self, t: f64) -> PathState {
         let [s, v, a, j] = match self.law {

@@ -42,7 +42,7 @@ impl SectionMotion {
         let grid = PathGrid::new(section, &scaled.limits);
         let most = topp_ra::squared_speeds(section, &grid, &scaled.limits);
         let spline = SpeedSpline::new(&grid);
-        let constraints = JerkConstraints::new(section, &grid, &spline, &scaled.limits);
+        let constraints = JerkConstraints::new(section, &grid, &spline, &scaled.limits, &most);
         let feasible = constraints.feasible_coefficients(section, &grid, &scaled.limits, &most);
         let fastest = interior_point::fastest(&constraints, feasible.clone());
         let motion =

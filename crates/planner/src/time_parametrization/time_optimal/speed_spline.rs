@@ -68,9 +68,7 @@ impl<'g> SpeedSpline<'g> {
             pieces.push(SpeedPiece { time, position, seconds, law });
             time += seconds;
         };
-        let at = |interval: usize, share: f64| {
-            apply(&self.local_map(interval, share), &coefficients[interval - 1..=interval + 1])
-        };
+        let at = |interval: usize, share: f64| apply(&self.local_map(interval, share), around(coefficients, interval));
         push(0.0, SpeedLaw::from_rest(self.grid.spacing(0), at(1, 0.0)[0].sqrt()));
         for n in 1..count - 1 {
             let ([x, b, c], [end, ..]) = (at(n, 0.0), at(n, 1.0));
@@ -81,7 +79,15 @@ impl<'g> SpeedSpline<'g> {
     }
 }
 
-/// `x`, `b` and `c` from three coefficients.
-pub(super) fn apply(map: &LocalMap, coefficients: &[f64]) -> [f64; 3] {
+/// The coefficients that matter on an interval.
+#[inline]
+pub(super) fn around(coefficients: &[f64], interval: usize) -> [f64; 3] {
+    let c = &coefficients[interval - 1..=interval + 1];
+    [c[0], c[1], c[2]]
+}
+
+/// `x`, `b` and `c` from the coefficients around an interval.
+#[inline]
+pub(super) fn apply(map: &LocalMap, coefficients: [f64; 3]) -> [f64; 3] {
     map.map(|row| row[0] * coefficients[0] + row[1] * coefficients[1] + row[2] * coefficients[2])
 }
