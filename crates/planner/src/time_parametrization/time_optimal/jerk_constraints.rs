@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
+use super::limit_excess::Ratios;
 use super::path_element::PathElement;
 use super::path_grid::PathGrid;
 use super::speed_spline::{LocalMap, SpeedSpline, apply, around};
@@ -131,6 +132,18 @@ impl JerkConstraints {
         }
     }
 
+    /// Makes the constraints of each interval of the grid stronger by the ratios that were found there.
+    pub fn tighten(&mut self, ratios: &[Ratios]) {
+        for interval in &self.intervals {
+            let [v, a, j] = ratios[interval.index].map(|ratio| ratio.max(1.0));
+            for point in &mut self.points[interval.points.clone()] {
+                point.x_factor *= v * v;
+                self.accelerations[point.accelerations.clone()].iter_mut().flatten().for_each(|x| *x *= a);
+                self.jerks[point.jerks.clone()].iter_mut().flatten().for_each(|x| *x *= j);
+            }
+        }
+    }
+
     /// Numbers of rows of acceleration and jerk.
     fn rows(&self) -> [usize; 2] {
         [self.accelerations.len(), self.jerks.len()]
@@ -152,7 +165,11 @@ impl JerkConstraints {
         most: &[f64],
     ) -> Vec<f64> {
         let x = slow_profile(section, grid, limits, most);
-        let mut coefficients: Vec<f64> = x.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        self.made_feasible(x.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect())
+    }
+
+    /// Coefficients made smaller by one factor, until all constraints are satisfied strictly.
+    pub fn made_feasible(&self, mut coefficients: Vec<f64>) -> Vec<f64> {
         let factor = self.largest_factor(&coefficients);
         for x in &mut coefficients {
             *x *= factor;

@@ -11,36 +11,54 @@ const SAMPLES: usize = 4;
 const MARGIN: f64 = 1e-9;
 
 /// Greatest ratios of velocity, acceleration and jerk to their limits.
-type Ratios = [f64; 3];
+pub(super) type Ratios = [f64; 3];
 
-/// The factor, at least 1, by which time must be stretched. `orders` is 3 with the limit of jerk, 2 without.
-pub(super) fn time_stretch(
+/// The ratios of each piece. `orders` is 3 with the limit of jerk, 2 without.
+pub(super) fn ratios(
     section: &PathSection,
     elements: &[u32],
     pieces: &[SpeedPiece],
     limits: &KinematicLimits,
     orders: usize,
-) -> f64 {
-    let mut ratios: Ratios = [0.0; 3];
-    for (n, (piece, element)) in pieces.iter().zip(elements).enumerate() {
-        let element = &section.elements[*element as usize];
+) -> Vec<Ratios> {
+    let each = pieces.iter().zip(elements).enumerate().map(|(n, (piece, element))| {
         let end = pieces.get(n + 1).map_or(section.length, |next| next.position);
-        let states: [PathState; SAMPLES + 1] = piece.over(end - piece.position);
-        if element.is_straight() {
-            let along = limits.in_direction(&element.direction);
-            let scales = [along.speed, along.acceleration, along.jerk].map(f64::recip);
-            include(&mut ratios, states.map(|[_, v, a, j]| [v * scales[0], a * scales[1], j * scales[2]]));
-            continue;
+        let states = piece.over(end - piece.position);
+        let mut ratios = piece_ratios(&section.elements[*element as usize], &states, limits);
+        if orders < 3 {
+            ratios[2] = 0.0;
         }
-        for joint in 0..limits.velocity.len() {
-            let scales = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]].map(f64::recip);
-            include(&mut ratios, states.map(|state| joint_derivatives(element, state, joint, scales)));
+        ratios
+    });
+    each.collect()
+}
+
+/// The factor, at least 1, by which time must be stretched.
+pub(super) fn time_stretch(ratios: &[Ratios]) -> f64 {
+    let mut stretch = 1.0;
+    for [v, a, j] in ratios {
+        let needed = v.max(a.sqrt()).max(j.cbrt());
+        // NaN is not lost.
+        if !(needed <= stretch) {
+            stretch = needed;
         }
     }
-    let [v, a, j] = ratios;
-    let stretch = v.max(a.sqrt()).max(if orders > 2 { j.cbrt() } else { 0.0 });
-    // NaN must not be lost.
-    if stretch <= 1.0 { 1.0 + MARGIN } else { stretch * (1.0 + MARGIN) }
+    stretch * (1.0 + MARGIN)
+}
+
+fn piece_ratios(element: &PathElement, states: &[PathState; SAMPLES + 1], limits: &KinematicLimits) -> Ratios {
+    let mut ratios: Ratios = [0.0; 3];
+    if element.is_straight() {
+        let along = limits.in_direction(&element.direction);
+        let scales = [along.speed, along.acceleration, along.jerk].map(f64::recip);
+        include(&mut ratios, states.map(|[_, v, a, j]| [v * scales[0], a * scales[1], j * scales[2]]));
+        return ratios;
+    }
+    for joint in 0..limits.velocity.len() {
+        let scales = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]].map(f64::recip);
+        include(&mut ratios, states.map(|state| joint_derivatives(element, state, joint, scales)));
+    }
+    ratios
 }
 
 /// Velocity, acceleration and jerk of a joint, each times a scale.

@@ -6,8 +6,6 @@ use super::path_element::PathElement;
 
 /// Ratio of neighbouring spacings on a straight segment.
 const GROWTH: f64 = 1.4;
-/// Intervals per corner blend.
-const BLEND_INTERVALS: usize = 8;
 /// Greatest and least number of spacings, where they are equal, on a straight segment.
 const STRAIGHT_INTERVALS: [f64; 2] = [8.0, 32.0];
 /// Least share of the section, and greatest of its segment, that the first interval after a rest has.
@@ -31,19 +29,20 @@ struct EndSpacing {
 }
 
 impl PathGrid {
-    pub fn new(section: &PathSection, limits: &KinematicLimits) -> Self {
+    /// With a number of intervals per corner blend.
+    pub fn new(section: &PathSection, limits: &KinematicLimits, per_blend: usize) -> Self {
         let mut grid = Self { nodes: vec![0.0], elements: Vec::new() };
         let mut spacings = Vec::new();
         for (n, element) in section.elements.iter().enumerate() {
             spacings.clear();
             if element.is_straight() {
                 let neighbour = |index: usize| section.elements.get(index);
-                let left = end_spacing(n.checked_sub(1).and_then(neighbour), element, section, limits);
-                let right = end_spacing(neighbour(n + 1), element, section, limits);
+                let left = end_spacing(n.checked_sub(1).and_then(neighbour), element, section, limits, per_blend);
+                let right = end_spacing(neighbour(n + 1), element, section, limits, per_blend);
                 let widest = widest_spacing(element, section, limits);
                 straight_spacings(element.length, left, right, widest, &mut spacings);
             } else {
-                spacings.resize(BLEND_INTERVALS, element.length / BLEND_INTERVALS as f64);
+                spacings.resize(per_blend, element.length / per_blend as f64);
             }
             grid.push(n, element, &spacings);
         }
@@ -77,9 +76,10 @@ fn end_spacing(
     straight: &PathElement,
     section: &PathSection,
     limits: &KinematicLimits,
+    per_blend: usize,
 ) -> EndSpacing {
     if let Some(blend) = neighbour {
-        return EndSpacing { rest: 0.0, next: blend.length / BLEND_INTERVALS as f64 };
+        return EndSpacing { rest: 0.0, next: blend.length / per_blend as f64 };
     }
     let limits = limits.in_direction(&straight.direction);
     let rise = (limits.acceleration / limits.jerk).min((limits.speed / limits.jerk).sqrt());

@@ -4,12 +4,18 @@ use super::super::limits::{KinematicLimits, TimeParametrizationError};
 use super::blended_path::PathSection;
 use super::interior_point;
 use super::jerk_constraints::JerkConstraints;
-use super::limit_excess::time_stretch;
+use super::limit_excess::{Ratios, ratios, time_stretch};
 use super::path_grid::PathGrid;
 use super::path_speed::{PathState, SpeedLaw, SpeedPiece};
 use super::scaled_limits::ScaledLimits;
 use super::speed_spline::SpeedSpline;
-use super::topp_ra;
+use super::topp_ra::ReachabilityAnalysis;
+
+/// Intervals per corner blend, without the limit of jerk and with it.
+const BLEND_INTERVALS: [usize; 2] = [12, 8];
+/// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
+const FINE_STRETCH: [f64; 2] = [1.001, 1.005];
+const MAX_REFINEMENTS: usize = 2;
 
 /// A motion in time.
 #[derive(Debug, Clone)]
@@ -23,45 +29,63 @@ pub(super) struct SectionMotion {
     duration: f64,
 }
 
+/// A section with its limits, its grid, and the order of the highest derivative that is limited.
+struct Problem<'p> {
+    section: &'p PathSection,
+    scaled: ScaledLimits,
+    grid: PathGrid,
+    orders: usize,
+}
+
+/// A motion, if it is finite, and by how much each piece exceeds the limits before time is stretched.
+struct Attempt {
+    motion: Option<SectionMotion>,
+    ratios: Vec<Ratios>,
+    stretch: f64,
+}
+
 impl SectionMotion {
     /// The fastest motion within velocity and acceleration.
     pub fn without_jerk_limit(
         section: &PathSection,
         limits: &KinematicLimits,
     ) -> Result<Self, TimeParametrizationError> {
-        let scaled = ScaledLimits::new(section, limits)?;
-        let grid = PathGrid::new(section, &scaled.limits);
-        let x = topp_ra::squared_speeds(section, &grid, &scaled.limits);
-        let motion = Self::new(section, grid.elements.clone(), constant_pieces(&grid, &x), &scaled, 2);
-        motion.ok_or(TimeParametrizationError::Path)
+        let problem = Problem::new(section, limits, 2)?;
+        let mut analysis = ReachabilityAnalysis::new(section, &problem.grid, &problem.scaled.limits);
+        let solve = |analysis: &ReachabilityAnalysis| {
+            problem.attempt(constant_pieces(&problem.grid, &analysis.squared_speeds(&problem.grid)))
+        };
+        let mut best = solve(&analysis);
+        for _ in 0..MAX_REFINEMENTS {
+            if best.stretch < FINE_STRETCH[0] {
+                break;
+            }
+            analysis.tighten(&best.ratios);
+            best = best.or_better(solve(&analysis));
+        }
+        best.motion.ok_or(TimeParametrizationError::Path)
     }
 
     /// The fastest motion within velocity, acceleration and jerk.
     pub fn with_jerk_limit(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
-        let scaled = ScaledLimits::new(section, limits)?;
-        let grid = PathGrid::new(section, &scaled.limits);
-        let most = topp_ra::squared_speeds(section, &grid, &scaled.limits);
-        let spline = SpeedSpline::new(&grid);
-        let constraints = JerkConstraints::new(section, &grid, &spline, &scaled.limits, &most);
-        let feasible = constraints.feasible_coefficients(section, &grid, &scaled.limits, &most);
-        let fastest = interior_point::fastest(&constraints, feasible.clone());
-        let motion =
-            |coefficients: &[f64]| Self::new(section, grid.elements.clone(), spline.pieces(coefficients), &scaled, 3);
-        motion(&fastest).or_else(|| motion(&feasible)).ok_or(TimeParametrizationError::Path)
-    }
-
-    /// Slowed down to keep all limits; none where that is not finite.
-    fn new(
-        section: &PathSection,
-        elements: Vec<u32>,
-        (pieces, duration): (Vec<SpeedPiece>, f64),
-        scaled: &ScaledLimits,
-        orders: usize,
-    ) -> Option<Self> {
-        let stretch = time_stretch(section, &elements, &pieces, &scaled.limits, orders);
-        let rate = 1.0 / (stretch * scaled.unit);
-        let is_valid = (duration / rate).is_finite() && rate.is_finite() && rate > 0.0;
-        is_valid.then_some(Self { pieces, elements, rate, duration })
+        let problem = Problem::new(section, limits, 3)?;
+        let (grid, limits) = (&problem.grid, &problem.scaled.limits);
+        let most = ReachabilityAnalysis::new(section, grid, limits).squared_speeds(grid);
+        let spline = SpeedSpline::new(grid);
+        let mut constraints = JerkConstraints::new(section, grid, &spline, limits, &most);
+        let first = constraints.feasible_coefficients(section, grid, limits, &most);
+        let mut coefficients = interior_point::fastest(&constraints, first.clone());
+        let mut best = problem.attempt(spline.pieces(&coefficients));
+        for _ in 0..MAX_REFINEMENTS {
+            if best.stretch < FINE_STRETCH[1] {
+                break;
+            }
+            constraints.tighten(&best.ratios);
+            coefficients = interior_point::fastest(&constraints, constraints.made_feasible(coefficients));
+            best = best.or_better(problem.attempt(spline.pieces(&coefficients)));
+        }
+        let motion = best.motion.or_else(|| problem.attempt(spline.pieces(&first)).motion);
+        motion.ok_or(TimeParametrizationError::Path)
     }
 
     /// Duration, s.
@@ -82,6 +106,39 @@ impl SectionMotion {
         let [s, v, a, j] = piece.at((time - piece.time).min(piece.seconds));
         let r = self.rate;
         ([s, v * r, a * r * r, j * r * r * r], self.elements[n] as usize)
+    }
+}
+
+impl<'p> Problem<'p> {
+    fn new(
+        section: &'p PathSection,
+        limits: &KinematicLimits,
+        orders: usize,
+    ) -> Result<Self, TimeParametrizationError> {
+        let scaled = ScaledLimits::new(section, limits)?;
+        let grid = PathGrid::new(section, &scaled.limits, BLEND_INTERVALS[orders - 2]);
+        Ok(Self { section, scaled, grid, orders })
+    }
+
+    /// Slowed down to keep all limits.
+    fn attempt(&self, (pieces, duration): (Vec<SpeedPiece>, f64)) -> Attempt {
+        let elements = &self.grid.elements;
+        let ratios = ratios(self.section, elements, &pieces, &self.scaled.limits, self.orders);
+        let stretch = time_stretch(&ratios);
+        let rate = 1.0 / (stretch * self.scaled.unit);
+        let is_valid = (duration / rate).is_finite() && rate.is_finite() && rate > 0.0;
+        let motion = is_valid.then(|| SectionMotion { pieces, elements: elements.clone(), rate, duration });
+        Attempt { motion, ratios, stretch }
+    }
+}
+
+impl Attempt {
+    fn seconds(&self) -> f64 {
+        self.motion.as_ref().map_or(f64::INFINITY, SectionMotion::seconds)
+    }
+
+    fn or_better(self, other: Self) -> Self {
+        if other.seconds() < self.seconds() { other } else { self }
     }
 }
 

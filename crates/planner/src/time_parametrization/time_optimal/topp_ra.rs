@@ -7,6 +7,7 @@
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
+use super::limit_excess::Ratios;
 use super::path_grid::PathGrid;
 
 /// Newton steps for the greatest controllable `x`: each leaves one line of a polygon.
@@ -19,9 +20,9 @@ struct Row {
     b: f64,
 }
 
-/// The constraints of all intervals.
+/// The constraints of all intervals of a grid.
 #[derive(Debug, Default)]
-struct Constraints {
+pub(super) struct ReachabilityAnalysis {
     rows: Vec<Row>,
     /// Index of the first row of each interval, and the number of rows at last.
     first: Vec<usize>,
@@ -36,27 +37,37 @@ struct Bound {
     slope: f64,
 }
 
-/// The greatest squared speed at each node of the grid, from rest to rest.
-pub(super) fn squared_speeds(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Vec<f64> {
-    let constraints = Constraints::new(section, grid, limits);
-    let count = grid.intervals();
-    let mut controllable = vec![0.0; count + 1];
-    for n in (0..count).rev() {
-        let rows = constraints.of(n);
-        controllable[n] = greatest_controllable(rows, grid.spacing(n), controllable[n + 1], constraints.x_max[n]);
+impl ReachabilityAnalysis {
+    /// The greatest squared speed at each node of the grid, from rest to rest.
+    pub fn squared_speeds(&self, grid: &PathGrid) -> Vec<f64> {
+        let count = grid.intervals();
+        let mut controllable = vec![0.0; count + 1];
+        for n in (0..count).rev() {
+            controllable[n] = greatest_controllable(self.of(n), grid.spacing(n), controllable[n + 1], self.x_max[n]);
+        }
+        let mut x = vec![0.0; count + 1];
+        for n in 0..count {
+            let spacing = grid.spacing(n);
+            let [low, high] = control_range(self.of(n), spacing, controllable[n + 1], x[n]);
+            let u = high.value.max(low.value);
+            x[n + 1] = (x[n] + 2.0 * spacing * u).clamp(0.0, controllable[n + 1]);
+        }
+        x
     }
-    let mut x = vec![0.0; count + 1];
-    for n in 0..count {
-        let spacing = grid.spacing(n);
-        let [low, high] = control_range(constraints.of(n), spacing, controllable[n + 1], x[n]);
-        let u = high.value.max(low.value);
-        x[n + 1] = (x[n] + 2.0 * spacing * u).clamp(0.0, controllable[n + 1]);
-    }
-    x
-}
 
-impl Constraints {
-    fn new(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Self {
+    /// Makes the constraints of each interval stronger by the ratios that were found there.
+    pub fn tighten(&mut self, ratios: &[Ratios]) {
+        for (n, [v, a, _]) in ratios.iter().enumerate() {
+            for row in &mut self.rows[self.first[n]..self.first[n + 1]] {
+                *row = Row { a: row.a * a.max(1.0), b: row.b * a.max(1.0) };
+            }
+            for x in &mut self.x_max[n..=n + 1] {
+                *x /= v.max(1.0).powi(2);
+            }
+        }
+    }
+
+    pub fn new(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Self {
         let mut all = Self { x_max: vec![f64::INFINITY; grid.nodes.len()], ..Self::default() };
         for n in 0..grid.intervals() {
             all.first.push(all.rows.len());
