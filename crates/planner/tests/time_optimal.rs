@@ -354,9 +354,10 @@ fn degenerate_paths_and_extreme_limits() {
         let mut any = |least: f64, most: f64| 10_f64.powf(least + (most - least) * unit(split_mix(&mut state)));
         let mut two = |least: f64, most: f64| vec![any(least, most), any(least, most)];
         let extreme = KinematicLimits { velocity: two(-6.0, 6.0), acceleration: two(-6.0, 8.0), jerk: two(-6.0, 10.0) };
-        for trajectory in
-            [path.time_optimal(&extreme).unwrap(), path.time_optimal_without_jerk_limit(&extreme).unwrap()]
-        {
+        for trajectory in [
+            path.time_optimal(&extreme).unwrap_or_else(|_| panic!("J {extreme:?}")),
+            path.time_optimal_without_jerk_limit(&extreme).unwrap_or_else(|_| panic!("A {extreme:?}")),
+        ] {
             assert!(trajectory.seconds() > 0.0 && trajectory.seconds().is_finite());
             let middle = trajectory.at(0.37 * trajectory.seconds());
             assert!(middle.q.iter().chain(&middle.qd).chain(&middle.qdd).all(|x| x.is_finite()), "{extreme:?}");

@@ -12,9 +12,9 @@ use super::speed_spline::SpeedSpline;
 use super::topp_ra::ReachabilityAnalysis;
 
 /// Intervals per corner blend, without the limit of jerk and with it.
-const BLEND_INTERVALS: [usize; 2] = [12, 8];
+const BLEND_INTERVALS: [usize; 2] = [16, 8];
 /// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
-const FINE_STRETCH: [f64; 2] = [1.001, 1.005];
+const FINE_STRETCH: [f64; 2] = [1.002, 1.005];
 const MAX_REFINEMENTS: usize = 2;
 
 /// A motion in time.

@@ -30,11 +30,17 @@ pub(super) struct ReachabilityAnalysis {
     x_max: Vec<f64>,
 }
 
-/// A bound of `u` that is linear in x: at x, and its slope.
+/// A bound of `u` that is linear in x.
 #[derive(Debug, Clone, Copy)]
 struct Bound {
-    value: f64,
+    intercept: f64,
     slope: f64,
+}
+
+impl Bound {
+    fn at(self, x: f64) -> f64 {
+        self.intercept + self.slope * x
+    }
 }
 
 impl ReachabilityAnalysis {
@@ -49,7 +55,7 @@ impl ReachabilityAnalysis {
         for n in 0..count {
             let spacing = grid.spacing(n);
             let [low, high] = control_range(self.of(n), spacing, controllable[n + 1], x[n]);
-            let u = high.value.max(low.value);
+            let u = high.at(x[n]).max(low.at(x[n]));
             x[n + 1] = (x[n] + 2.0 * spacing * u).clamp(0.0, controllable[n + 1]);
         }
         x
@@ -103,19 +109,20 @@ impl ReachabilityAnalysis {
     }
 }
 
-/// Bounds of `u` at a squared speed, such that the next one is in `0..=next`.
+/// The bounds of `u` that matter at a squared speed, such that the next one is in `0..=next`.
 fn control_range(rows: &[Row], spacing: f64, next: f64, x: f64) -> [Bound; 2] {
     let slope = -0.5 / spacing;
-    let mut low = Bound { value: x * slope, slope };
-    let mut high = Bound { value: (x - next) * slope, slope };
+    let mut low = Bound { intercept: 0.0, slope };
+    let mut high = Bound { intercept: -next * slope, slope };
+    let [mut most, mut least] = [low.at(x), high.at(x)];
     for row in rows {
-        let (inverse, shift) = (1.0 / row.a.abs(), -row.b / row.a);
-        let (below, above) = (x * shift - inverse, x * shift + inverse);
-        if below > low.value {
-            low = Bound { value: below, slope: shift };
+        let (inverse, slope) = (1.0 / row.a.abs(), -row.b / row.a);
+        let [below, above] = [-inverse, inverse].map(|intercept| Bound { intercept, slope });
+        if below.at(x) > most {
+            (low, most) = (below, below.at(x));
         }
-        if above < high.value {
-            high = Bound { value: above, slope: shift };
+        if above.at(x) < least {
+            (high, least) = (above, above.at(x));
         }
     }
     [low, high]
@@ -127,18 +134,15 @@ fn greatest_controllable(rows: &[Row], spacing: f64, next: f64, x_max: f64) -> f
     let mut x = x_max;
     for _ in 0..MAX_STEPS {
         let [low, high] = control_range(rows, spacing, next, x);
-        let (width, slope) = (high.value - low.value, high.slope - low.slope);
-        if width >= 0.0 {
+        if high.at(x) >= low.at(x) {
             return x;
         }
-        let step = width / slope;
-        if !(slope < 0.0) || x - step <= 0.0 {
-            return 0.0;
+        // Not by a difference from x, which may be greater by many powers of ten.
+        let root = (high.intercept - low.intercept) / (low.slope - high.slope);
+        if !(root >= 0.0 && root < x) {
+            return x;
         }
-        if step <= 4.0 * f64::EPSILON * x {
-            return x - step;
-        }
-        x -= step;
+        x = root;
     }
     x
 }
