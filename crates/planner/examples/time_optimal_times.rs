@@ -12,7 +12,7 @@ use elbowroom_testkit::random::{split_mix, unit};
 
 type Error = Box<dyn std::error::Error>;
 
-const PATHS: usize = 100;
+const PATHS: usize = 60;
 const REPEATS: u32 = 5;
 
 /// Limits of a light arm, rad/s, rad/s², rad/s³.

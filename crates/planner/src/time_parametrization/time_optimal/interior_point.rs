@@ -10,9 +10,9 @@ use super::jerk_constraints::{AccelerationRow, Collocation, JerkConstraints, Jer
 use super::speed_spline::{LocalMap, apply, around};
 
 /// The duality gap, as a share of the duration, at which it ends.
-const RELATIVE_GAP: f64 = 1e-2;
+const RELATIVE_GAP: f64 = 2e-2;
 /// Change of the duration by a step, as a share, at which it ends.
-const RELATIVE_STEP: f64 = 3e-3;
+const RELATIVE_STEP: f64 = 6e-3;
 const MAX_ITERATIONS: usize = 40;
 /// Share of the distance to the nearest constraint that a step covers.
 const TO_BOUNDARY: f64 = 0.99;
@@ -157,9 +157,10 @@ impl<'c> InteriorPoint<'c> {
         self.gradients.clear();
         self.gradients.resize(self.coefficients.len(), [0.0; 2]);
         let first = is_first.then(|| self.constraints.duration(&self.coefficients) / self.count() as f64);
-        (self.seconds, self.gap) = (0.0, Gap { first, sum: 0.0 });
+        let mut gap = Gap { first, sum: 0.0 };
+        self.seconds = 0.0;
         for (i, multiplier) in self.positive.iter_mut().enumerate() {
-            let [weight] = multiplier.set_slacks([self.coefficients[i]], &mut self.gap);
+            let [weight] = multiplier.set_slacks([self.coefficients[i]], &mut gap);
             self.matrix.rows[i][0] += weight;
             self.gradients[i][1] += multiplier.inverse[0];
         }
@@ -168,35 +169,38 @@ impl<'c> InteriorPoint<'c> {
             let mut system = LocalSystem::default();
             for n in interval.points.clone() {
                 let point = &self.constraints.points[n];
-                let local = self.assemble_point(n, point, point.from_begin(begin));
+                let local = self.assemble_point(n, point, point.from_begin(begin), &mut gap);
                 system.add_shifted(&local, point.offset);
             }
             system.add_to(&interval.map, interval.index, &mut self.matrix, &mut self.gradients);
         }
+        self.gap = gap;
     }
 
     /// Gradients and matrix of a point by its own x, b and c.
     #[inline]
-    fn assemble_point(&mut self, n: usize, point: &Collocation, y: [f64; 3]) -> LocalSystem {
+    fn assemble_point(&mut self, n: usize, point: &Collocation, y: [f64; 3], gap: &mut Gap) -> LocalSystem {
         let mut local = LocalSystem::default();
-        let (inverse, root) = (1.0 / y[0], 1.0 / y[0].sqrt());
-        self.root_slopes[n] = -0.5 * root * inverse;
+        let root = 1.0 / y[0].sqrt();
+        let inverse = root * root;
+        let slope = -0.5 * root * inverse;
+        self.root_slopes[n] = slope;
         self.seconds += point.weight * root;
-        local.objective[0] = -0.5 * point.weight * root * inverse;
-        let [weight] = self.speed[n].set_slacks([1.0 - y[0] * point.x_factor], &mut self.gap);
+        local.objective[0] = point.weight * slope;
+        let [weight] = self.speed[n].set_slacks([1.0 - y[0] * point.x_factor], gap);
         local.matrix[0][0] = 0.75 * point.weight * root * inverse * inverse + weight * point.x_factor * point.x_factor;
         local.barrier[0] = -self.speed[n].inverse[0] * point.x_factor;
         let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
         for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {
             let a = row[0] * y[0] + row[1] * y[1];
-            let weights = multiplier.set_slacks([1.0 - a, 1.0 + a], &mut self.gap);
+            let weights = multiplier.set_slacks([1.0 - a, 1.0 + a], gap);
             local.add_acceleration(row, weights, multiplier.inverse);
         }
         let rows = self.constraints.jerks[point.jerks.clone()].iter();
         for (row, multiplier) in rows.zip(&mut self.jerk[point.jerks.clone()]) {
             let j = row[0] * y[0] + row[1] * y[1] + row[2] * y[2];
-            let weights = multiplier.set_slacks([root - j, root + j], &mut self.gap);
-            local.add_jerk(row, weights, multiplier.inverse, self.root_slopes[n]);
+            let weights = multiplier.set_slacks([root - j, root + j], gap);
+            local.add_jerk(row, weights, multiplier.inverse, slope);
         }
         local
     }

@@ -14,8 +14,8 @@ use super::topp_ra::ReachabilityAnalysis;
 /// Intervals per corner blend, without the limit of jerk and with it.
 const BLEND_INTERVALS: [usize; 2] = [16, 8];
 /// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
-const FINE_STRETCH: [f64; 2] = [1.002, 1.005];
-const MAX_REFINEMENTS: usize = 2;
+const FINE_STRETCH: [f64; 2] = [1.002, 1.01];
+const MAX_REFINEMENTS: usize = 1;
 
 /// A motion in time.
 #[derive(Debug, Clone)]
