@@ -12,7 +12,7 @@ use elbowroom_testkit::random::{split_mix, unit};
 
 type Error = Box<dyn std::error::Error>;
 
-const PATHS: usize = 60;
+const PATHS: usize = 200;
 const REPEATS: u32 = 5;
 
 /// Limits of a light arm, rad/s, rad/s², rad/s³.
@@ -53,13 +53,15 @@ fn main() -> Result<(), Error> {
         for most in [f64::INFINITY, 0.1, 0.01] {
             let limits = limits(jerk_factor);
             let mut state = 7;
-            let (mut intervals, mut topp_us, mut all_us, mut topp_s, mut all_s) = (0, 0.0, 0.0, 0.0, 0.0);
+            let (mut intervals, mut topp_intervals, mut topp_us, mut all_us, mut topp_s, mut all_s) =
+                (0, 0, 0.0, 0.0, 0.0, 0.0);
             let mut worst: f64 = 0.0;
             for n in 0..PATHS {
                 let waypoints = random_path(2 + n % 9, &mut state);
                 let path = BlendedPath::new(&waypoints, |blend| blend.distance() <= most)?;
                 let (fast, us) = timed(|| path.time_optimal_without_jerk_limit(&limits).unwrap());
                 topp_us += us;
+                topp_intervals += fast.grid_intervals();
                 topp_s += fast.seconds();
                 let (all, us) = timed(|| path.time_optimal(&limits).unwrap());
                 all_us += us;
@@ -68,13 +70,12 @@ fn main() -> Result<(), Error> {
                 worst = worst.max(all.seconds() / fast.seconds());
                 writeln!(lines, "{jerk_factor};{most};{};{};{waypoints:?}", fast.seconds(), all.seconds())?;
             }
-            let per_hundred = 100.0 / intervals as f64;
             println!(
                 "jerk x{jerk_factor:<5} blends <= {most:<4}: {:4.0} intervals a path; per 100: TOPP-RA {:5.1} us, with jerk \
                  {:6.1} us; durations {topp_s:.1} and {all_s:.1} s (x{:.3}, at most x{worst:.3})",
                 intervals as f64 / PATHS as f64,
-                topp_us * per_hundred,
-                all_us * per_hundred,
+                topp_us * 100.0 / topp_intervals as f64,
+                all_us * 100.0 / intervals as f64,
                 all_s / topp_s,
             );
         }

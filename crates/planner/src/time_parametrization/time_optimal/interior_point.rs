@@ -169,7 +169,7 @@ impl<'c> InteriorPoint<'c> {
             let mut system = LocalSystem::default();
             for n in interval.points.clone() {
                 let point = &self.constraints.points[n];
-                let local = self.assemble_point(n, point, point.from_begin(begin), &mut gap);
+                let local = self.assemble_point(n, point, point.at_offset(begin), &mut gap);
                 system.add_shifted(&local, point.offset);
             }
             system.add_to(&interval.map, interval.index, &mut self.matrix, &mut self.gradients);
@@ -215,7 +215,7 @@ impl<'c> InteriorPoint<'c> {
             let begin = apply(&interval.map, around(steps, interval.index));
             for n in interval.points.clone() {
                 let point = &self.constraints.points[n];
-                let dy = point.from_begin(begin);
+                let dy = point.at_offset(begin);
                 self.speed[n].set_step([-dy[0] * point.x_factor], barrier, &mut used);
                 let rows = self.constraints.accelerations[point.accelerations.clone()].iter();
                 for (row, multiplier) in rows.zip(&mut self.acceleration[point.accelerations.clone()]) {

@@ -49,7 +49,7 @@ pub(super) struct IntervalPoints {
 impl Collocation {
     /// x, b and c from those at the beginning of the interval.
     #[inline]
-    pub fn from_begin(&self, [x, b, c]: [f64; 3]) -> [f64; 3] {
+    pub fn at_offset(&self, [x, b, c]: [f64; 3]) -> [f64; 3] {
         [x + self.offset * (2.0 * b + self.offset * c), b + self.offset * c, c]
     }
 }
@@ -181,7 +181,7 @@ impl JerkConstraints {
     fn states(&self, coefficients: &[f64]) -> impl Iterator<Item = (&Collocation, [f64; 3])> {
         self.intervals.iter().flat_map(move |interval| {
             let begin = apply(&interval.map, around(coefficients, interval.index));
-            self.points[interval.points.clone()].iter().map(move |point| (point, point.from_begin(begin)))
+            self.points[interval.points.clone()].iter().map(move |point| (point, point.at_offset(begin)))
         })
     }
 

@@ -5,11 +5,17 @@ use super::blended_path::PathSection;
 use super::path_element::PathElement;
 
 /// Ratio of neighbouring spacings on a straight segment.
-const GROWTH: f64 = 1.4;
-/// Greatest and least number of spacings, where they are equal, on a straight segment.
-const STRAIGHT_INTERVALS: [f64; 2] = [8.0, 32.0];
+const GROWTH: f64 = 1.5;
 /// Least share of the section, and greatest of its segment, that the first interval after a rest has.
 const REST_SHARE: [f64; 2] = [1e-7, 0.05];
+
+/// Numbers of intervals.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GridDensity {
+    pub per_blend: usize,
+    /// On a straight segment, were they equal: where acceleration rises slowly, and at most.
+    pub per_straight: [f64; 2],
+}
 
 /// The grid of a section of a path.
 #[derive(Debug, Clone)]
@@ -29,8 +35,8 @@ struct EndSpacing {
 }
 
 impl PathGrid {
-    /// With a number of intervals per corner blend.
-    pub fn new(section: &PathSection, limits: &KinematicLimits, per_blend: usize) -> Self {
+    pub fn new(section: &PathSection, limits: &KinematicLimits, density: GridDensity) -> Self {
+        let per_blend = density.per_blend;
         let mut grid = Self { nodes: vec![0.0], elements: Vec::new() };
         let mut spacings = Vec::new();
         for (n, element) in section.elements.iter().enumerate() {
@@ -39,7 +45,7 @@ impl PathGrid {
                 let neighbour = |index: usize| section.elements.get(index);
                 let left = end_spacing(n.checked_sub(1).and_then(neighbour), element, section, limits, per_blend);
                 let right = end_spacing(neighbour(n + 1), element, section, limits, per_blend);
-                let widest = widest_spacing(element, section, limits);
+                let widest = widest_spacing(element, section, limits, density);
                 straight_spacings(element.length, left, right, widest, &mut spacings);
             } else {
                 spacings.resize(per_blend, element.length / per_blend as f64);
@@ -89,10 +95,15 @@ fn end_spacing(
 }
 
 /// Half of the distance that is covered while acceleration rises, within bounds.
-fn widest_spacing(straight: &PathElement, section: &PathSection, limits: &KinematicLimits) -> f64 {
+fn widest_spacing(
+    straight: &PathElement,
+    section: &PathSection,
+    limits: &KinematicLimits,
+    density: GridDensity,
+) -> f64 {
     let limits = limits.in_direction(&straight.direction);
     let speed = limits.speed.min((limits.acceleration * section.length).sqrt());
-    let [least, most] = STRAIGHT_INTERVALS;
+    let [least, most] = density.per_straight;
     (0.5 * speed * limits.acceleration / limits.jerk).max(straight.length / most).min(straight.length / least)
 }
 

@@ -5,14 +5,17 @@ use super::blended_path::PathSection;
 use super::interior_point;
 use super::jerk_constraints::JerkConstraints;
 use super::limit_excess::{Ratios, ratios, time_stretch};
-use super::path_grid::PathGrid;
+use super::path_grid::{GridDensity, PathGrid};
 use super::path_speed::{PathState, SpeedLaw, SpeedPiece};
 use super::scaled_limits::ScaledLimits;
 use super::speed_spline::SpeedSpline;
 use super::topp_ra::ReachabilityAnalysis;
 
-/// Intervals per corner blend, without the limit of jerk and with it.
-const BLEND_INTERVALS: [usize; 2] = [16, 8];
+/// Without the limit of jerk, and with it.
+const DENSITIES: [GridDensity; 2] = [
+    GridDensity { per_blend: 16, per_straight: [32.0, 32.0] },
+    GridDensity { per_blend: 8, per_straight: [6.0, 16.0] },
+];
 /// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
 const FINE_STRETCH: [f64; 2] = [1.002, 1.01];
 const MAX_REFINEMENTS: usize = 1;
@@ -116,7 +119,7 @@ impl<'p> Problem<'p> {
         orders: usize,
     ) -> Result<Self, TimeParametrizationError> {
         let scaled = ScaledLimits::new(section, limits)?;
-        let grid = PathGrid::new(section, &scaled.limits, BLEND_INTERVALS[orders - 2]);
+        let grid = PathGrid::new(section, &scaled.limits, DENSITIES[orders - 2]);
         Ok(Self { section, scaled, grid, orders })
     }
 

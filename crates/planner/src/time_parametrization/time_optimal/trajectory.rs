@@ -37,8 +37,7 @@ impl BlendedPath {
         Ok(TimeOptimalTrajectory::new(self.clone(), motions.collect::<Result<_, _>>()?))
     }
 
-    /// The fastest motion within velocity and acceleration (TOPP-RA). Jerk is not limited: its limits are not read, and
-    /// acceleration jumps.
+    /// The fastest motion within velocity and acceleration (TOPP-RA). Jerk is not limited: acceleration jumps.
     ///
     /// # Errors
     /// As [`Self::time_optimal`].
