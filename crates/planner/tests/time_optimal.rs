@@ -96,7 +96,7 @@ proptest! {
         if trajectory.seconds() > 0.0 {
             check_limits(&trajectory, &limits, 3);
             check_limits(&fast, &limits, 2);
-            prop_assert!(trajectory.seconds() > 0.96 * fast.seconds());
+            prop_assert!(trajectory.seconds() > 0.9 * fast.seconds());
         }
         let aligned = trajectory.clone().aligned_to_ticks(0.008).unwrap();
         let rows = aligned.samples(0.008).unwrap();

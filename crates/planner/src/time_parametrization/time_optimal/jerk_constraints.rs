@@ -17,7 +17,7 @@ const REST_FACTOR: f64 = 2.725_680_889_248_209;
 /// Squared speeds may exceed those of TOPP-RA by this factor, as its grid is another approximation.
 const MOST_FACTOR: f64 = 1.1;
 /// Share of a limit that the first profile uses.
-const FIRST_SHARE: f64 = 0.8;
+const FIRST_SHARE: f64 = 0.95;
 
 /// A joint's acceleration by x and b, divided by its limit.
 pub(super) type AccelerationRow = [f64; 2];
