@@ -1,4 +1,5 @@
-//! Time-optimal parametrization: durations and computing times over random paths of seven joints.
+//! Time-optimal parametrization: durations and computing times over random paths of seven joints; durations beside those of
+//! the grid planner's time parametrization, over random paths of three joints.
 //!
 //! `cargo run --release -p elbowroom-planner --example time_optimal_times [FILE]`: with a file, the paths are written to it, a
 //! line each: waypoints and blend distance, then the durations.
@@ -7,7 +8,8 @@
 use std::fmt::Write as _;
 use std::time::Instant;
 
-use elbowroom_planner::{BlendedPath, KinematicLimits, TimeOptimalTrajectory};
+use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
+use elbowroom_planner::{BlendedPath, GridPlanner, KinematicLimits, Path, TimeOptimalTrajectory};
 use elbowroom_testkit::random::{split_mix, unit};
 
 type Error = Box<dyn std::error::Error>;
@@ -47,6 +49,28 @@ fn timed(solve: impl Fn() -> TimeOptimalTrajectory) -> (TimeOptimalTrajectory, f
     (result, best)
 }
 
+/// The same three-joint paths by `GridPlanner::time_parametrize`, where all is free.
+fn beside_grid_planner() -> Result<(), Error> {
+    let axis = |name| GridAxis::new(name, -1.0, 1.0, 0.1);
+    let grid = Grid::new([axis("a")?, axis("b")?, axis("c")?])?;
+    let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape()))?;
+    for jerk in [20.0, 100.0, 1000.0] {
+        let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![jerk; 3] };
+        let mut state = 3;
+        let [mut before, mut now] = [0.0; 2];
+        for n in 0..PATHS {
+            let mut value = || 1.98 * unit(split_mix(&mut state)) - 0.99;
+            let waypoints: Vec<[f64; 3]> = (0..2 + n % 9).map(|_| [value(), value(), value()]).collect();
+            let path = BlendedPath::new(&waypoints, |_| true)?;
+            now += path.time_optimal(&limits)?.seconds();
+            let path = Path { waypoints, length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
+            before += planner.time_parametrize(&path, &limits)?.seconds();
+        }
+        println!("three joints, jerk {jerk}: S-curves {before:.1} s, time-optimal {now:.1} s (x{:.3})", now / before);
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Error> {
     let mut lines = String::new();
     for jerk_factor in [1.0, 0.1, 0.02] {
@@ -80,6 +104,7 @@ fn main() -> Result<(), Error> {
             );
         }
     }
+    beside_grid_planner()?;
     if let Some(file) = std::env::args().nth(1) {
         std::fs::write(file, lines)?;
     }

@@ -25,7 +25,8 @@ impl BlendedPath {
     /// let limits = KinematicLimits { velocity: vec![1.0; 2], acceleration: vec![4.0; 2], jerk: vec![40.0; 2] };
     /// let trajectory = path.time_optimal(&limits)?;
     /// assert_eq!(trajectory.at(trajectory.seconds()).q, [1.0, 1.0]);
-    /// assert!(trajectory.seconds() < 2.3 && path.stops() == 0);
+    /// // With a rest at the corner it takes 2.7 s.
+    /// assert!(trajectory.seconds() < 2.5 && path.stops() == 0);
     /// # Ok::<(), elbowroom_planner::TimeParametrizationError>(())
     /// ```
     ///
