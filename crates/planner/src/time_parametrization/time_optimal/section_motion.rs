@@ -18,7 +18,7 @@ const DENSITIES: [GridDensity; 2] = [
 ];
 /// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
 const FINE_STRETCH: [f64; 2] = [1.002, 1.01];
-const MAX_REFINEMENTS: usize = 1;
+const MAX_REFINEMENTS: [usize; 2] = [4, 1];
 
 /// A motion in time.
 #[derive(Debug, Clone)]
@@ -59,7 +59,7 @@ impl SectionMotion {
             problem.attempt(constant_pieces(&problem.grid, &analysis.squared_speeds(&problem.grid)))
         };
         let mut best = solve(&analysis);
-        for _ in 0..MAX_REFINEMENTS {
+        for _ in 0..MAX_REFINEMENTS[0] {
             if best.stretch < FINE_STRETCH[0] {
                 break;
             }
@@ -79,7 +79,7 @@ impl SectionMotion {
         let first = constraints.feasible_coefficients(section, grid, limits, &most);
         let mut coefficients = interior_point::fastest(&constraints, first.clone());
         let mut best = problem.attempt(spline.pieces(&coefficients));
-        for _ in 0..MAX_REFINEMENTS {
+        for _ in 0..MAX_REFINEMENTS[1] {
             if best.stretch < FINE_STRETCH[1] {
                 break;
             }
