@@ -1,8 +1,8 @@
-//! Time-optimal parametrization: durations and computing times over random paths of seven joints; durations beside those of
-//! the grid planner's time parametrization, over random paths of three joints.
+//! Time-optimal parametrization: durations and computing times over random paths of seven joints; durations beside
+//! those of the grid planner's time parametrization, over random paths of three joints.
 //!
-//! `cargo run --release -p elbowroom-planner --example time_optimal_times [FILE]`: with a file, the paths are written to it, a
-//! line each: waypoints and blend distance, then the durations.
+//! `cargo run --release -p elbowroom-planner --example time_optimal_times [FILE]`: with a file, the paths are written
+//! to it, a line each: waypoints and blend distance, then the durations.
 #![allow(clippy::print_stdout)]
 
 use std::fmt::Write as _;
@@ -95,8 +95,8 @@ fn main() -> Result<(), Error> {
                 writeln!(lines, "{jerk_factor};{most};{};{};{waypoints:?}", fast.seconds(), all.seconds())?;
             }
             println!(
-                "jerk x{jerk_factor:<5} blends <= {most:<4}: {:4.0} intervals a path; per 100: TOPP-RA {:5.1} us, with jerk \
-                 {:6.1} us; durations {topp_s:.1} and {all_s:.1} s (x{:.3}, at most x{worst:.3})",
+                "jerk x{jerk_factor:<5} blends <= {most:<4}: {:4.0} intervals a path; per 100: TOPP-RA {:5.1} us, \
+                 with jerk {:6.1} us; durations {topp_s:.1} and {all_s:.1} s (x{:.3}, at most x{worst:.3})",
                 intervals as f64 / PATHS as f64,
                 topp_us * 100.0 / topp_intervals as f64,
                 all_us * 100.0 / intervals as f64,

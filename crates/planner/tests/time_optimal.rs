@@ -11,7 +11,8 @@ fn equal_limits(joints: usize, [v, a, j]: [f64; 3]) -> KinematicLimits {
     KinematicLimits { velocity: vec![v; joints], acceleration: vec![a; joints], jerk: vec![j; joints] }
 }
 
-/// Positions at equal steps, differentiated once, twice and three times by differences alone: each is a mean of the derivative.
+/// Positions at equal steps, differentiated once, twice and three times by differences alone: each is a mean of the
+/// derivative.
 fn check_limits(trajectory: &TimeOptimalTrajectory, limits: &KinematicLimits, orders: usize) {
     let seconds = trajectory.seconds();
     // 1 kHz, or what is needed for 2,000 steps.

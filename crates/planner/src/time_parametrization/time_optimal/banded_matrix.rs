@@ -12,7 +12,8 @@ impl BandedMatrix {
         self.rows.resize(order, [0.0; 3]);
     }
 
-    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False where it is not positive definite.
+    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False where it is not positive
+    /// definite.
     pub fn solve(&mut self, x: &mut [f64]) -> bool {
         let rows = &mut self.rows;
         for i in 0..rows.len() {

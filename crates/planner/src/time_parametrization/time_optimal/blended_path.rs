@@ -51,12 +51,12 @@ impl<'q> Leg<'q> {
 }
 
 impl BlendedPath {
-    /// Replaces the corners of a polyline by blends. Each blend begins and ends half a segment from its corner, or at half,
-    /// a quarter, … of that, until `is_free` accepts it. The motion rests where the path turns back by 180 degrees, and where
-    /// no blend is accepted, down to 10⁻⁷ of the first.
+    /// Replaces the corners of a polyline by blends. Each blend begins and ends half a segment from its corner, or at
+    /// half, a quarter, … of that, until `is_free` accepts it. The motion rests where the path turns back by 180
+    /// degrees, and where no blend is accepted, down to 10⁻⁷ of the first.
     ///
-    /// Positions are in rad, in m for prismatic joints. Waypoints within 10⁻⁹ of the one before are left out, as are those
-    /// without a change of direction.
+    /// Positions are in rad, in m for prismatic joints. Waypoints within 10⁻⁹ of the one before are left out, as are
+    /// those without a change of direction.
     ///
     /// # Errors
     /// [`TimeParametrizationError::Path`]: no waypoints, or one that is not finite or of another length.
@@ -91,7 +91,8 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Validates waypoints and connects those that differ; a leg that continues in the direction of the one before prolongs it.
+/// Validates waypoints and connects those that differ; a leg that continues in the direction of the one before
+/// prolongs it.
 fn legs<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Result<Vec<Leg<'_>>, TimeParametrizationError> {
     let first = waypoints.first().ok_or(TimeParametrizationError::Path)?.as_ref();
     let is_valid = |q: &Q| q.as_ref().len() == first.len() && q.as_ref().iter().all(|x| x.is_finite());

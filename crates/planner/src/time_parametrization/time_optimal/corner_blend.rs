@@ -1,8 +1,8 @@
 //! Corner blends: curves with continuous curvature that replace the corner between two straight segments.
 //!
-//! The tangent turns smoothly from one direction to the other, `q′ = u + (v − u)·S(σ/2d)` with `S = 3τ² − 2τ³`. That is a
-//! Bézier curve of degree 4 whose control points are on the two legs of the corner, at the distances d, d/2, 0, d/2, d. So it
-//! is in the triangle of its ends and the corner, and its curvature is 0 at both ends.
+//! The tangent turns smoothly from one direction to the other, `q′ = u + (v − u)·S(σ/2d)` with `S = 3τ² − 2τ³`. That
+//! is a Bézier curve of degree 4 whose control points are on the two legs of the corner, at the distances d, d/2, 0,
+//! d/2, d. So it is in the triangle of its ends and the corner, and its curvature is 0 at both ends.
 
 /// Position along a blend and the first three derivatives of one joint, see [`CornerBlend`].
 pub(super) fn derivatives(direction: f64, turn: f64, offset: f64, length: f64) -> [f64; 4] {
@@ -63,8 +63,8 @@ impl CornerBlend<'_> {
         each.collect()
     }
 
-    /// A polyline of this many pieces (at least one) through points of the curve, rad (m), and how far each joint of the
-    /// curve is at most from the chord at the same share of a piece, rad (m).
+    /// A polyline of this many pieces (at least one) through points of the curve, rad (m), and how far each joint of
+    /// the curve is at most from the chord at the same share of a piece, rad (m).
     pub fn polyline(&self, pieces: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let pieces = pieces.max(1);
         let points = (0..=pieces).map(|n| self.at(n as f64 / pieces as f64)).collect();

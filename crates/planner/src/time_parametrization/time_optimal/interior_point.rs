@@ -1,9 +1,9 @@
 //! Interior-point method: the speed spline of least duration under limits of velocity, acceleration and jerk.
 //!
-//! A primal-dual method whose iterates all satisfy the constraints strictly. The only constraint that is not convex, jerk, reads
-//! `|ℓ(x, b, c)| ≤ 1/√x`; the right-hand side is convex, so that its tangent at an iterate is a stronger constraint. With it,
-//! each step is one of a convex problem (sequential convex programming), and stays admissible. A step costs O(N): the matrix
-//! is banded.
+//! A primal-dual method whose iterates all satisfy the constraints strictly. The only constraint that is not convex,
+//! jerk, reads `|ℓ(x, b, c)| ≤ 1/√x`; the right-hand side is convex, so that its tangent at an iterate is a stronger
+//! constraint. With it, each step is one of a convex problem (sequential convex programming), and stays admissible. A
+//! step costs O(N): the matrix is banded.
 
 use super::banded_matrix::BandedMatrix;
 use super::jerk_constraints::{AccelerationRow, Collocation, JerkConstraints, JerkRow};

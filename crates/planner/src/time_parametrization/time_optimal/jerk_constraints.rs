@@ -1,4 +1,5 @@
-//! Jerk constraints: limits of velocity, acceleration and jerk at collocation points of a path, in terms of the squared speed.
+//! Jerk constraints: limits of velocity, acceleration and jerk at collocation points of a path, in terms of the
+//! squared speed.
 //!
 //! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk
 //! `√x·(q‴x + 3q″b + q′c)`: divided by √x, all but the bound of the jerk is linear in (x, b, c).
@@ -64,7 +65,8 @@ pub(super) struct JerkConstraints {
 }
 
 impl JerkConstraints {
-    /// Jerk is limited at both ends of each interval, as it jumps there; acceleration at its beginning, and in blends in its middle.
+    /// Jerk is limited at both ends of each interval, as it jumps there; acceleration at its beginning, and in blends
+    /// in its middle.
     pub fn new(
         section: &PathSection,
         grid: &PathGrid,
@@ -155,8 +157,9 @@ impl JerkConstraints {
         self.points.push(Collocation { offset, weight, x_factor: x_max.recip(), accelerations, jerks });
     }
 
-    /// Coefficients that satisfy all constraints strictly: a profile that keeps the jerk's limit at every constant speed, made
-    /// slower as a whole. `most` is the greatest squared speed at each node, under limits of velocity and acceleration.
+    /// Coefficients that satisfy all constraints strictly: a profile that keeps the jerk's limit at every constant
+    /// speed, made slower as a whole. `most` is the greatest squared speed at each node, under limits of velocity and
+    /// acceleration.
     pub fn feasible_coefficients(
         &self,
         section: &PathSection,
@@ -207,7 +210,8 @@ impl JerkConstraints {
     }
 }
 
-/// Leaves out rows, from one on, that another row implies while the squared speed is at most `most`; returns the greatest `|b|`.
+/// Leaves out rows, from one on, that another row implies while the squared speed is at most `most`; returns the
+/// greatest `|b|`.
 fn leave_out_slack_accelerations(rows: &mut Vec<AccelerationRow>, from: usize, most: f64) -> f64 {
     let Some(&[c, p]) = rows[from..].iter().max_by(|r, s| r[1].abs().total_cmp(&s[1].abs())) else {
         return f64::INFINITY;
@@ -264,7 +268,8 @@ fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits
     x
 }
 
-/// The squared speed after s from rest is this times s^(4/3); the greatest squared speed that is constant over an element.
+/// The squared speed after s from rest is this times s^(4/3); the greatest squared speed that is constant over an
+/// element.
 fn path_jerk(element: &PathElement, limits: &KinematicLimits) -> [f64; 2] {
     let along = |direction: f64, limit: f64| limit / direction.abs();
     let [mut jerk, mut x] = [f64::INFINITY; 2];

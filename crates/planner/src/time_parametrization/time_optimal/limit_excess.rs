@@ -1,4 +1,5 @@
-//! Limit excess: by how much a motion must be slowed down to keep all limits everywhere, not only where they were imposed.
+//! Limit excess: by how much a motion must be slowed down to keep all limits everywhere, not only where they were
+//! imposed.
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;

@@ -1,7 +1,8 @@
 //! Speed along a path: pieces on which `s̈` is linear in the path position `s`, so that `s(t)` has a closed form.
 //!
-//! With `s̈ = b + c·(s − s₀)` the squared speed `x = ṡ²` is quadratic in s, `s⃛ = c·ṡ`, and `s(t)` is a combination of sinh
-//! and cosh (c > 0) or sin and cos (c < 0) with ω = √|c|. Near rest the jerk is constant instead, `s = j·t³/6`.
+//! With `s̈ = b + c·(s − s₀)` the squared speed `x = ṡ²` is quadratic in s, `s⃛ = c·ṡ`, and `s(t)` is a combination
+//! of sinh and cosh (c > 0) or sin and cos (c < 0) with ω = √|c|. Near rest the jerk is constant instead, `s =
+//! j·t³/6`.
 
 /// Below this argument the series of sinh, atanh … are exact to rounding.
 const SERIES: f64 = 1e-3;

@@ -3,8 +3,8 @@
 use super::super::limits::{KinematicLimits, LimitKind, TimeParametrizationError};
 use super::blended_path::PathSection;
 
-/// Larger limits (per length of the section, in the scaled unit of time) are never reached, and are reduced to these so that
-/// sums and products stay finite.
+/// Larger limits (per length of the section, in the scaled unit of time) are never reached, and are reduced to these
+/// so that sums and products stay finite.
 const LARGEST: [f64; 3] = [1e6, 1e7, 1e8];
 
 /// Limits of a section of a path.

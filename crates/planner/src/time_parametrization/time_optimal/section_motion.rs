@@ -16,7 +16,8 @@ const DENSITIES: [GridDensity; 2] = [
     GridDensity { per_blend: 16, per_straight: [32.0, 32.0] },
     GridDensity { per_blend: 8, per_straight: [6.0, 16.0] },
 ];
-/// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they are exceeded.
+/// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they
+/// are exceeded.
 const FINE_STRETCH: [f64; 2] = [1.002, 1.01];
 const MAX_REFINEMENTS: [usize; 2] = [4, 1];
 

@@ -1,7 +1,8 @@
 //! Speed splines: the squared speed `x(s)` as a quadratic B-spline over a path grid, from rest to rest.
 //!
-//! On the first and the last interval, beside a rest, the jerk is constant, which is `x ∝ s^(4/3)` and so `s̈ = x / 1.5s`: a
-//! linear relation between the first two coefficients. Between them x has a continuous derivative `x′ = 2s̈`.
+//! On the first and the last interval, beside a rest, the jerk is constant, which is `x ∝ s^(4/3)` and so `s̈ = x /
+//! 1.5s`: a linear relation between the first two coefficients. Between them x has a continuous derivative `x′ =
+//! 2s̈`.
 
 use super::path_grid::PathGrid;
 use super::path_speed::{SpeedLaw, SpeedPiece};

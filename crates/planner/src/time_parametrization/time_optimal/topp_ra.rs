@@ -1,9 +1,9 @@
 //! Time-optimal path parametrization by reachability analysis (TOPP-RA) under limits of velocity and acceleration.
 //!
 //! H. Pham, Q.-C. Pham: *A New Approach to Time-Optimal Path Parameterization Based on Reachability Analysis*, IEEE
-//! Transactions on Robotics 34(3), 2018. With `x = ṡ²` and `u = s̈`, constant over an interval, constraints are linear in
-//! (u, x). The backward pass computes the controllable sets, which are intervals from 0 as rest is always admissible; the
-//! forward pass takes the greatest `u` that stays in them.
+//! Transactions on Robotics 34(3), 2018. With `x = ṡ²` and `u = s̈`, constant over an interval, constraints are
+//! linear in (u, x). The backward pass computes the controllable sets, which are intervals from 0 as rest is always
+//! admissible; the forward pass takes the greatest `u` that stays in them.
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
@@ -128,8 +128,8 @@ fn control_range(rows: &[Row], spacing: f64, next: f64, x: f64) -> [Bound; 2] {
     [low, high]
 }
 
-/// The greatest squared speed from which some `u` leads into `0..=next`: the width of the range of `u` is concave in x, so that
-/// Newton's method from above ends at its root.
+/// The greatest squared speed from which some `u` leads into `0..=next`: the width of the range of `u` is concave in
+/// x, so that Newton's method from above ends at its root.
 fn greatest_controllable(rows: &[Row], spacing: f64, next: f64, x_max: f64) -> f64 {
     let mut x = x_max;
     for _ in 0..MAX_STEPS {

@@ -77,8 +77,8 @@ impl TimeOptimalTrajectory {
         self.motions.iter().map(SectionMotion::intervals).sum()
     }
 
-    /// State of the joints `t` seconds after the start: rad, rad/s and rad/s², m for prismatic joints. Before the start that at
-    /// the start, afterwards (and for NaN) that at the end.
+    /// State of the joints `t` seconds after the start: rad, rad/s and rad/s², m for prismatic joints. Before the
+    /// start that at the start, afterwards (and for NaN) that at the end.
     pub fn at(&self, t: f64) -> TrajectoryPoint {
         let joints = self.path.joints();
         if !(t < self.seconds()) {
@@ -104,8 +104,8 @@ impl TimeOptimalTrajectory {
         point
     }
 
-    /// The same trajectory a little slower, so that it rests at multiples of a period (s) only: each part from rest to rest
-    /// takes less than a period longer.
+    /// The same trajectory a little slower, so that it rests at multiples of a period (s) only: each part from rest
+    /// to rest takes less than a period longer.
     ///
     /// # Errors
     /// A period that is not a finite number above 0.
@@ -121,8 +121,8 @@ impl TimeOptimalTrajectory {
         Ok(self)
     }
 
-    /// Times (s) and positions (rad, m for prismatic joints) at every period from 0 to the end. With linear interpolation
-    /// between them, no joint is faster than its limit.
+    /// Times (s) and positions (rad, m for prismatic joints) at every period from 0 to the end. With linear
+    /// interpolation between them, no joint is faster than its limit.
     ///
     /// # Errors
     /// A period that is not a finite number above 0.
