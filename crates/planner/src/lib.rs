@@ -39,4 +39,7 @@ pub use rrt_connect::{
     JointUnit, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting, RrtConnectSettings,
     ShortcuttingSettings,
 };
-pub use time_parametrization::{KinematicLimits, LimitKind, TimeParametrizationError, Trajectory, TrajectoryPoint};
+pub use time_parametrization::{
+    BlendedPath, CornerBlend, KinematicLimits, LimitKind, TimeOptimalTrajectory, TimeParametrizationError, Trajectory,
+    TrajectoryPoint,
+};

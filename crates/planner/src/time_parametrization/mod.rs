@@ -6,9 +6,11 @@ mod limits;
 mod segments;
 mod speed_profile;
 mod speed_ramp;
+mod time_optimal;
 mod trajectory;
 
 pub use limits::{KinematicLimits, LimitKind, TimeParametrizationError};
 pub(crate) use segments::PathSegments;
+pub use time_optimal::{BlendedPath, CornerBlend, TimeOptimalTrajectory};
 pub(crate) use trajectory::PathElement;
 pub use trajectory::{Trajectory, TrajectoryPoint};

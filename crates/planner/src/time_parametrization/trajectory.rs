@@ -185,10 +185,10 @@ impl Trajectory {
 }
 
 /// Number of periods, rounded up; a rounding error above a whole number is ignored.
-fn periods(seconds: f64, period: f64) -> f64 {
+pub(super) fn periods(seconds: f64, period: f64) -> f64 {
     (seconds / period - PERIOD_ROUNDING).ceil()
 }
 
-fn validate_period(period: f64) -> Result<(), TimeParametrizationError> {
+pub(super) fn validate_period(period: f64) -> Result<(), TimeParametrizationError> {
     if period.is_finite() && period > 0.0 { Ok(()) } else { Err(TimeParametrizationError::Period(period)) }
 }

@@ -1,0 +1,84 @@
+//! Limit excess: by how much a motion must be slowed down to keep all limits everywhere, not only where they were
+//! imposed.
+
+use super::super::limits::KinematicLimits;
+use super::blended_path::PathSection;
+use super::path_element::PathElement;
+use super::path_speed::{PathState, SpeedPiece};
+
+/// Intervals of a piece between whose ends values are bounded by their second differences.
+const SAMPLES: usize = 4;
+/// Rounding.
+const MARGIN: f64 = 1e-9;
+
+/// Greatest ratios of velocity, acceleration and jerk to their limits.
+pub(super) type Ratios = [f64; 3];
+
+/// The ratios of each piece. `orders` is 3 with the limit of jerk, 2 without.
+pub(super) fn ratios(
+    section: &PathSection,
+    elements: &[u32],
+    pieces: &[SpeedPiece],
+    limits: &KinematicLimits,
+    orders: usize,
+) -> Vec<Ratios> {
+    let each = pieces.iter().zip(elements).enumerate().map(|(n, (piece, element))| {
+        let end = pieces.get(n + 1).map_or(section.length, |next| next.position);
+        let states = piece.over(end - piece.position);
+        let mut ratios = piece_ratios(&section.elements[*element as usize], &states, limits);
+        if orders < 3 {
+            ratios[2] = 0.0;
+        }
+        ratios
+    });
+    each.collect()
+}
+
+/// The factor, at least 1, by which time must be stretched.
+pub(super) fn time_stretch(ratios: &[Ratios]) -> f64 {
+    let mut stretch = 1.0;
+    for [v, a, j] in ratios {
+        let needed = v.max(a.sqrt()).max(j.cbrt());
+        // NaN is not lost.
+        if !(needed <= stretch) {
+            stretch = needed;
+        }
+    }
+    stretch * (1.0 + MARGIN)
+}
+
+fn piece_ratios(element: &PathElement, states: &[PathState; SAMPLES + 1], limits: &KinematicLimits) -> Ratios {
+    let mut ratios: Ratios = [0.0; 3];
+    if element.is_straight() {
+        let along = limits.in_direction(&element.direction);
+        let scales = [along.speed, along.acceleration, along.jerk].map(f64::recip);
+        include(&mut ratios, states.map(|[_, v, a, j]| [v * scales[0], a * scales[1], j * scales[2]]));
+        return ratios;
+    }
+    for joint in 0..limits.velocity.len() {
+        let scales = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]].map(f64::recip);
+        include(&mut ratios, states.map(|state| joint_derivatives(element, state, joint, scales)));
+    }
+    ratios
+}
+
+/// Velocity, acceleration and jerk of a joint, each times a scale.
+fn joint_derivatives(element: &PathElement, [s, v, a, j]: PathState, joint: usize, scales: [f64; 3]) -> [f64; 3] {
+    let [_, p, c, d] = element.at(s, joint);
+    [p * v * scales[0], (p * a + c * v * v) * scales[1], (p * j + 3.0 * c * v * a + d * v * v * v) * scales[2]]
+}
+
+/// A smooth function exceeds its samples by no more than about an eighth of its second difference.
+fn include(ratios: &mut Ratios, samples: [[f64; 3]; SAMPLES + 1]) {
+    for order in 0..3 {
+        let mut bend: f64 = 0.0;
+        let mut most: f64 = 0.0;
+        for n in 0..=SAMPLES {
+            most = most.max(samples[n][order].abs());
+            if n > 1 {
+                bend = bend.max((samples[n][order] - 2.0 * samples[n - 1][order] + samples[n - 2][order]).abs());
+            }
+        }
+        ratios[order] = ratios[order].max(most + 0.125 * bend);
+    }
+}

@@ -1,0 +1,48 @@
+//! Scaled limits: limits of the joints in a unit of time in which a section of a path takes about 1.
+
+use super::super::limits::{KinematicLimits, LimitKind, TimeParametrizationError};
+use super::blended_path::PathSection;
+
+/// Larger limits (per length of the section, in the scaled unit of time) are never reached, and are reduced to these
+/// so that sums and products stay finite.
+const LARGEST: [f64; 3] = [1e6, 1e7, 1e8];
+
+/// Limits of a section of a path.
+#[derive(Debug, Clone)]
+pub(super) struct ScaledLimits {
+    /// Per unit of time and its powers.
+    pub limits: KinematicLimits,
+    /// The unit of time, s.
+    pub unit: f64,
+}
+
+impl ScaledLimits {
+    /// The unit is the least time that any joint needs for its path, by any one of its limits.
+    pub fn new(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
+        let mut unit: f64 = 0.0;
+        for joint in 0..limits.velocity.len() {
+            let far: f64 = section.elements.iter().map(|e| e.length * e.direction[joint].abs()).sum();
+            let times = [
+                (LimitKind::Velocity, limits.velocity[joint], far / limits.velocity[joint]),
+                (LimitKind::Acceleration, limits.acceleration[joint], (far / limits.acceleration[joint]).sqrt()),
+                (LimitKind::Jerk, limits.jerk[joint], (far / limits.jerk[joint]).cbrt()),
+            ];
+            for (kind, value, time) in times {
+                if !time.is_finite() {
+                    return Err(TimeParametrizationError::Limit { joint, kind, value });
+                }
+                unit = unit.max(time);
+            }
+        }
+        let scaled = |values: &[f64], order: i32| {
+            let most = LARGEST[order as usize - 1] * section.length;
+            values.iter().map(|x| (x * unit.powi(order)).min(most).max(f64::MIN_POSITIVE)).collect()
+        };
+        let limits = KinematicLimits {
+            velocity: scaled(&limits.velocity, 1),
+            acceleration: scaled(&limits.acceleration, 2),
+            jerk: scaled(&limits.jerk, 3),
+        };
+        Ok(Self { limits, unit })
+    }
+}
