@@ -192,19 +192,26 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 at = node.end;
                 continue;
             }
-            at += 1;
-            if is_leaf(node, at) {
-                if self.touches(from.vector, reach) {
-                    is_near = true;
-                } else if self.request.chords {
-                    let direction = from.vector.plus(from.vector.next_lane());
-                    let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
-                    is_near |= !self.chords_apart(direction, a.min(b) - obstacle.support(simd, direction), reach);
+            let is_leaf = is_leaf(node, at + 1);
+            if is_leaf && self.touches(from.vector, reach) {
+                is_near = true;
+            } else if self.request.chords {
+                let direction = from.vector.plus(from.vector.next_lane());
+                let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
+                let unproven = self.not_apart(direction, a.min(b) - obstacle.support(simd, direction), reach);
+                if unproven == 0 {
+                    at = node.end;
+                    continue;
                 }
-                if self.is_done() {
-                    return is_near;
+                if is_leaf {
+                    self.result.unproven |= unproven;
+                    is_near = true;
                 }
             }
+            if is_leaf && self.is_done() {
+                break;
+            }
+            at += 1;
         }
         is_near
     }
@@ -217,17 +224,15 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         touching != 0
     }
 
-    /// Records the lanes from which the motion to the next is not proven. `height` is the least height of both ends of each
-    /// motion over the core, along a direction that is not normalized: best the mean of the directions at both ends, as a plane
-    /// across it separates the chord from the core, if any does nearly.
+    /// Lanes from which the motion to the next is not proven apart. `height` is the least height of both ends of each motion over
+    /// the core, along a direction that is not normalized: best the mean of the directions at both ends, as a plane across it
+    /// separates the chord from the core, if any does nearly.
     #[inline(always)]
-    fn chords_apart(&mut self, direction: V3<S>, height: f32x16<S>, reach: Reach) -> bool {
+    fn not_apart(&self, direction: V3<S>, height: f32x16<S>, reach: Reach) -> u32 {
         let radius = splat(self.simd, reach.radius + reach.sag);
         let is_above = height.simd_gt(splat(self.simd, 0.0));
         let is_apart = (height * height).simd_ge(radius * radius * direction.dot(direction)) & is_above;
-        let unproven = !(is_apart.to_bitmask() as u32) & self.request.active;
-        self.result.unproven |= unproven;
-        unproven == 0
+        !(is_apart.to_bitmask() as u32) & self.request.active
     }
 
     #[inline(always)]
@@ -283,25 +288,31 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             if within(simd, from_b, reach.radius + half_chord) & self.request.active == 0 {
                 continue;
             }
-            match (is_leaf(m, i + 1), is_leaf(n, j + 1)) {
-                (true, true) => {
-                    let from_b = self.workspace.frames[pair.common_frame].local_direction(simd, from_b);
-                    if self.touches(from_b, reach) {
-                        is_near = true;
-                    } else if self.request.chords {
-                        let direction = from_b.plus(from_b.next_lane());
-                        let height = direction.dot(from_b).min(direction.dot(from_b.next_lane()));
-                        is_near |= !self.chords_apart(direction, height, reach);
-                    }
-                    if self.is_done() {
-                        break;
-                    }
+            let (is_leaf_a, is_leaf_b) = (is_leaf(m, i + 1), is_leaf(n, j + 1));
+            let are_leaves = is_leaf_a && is_leaf_b;
+            if are_leaves && self.touches(from_b, reach) {
+                is_near = true;
+            } else if self.request.chords {
+                let local = self.workspace.frames[pair.common_frame].local_direction(simd, from_b);
+                let direction = local.plus(local.next_lane());
+                let height = direction.dot(local).min(direction.dot(local.next_lane()));
+                let unproven = self.not_apart(direction, height, reach);
+                if unproven == 0 {
+                    continue;
                 }
-                // The larger one is divided.
-                (leaf, other) if !leaf && (other || m.radius >= n.radius) => {
-                    push_children(robot, i, |child| open.push((child, j)));
+                if are_leaves {
+                    self.result.unproven |= unproven;
+                    is_near = true;
                 }
-                _ => push_children(robot, j, |child| open.push((i, child))),
+            }
+            if are_leaves {
+                if self.is_done() {
+                    break;
+                }
+            } else if !is_leaf_a && (is_leaf_b || m.radius >= n.radius) {
+                push_children(robot, i, |child| open.push((child, j)));
+            } else {
+                push_children(robot, j, |child| open.push((i, child)));
             }
         }
         self.workspace.node_pairs = open;
