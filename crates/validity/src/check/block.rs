@@ -129,7 +129,8 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn obstacles(&mut self) {
         let robot = self.model.robot;
-        for (index, body) in robot.bodies.iter().enumerate() {
+        // What is farthest from the base moves most and hits first.
+        for (index, body) in robot.bodies.iter().enumerate().rev() {
             if body.frame == 0 {
                 continue;
             }
