@@ -1,6 +1,6 @@
 """`cargo xtask planning`: every planner on the same problems, one after the other, and whether its paths hit anything.
 
-usage: planning.py --problems FILE --urdf R [--srdf S] --folder DIR [--json] LIB=PROGRAM… LIB!REASON…
+usage: planning.py --problems FILE --urdf R [--srdf S] --folder DIR --hits PROGRAM [--json] LIB=PROGRAM… LIB!REASON…
 A LIB with a REASON is named and left out. Each planner and seed is a process of its own. SEEDS: how many.
 """
 
@@ -11,9 +11,9 @@ import sys
 from dataclasses import dataclass
 
 import attempts
+import hits
 import problems
 import report
-from hits import PathCheck
 from solids import Robot
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -43,6 +43,7 @@ def options():
     words.add_argument("--urdf", required=True)
     words.add_argument("--srdf", default="")
     words.add_argument("--folder", required=True)
+    words.add_argument("--hits", required=True, help="the program compiled from cpp/hits.cpp")
     words.add_argument("--json", action="store_true")
     words.add_argument("--seeds", type=int, default=int(os.environ.get("SEEDS", "5")))
     words.add_argument("libs", nargs="*", metavar="LIB=PROGRAM")
@@ -60,28 +61,13 @@ def attempts_of(peer, program, seed, call):
     return attempts.read(out)
 
 
-def verdicts(robot, by_name, found):
-    out = []
-    for count, attempt in enumerate(found):
-        progress(f"hits {count}/{len(found)}")
-        check = PathCheck(robot, by_name[attempt["set"], attempt["id"]])
-        hit = check.hit(attempt["joints"], attempt["path"]) if attempt["solved"] else None
-        out.append({"hit": hit, "ends": check.end_hits() if hit else None})
-    progress("")
-    return out
-
-
-def progress(text):
-    if sys.stderr.isatty():
-        print(f"\r{text:20}\r", end="", file=sys.stderr, flush=True)
-
-
 def measure(peer, program, call, robot, by_name):
     found = []
     for seed in range(call.seeds):
         print(f"{peer.lib}, {peer.mode}, seed {seed}", file=sys.stderr)
         found += attempts_of(peer, program, seed, call)
-    checked = verdicts(robot, by_name, found)
+    print(f"{peer.lib}, {peer.mode}: {len(found)} attempts, hits", file=sys.stderr)
+    checked = hits.of(call.hits, os.path.join(call.folder, "hits_job.txt"), robot, by_name, found)
     tell_hits(peer, found, checked, call.folder)
     return report.lines(peer.lib, peer.mode, found, checked)
 

@@ -44,23 +44,34 @@ class Robot:
                     q[self.index[name]] = value
         return q
 
+    def motion(self, i):
+        """`r` or `p`, and the axis of a joint in its own frame."""
+        joint = self.model.joints[i]
+        if joint.nq != 1:
+            raise ValueError(f"{self.model.names[i]}: only joints with limits are read")
+        subspace = np.asarray(joint.createData().S).ravel()
+        turns = np.linalg.norm(subspace[3:]) > 0.5
+        return ("r", subspace[3:]) if turns else ("p", subspace[:3])
+
     def reach(self):
-        """Per configuration number: no point of the robot is farther than this from that joint's axis, in any state."""
-        steps = [np.linalg.norm(self.model.jointPlacements[i].translation) for i in range(self.model.njoints)]
-        size = np.zeros(self.model.njoints)
+        """Per joint: no point of the robot moves faster than this when the joint moves by 1 (rad or m), in any state."""
+        model = self.model
+        steps = [np.linalg.norm(placement.translation) for placement in model.jointPlacements]
+        # What a prismatic joint may lengthen the chain by.
+        slides = [self.motion(i)[0] == "p" for i in range(1, model.njoints)]
+        travel = [0.0] + [max(map(abs, self.limits(i))) + 0.1 if slide else 0.0 for i, slide in enumerate(slides, 1)]
+        size = np.zeros(model.njoints)
         for body, half, middle in zip(self.shapes.geometryObjects, self.half, self.middle):
             far = np.linalg.norm(half) + np.linalg.norm(middle) + np.linalg.norm(body.placement.translation)
             size[body.parentJoint] = max(size[body.parentJoint], far)
-        # Prismatic fingers lengthen the chain by at most what they travel; a decimetre is more than any gripper here.
-        slack = [0.1 if self.model.joints[i].shortname().startswith("JointModelP") else 0.0 for i in range(self.model.njoints)]
-        for i in reversed(range(1, self.model.njoints)):
-            parent = self.model.parents[i]
-            size[parent] = max(size[parent], steps[i] + slack[i] + size[i])
-        out = np.zeros(self.model.nq)
-        for i in range(1, self.model.njoints):
-            prismatic = self.model.joints[i].shortname().startswith("JointModelP")
-            out[self.model.joints[i].idx_q] = 1.0 if prismatic else size[i]
-        return out
+        for i in reversed(range(1, model.njoints)):
+            parent = model.parents[i]
+            size[parent] = max(size[parent], steps[i] + travel[i] + size[i])
+        return [0.0] + [1.0 if slide else size[i] for i, slide in enumerate(slides, 1)]
+
+    def limits(self, i):
+        at = self.model.joints[i].idx_q
+        return self.model.lowerPositionLimit[at], self.model.upperPositionLimit[at]
 
 
 def disabled(srdf):
@@ -74,6 +85,15 @@ def shape(solid):
     return makers[solid.kind](*(float(x) for x in solid.sizes))
 
 
+def pairs_among(robot, names, allowed):
+    """What is tested: `names` are the robot's links, then the solids; `allowed` may touch."""
+    count = len(robot.links)
+    # A link that no joint moves stands in the world like the solids.
+    moved = [a for a in range(count) if robot.shapes.geometryObjects[a].parentJoint > 0]
+    pairs = robot.pairs + [(a, b) for a in moved for b in range(count, len(names))]
+    return [(a, b) for a, b in pairs if frozenset((names[a], names[b])) not in allowed]
+
+
 class Cell:
     """One robot among the solids of one problem."""
 
@@ -82,16 +102,11 @@ class Cell:
         count = len(robot.links)
         shapes = [body.geometry for body in robot.shapes.geometryObjects] + [shape(solid) for solid in solids]
         names = robot.links + [solid.name for solid in solids]
-        pairs = robot.pairs + [
-            # A link that no joint moves stands in the world like the solids.
-            (a, count + k) for a in range(count) if robot.shapes.geometryObjects[a].parentJoint > 0 for k in range(len(solids))
-        ]
-        pairs = [(a, b) for a, b in pairs if frozenset((names[a], names[b])) not in allowed]
-        self.names, self.pairs = names, pairs
+        pairs = pairs_among(robot, names, allowed)
+        self.names = names
         self.a, self.b = (np.array([pair[i] for pair in pairs], dtype=int) for i in (0, 1))
         # Coal's queries do not keep their shapes alive.
         self.shapes = shapes
-        self.measures = [coal.ComputeDistance(shapes[a], shapes[b]) for a, b in pairs]
         self.touches = [coal.ComputeCollision(shapes[a], shapes[b]) for a, b in pairs]
         self.rotations = np.array([np.eye(3)] * count + [solid.pose[:3, :3] for solid in solids])
         self.shifts = np.array([np.zeros(3)] * count + [solid.pose[:3, 3] for solid in solids])
@@ -99,8 +114,6 @@ class Cell:
         self.half = np.array([*robot.half, *still])
         self.middle = np.array([*robot.middle, *(np.zeros(3) for _ in solids)])
         self.poses = [None] * count + [coal.Transform3s(solid.pose[:3, :3], solid.pose[:3, 3]) for solid in solids]
-        self.distance_request, self.distance_result = coal.DistanceRequest(), coal.DistanceResult()
-        self.distance_request.enable_signed_distance = False
         self.collision_request, self.collision_result = coal.CollisionRequest(), coal.CollisionResult()
 
     def place(self, q):
@@ -128,22 +141,6 @@ class Cell:
             if self.touches[k](self.pose(a), self.pose(b), self.collision_request, self.collision_result):
                 return self.names[a], self.names[b]
         return None
-
-    def clearance(self, q, enough):
-        """A lower bound of the distance, exact where it is below `enough`; 0 on contact. Nearest boxes first."""
-        gaps = self.place(q)
-        least = enough
-        for k in np.argsort(gaps):
-            if gaps[k] >= least:
-                break
-            a, b = self.a[k], self.b[k]
-            self.distance_result.clear()
-            self.distance_result.min_distance = least
-            self.measures[k](self.pose(a), self.pose(b), self.distance_request, self.distance_result)
-            least = min(least, self.distance_result.min_distance)
-            if least <= 0.0:
-                return 0.0
-        return least
 
 
 def half_box(solid):

@@ -4,6 +4,7 @@
 
 mod elbowroom;
 mod files;
+mod hits;
 mod install;
 mod vamp;
 
@@ -59,13 +60,16 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let folder = root.join("target/planning");
     shell::make_folder(&folder)?;
     let python = install::python(&folder)?;
-    let peers = if options.validity { states(root, &folder) } else { planners(root, &folder, &python) };
+    let peers = if options.validity { states(root, &folder, &python) } else { planners(root, &folder, &python) };
     let script = if options.validity { "validity.py" } else { "planning.py" };
     let mut words = on_one_core();
     words.push(python.display().to_string());
     words.push(root.join("xtask/planning/python").join(script).display().to_string());
     words.extend(files.words(options.validity));
     words.extend(["--folder".into(), folder.display().to_string()]);
+    if !options.validity {
+        words.extend(["--hits".into(), hits::program(root, &folder)?.display().to_string()]);
+    }
     words.extend(options.json.then(|| "--json".to_owned()));
     for (name, program) in peers {
         match program {
@@ -97,9 +101,8 @@ fn planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
 }
 
 /// Who can be asked about single states.
-fn states(root: &Path, folder: &Path) -> Vec<Peer> {
-    let python = folder.join("venv/bin/python");
-    vec![("elbowroom", elbowroom::state_times(root)), ("vamp", vamp::program(root, folder, &python, "vamp_states"))]
+fn states(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
+    vec![("elbowroom", elbowroom::state_times(root)), ("vamp", vamp::program(root, folder, python, "vamp_states"))]
 }
 
 fn on_one_core() -> Vec<String> {

@@ -66,7 +66,8 @@ fn sources(folder: &Path, python: &Path) -> Result<PathBuf, String> {
     }
     let package = format!("vamp-planner=={VERSION}");
     let python = python.display().to_string();
-    let download = [&python, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", ":all:", &package];
+    // Not `:all:`, which would compile CMake and all else that pip needs to read the package.
+    let download = [&python, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", "vamp-planner", &package];
     native::run(folder, &download, &[("PIP_DISABLE_PIP_VERSION_CHECK", "1")])?;
     let archive = format!("{name}.tar.gz");
     let parts = [format!("{name}/src/impl"), format!("{name}/resources/panda/panda_spherized.urdf")];
