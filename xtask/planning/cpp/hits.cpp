@@ -44,7 +44,7 @@ struct Joint {
   double reach;
 };
 
-struct Body {
+struct Collider {
   int joint;
   Transform3s placement;
   std::shared_ptr<coal::CollisionGeometry> shape;
@@ -65,7 +65,7 @@ static Transform3s read_pose(std::istream& in) {
   return {rotation, shift};
 }
 
-static Body body(int joint, const Transform3s& placement, std::shared_ptr<coal::CollisionGeometry> shape) {
+static Collider collider(int joint, const Transform3s& placement, std::shared_ptr<coal::CollisionGeometry> shape) {
   shape->computeLocalAABB();
   const auto& box = shape->aabb_local;
   return {joint, placement, shape, (box.max_ + box.min_) / 2, (box.max_ - box.min_) / 2};
@@ -106,7 +106,7 @@ static std::shared_ptr<coal::CollisionGeometry> read_shape(std::istream& in) {
 class Cell {
  public:
   std::vector<Joint> joints;
-  std::vector<Body> bodies;
+  std::vector<Collider> bodies;
   std::vector<Pair> pairs;
   std::size_t links = 0;
 
@@ -252,7 +252,7 @@ int main(int count, char** words) {
       int joint;
       in >> joint;
       const auto placement = read_pose(in);
-      cell.bodies.push_back(body(joint, placement, read_shape(in)));
+      cell.bodies.push_back(collider(joint, placement, read_shape(in)));
     } else if (word == "cell") {
       cell.clear();
     } else if (word == "pair") {

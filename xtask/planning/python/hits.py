@@ -15,16 +15,16 @@ def of(program, job, robot, by_name, found):
         for attempt in found:
             out.write("\n".join(attempt_lines(robot, by_name[attempt["set"], attempt["id"]], attempt)) + "\n")
     answers = iter(attempts.call([program, job, str(POINTS)]).splitlines())
-    verdicts = []
+    findings = []
     for attempt in found:
         names = names_in(robot, by_name[attempt["set"], attempt["id"]])
-        ends = [verdict(next(answers), names) for _ in range(2)]
-        path = verdict(next(answers), names) if attempt["solved"] else None
-        verdicts.append({"hit": path, "ends": ends[0] or ends[1]})
-    return verdicts
+        ends = [finding(next(answers), names) for _ in range(2)]
+        path = finding(next(answers), names) if attempt["solved"] else None
+        findings.append({"hit": path, "ends": ends[0] or ends[1]})
+    return findings
 
 
-def verdict(answer, names):
+def finding(answer, names):
     words = answer.split()
     return None if words[0] == "free" else (float(words[1]), (names[int(words[2])], names[int(words[3])]))
 

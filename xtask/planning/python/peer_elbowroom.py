@@ -14,7 +14,10 @@ import job
 def answers(task, paths):
     words = [task.program, "plan", "--urdf", task.urdf, "--problems", task.file, "--json", "--paths", paths]
     words += ["--seed", str(task.seed)] + (["--srdf", task.srdf] if task.srdf else [])
-    done = subprocess.run(words, capture_output=True, text=True)
+    try:
+        done = subprocess.run(words, capture_output=True, text=True)
+    except OSError as reason:
+        sys.exit(f"{task.program}: {reason.strerror}")
     # 1 says that a problem was not solved.
     if done.returncode in (0, 1):
         try:

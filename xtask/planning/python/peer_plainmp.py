@@ -4,6 +4,7 @@ With `--program FILE` its spheres are the collision spheres of that URDF (VAMP's
 fingers for any goal of these problems. The pairs of links are its own in both cases.
 """
 
+import sys
 import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -103,6 +104,8 @@ def attempt(spec, problem, seed):
 
 def main():
     task = job.read()
+    if any(not name.startswith("panda_joint") for problem in task.problems for name in problem.joints()):
+        sys.exit("plainmp needs spheres of the robot; those of the Panda are the ones used here")
     set_log_level_none()
     set_random_seed(task.seed + 1)
     spec = OtherSpheres(task.urdf, task.program) if task.program else Panda(task.urdf)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 
 import attempts
 import job
@@ -14,6 +15,8 @@ ITERATIONS = 100_000
 
 def main():
     task = job.read()
+    if any(name != f"panda_joint{k}" for p in task.problems for k, name in enumerate(p.joints(), 1)):
+        sys.exit("VAMP has compiled code for a few robots; the Panda is the one used here")
     scenes = os.path.join(task.folder, "vamp_problems.txt")
     with open(scenes, "w") as out:
         for problem in task.problems:

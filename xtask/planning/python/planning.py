@@ -76,18 +76,21 @@ def tell_hits(peer, found, checked, folder):
     """Which path hits what, and where along it (0 to 1), for who wants to look."""
     with open(os.path.join(folder, f"{peer.lib}_{peer.mode}_hits.csv"), "w") as out:
         out.write("set,id,seed,at,a,b,ends_hit\n")
-        for attempt, verdict in zip(found, checked):
-            if verdict["hit"]:
-                at, (a, b) = verdict["hit"]
-                ends = "yes" if verdict["ends"] else "no"
+        for attempt, finding in zip(found, checked):
+            if finding["hit"]:
+                at, (a, b) = finding["hit"]
+                ends = "yes" if finding["ends"] else "no"
                 out.write(f"{attempt['set']},{attempt['id']},{attempt['seed']},{at:.4f},{a},{b},{ends}\n")
 
 
 def main():
     call = options()
     programs = attempts.programs(call.libs)
-    robot = Robot(call.urdf, call.srdf)
-    by_name = {(problem.set, problem.id): problem for problem in problems.read(call.problems)}
+    try:
+        robot = Robot(call.urdf, call.srdf)
+        by_name = {(problem.set, problem.id): problem for problem in problems.read(call.problems)}
+    except (ValueError, KeyError) as reason:
+        sys.exit(f"{call.problems} with {call.urdf}: {reason}")
     every, missing = [], attempts.left_out(call.libs)
     for peer in PEERS:
         if peer.lib not in programs:

@@ -8,7 +8,7 @@ KEYS = ("planning_us", "simplify_us")
 
 
 def lines(lib, mode, attempts, hits):
-    """A line per set and one over `all`. `hits` has a verdict for each attempt: None, or where and what it hits."""
+    """A line per set and one over `all`. `hits` has for each attempt what its path and the ends of its problem hit."""
     sets = list(dict.fromkeys(attempt["set"] for attempt in attempts))
     out = [line(lib, name, mode, [(a, h) for a, h in zip(attempts, hits) if a["set"] == name]) for name in sets]
     return out + [line(lib, "all", mode, list(zip(attempts, hits)))]
@@ -28,8 +28,8 @@ def line(lib, name, mode, checked):
         out[key] = spread([attempt[key] for attempt in solved])
     for key in ("cost_raw", "cost"):
         out[key] = round(float(np.mean([attempt[key] for attempt in solved])), 4) if solved else None
-    out["hits"] = sum(verdict["hit"] is not None for _, verdict in checked)
-    out["hits_at_ends"] = sum(verdict["hit"] is not None and verdict["ends"] is not None for _, verdict in checked)
+    out["hits"] = sum(finding["hit"] is not None for _, finding in checked)
+    out["hits_at_ends"] = sum(finding["hit"] is not None and finding["ends"] is not None for _, finding in checked)
     return out
 
 

@@ -22,6 +22,8 @@ HALF = 1.5
 
 def write(path, urdf, srdf, count, seed=1):
     random, robot = np.random.default_rng(seed), Robot(urdf, srdf)
+    if any(name not in robot.index for name in JOINTS):
+        raise SystemExit(f"{urdf}: the scenes are made for the Panda, whose joints are {', '.join(JOINTS)}")
     edges = free_edges(robot, random)
     taken = swept(robot, edges)
     obstacles = [obstacle(random, taken, count) for _ in range(count)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xtask::call;
 
-use super::Options;
+use super::options::Options;
 
 /// What every planner gets.
 pub struct Files {

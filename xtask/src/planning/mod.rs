@@ -6,53 +6,16 @@ mod elbowroom;
 mod files;
 mod hits;
 mod install;
+mod options;
 mod vamp;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use xtask::shell;
 
 use crate::{machine, native};
 use files::Files;
-
-/// What the command line asks for.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Options {
-    problems: Option<PathBuf>,
-    urdf: Option<PathBuf>,
-    srdf: Option<PathBuf>,
-    validity: bool,
-    json: bool,
-}
-
-impl Options {
-    /// From the words after `planning`.
-    pub fn parse(words: &[&str]) -> Result<Self, String> {
-        let mut options = Self::default();
-        let mut words = words.iter();
-        while let Some(&word) = words.next() {
-            let file = match word {
-                "--json" => {
-                    options.json = true;
-                    continue;
-                }
-                "--validity" => {
-                    options.validity = true;
-                    continue;
-                }
-                "--problems" => &mut options.problems,
-                "--urdf" => &mut options.urdf,
-                "--srdf" => &mut options.srdf,
-                _ => {
-                    let known = "`--problems FILE`, `--urdf FILE`, `--srdf FILE`, `--validity` and `--json`";
-                    return Err(format!("`planning {word}`: the options are {known}"));
-                }
-            };
-            *file = Some(words.next().ok_or_else(|| format!("`{word}` needs a file: `{word} FILE`"))?.into());
-        }
-        Ok(options)
-    }
-}
+pub use options::Options;
 
 /// Installs, then hands over to the Python that measures; a peer that cannot be had is named and left out.
 pub fn run(root: &Path, options: &Options) -> Result<(), String> {
@@ -108,19 +71,4 @@ fn states(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
 fn on_one_core() -> Vec<String> {
     let core = machine::core().filter(|_| native::exists("taskset"));
     core.map_or_else(Vec::new, |core| ["taskset", "-c", &core.to_string()].map(str::to_owned).to_vec())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_are_read_and_mistakes_named() {
-        let problems = Some(PathBuf::from("p.json"));
-        let expected = Options { problems, json: true, ..Options::default() };
-        assert_eq!(Options::parse(&["--json", "--problems", "p.json"]).unwrap(), expected);
-        assert!(Options::parse(&["--validity"]).unwrap().validity);
-        assert!(Options::parse(&["--urdf"]).unwrap_err().contains("--urdf FILE"));
-        assert!(Options::parse(&["--udf"]).unwrap_err().contains("`planning --udf`"));
-    }
 }
