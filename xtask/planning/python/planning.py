@@ -52,7 +52,7 @@ def options():
 
 def attempts_of(peer, program, seed, call):
     out = os.path.join(call.folder, f"{peer.lib}_{peer.mode}_{seed}.jsonl")
-    words = [sys.executable, os.path.join(HERE, peer.script), "--problems", call.problems, "--urdf", call.urdf]
+    words = [sys.executable, "-B", os.path.join(HERE, peer.script), "--problems", call.problems, "--urdf", call.urdf]
     words += ["--srdf", call.srdf, "--folder", call.folder, "--out", out, "--seed", str(seed)]
     words += ["--program", program, "--per-set", str(peer.per_set)]
     done = subprocess.run(words, stderr=subprocess.PIPE, text=True, stdout=sys.stderr)

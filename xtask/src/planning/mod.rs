@@ -26,7 +26,8 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let peers = if options.validity { states(root, &folder, &python) } else { planners(root, &folder, &python) };
     let script = if options.validity { "validity.py" } else { "planning.py" };
     let mut words = on_one_core();
-    words.push(python.display().to_string());
+    // -B: no compiled Python beside the sources.
+    words.extend([python.display().to_string(), "-B".into()]);
     words.push(root.join("xtask/planning/python").join(script).display().to_string());
     words.extend(files.words(options.validity));
     words.extend(["--folder".into(), folder.display().to_string()]);
