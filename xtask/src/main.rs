@@ -4,9 +4,13 @@
 //! `elbowroom-devtools`, which it starts: in the profile of the tests where it checks, as a release build where it measures.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
+mod compile;
 mod inventory;
 mod layers;
+mod machine;
+mod native;
 mod peers;
+mod planning;
 mod snippets;
 mod suite;
 mod terms;
@@ -57,6 +61,13 @@ cargo xtask COMMAND
         elbowroom beside Coal, FCL and parry on one workload: installs them in target/peers, compares every answer, and
         prints the ratios. DIR holds a workload in the format of xtask/peers/README.md. BUDGET: seconds per round
         (default 0.5); ONLY: part of `lib|set|query`
+  planning [--problems FILE] [--urdf R] [--srdf S] [--json]
+        elbowroom's planner beside VAMP, plainmp and OMPL on problems in MotionBenchMaker's layout: installs them in
+        target/planning, runs every seed of each, and checks every path at 10,000 points against the true meshes.
+        Default: the Panda problems of ../shared/data. SEEDS: how many (default 5); ONLY: part of a library's name;
+        ELBOWROOM: a built program to use instead of building one
+  planning --validity [--urdf R] [--srdf S] [--json]
+        how long it takes to say that a state is free, among 10, 100 and 1000 obstacles: along edges, and one by one
   scaling [--out DIR]
         time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/measurements/benchmarks.md
   bench [ARGS…]
@@ -98,6 +109,9 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
+        ["planning", options @ ..] => {
+            Ok(planning::run(&root, &planning::Options::parse(options).map_err(Failure::Usage)?)?)
+        }
         ["bench", rest @ ..] => {
             let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
             Ok(shell::cargo(&root, &args, &[])?)

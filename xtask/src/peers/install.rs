@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{machine, native};
+use crate::{compile, native};
 
 const COAL: &str = "3.0.3";
 const PARRY: &str = "0.31.1";
@@ -130,27 +130,18 @@ fn fcl_version() -> String {
     line.and_then(|line| line.split('"').nth(1)).unwrap_or("?").to_owned()
 }
 
-/// Compiles `xtask/peers/cpp/{name}.cpp`, unless the same sources were compiled the same way for the same processor.
+/// Compiles `xtask/peers/cpp/{name}.cpp`.
 fn compile(root: &Path, folder: &Path, name: &str, flags: &[String], links: &[String]) -> Result<PathBuf, String> {
     let sources = root.join("xtask/peers/cpp");
-    let [source, shared] = [format!("{name}.cpp"), "runner.hpp".to_owned()].map(|file| sources.join(file));
-    let program = folder.join("bin").join(name);
-    let (input, output) = (source.display().to_string(), program.display().to_string());
-    let mut words: Vec<&str> = vec!["g++"];
-    words.extend(FLAGS);
-    words.extend(flags.iter().map(String::as_str));
-    words.extend([input.as_str(), "-o", output.as_str()]);
-    words.extend(links.iter().map(String::as_str));
-    let text = |path: &Path| fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));
-    let stamp = [words.join(" "), machine::instruction_sets(), text(&source)?, text(&shared)?].join("\n");
-    let stamp_file = folder.join("bin").join(format!("{name}.stamp"));
-    if program.is_file() && fs::read_to_string(&stamp_file).is_ok_and(|old| old == stamp) {
-        return Ok(program);
-    }
-    xtask::shell::make_folder(&folder.join("bin"))?;
-    native::run(root, &words, &[])?;
-    fs::write(&stamp_file, stamp).map_err(|e| format!("{}: {e}", stamp_file.display()))?;
-    Ok(program)
+    let parts = compile::Program {
+        compiler: "g++",
+        name,
+        source: sources.join(format!("{name}.cpp")),
+        included: vec![sources.join("runner.hpp")],
+        flags: FLAGS.iter().map(|&flag| flag.to_owned()).chain(flags.iter().cloned()).collect(),
+        links: links.to_vec(),
+    };
+    compile::program(root, folder, &parts)
 }
 
 fn parry(root: &Path, folder: &Path) -> Result<PathBuf, String> {

@@ -6,9 +6,7 @@ mod agreement;
 mod answers;
 mod groups;
 mod install;
-mod machine;
 mod measure;
-mod native;
 mod report;
 mod runner;
 mod targets;
@@ -19,6 +17,7 @@ use std::path::{Path, PathBuf};
 
 use xtask::shell;
 
+use crate::machine;
 use install::Ready;
 use report::Line;
 use runner::Runner;

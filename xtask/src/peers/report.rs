@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::install::Ready;
-use super::machine;
 use super::targets::asked;
+use crate::machine;
 
 /// One library's figure for one question on one set.
 #[derive(Debug, Clone)]

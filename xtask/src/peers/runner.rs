@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use super::native;
 use super::workload::Workload;
+use crate::native;
 
 /// One question on one set, as a runner offers it.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::native;
+use crate::native;
 
 /// Where the files are.
 pub struct Workload {

@@ -16,6 +16,15 @@ pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), St
     if status.success() { Ok(()) } else { Err(format!("`{shown}` failed ({status})")) }
 }
 
+/// As [`run`], its standard output being ours.
+pub fn show(folder: &Path, words: &[&str]) -> Result<(), String> {
+    let (program, args) = words.split_first().ok_or("nothing to run")?;
+    let mut command = Command::new(program);
+    command.args(args).current_dir(folder).stdin(Stdio::null());
+    let status = command.status().map_err(|e| format!("cannot start `{program}`: {e}"))?;
+    if status.success() { Ok(()) } else { Err(format!("`{program}` failed ({status})")) }
+}
+
 /// Whether a program is there at all.
 pub fn exists(program: &str) -> bool {
     let mut command = Command::new(program);

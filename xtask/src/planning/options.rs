@@ -1,0 +1,57 @@
+//! The words after `cargo xtask planning`.
+
+use std::path::PathBuf;
+
+/// What the command line asks for.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    pub problems: Option<PathBuf>,
+    pub urdf: Option<PathBuf>,
+    pub srdf: Option<PathBuf>,
+    pub validity: bool,
+    pub json: bool,
+}
+
+impl Options {
+    /// From the words after `planning`.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let mut options = Self::default();
+        let mut words = words.iter();
+        while let Some(&word) = words.next() {
+            let file = match word {
+                "--json" => {
+                    options.json = true;
+                    continue;
+                }
+                "--validity" => {
+                    options.validity = true;
+                    continue;
+                }
+                "--problems" => &mut options.problems,
+                "--urdf" => &mut options.urdf,
+                "--srdf" => &mut options.srdf,
+                _ => {
+                    let known = "`--problems FILE`, `--urdf FILE`, `--srdf FILE`, `--validity` and `--json`";
+                    return Err(format!("`planning {word}`: the options are {known}"));
+                }
+            };
+            *file = Some(words.next().ok_or_else(|| format!("`{word}` needs a file: `{word} FILE`"))?.into());
+        }
+        Ok(options)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_read_and_mistakes_named() {
+        let problems = Some(PathBuf::from("p.json"));
+        let expected = Options { problems, json: true, ..Options::default() };
+        assert_eq!(Options::parse(&["--json", "--problems", "p.json"]).unwrap(), expected);
+        assert!(Options::parse(&["--validity"]).unwrap().validity);
+        assert!(Options::parse(&["--urdf"]).unwrap_err().contains("--urdf FILE"));
+        assert!(Options::parse(&["--udf"]).unwrap_err().contains("`planning --udf`"));
+    }
+}
