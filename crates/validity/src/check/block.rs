@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::segment::MotionTable;
 use super::workspace::Workspace;
-use crate::lanes::{V3, splat};
+use crate::lanes::{LANES, V3, splat};
 use crate::model::{BodyPair, CoveredRobot, SphereNode};
 use crate::obstacles::{Bounds, BoxTree, ObstacleSet, RoundedSolid};
 
@@ -239,16 +239,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn self_collision(&mut self) {
         let robot = self.model.robot;
-        if let Some(tables) = robot.tables.get() {
-            self.workspace.near_pairs.fill(true);
-            for table in tables {
-                let deltas = table.steps.map(|step| self.workspace.deltas[step]);
-                let near = table.near(self.simd, &self.workspace.values, deltas);
-                for (bit, &pair) in table.pairs.iter().enumerate() {
-                    self.workspace.near_pairs[pair] = near >> bit & 1 == 1;
-                }
-            }
-        }
+        self.mark_near_pairs();
         for (index, pair) in robot.pairs.iter().enumerate() {
             if !self.workspace.near_pairs[index] {
                 continue;
@@ -262,6 +253,40 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
+    /// Marks the pairs whose bounding spheres are near, and which the tables do not exclude.
+    #[inline(always)]
+    fn mark_near_pairs(&mut self) {
+        let (simd, robot, motion) = (self.simd, self.model.robot, self.model.motion);
+        self.workspace.near_pairs.fill(true);
+        if let Some(tables) = robot.tables.get() {
+            for table in tables {
+                let deltas = [self.workspace.deltas[table.steps[0]], self.workspace.deltas[table.steps[1]]];
+                let near = table.near(simd, &self.workspace.values, deltas);
+                for (bit, &pair) in table.pairs.iter().enumerate() {
+                    self.workspace.near_pairs[pair] = near >> bit & 1 == 1;
+                }
+            }
+        }
+        for body in &robot.bodies {
+            if !body.nodes.is_empty() {
+                self.workspace.centre(simd, robot, body.nodes.start);
+            }
+        }
+        self.workspace.square_reaches(simd, motion);
+        for (index, pair) in robot.pairs.iter().enumerate() {
+            let (a, b) = (&robot.bodies[pair.a.0].nodes, &robot.bodies[pair.b.0].nodes);
+            if a.is_empty() || b.is_empty() {
+                self.workspace.near_pairs[index] = false;
+            } else if self.workspace.near_pairs[index] {
+                let column = motion.pair(index);
+                let square = splat(simd, self.workspace.reach_squares[column / LANES].0[column % LANES]);
+                let from_b = self.workspace.known_centre(simd, a.start).minus(self.workspace.known_centre(simd, b.start));
+                let near = !(from_b.dot(from_b).simd_ge(square).to_bitmask() as u32) & self.request.active;
+                self.workspace.near_pairs[index] = near != 0;
+            }
+        }
+    }
+
     /// Descends in the trees of two bodies. True where they are not proven apart.
     #[inline(always)]
     fn bodies_near(&mut self, index: usize, pair: &BodyPair, more_m: f32) -> bool {
@@ -271,16 +296,10 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             return false;
         }
         let (half_chord, sag) = self.workspace.pair_motion(self.model.motion.pair(index), pair.common_frame);
-        let (i, j) = (a.nodes.start, b.nodes.start);
-        let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
         let margin_m = pair.margin_m + more_m;
-        let radius = robot.nodes[i as usize].radius + robot.nodes[j as usize].radius + margin_m;
-        if within(simd, from_b, radius + half_chord) & self.request.active == 0 {
-            return false;
-        }
         let mut open = std::mem::take(&mut self.workspace.node_pairs);
         open.clear();
-        open.push((i, j));
+        open.push((a.nodes.start, b.nodes.start));
         let mut is_near = false;
         while let Some((i, j)) = open.pop() {
             let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);

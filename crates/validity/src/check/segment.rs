@@ -73,6 +73,8 @@ pub(crate) struct MotionTable {
     lever_m: Vec<Row>,
     /// Per step, the longest lever arm of any body.
     longest_m: Vec<f64>,
+    /// In the column of a pair, the sum of the radii of both bounding spheres and its margin.
+    root_radii_m: Vec<Row>,
 }
 
 impl MotionTable {
@@ -94,7 +96,17 @@ impl MotionTable {
         for (p, pair) in robot.pairs.iter().enumerate() {
             pair.joints.iter().for_each(|joint| set(joint.step, first_pair + p, joint.lever_m));
         }
-        Self { columns, first_pair, lever_m, longest_m }
+        let mut root_radii_m = vec![Row::ZERO; rows];
+        for (p, pair) in robot.pairs.iter().enumerate() {
+            let column = first_pair + p;
+            let radius = robot.bounding_radius_m(pair.a) + robot.bounding_radius_m(pair.b) + pair.margin_m;
+            root_radii_m[column / LANES].0[column % LANES] = radius;
+        }
+        Self { columns, first_pair, lever_m, longest_m, root_radii_m }
+    }
+
+    pub fn root_radii_m(&self) -> &[Row] {
+        &self.root_radii_m
     }
 
     pub fn columns(&self) -> usize {

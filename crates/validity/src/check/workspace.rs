@@ -20,6 +20,8 @@ pub(crate) struct Workspace {
     pub half_chord_m: Vec<Row>,
     /// The same: the largest deviation of a point from its chord, m.
     pub sag_m: Vec<Row>,
+    /// Per pair of bodies, the square of the distance at which their bounding spheres are near, m².
+    pub reach_squares: Vec<Row>,
     /// Per frame, how much the turning joints that carry it change between lanes, rad.
     pub turned: Vec<f32>,
     /// Per step, how much its joint changes between lanes, rad or m.
@@ -43,6 +45,7 @@ impl Workspace {
             centres: vec![PointRow::ZERO; robot.nodes.len()],
             stamps: vec![0; robot.nodes.len()],
             stamp: 0,
+            reach_squares: vec![Row::ZERO; rows],
             stretch: vec![JointStretch::default(); robot.chain.steps.len()],
             half_chord_m: vec![Row::ZERO; rows],
             sag_m: vec![Row::ZERO; rows],
@@ -84,5 +87,22 @@ impl Workspace {
         self.stamps[i] = self.stamp;
         self.centres[i].store(centre);
         centre
+    }
+
+    /// Centres of a node that were computed for this block already.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn known_centre<S: fearless_simd::Simd>(&self, simd: S, node: u32) -> crate::lanes::V3<S> {
+        self.centres[node as usize].load(simd)
+    }
+
+    /// Computes `reach_squares` from the radii of the bounding spheres and the chords.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn square_reaches<S: fearless_simd::Simd>(&mut self, simd: S, table: &MotionTable) {
+        for (r, radii) in table.root_radii_m().iter().enumerate() {
+            let reach = radii.load(simd) + self.half_chord_m[r].load(simd);
+            self.reach_squares[r].store(reach * reach);
+        }
     }
 }

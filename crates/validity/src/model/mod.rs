@@ -176,6 +176,12 @@ impl CoveredRobot {
         self.bodies.iter().map(|b| b.link)
     }
 
+    /// Radius of the sphere around a body; 0 where it has no spheres.
+    pub(crate) fn bounding_radius_m(&self, body: BodyId) -> f32 {
+        let nodes = &self.bodies[body.0].nodes;
+        if nodes.is_empty() { 0.0 } else { self.nodes[nodes.start as usize].radius }
+    }
+
     /// Number of spheres that enclose a body.
     pub fn spheres(&self, body: BodyId) -> usize {
         let Some(b) = self.bodies.get(body.0) else { return 0 };

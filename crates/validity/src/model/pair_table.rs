@@ -6,11 +6,11 @@ use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 use crate::lanes::{LANES, Row, splat};
 
 /// Cells per turn of a joint.
-pub(crate) const CELLS: usize = 112;
+pub(crate) const CELLS: usize = 224;
 /// Width of a cell, rad.
 pub(crate) const CELL_RAD: f64 = std::f64::consts::TAU / CELLS as f64;
 /// A cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long at most.
-pub(crate) const BEYOND_RAD: f32 = 0.025;
+pub(crate) const BEYOND_RAD: f32 = 0.018;
 /// Pairs of one table, a bit each.
 pub(crate) const MAX_PAIRS: usize = 8;
 
