@@ -155,7 +155,8 @@ struct Sampler<'r> {
 
 impl PlannerSample for Sampler<'_> {
     fn sample(&mut self, out: &mut [f64]) {
-        self.region.sample(1.0, self.random, out);
+        let share = if self.round % 4 == 3 { 0.3 } else { (0.3 + f64::from(self.round) / 40.0).min(1.0) };
+        self.region.sample(share, self.random, out);
         self.round += 1;
     }
 }

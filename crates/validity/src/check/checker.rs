@@ -13,7 +13,7 @@ use crate::obstacles::{BoxTree, ObstacleSet};
 use crate::validity::Validity;
 
 /// Motion of the robot's fastest point within one block of an edge, m. Longer edges are tested block by block from the start.
-const BLOCK_LENGTH_M: f64 = 1.2;
+const BLOCK_LENGTH_M: f64 = 3.0;
 /// A stretch whose chords are shorter than this and not proven free is not divided further, m.
 const SHORTEST_CHORD_M: f64 = 0.004;
 
