@@ -30,7 +30,7 @@ mod rrt_connect;
 mod theta_star;
 mod time_parametrization;
 
-pub use cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect};
+pub use cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, TimedMotion};
 pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use elbowroom_cell::CellRobot;
-use elbowroom_planner::{PlannedPath, Trajectory};
+use elbowroom_planner::{PlannedPath, TimedMotion};
 use serde::{Serialize, Serializer};
 
 /// Result of planning. Serialized as one flat document in SI units, without the rows. Where no path was found,
@@ -58,8 +58,8 @@ impl PathAnswer {
         }
     }
 
-    pub(super) fn found(robot: &CellRobot, path: PlannedPath, motion: &Trajectory, rows: Vec<(f64, Vec<f64>)>) -> Self {
-        let (duration_s, stops) = (motion.seconds(), motion.stops());
+    pub(super) fn found(robot: &CellRobot, path: PlannedPath, motion: TimedMotion) -> Self {
+        let TimedMotion { duration_s, stops, rows } = motion;
         Self {
             found: true,
             robot: robot.name.clone(),

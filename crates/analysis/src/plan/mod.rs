@@ -11,7 +11,10 @@ use std::time::Instant;
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
 use elbowroom_formats::FormatError;
-use elbowroom_planner::{RrtConnect, RrtConnectError, RrtConnectSettings};
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
+    RrtConnectSettings, TimedMotion,
+};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 
@@ -69,26 +72,52 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, id, from).map_err(|e| refused(e.into()))?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
+    // A link without bounds cannot be covered; the exact scene plans for it.
+    let model = CoverModel::new(&scene, &state, id, clearance_m).ok();
+    let obstacles = model.as_ref().map(|model| CoverObstacles::new(model, &scene, &state, clearance_m));
+    let period_s = request.period_s.unwrap_or(cell.tick_s);
     region_constraint::at_start(cell, id, from, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
-        let mut planner = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
+        let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
         if let Some(constraint) = constraint {
-            planner = planner.with_constraint(constraint);
+            exact = exact.with_constraint(constraint);
         }
+        let query = Query { state: &state, goal: &request.to, settings: &request.options, limits: &limits, period_s };
         let begin = Instant::now();
-        let path = match planner.plan(&state, &request.to, &request.options) {
-            Ok(path) => path,
-            Err(e @ RrtConnectError::NotFound { .. }) => {
-                let answer = PathAnswer::none(robot, begin.elapsed(), e.to_string());
-                return Ok(PathAnswer { regions, ..answer });
-            }
+        let found = match (&model, &obstacles) {
+            (Some(model), Some(obstacles)) => query.on_covers(CoverRrtConnect::new(exact, model, obstacles)),
+            _ => query.exactly(exact),
+        };
+        let answer = match found {
+            Ok((path, motion)) => PathAnswer::found(robot, path, motion),
+            Err(e @ RrtConnectError::NotFound { .. }) => PathAnswer::none(robot, begin.elapsed(), e.to_string()),
             Err(e) => return Err(refused(e)),
         };
-        let period = request.period_s.unwrap_or(cell.tick_s);
-        let trajectory = planner.time_parametrize(&state, &path, &limits, period, &request.options).map_err(refused)?;
-        let rows = trajectory.samples(period).map_err(|e| refused(e.into()))?;
-        Ok(PathAnswer { regions, ..PathAnswer::found(robot, path, &trajectory, rows) })
+        Ok(PathAnswer { regions, ..answer })
     })
+}
+
+/// What a planner is asked.
+struct Query<'q> {
+    state: &'q SceneState,
+    goal: &'q [f64],
+    settings: &'q RrtConnectSettings,
+    limits: &'q KinematicLimits,
+    period_s: f64,
+}
+
+impl Query<'_> {
+    fn on_covers(&self, mut planner: CoverRrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+        let path = planner.plan(self.state, self.goal, self.settings)?;
+        let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
+        Ok((path, motion))
+    }
+
+    fn exactly(&self, mut planner: RrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+        let path = planner.plan(self.state, self.goal, self.settings)?;
+        let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
+        Ok((path, TimedMotion::of(&motion, self.period_s)?))
+    }
 }
 
 /// The state with all robots at their start, except one.

@@ -2,14 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnectError};
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnectError, TimedMotion,
+};
 
 use super::problem_scene::ROBOT;
 use super::rrt_connect::{found, reason, rrt_settings};
 use super::{PlanningEngine, ProblemScene, ProblemSettings, RrtConnectEngine, Solution};
-
-/// Share of the time limit after which the exact scene is searched.
-const COVER_SHARE: f64 = 0.5;
 
 /// [`CoverRrtConnect`], then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths are proven free. The covers of the robot are
 /// built at the first problem and again where its pairs change.
@@ -27,22 +26,34 @@ impl PlanningEngine for CoverRrtConnectEngine {
         }
         let Some(model) = &self.model else { return RrtConnectEngine.solve(problem, settings) };
         let obstacles = CoverObstacles::new(model, scene, start, settings.clearance_m);
-        let mut planner =
-            CoverRrtConnect::new(scene, ROBOT, model, &obstacles).with_limits(problem.limits().iter().copied());
-        let mut spent = Duration::ZERO;
+        let Ok(exact) = problem.planner() else { return RrtConnectEngine.solve(problem, settings) };
+        let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
+        let begin = Instant::now();
+        let mut solution = Solution::default();
         for (i, goal) in problem.goals().iter().enumerate() {
-            let left = settings.time_limit.mul_f64(COVER_SHARE).saturating_sub(spent);
+            let left = settings.time_limit.saturating_sub(begin.elapsed());
             let share = left / u32::try_from(problem.goals().len() - i).unwrap_or(u32::MAX);
-            let begin = Instant::now();
+            let before = begin.elapsed();
             match planner.plan(start, goal, &rrt_settings(settings, share)) {
-                Ok(path) => return found(path, spent),
-                Err(RrtConnectError::NotFound { .. }) => {}
-                Err(e) => return Solution { reason: Some(reason(&e)), planning: spent, ..Solution::default() },
+                Ok(path) => return found(path, before),
+                Err(e) => solution.reason = Some(reason(&e)),
             }
-            spent += begin.elapsed();
         }
-        let rest = ProblemSettings { time_limit: settings.time_limit.saturating_sub(spent), ..settings.clone() };
-        let solution = RrtConnectEngine.solve(problem, &rest);
-        Solution { planning: spent + solution.planning, ..solution }
+        Solution { planning: begin.elapsed(), ..solution }
+    }
+
+    fn time(
+        &mut self,
+        problem: &ProblemScene,
+        path: &PlannedPath,
+        limits: &KinematicLimits,
+        settings: &ProblemSettings,
+    ) -> Result<TimedMotion, RrtConnectError> {
+        let Some(model) = &self.model else { return RrtConnectEngine.time(problem, path, limits, settings) };
+        let (scene, start) = (problem.scene(), problem.start());
+        let obstacles = CoverObstacles::new(model, scene, start, settings.clearance_m);
+        let mut planner = CoverRrtConnect::new(problem.planner()?, model, &obstacles);
+        let rrt = rrt_settings(settings, Duration::MAX);
+        planner.time_parametrize(start, path, limits, settings.period_s, &rrt)
     }
 }

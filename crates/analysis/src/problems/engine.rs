@@ -2,12 +2,26 @@
 
 use std::time::Duration;
 
+use elbowroom_planner::{KinematicLimits, PlannedPath, RrtConnectError, TimedMotion};
+
 use super::ProblemScene;
 
 /// A planner that solves problems one after the other. It may keep what it computes for the robot from one to the next.
 pub trait PlanningEngine {
     /// Plans from the start to one of the goals, all of which are free.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution;
+
+    /// Times a path that it found, within limits.
+    ///
+    /// # Errors
+    /// As [`RrtConnect::time_parametrize`](elbowroom_planner::RrtConnect::time_parametrize).
+    fn time(
+        &mut self,
+        problem: &ProblemScene,
+        path: &PlannedPath,
+        limits: &KinematicLimits,
+        settings: &ProblemSettings,
+    ) -> Result<TimedMotion, RrtConnectError>;
 }
 
 /// Settings of a run.

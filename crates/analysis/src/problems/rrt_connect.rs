@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{PlannedPath, RrtConnectError, RrtConnectSettings};
+use elbowroom_planner::{KinematicLimits, PlannedPath, RrtConnectError, RrtConnectSettings, TimedMotion};
 
 use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 
@@ -29,6 +29,19 @@ impl PlanningEngine for RrtConnectEngine {
             }
         }
         Solution { planning: begin.elapsed(), ..solution }
+    }
+
+    fn time(
+        &mut self,
+        problem: &ProblemScene,
+        path: &PlannedPath,
+        limits: &KinematicLimits,
+        settings: &ProblemSettings,
+    ) -> Result<TimedMotion, RrtConnectError> {
+        let rrt = rrt_settings(settings, Duration::MAX);
+        let trajectory =
+            problem.planner()?.time_parametrize(problem.start(), path, limits, settings.period_s, &rrt)?;
+        TimedMotion::of(&trajectory, settings.period_s)
     }
 }
 

@@ -1,14 +1,11 @@
 //! The run over the problems of a file.
 
-use std::time::Duration;
-
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_planner::{KinematicLimits, PlannedPath};
+use elbowroom_planner::{KinematicLimits, PlannedPath, TimedMotion};
 
 use super::messages::Result;
 use super::model::ProblemModel;
 use super::problem_scene::ProblemScene;
-use super::rrt_connect::rrt_settings;
 use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};
 use crate::plan::TimedPath;
 
@@ -33,7 +30,7 @@ pub fn run(
         } else {
             let solution = engine.solve(&scene, settings);
             let mut result = ProblemResult::of(set, id, &solution);
-            let motion = if solution.found { timed(&scene, solution, settings, &mut result) } else { None };
+            let motion = if solution.found { timed(engine, &scene, solution, settings, &mut result) } else { None };
             (result, motion)
         };
         let goes_on = each(&result, motion.as_ref());
@@ -47,6 +44,7 @@ pub fn run(
 
 /// The timed path; `None`, with the reason in the result, where there is none.
 fn timed(
+    engine: &mut dyn PlanningEngine,
     problem: &ProblemScene,
     solution: Solution,
     settings: &ProblemSettings,
@@ -55,7 +53,7 @@ fn timed(
     let limits = motion_limits::of_chain(&problem.scene.robots()[0].robot.chain, &problem.planned);
     let motion = match limits {
         None => Err("not timed: a joint has no largest speed".into()),
-        Some(limits) => time(problem, solution, settings, &limits),
+        Some(limits) => time(engine, problem, solution, settings, &limits),
     };
     match motion {
         Ok(motion) => {
@@ -70,13 +68,12 @@ fn timed(
 }
 
 fn time(
+    engine: &mut dyn PlanningEngine,
     problem: &ProblemScene,
     solution: Solution,
     settings: &ProblemSettings,
     limits: &KinematicLimits,
 ) -> std::result::Result<TimedPath, String> {
-    let refused = |e: &dyn std::fmt::Display| format!("not timed: {e}");
-    let mut planner = problem.planner().map_err(|e| refused(&e))?;
     let path = PlannedPath {
         waypoints: solution.waypoints,
         length_rad: solution.cost_rad,
@@ -85,14 +82,7 @@ fn time(
         simplification_time: solution.simplification,
         states_checked: 0,
     };
-    let rrt = rrt_settings(settings, Duration::MAX);
-    let trajectory = planner.time_parametrize(problem.start(), &path, limits, settings.period_s, &rrt);
-    let trajectory = trajectory.map_err(|e| refused(&e))?;
-    Ok(TimedPath {
-        duration_s: trajectory.seconds(),
-        stops: trajectory.stops(),
-        rows: trajectory.samples(settings.period_s).map_err(|e| refused(&e))?,
-        waypoints: path.waypoints,
-        cost_rad: path.length_rad,
-    })
+    let motion = engine.time(problem, &path, limits, settings).map_err(|e| format!("not timed: {e}"))?;
+    let TimedMotion { duration_s, stops, rows } = motion;
+    Ok(TimedPath { duration_s, stops, rows, waypoints: path.waypoints, cost_rad: path.length_rad })
 }

@@ -9,6 +9,11 @@ use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 use super::cover_model::{CoverModel, CoverObstacles};
 use crate::rrt_connect::MotionValidator;
 
+/// Edges between two looks at the clock: a look costs as much as a short edge.
+const EDGES_PER_LOOK: u64 = 16;
+/// Configurations of a block.
+const BLOCK: u64 = 16;
+
 /// What a tree search asks.
 pub(super) trait EdgeValidator {
     /// True where the straight segment between two configurations is proven free.
@@ -17,23 +22,38 @@ pub(super) trait EdgeValidator {
     fn is_exhausted(&mut self) -> bool;
 }
 
-/// Proves edges by the covers; on request by the exact scene, for the pairs that the covers leave open.
+/// Proves edges by the covers; by the exact scene the pairs that the covers leave open.
+#[derive(Debug)]
 pub(super) struct CoverValidator<'m> {
-    pub checker: ValidityChecker<'m>,
-    pub exact: MotionValidator<'m>,
-    pub model: &'m CoverModel,
-    pub obstacles: &'m CoverObstacles,
-    pub robot: RobotId,
-    pub deadline: Instant,
-    pub max_edges: u64,
-    pub edges: u64,
+    checker: ValidityChecker<'m>,
+    model: &'m CoverModel,
+    obstacles: &'m CoverObstacles,
+    robot: RobotId,
+    deadline: Instant,
+    max_states: u64,
+    /// Blocks before the present query.
+    blocks_before: u64,
+    edges: u64,
     pairs: Vec<NotCertain>,
 }
 
 impl<'m> CoverValidator<'m> {
-    pub fn new(model: &'m CoverModel, obstacles: &'m CoverObstacles, exact: MotionValidator<'m>, robot: RobotId) -> Self {
+    pub fn new(model: &'m CoverModel, obstacles: &'m CoverObstacles, robot: RobotId) -> Self {
         let checker = obstacles.checker(model);
-        Self { checker, exact, model, obstacles, robot, deadline: Instant::now(), max_edges: 0, edges: 0, pairs: Vec::new() }
+        let (deadline, pairs) = (Instant::now(), Vec::new());
+        Self { checker, model, obstacles, robot, deadline, max_states: 0, blocks_before: 0, edges: 0, pairs }
+    }
+
+    /// Begins a query.
+    pub fn begin(&mut self, deadline: Instant, max_states: u64) {
+        self.deadline = deadline;
+        self.max_states = max_states;
+        self.blocks_before = self.checker.blocks();
+    }
+
+    /// Configurations that were tested in this query.
+    pub fn states_checked(&self) -> u64 {
+        BLOCK * (self.checker.blocks() - self.blocks_before)
     }
 
     /// What the covers say of a configuration.
@@ -41,29 +61,35 @@ impl<'m> CoverValidator<'m> {
         self.checker.state(q).unwrap_or(Validity::Uncertain)
     }
 
-    /// True where an edge is free: the pairs that the covers leave open are swept exactly.
-    pub fn is_free_exactly(&mut self, from: &[f64], to: &[f64], sweep: &SweepOptions) -> bool {
+    /// True where an edge is proven free: what the covers leave open is swept exactly.
+    pub fn is_free_exactly(
+        &mut self,
+        exact: &mut MotionValidator,
+        from: &[f64],
+        to: &[f64],
+        sweep: &SweepOptions,
+    ) -> bool {
         let mut pairs = std::mem::take(&mut self.pairs);
-        let known = self.checker.uncertain_pairs(from, to, &mut pairs).is_ok();
-        let is_free = known && pairs.iter().all(|&pair| self.pair_is_free(pair, from, to, sweep));
+        let are_known = self.checker.uncertain_pairs(from, to, &mut pairs).is_ok();
+        let moves = SweepMove::Robot { robot: self.robot, to };
+        let is_free = are_known
+            && pairs.iter().all(|&pair| {
+                let (a, b) = self.obstacles.pair(self.model, pair);
+                exact.pair_sweep_is_free(a, b, from, moves, sweep)
+            });
         self.pairs = pairs;
-        is_free && self.exact.constraint_allows(from, to)
-    }
-
-    fn pair_is_free(&mut self, pair: NotCertain, from: &[f64], to: &[f64], sweep: &SweepOptions) -> bool {
-        let (a, b) = self.obstacles.pair(self.model, pair);
-        self.exact.pair_sweep_is_free(a, b, from, SweepMove::Robot { robot: self.robot, to }, sweep)
+        is_free && exact.constraint_allows(from, to)
     }
 }
 
 impl EdgeValidator for CoverValidator<'_> {
     fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
         self.edges += 1;
-        self.checker.edge_is_free(from, to).unwrap_or(false) && self.exact.constraint_allows(from, to)
+        self.checker.edge_is_free(from, to).unwrap_or(false)
     }
 
     fn is_exhausted(&mut self) -> bool {
-        // Reading the clock costs as much as a short edge.
-        self.edges > self.max_edges || (self.edges % 16 == 0 && Instant::now() >= self.deadline)
+        self.states_checked() > self.max_states
+            || (self.edges.is_multiple_of(EDGES_PER_LOOK) && Instant::now() >= self.deadline)
     }
 }

@@ -5,6 +5,7 @@ mod cover_model;
 mod edge_validator;
 mod planner;
 mod shortcutting;
+mod time_optimal;
 mod tree;
 mod tree_search;
 
@@ -12,8 +13,9 @@ use crate::rrt_connect::{Random, length, lerp, path_length};
 
 pub use cover_model::{CoverModel, CoverObstacles};
 pub use planner::CoverRrtConnect;
+pub use time_optimal::TimedMotion;
 
 /// Draws configurations.
-trait PlannerSample {
+trait ConfigurationSampler {
     fn sample(&mut self, out: &mut [f64]);
 }

@@ -4,7 +4,7 @@
 
 use super::edge_validator::EdgeValidator;
 use super::tree::Tree;
-use super::{PlannerSample, lerp};
+use super::{ConfigurationSampler, lerp};
 
 /// Longest edge, rad (and m).
 const EDGE_LENGTH: f64 = 1.0;
@@ -30,7 +30,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
     }
 
     /// Waypoints of a path; `None` where a limit is reached.
-    pub fn run(&mut self, sampler: &mut impl PlannerSample) -> Option<Vec<Vec<f64>>> {
+    pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         while !self.validator.is_exhausted() {
             if self.trees[0].len() > self.trees[1].len() {

@@ -16,7 +16,7 @@ const DIFFERENCE_STEP: f64 = 1e-4;
 const MIN_WEIGHT_RATIO: f64 = 0.05;
 
 /// Metres that the farthest point of a solid moves per rad (or m) of each value: an estimate, not used in proofs.
-pub(crate) fn joint_weights(robot: &Robot, bounds: &JointBounds) -> Vec<f64> {
+pub(super) fn joint_weights(robot: &Robot, bounds: &JointBounds) -> Vec<f64> {
     let corners = corners(robot);
     let dof = bounds.dof();
     let mut q = vec![0.0; dof];

@@ -19,9 +19,7 @@ mod tree_search;
 
 pub(crate) use interpolation::{length, lerp, path_length};
 pub(crate) use joint_bounds::{JointBounds, SamplingRegion};
-pub(crate) use joint_weights::joint_weights;
 pub(crate) use motion_validator::MotionValidator;
-pub(crate) use planner::deadline;
 pub(crate) use random::Random;
 
 pub use error::{JointUnit, RrtConnectError};

@@ -23,7 +23,7 @@ use crate::path::PathEnd;
 const MAX_TIME_LIMIT: Duration = Duration::from_hours(365 * 24);
 
 /// When a search ends that begins at a time.
-pub(crate) fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
+fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
     begin + settings.time_limit.min(MAX_TIME_LIMIT)
 }
 
@@ -50,8 +50,8 @@ pub(crate) fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant
 /// ```
 #[derive(Debug)]
 pub struct RrtConnect<'s> {
-    pub(super) validator: MotionValidator<'s>,
-    bounds: JointBounds,
+    pub(crate) validator: MotionValidator<'s>,
+    pub(crate) bounds: JointBounds,
     robot: RobotId,
 }
 
@@ -199,26 +199,62 @@ impl<'s> RrtConnect<'s> {
         if let Some((setting, value)) = settings.invalid() {
             return Err(RrtConnectError::InvalidSetting { setting, value });
         }
-        let clearance_m = settings.clearance_m;
-        self.validator.set_start(start, goal)?;
-        self.validator.deadline = deadline(Instant::now(), settings);
-        self.validator.max_states = settings.max_states;
-        self.validator.check_resolution = settings.check_resolution;
-        self.validator.sweep = SweepOptions { clearance_m, ..Default::default() };
+        self.begin(start, goal, settings)?;
         let ends = [(PathEnd::Start, start.q(self.robot)), (PathEnd::Goal, goal)];
         let mut checked = Vec::new();
         for (end, q) in ends {
             let q = self.bounds.clamped_end(end, q)?;
-            if let Some(contact) = self.validator.first_contact(&q) {
-                let metres = self.validator.pair_distance(&q, &contact);
-                let [a, b] = [contact.a, contact.b].map(|m| self.validator.name(m));
-                return Err(RrtConnectError::InCollision { end, a, b, metres, clearance_m });
-            }
-            let margin = self.validator.nearest_pair(&q).map_or(f64::INFINITY, |d| d.metres) - clearance_m;
+            let margin = self.free_margin_m(end, &q)?;
             self.validator.sweep.tolerance_m = self.validator.sweep.tolerance_m.min(0.5 * margin);
             checked.push(q);
         }
         let to = checked.pop().unwrap_or_default();
         Ok([checked.pop().unwrap_or_default(), to])
+    }
+
+    /// Prepares the validator for a query, the ends unchecked.
+    pub(crate) fn begin(
+        &mut self,
+        start: &SceneState,
+        goal: &[f64],
+        settings: &RrtConnectSettings,
+    ) -> Result<(), RrtConnectError> {
+        self.validator.set_start(start, goal)?;
+        self.validator.deadline = deadline(Instant::now(), settings);
+        self.validator.max_states = settings.max_states;
+        self.validator.check_resolution = settings.check_resolution;
+        self.validator.sweep = SweepOptions { clearance_m: settings.clearance_m, ..Default::default() };
+        Ok(())
+    }
+
+    /// Distance of the nearest pair at an end beyond its margin and the clearance, metres.
+    pub(crate) fn free_margin_m(&mut self, end: PathEnd, q: &[f64]) -> Result<f64, RrtConnectError> {
+        let clearance_m = self.validator.sweep.clearance_m;
+        if let Some(contact) = self.validator.first_contact(q) {
+            let metres = self.validator.pair_distance(q, &contact);
+            let [a, b] = [contact.a, contact.b].map(|m| self.validator.name(m));
+            return Err(RrtConnectError::InCollision { end, a, b, metres, clearance_m });
+        }
+        Ok(self.validator.nearest_pair(q).map_or(f64::INFINITY, |d| d.metres) - clearance_m)
+    }
+
+    /// The ends, or for each a configuration near by that has the clearance from the constraint, if there is one.
+    pub(crate) fn constraint_exits(
+        &mut self,
+        ends: &[Vec<f64>; 2],
+        start: &SceneState,
+        random: &mut Random,
+        settings: &RrtConnectSettings,
+    ) -> Result<[Vec<f64>; 2], RrtConnectError> {
+        if self.validator.constraint.is_none() {
+            return Ok(ends.clone());
+        }
+        self.prepare(start, &ends[1], settings)?;
+        self.clearance_exits(ends, random, settings)
+    }
+
+    /// Its robot.
+    pub(crate) fn robot(&self) -> RobotId {
+        self.robot
     }
 }

@@ -120,24 +120,3 @@ fn motion_within_cell_m(robot: &CoveredRobot, pair: &BodyPair) -> f32 {
     });
     (each.sum::<f64>() as f32).next_up()
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn density() {
-        let d = std::path::Path::new("/work/shared/data/urdf/panda");
-        let robot = elbowroom_formats::robot::load(&d.join("panda.urdf"), &elbowroom_formats::robot::LoadOptions { srdf: Some(d.join("panda.srdf")), ..Default::default() }).unwrap().robot;
-        let c = crate::CoveredRobot::new(&robot, elbowroom_spatial::Pose::IDENTITY).unwrap();
-        let t0 = std::time::Instant::now();
-        let tables = super::pair_tables(&c);
-        println!("{:?}", t0.elapsed());
-        for t in &tables {
-            println!("steps {:?}", t.steps);
-            for (bit, &p) in t.pairs.iter().enumerate() {
-                let n = t.cells.iter().filter(|c| *c >> bit & 1 == 1).count();
-                let unreach = t.cells.iter().filter(|c| **c == 255).count();
-                println!("  {:?} {:?}: {n} of {}, 255: {unreach}", robot.chain.links()[c.bodies[c.pairs[p].a.0].link.0], robot.chain.links()[c.bodies[c.pairs[p].b.0].link.0], t.cells.len());
-            }
-        }
-    }
-}
