@@ -39,8 +39,7 @@ impl PlanningEngine for RrtConnectEngine {
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
         let rrt = rrt_settings(settings, Duration::MAX);
-        let trajectory =
-            problem.planner()?.time_parametrize(problem.start(), path, limits, settings.period_s, &rrt)?;
+        let trajectory = problem.planner()?.time_parametrize(problem.start(), path, limits, settings.period_s, &rrt)?;
         TimedMotion::of(&trajectory, settings.period_s)
     }
 }

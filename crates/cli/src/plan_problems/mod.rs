@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use elbowroom::analysis::problems::{
-    ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, CoverRrtConnectEngine, run as run_problems,
+    CoverRrtConnectEngine, ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, run as run_problems,
 };
 use elbowroom::formats::problem_set;
 use elbowroom::formats::robot::{self, LoadOptions};

@@ -137,12 +137,7 @@ impl<'m> CoverRrtConnect<'m> {
     }
 
     /// An end, or a configuration near by that the covers prove free and that an exactly proven edge joins with it.
-    fn exit(
-        &mut self,
-        ends: &[Vec<f64>; 2],
-        which: usize,
-        random: &mut Random,
-    ) -> Result<Vec<f64>, RrtConnectError> {
+    fn exit(&mut self, ends: &[Vec<f64>; 2], which: usize, random: &mut Random) -> Result<Vec<f64>, RrtConnectError> {
         let q = &ends[which];
         if self.covers.state(q) == Validity::Free {
             return Ok(q.clone());

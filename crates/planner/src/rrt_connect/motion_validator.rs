@@ -167,7 +167,8 @@ impl<'s> MotionValidator<'s> {
         options: &SweepOptions,
     ) -> bool {
         let mut pair = self.checker.between(a.into(), b.into());
-        self.state.set_q(self.scene, self.robot, from).is_ok() && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
+        self.state.set_q(self.scene, self.robot, from).is_ok()
+            && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
     }
 
     /// The proof in the scene.

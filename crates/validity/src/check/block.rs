@@ -280,7 +280,8 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             } else if self.workspace.near_pairs[index] {
                 let column = motion.pair(index);
                 let square = splat(simd, self.workspace.reach_squares[column / LANES].0[column % LANES]);
-                let from_b = self.workspace.known_centre(simd, a.start).minus(self.workspace.known_centre(simd, b.start));
+                let from_b =
+                    self.workspace.known_centre(simd, a.start).minus(self.workspace.known_centre(simd, b.start));
                 let near = !(from_b.dot(from_b).simd_ge(square).to_bitmask() as u32) & self.request.active;
                 self.workspace.near_pairs[index] = near != 0;
             }

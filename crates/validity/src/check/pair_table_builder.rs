@@ -6,7 +6,7 @@ use super::block::{BlockModel, BlockRequest};
 use super::segment::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, detected_simd_level};
-use crate::model::{BodyPair, CELL_RAD, CELLS, BEYOND_RAD, CoveredRobot, MAX_PAIRS, PairTable};
+use crate::model::{BEYOND_RAD, BodyPair, CELL_RAD, CELLS, CoveredRobot, MAX_PAIRS, PairTable};
 use crate::obstacles::{BoxTree, ObstacleSet};
 
 /// Slides with longer strokes are not covered by a table, m.
@@ -57,7 +57,9 @@ fn table(robot: &CoveredRobot, group: Group) -> PairTable {
     let mut open: Vec<usize> = (0..CELLS * CELLS)
         .filter(|i| {
             let (row, column) = (i / CELLS, i % CELLS);
-            (!is_single || row == column) && is_reachable(robot, group.steps[0], row) && is_reachable(robot, group.steps[1], column)
+            (!is_single || row == column)
+                && is_reachable(robot, group.steps[0], row)
+                && is_reachable(robot, group.steps[1], column)
         })
         .collect();
     // What no joint value reaches is always checked.
@@ -75,8 +77,7 @@ fn table(robot: &CoveredRobot, group: Group) -> PairTable {
             let margin_m = motion_within_cell_m(robot, &robot.pairs[p]);
             let request = BlockRequest { chords: false, active: 0xffff };
             let work = &mut workspace;
-            let touching =
-                dispatch!(detected_simd_level(), simd => model.check_pair(simd, work, request, p, margin_m));
+            let touching = dispatch!(detected_simd_level(), simd => model.check_pair(simd, work, request, p, margin_m));
             near.iter_mut().enumerate().for_each(|(lane, n)| *n |= ((touching >> lane & 1) as u8) << bit);
         }
         for (&cell, near) in block.iter().zip(near) {

@@ -163,7 +163,8 @@ impl Workspace {
                 continue;
             }
             let own = if step.is_prismatic { 0.0 } else { delta };
-            let (chord, curved) = (splat(simd, 0.5 * delta * ROUNDED_UP), splat(simd, 0.125 * delta * (own + 2.0 * before) * ROUNDED_UP));
+            let (chord, curved) =
+                (splat(simd, 0.5 * delta * ROUNDED_UP), splat(simd, 0.125 * delta * (own + 2.0 * before) * ROUNDED_UP));
             for r in 0..rows {
                 let lever = table.lever_m[i * rows + r].load(simd);
                 let (half_chord, sag) = (self.half_chord_m[r].load(simd), self.sag_m[r].load(simd));

@@ -34,8 +34,7 @@ impl<'g, 's> CoverSelection<'g, 's> {
     /// The balls.
     pub fn run(mut self) -> Vec<Ball> {
         self.cover_surface();
-        self.remove_redundant();
-        self.shrink();
+        self.trim();
         self.cover_inside();
         let chord_error_m = self.placed.chord_error_m;
         self.balls.into_iter().map(|b| Ball { radius: b.radius + chord_error_m, ..b }.rounded_up()).collect()
@@ -52,7 +51,7 @@ impl<'g, 's> CoverSelection<'g, 's> {
             while let Some(&seed) = samples.first() {
                 let voxel = &grid.surface[seed];
                 let ball = self.best_ball(voxel, &samples);
-                self.count(&ball, 1);
+                self.count(&ball);
                 self.balls.push(ball);
                 samples.retain(|&i| self.surface_counts[i] == 0);
             }
@@ -125,7 +124,8 @@ impl<'g, 's> CoverSelection<'g, 's> {
             return None;
         }
         // In a voxel of the surface the centre may be just outside.
-        let depth = if self.grid.at(centre) == Voxel::Surface && self.placed.depth_m(centre) <= 0.0 { -depth } else { depth };
+        let depth =
+            if self.grid.at(centre) == Voxel::Surface && self.placed.depth_m(centre) <= 0.0 { -depth } else { depth };
         let radius = depth + self.slack_m;
         (radius > 0.0).then_some(Ball { centre, radius })
     }
@@ -150,39 +150,26 @@ impl<'g, 's> CoverSelection<'g, 's> {
         }
     }
 
-    /// Removes balls whose surface voxels are all in others, the smallest first.
-    fn remove_redundant(&mut self) {
+    /// Shrinks each ball to the surface voxels that no other contains, the smallest ball first, and removes it where there are
+    /// none.
+    fn trim(&mut self) {
         let mut order: Vec<usize> = (0..self.balls.len()).collect();
         order.sort_by(|&i, &j| self.balls[i].radius.total_cmp(&self.balls[j].radius));
-        let mut keep = vec![true; self.balls.len()];
         for i in order {
-            if self.needed_radius(&self.balls[i]).is_none() {
-                keep[i] = false;
-                let ball = self.balls[i];
-                self.count(&ball, -1);
-            }
-        }
-        let mut kept = keep.into_iter();
-        self.balls.retain(|_| kept.next().unwrap_or(true));
-    }
-
-    /// Shrinks each ball to the surface voxels that no other contains.
-    fn shrink(&mut self) {
-        for i in 0..self.balls.len() {
             let ball = self.balls[i];
-            let Some(needed) = self.needed_radius(&ball) else { continue };
-            let smaller = Ball { radius: ball.radius.min(needed + 3.0 * ROUNDING_M), ..ball };
-            self.count(&ball, -1);
-            self.count(&smaller, 1);
+            let needed = self.needed_radius(&ball).map_or(0.0, |needed| needed + 3.0 * ROUNDING_M);
+            let smaller = Ball { radius: ball.radius.min(needed), ..ball };
+            self.release(&ball, &smaller);
             self.balls[i] = smaller;
         }
+        self.balls.retain(|b| b.radius > 0.0);
     }
 
     /// Radius that a ball needs for the surface voxels that it alone contains; `None` where there are none.
     fn needed_radius(&self, ball: &Ball) -> Option<f64> {
         let mut needed: Option<f64> = None;
-        for_each_row(self.grid, ball, |y, z, _| {
-            for i in self.grid.row(y, z) {
+        for_each_row(self.grid, ball, |row| {
+            for i in row.surface {
                 let v = &self.grid.surface[i];
                 if self.surface_counts[i] == 1 && ball.contains_box(v.centre(), v.half()) {
                     let radius = farthest_squared(ball.centre, v.centre(), v.half()).sqrt();
@@ -193,15 +180,25 @@ impl<'g, 's> CoverSelection<'g, 's> {
         needed
     }
 
-    /// Adds 1 or −1 to the counts of all surface voxels whose content a ball contains.
-    fn count(&mut self, ball: &Ball, change: i16) {
+    /// Counts a new ball for all surface voxels whose content it contains.
+    fn count(&mut self, ball: &Ball) {
         let (grid, counts) = (self.grid, &mut self.surface_counts);
-        for_each_row(grid, ball, |y, z, _| {
-            for i in grid.row(y, z) {
+        for_each_row(grid, ball, |row| {
+            for i in row.surface {
                 let v = &grid.surface[i];
-                if ball.contains_box(v.centre(), v.half()) {
-                    counts[i] = counts[i].saturating_add_signed(change);
-                }
+                counts[i] = counts[i].saturating_add(u16::from(ball.contains_box(v.centre(), v.half())));
+            }
+        });
+    }
+
+    /// Counts a ball no longer for the surface voxels that a smaller one does not contain.
+    fn release(&mut self, ball: &Ball, smaller: &Ball) {
+        let (grid, counts) = (self.grid, &mut self.surface_counts);
+        for_each_row(grid, ball, |row| {
+            for i in row.surface {
+                let v = &grid.surface[i];
+                let is_released = ball.contains_box(v.centre(), v.half()) && !smaller.contains_box(v.centre(), v.half());
+                counts[i] = counts[i].saturating_sub(u16::from(is_released));
             }
         });
     }
@@ -209,14 +206,15 @@ impl<'g, 's> CoverSelection<'g, 's> {
 
 /// Marks the voxels that a ball contains.
 fn mark_columns(grid: &VoxelGrid, ball: &Ball, marks: &mut [bool]) {
-    for_each_row(grid, ball, |y, z, columns| {
-        let row = (z * grid.counts[1] + y) * grid.counts[0];
-        marks[row + columns.start..row + columns.end].fill(true);
+    for_each_row(grid, ball, |row| {
+        let first = (row.z * grid.counts[1] + row.y) * grid.counts[0];
+        marks[first + row.columns.start..first + row.columns.end].fill(true);
     });
 }
 
-/// Calls `visit` with every row that a ball may touch, and the columns of the row whose voxels it contains.
-fn for_each_row(grid: &VoxelGrid, ball: &Ball, mut visit: impl FnMut(usize, usize, std::ops::Range<usize>)) {
+/// Calls `visit` with every row that a ball touches, the columns of the row whose voxels it contains, and the surface voxels of
+/// the row that it may contain.
+fn for_each_row(grid: &VoxelGrid, ball: &Ball, mut visit: impl FnMut(RowInBall)) {
     let step = grid.lattice.step_m;
     let range = |axis: usize| {
         let low = (ball.centre[axis] - ball.radius - grid.lattice.origin[axis]) / step;
@@ -227,12 +225,32 @@ fn for_each_row(grid: &VoxelGrid, ball: &Ball, mut visit: impl FnMut(usize, usiz
     for z in range(2) {
         for y in range(1) {
             let centre = grid.centre([0, y, z]);
-            let across = |axis: usize| (ball.centre[axis] - centre[axis]).abs() + 0.5 * step;
-            let left = reach * reach - across(1).powi(2) - across(2).powi(2);
-            let columns = if left > 0.0 { columns(grid, ball.centre.x, left.sqrt()) } else { 0..0 };
-            visit(y, z, columns);
+            let across = |axis: usize| (ball.centre[axis] - centre[axis]).abs();
+            // Square of half of the chord through the row at the given distance from its middle.
+            let chord = |beside: f64| {
+                let part = |axis: usize| (across(axis) + beside).max(0.0).powi(2);
+                ball.radius.powi(2) - part(1) - part(2)
+            };
+            let longest = chord(-0.5 * step);
+            if longest <= 0.0 {
+                continue;
+            }
+            let inside = chord(0.5 * step) - (ball.radius.powi(2) - reach * reach);
+            let columns = if inside > 0.0 { columns(grid, ball.centre.x, inside.sqrt()) } else { 0..0 };
+            let surface = grid.row_within(y, z, ball.centre.x, longest.sqrt());
+            visit(RowInBall { y, z, columns, surface });
         }
     }
+}
+
+/// The part of a row along x in a ball.
+struct RowInBall {
+    y: usize,
+    z: usize,
+    /// Voxels that the ball contains.
+    columns: std::ops::Range<usize>,
+    /// Indices of the surface voxels that it may contain.
+    surface: std::ops::Range<usize>,
 }
 
 /// Columns that lie within a distance of a coordinate along x.

@@ -72,10 +72,16 @@ impl VoxelGrid {
         self.states[index]
     }
 
-    /// Indices in `surface` of the voxels of a row along x.
-    pub fn row(&self, y: usize, z: usize) -> std::ops::Range<usize> {
+    /// Indices in `surface` of the voxels of a row along x that are within a distance of a coordinate.
+    pub fn row_within(&self, y: usize, z: usize, x: f64, distance_m: f64) -> std::ops::Range<usize> {
         let row = z * self.counts[1] + y;
-        self.rows[row] as usize..self.rows[row + 1] as usize
+        let (first, end) = (self.rows[row] as usize, self.rows[row + 1] as usize);
+        let voxels = &self.surface[first..end];
+        let column = |x: f64| ((x - self.lattice.origin.x) / self.lattice.step_m).floor();
+        let (low, high) = (column(x - distance_m) - 1.0, column(x + distance_m) + 1.0);
+        let from = voxels.partition_point(|v| f64::from(v.cell[0]) < low);
+        let to = voxels.partition_point(|v| f64::from(v.cell[0]) <= high);
+        first + from..first + to.max(from)
     }
 
     /// Centre of a voxel.
@@ -135,7 +141,8 @@ impl VoxelGrid {
                 if self.corner_is_outside(voxel.cell, offset) {
                     continue;
                 }
-                let at = [0, 1, 2].map(|axis| self.lattice.origin[axis] + f64::from(voxel.cell[axis] + offset[axis]) * step);
+                let at =
+                    [0, 1, 2].map(|axis| self.lattice.origin[axis] + f64::from(voxel.cell[axis] + offset[axis]) * step);
                 let p = Vec3::new(at[0], at[1], at[2]);
                 let content = &mut self.surface[i].content;
                 *content = content.union(&Aabb { min: p, max: p });

@@ -17,9 +17,11 @@ pub(crate) fn sin_cos<S: Simd>(simd: S, angle: f32x16<S>) -> (f32x16<S>, f32x16<
     let r = quarter.mul_add_precise(splat(simd, -HALF_PI[1]), r);
     let r = quarter.mul_add_precise(splat(simd, -HALF_PI[2]), r);
     let square = r * r;
-    let sin = square.mul_add_precise(splat(simd, SIN[2]), splat(simd, SIN[1])).mul_add_precise(square, splat(simd, SIN[0]));
+    let sin =
+        square.mul_add_precise(splat(simd, SIN[2]), splat(simd, SIN[1])).mul_add_precise(square, splat(simd, SIN[0]));
     let sin = (sin * square).mul_add_precise(r, r);
-    let cos = square.mul_add_precise(splat(simd, COS[2]), splat(simd, COS[1])).mul_add_precise(square, splat(simd, COS[0]));
+    let cos =
+        square.mul_add_precise(splat(simd, COS[2]), splat(simd, COS[1])).mul_add_precise(square, splat(simd, COS[0]));
     let cos = (cos * square).mul_add_precise(square, square.mul_add_precise(splat(simd, -0.5), splat(simd, 1.0)));
     let n: i32x16<S> = quarter.to_int();
     let one = i32x16::splat(simd, 1);
@@ -37,4 +39,3 @@ fn flip<S: Simd>(v: f32x16<S>, sign: f32x16<S>) -> f32x16<S> {
     let (v, sign): (i32x16<S>, i32x16<S>) = (v.bitcast(), sign.bitcast());
     (v ^ sign).bitcast()
 }
-

@@ -103,10 +103,8 @@ impl CoveredRobot {
             GeometryId::Link { link, .. } => covered.bodies.iter().position(|b| b.link == link).map(BodyId),
             GeometryId::Object(_) => None,
         };
-        let pairs: Vec<_> = collision_pairs(&[robot], 0)
-            .into_iter()
-            .filter_map(|(a, b)| Some((body(a)?, body(b)?)))
-            .collect();
+        let pairs: Vec<_> =
+            collision_pairs(&[robot], 0).into_iter().filter_map(|(a, b)| Some((body(a)?, body(b)?))).collect();
         pairs.into_iter().for_each(|(a, b)| covered.add_pair(a, b, 0.0));
         Ok(covered)
     }
@@ -118,8 +116,15 @@ impl CoveredRobot {
     pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
-        let mut covered =
-            Self { chain, bodies: Vec::new(), nodes: Vec::new(), inner: Vec::new(), pairs: Vec::new(), tables: OnceLock::new(), dof };
+        let mut covered = Self {
+            chain,
+            bodies: Vec::new(),
+            nodes: Vec::new(),
+            inner: Vec::new(),
+            pairs: Vec::new(),
+            tables: OnceLock::new(),
+            dof,
+        };
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
             covered.add_body(&robot.chain, link, &shapes)?;
@@ -132,10 +137,16 @@ impl CoveredRobot {
     ///
     /// # Errors
     /// No such link, or a shape that no spheres enclose.
-    pub fn add_body(&mut self, chain: &Chain, link: LinkId, shapes: &[(&Shape, Pose)]) -> Result<BodyId, ValidityError> {
+    pub fn add_body(
+        &mut self,
+        chain: &Chain,
+        link: LinkId,
+        shapes: &[(&Shape, Pose)],
+    ) -> Result<BodyId, ValidityError> {
         let name = || chain.links().get(link.0).cloned().unwrap_or_else(|| format!("number {}", link.0));
         let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
-        let cover = SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
+        let cover =
+            SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
         let radius_m = cover.outer.iter().map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
         let in_frame = |b: &Ball| Ball { centre: at.in_frame.transform_point(b.centre), ..*b };
         let levers = lever_arms(&self.chain, at.frame, cover.outer.iter().map(in_frame));
@@ -159,7 +170,8 @@ impl CoveredRobot {
         let (of_a, of_b) = (self.chain.steps_to(one.frame), self.chain.steps_to(other.frame));
         let common = of_a.iter().zip(&of_b).take_while(|(i, j)| i == j).count();
         let joint = |body: &Body, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
-        let joints = of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
+        let joints =
+            of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
