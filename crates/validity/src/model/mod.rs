@@ -19,7 +19,7 @@ pub(crate) use joint_step::single;
 pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
-use self::lever_arms::lever_arms;
+use self::lever_arms::{Reach, lever_arms};
 use crate::cover::{Ball, ROUNDING_M, SphereCover};
 use crate::error::ValidityError;
 
@@ -32,9 +32,13 @@ const FINE_DIAGONAL_M: f64 = 0.25;
 
 /// Largest error of a joint's rotation in single precision, rad: of its angle (up to 8 rad), of sine and cosine, and of the
 /// products of rotations. Counted in README.md of this crate.
-const ROTATION_ERROR_RAD: f64 = 4e-6;
-/// Rounding errors of coordinates, per metre that they can reach.
-const ROUNDING_SHARE: f64 = 2e-6;
+pub(crate) const ROTATION_ERROR_RAD: f64 = 4e-6;
+/// Rounding errors of coordinates per joint, and once more of comparisons, per metre that they can reach. Counted there, too.
+pub(crate) const ROUNDING_SHARE: f64 = 2e-6;
+/// The same of a margin, per metre.
+const MARGIN_SHARE: f64 = 1e-6;
+/// Robots that reach farther from the origin of the world are not covered, m.
+const LONGEST_REACH_M: f64 = 1e6;
 
 /// Index of a body in a [`CoveredRobot`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -103,10 +107,8 @@ impl CoveredRobot {
             GeometryId::Link { link, .. } => covered.bodies.iter().position(|b| b.link == link).map(BodyId),
             GeometryId::Object(_) => None,
         };
-        let pairs: Vec<_> = collision_pairs(&[robot], 0)
-            .into_iter()
-            .filter_map(|(a, b)| Some((body(a)?, body(b)?)))
-            .collect();
+        let pairs: Vec<_> =
+            collision_pairs(&[robot], 0).into_iter().filter_map(|(a, b)| Some((body(a)?, body(b)?))).collect();
         pairs.into_iter().for_each(|(a, b)| covered.add_pair(a, b, 0.0));
         Ok(covered)
     }
@@ -118,8 +120,15 @@ impl CoveredRobot {
     pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
-        let mut covered =
-            Self { chain, bodies: Vec::new(), nodes: Vec::new(), inner: Vec::new(), pairs: Vec::new(), tables: OnceLock::new(), dof };
+        let mut covered = Self {
+            chain,
+            bodies: Vec::new(),
+            nodes: Vec::new(),
+            inner: Vec::new(),
+            pairs: Vec::new(),
+            tables: OnceLock::new(),
+            dof,
+        };
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
             covered.add_body(&robot.chain, link, &shapes)?;
@@ -132,17 +141,24 @@ impl CoveredRobot {
     ///
     /// # Errors
     /// No such link, or a shape that no spheres enclose.
-    pub fn add_body(&mut self, chain: &Chain, link: LinkId, shapes: &[(&Shape, Pose)]) -> Result<BodyId, ValidityError> {
+    pub fn add_body(
+        &mut self,
+        chain: &Chain,
+        link: LinkId,
+        shapes: &[(&Shape, Pose)],
+    ) -> Result<BodyId, ValidityError> {
         let name = || chain.links().get(link.0).cloned().unwrap_or_else(|| format!("number {}", link.0));
         let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
-        let cover = SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
-        let radius_m = cover.outer.iter().map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
+        let cover =
+            SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
         let in_frame = |b: &Ball| Ball { centre: at.in_frame.transform_point(b.centre), ..*b };
+        let radius_m = cover.outer.iter().map(in_frame).map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
         let levers = lever_arms(&self.chain, at.frame, cover.outer.iter().map(in_frame));
-        let rounding_m = rounding_m(&levers, radius_m, at.in_frame);
-        if !rounding_m.is_finite() {
+        let reach = Reach::new(&self.chain, at.frame, radius_m);
+        if !(reach.world_m <= LONGEST_REACH_M) {
             return Err(ValidityError::NotCovered { link: name() });
         }
+        let rounding_m = rounding_m(reach);
         let first_inner = self.inner.len() as u32;
         self.inner.extend(cover.inner.iter().filter_map(|ball| inner_sphere(ball, &at.in_frame, rounding_m)));
         let inner = first_inner..self.inner.len() as u32;
@@ -159,11 +175,13 @@ impl CoveredRobot {
         let (of_a, of_b) = (self.chain.steps_to(one.frame), self.chain.steps_to(other.frame));
         let common = of_a.iter().zip(&of_b).take_while(|(i, j)| i == j).count();
         let joint = |body: &Body, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
-        let joints = of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
+        let joints =
+            of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
-        self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up(), common_frame, joints });
+        let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
+        self.pairs.push(BodyPair { a, b, margin_m, common_frame, joints });
     }
 
     /// Number of values of a configuration.
@@ -190,11 +208,10 @@ fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
     if is_small { FINE_SLACK_M } else { SLACK_M }
 }
 
-/// Bound of the rounding errors of a point of a body.
-fn rounding_m(levers: &[f64], radius_m: f64, in_frame: Pose) -> f64 {
-    let finite: f64 = levers.iter().filter(|l| l.is_finite()).sum();
-    let reach = levers.iter().copied().filter(|l| l.is_finite()).fold(radius_m, f64::max);
-    ROTATION_ERROR_RAD * finite + ROUNDING_SHARE * (reach + in_frame.translation.length() + 1.0) + ROUNDING_M
+/// Bound of the rounding errors of a point of a body, and of what is computed from it.
+fn rounding_m(reach: Reach) -> f64 {
+    let terms = (reach.joints + 1) as f64;
+    ROTATION_ERROR_RAD * reach.arms_m + ROUNDING_SHARE * terms * reach.world_m + ROUNDING_M
 }
 
 fn inner_sphere(ball: &Ball, in_frame: &Pose, rounding_m: f64) -> Option<InnerSphere> {
