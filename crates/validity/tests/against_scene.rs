@@ -19,7 +19,14 @@ struct Counts {
 }
 
 /// Compares random configurations and edges.
-fn compare(random: &mut Random, robot: &Robot, scene: &Scene, covered: &CoveredRobot, set: &ObstacleSet, n: usize) -> Counts {
+fn compare(
+    random: &mut Random,
+    robot: &Robot,
+    scene: &Scene,
+    covered: &CoveredRobot,
+    set: &ObstacleSet,
+    n: usize,
+) -> Counts {
     let mut counts = Counts::default();
     let mut checker = ValidityChecker::new(covered, set);
     let mut exact = Checker::new(scene, CheckerOptions::default());
@@ -41,7 +48,8 @@ fn compare(random: &mut Random, robot: &Robot, scene: &Scene, covered: &CoveredR
         counts.hit += usize::from(answer == Validity::Hit);
         counts.uncertain += usize::from(answer == Validity::Uncertain);
     }
-    let starts: Vec<&[f64]> = q.chunks(chain.dof()).zip(&answers).filter(|(_, a)| **a == Validity::Free).map(|(q, _)| q).collect();
+    let starts: Vec<&[f64]> =
+        q.chunks(chain.dof()).zip(&answers).filter(|(_, a)| **a == Validity::Free).map(|(q, _)| q).collect();
     for from in starts.iter().take(n / 8) {
         let other = random.q(chain);
         let share = random.unit().powi(2);
@@ -92,7 +100,8 @@ fn real_robots_among_random_obstacles() {
     for name in ["panda/panda", "ur5e/ur5e", "kuka_kr150_2/kr150_2", "staubli_tx60/tx60"] {
         let folder = data.join("urdf").join(name.split('/').next().unwrap());
         let Some(path) = urdf_in(&folder) else { panic!("no URDF in {}", folder.display()) };
-        let robot = elbowroom_formats::robot::load(&path, &elbowroom_formats::robot::LoadOptions::default()).unwrap().robot;
+        let robot =
+            elbowroom_formats::robot::load(&path, &elbowroom_formats::robot::LoadOptions::default()).unwrap().robot;
         let solids = obstacles(&mut random, 14, 1.5);
         let scene = scene(&robot, Pose::IDENTITY, &solids);
         let begin = std::time::Instant::now();

@@ -67,7 +67,8 @@ impl Random {
     pub fn robot(&mut self, joints: usize) -> Robot {
         let mut list = Vec::new();
         for i in 0..joints {
-            let kind = [JointKind::Revolute, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][self.below(4)];
+            let kind =
+                [JointKind::Revolute, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][self.below(4)];
             let limits = if kind == JointKind::Prismatic { Limits::range(-0.2, 0.3) } else { Limits::symmetric(3.0) };
             let axis = if self.below(2) == 0 {
                 [Vec3::X, Vec3::Y, -Vec3::Z][self.below(3)]
@@ -75,7 +76,8 @@ impl Random {
                 self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z)
             };
             let parent = if i > 1 && self.below(4) == 0 { i - 1 } else { i };
-            let mimic = (i > 2 && self.below(5) == 0).then(|| Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.1 });
+            let mimic =
+                (i > 2 && self.below(5) == 0).then(|| Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.1 });
             list.push(Joint {
                 name: format!("joint {i}"),
                 kind,
@@ -102,7 +104,11 @@ impl Random {
     /// Within the limits of a robot.
     pub fn q(&mut self, chain: &Chain) -> Vec<f64> {
         let (lower, upper) = (chain.lower(), chain.upper());
-        lower.iter().zip(&upper).map(|(&l, &u)| if l.is_finite() { self.between(l, u) } else { self.between(-9.0, 9.0) }).collect()
+        lower
+            .iter()
+            .zip(&upper)
+            .map(|(&l, &u)| if l.is_finite() { self.between(l, u) } else { self.between(-9.0, 9.0) })
+            .collect()
     }
 }
 
@@ -151,4 +157,11 @@ pub fn data() -> Option<PathBuf> {
     }
     println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
     None
+}
+
+/// Joint number `i` of a serial chain, without limits.
+pub fn single_joint(i: usize, kind: JointKind, origin: Pose, axis: Vec3) -> Joint {
+    let name = format!("joint {i}");
+    let limits = Limits::UNLIMITED;
+    Joint { name, kind, parent: LinkId(i), child: LinkId(i + 1), origin, axis, limits, mimic: None }
 }
