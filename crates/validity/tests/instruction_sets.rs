@@ -22,7 +22,7 @@ impl Hash {
 }
 
 fn simd_levels() -> Vec<SimdLevel> {
-    let mut levels = vec![SimdLevel::new(), SimdLevel::baseline()];
+    let mut levels = vec![SimdLevel::new()];
     #[cfg(target_arch = "x86_64")]
     {
         levels.extend(levels[0].as_sse2().map(SimdLevel::Sse2));
@@ -37,14 +37,14 @@ fn every_instruction_set_gives_the_same_answers() {
     let levels = simd_levels();
     let mut hashes: Vec<Hash> = levels.iter().map(|_| Hash(0xcbf2_9ce4_8422_2325)).collect();
     let mut random = Random(2024);
-    for round in 0..10 {
+    for round in 0..4 {
         let joints = 3 + random.below(5);
         let robot = random.robot(joints);
         let solids = obstacles(&mut random, [4, 20][round % 2], 1.2);
         let set = obstacle_set(&solids);
         let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
         let dof = robot.chain.dof();
-        let q: Vec<f64> = (0..320).flat_map(|_| random.q(&robot.chain)).collect();
+        let q: Vec<f64> = (0..96).flat_map(|_| random.q(&robot.chain)).collect();
         let near: Vec<f64> = q.iter().map(|v| v * 0.9).collect();
         for (&level, hash) in levels.iter().zip(&mut hashes) {
             let mut checker = ValidityChecker::new(&covered, &set).with_simd_level(level);
