@@ -4,7 +4,9 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ValidityError {
     /// A link cannot be enclosed by spheres.
-    #[error("link `{link}` cannot be enclosed by spheres: a shape is unbounded or has NaN or infinite numbers")]
+    #[error(
+        "link `{link}` cannot be enclosed by spheres: a shape is unbounded or too far away, or has NaN or infinite numbers"
+    )]
     NotCovered {
         /// Its name.
         link: String,

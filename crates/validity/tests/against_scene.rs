@@ -1,4 +1,7 @@
 //! Answers against the exact scene: proven free never collides, proven hit always does.
+//!
+//! `ELBOWROOM_VALIDITY_STATES=1000000` compares as many configurations (and an eighth as many edges, at most) over all robots of
+//! the data, in the release profile best: `cargo test --release -p elbowroom-validity --test against_scene -- --nocapture`.
 
 mod common;
 
@@ -14,8 +17,21 @@ struct Counts {
     hit: usize,
     uncertain: usize,
     uncertain_free: usize,
+    edges: usize,
     proven_edges: usize,
     free_edges: usize,
+}
+
+impl Counts {
+    fn add(&mut self, other: &Self) {
+        self.free += other.free;
+        self.hit += other.hit;
+        self.uncertain += other.uncertain;
+        self.uncertain_free += other.uncertain_free;
+        self.edges += other.edges;
+        self.proven_edges += other.proven_edges;
+        self.free_edges += other.free_edges;
+    }
 }
 
 /// Compares random configurations and edges.
@@ -59,6 +75,7 @@ fn compare(
         let hit = exact.sweep(&state, &moves, &SweepOptions::default()).unwrap();
         let proven = checker.edge_is_free(from, &to).unwrap();
         assert!(!proven || hit.is_none_or(|h| !h.certain), "proven free, but {hit:?} from {from:?} to {to:?}");
+        counts.edges += 1;
         counts.proven_edges += usize::from(proven);
         counts.free_edges += usize::from(hit.is_none());
     }
@@ -79,12 +96,7 @@ fn random_robots_among_random_obstacles() {
         let covered = CoveredRobot::new(&robot, base).unwrap();
         let set = obstacle_set(&solids);
         let counts = compare(&mut random, &robot, &scene, &covered, &set, 400);
-        all.free += counts.free;
-        all.hit += counts.hit;
-        all.uncertain += counts.uncertain;
-        all.uncertain_free += counts.uncertain_free;
-        all.proven_edges += counts.proven_edges;
-        all.free_edges += counts.free_edges;
+        all.add(&counts);
     }
     println!("{all:?}");
     assert!(all.free > 500 && all.hit > 500, "{all:?}");
@@ -93,24 +105,52 @@ fn random_robots_among_random_obstacles() {
     assert!(all.proven_edges * 10 > all.free_edges * 7, "{all:?}");
 }
 
+/// Total number of configurations on real robots, where it is set.
+fn states_wanted() -> Option<usize> {
+    std::env::var("ELBOWROOM_VALIDITY_STATES").ok().map(|n| n.parse().expect("ELBOWROOM_VALIDITY_STATES is a number"))
+}
+
+/// Folders of the robots to compare: a few, or all of the data.
+fn robot_folders(data: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let urdf = data.join("urdf");
+    if states_wanted().is_none() {
+        return ["panda", "ur5e", "kuka_kr150_2", "staubli_tx60"].map(|name| urdf.join(name)).to_vec();
+    }
+    let mut all: Vec<_> = std::fs::read_dir(urdf).unwrap().map(|entry| entry.unwrap().path()).collect();
+    all.sort();
+    all.retain(|folder| urdf_in(folder).is_some());
+    all
+}
+
 #[test]
 fn real_robots_among_random_obstacles() {
     let Some(data) = common::data() else { return };
     let mut random = Random(11);
-    for name in ["panda/panda", "ur5e/ur5e", "kuka_kr150_2/kr150_2", "staubli_tx60/tx60"] {
-        let folder = data.join("urdf").join(name.split('/').next().unwrap());
-        let Some(path) = urdf_in(&folder) else { panic!("no URDF in {}", folder.display()) };
-        let robot =
-            elbowroom_formats::robot::load(&path, &elbowroom_formats::robot::LoadOptions::default()).unwrap().robot;
-        let solids = obstacles(&mut random, 14, 1.5);
-        let scene = scene(&robot, Pose::IDENTITY, &solids);
+    let folders = robot_folders(&data);
+    let per_robot = states_wanted().map_or(1000, |n| n.div_ceil(folders.len()));
+    let mut all = Counts::default();
+    for folder in folders {
+        let path = urdf_in(&folder).unwrap_or_else(|| panic!("no URDF in {}", folder.display()));
+        let srdf = Some(path.with_extension("srdf")).filter(|p| p.is_file());
+        let options = elbowroom_formats::robot::LoadOptions { srdf, ..Default::default() };
+        let robot = elbowroom_formats::robot::load(&path, &options).unwrap().robot;
         let begin = std::time::Instant::now();
         let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
         let built = begin.elapsed();
-        let set = obstacle_set(&solids);
-        let counts = compare(&mut random, &robot, &scene, &covered, &set, 1000);
-        println!("{name}: built in {built:?}, {counts:?}");
+        let mut counts = Counts::default();
+        let mut left = per_robot;
+        // New obstacles every thousand configurations.
+        while left > 0 {
+            let solids = obstacles(&mut random, 14, 1.5);
+            let scene = scene(&robot, Pose::IDENTITY, &solids);
+            let set = obstacle_set(&solids);
+            counts.add(&compare(&mut random, &robot, &scene, &covered, &set, left.min(1000)));
+            left -= left.min(1000);
+        }
+        println!("{}: built in {built:?}, {counts:?}", path.file_stem().unwrap_or_default().to_string_lossy());
+        all.add(&counts);
     }
+    println!("{all:?}");
 }
 
 fn urdf_in(folder: &std::path::Path) -> Option<std::path::PathBuf> {

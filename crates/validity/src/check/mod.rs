@@ -3,6 +3,8 @@
 mod block;
 mod checker;
 mod hits;
+#[cfg(test)]
+mod motion_tests;
 mod pair_table_builder;
 mod segment;
 mod workspace;

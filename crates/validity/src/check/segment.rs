@@ -132,14 +132,15 @@ impl MotionTable {
 }
 
 impl Workspace {
-    /// Prepares a block of evenly spaced configurations of a stretch. False where values change too much or are not finite.
+    /// Prepares a block of evenly spaced configurations of a stretch. False where values change too much or no bounds hold for
+    /// them.
     pub fn set_stretch(&mut self, robot: &CoveredRobot, stretch: &Stretch) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
             let (from, to) = (stretch.from[step.index], stretch.to[step.index]);
             let first = step.multiplier * (from + stretch.begin * (to - from)) + step.offset;
             let change = step.multiplier * (to - from) * (stretch.end - stretch.begin);
-            is_valid &= change.abs() <= MAX_CHANGE && first.is_finite();
+            is_valid &= change.abs() <= MAX_CHANGE && step.accepts(first) && step.accepts(first + change);
             let first = if step.is_prismatic { first } else { reduced(first) };
             self.stretch[i] = JointStretch { first: first as f32, change: change as f32 };
         }
@@ -193,12 +194,12 @@ impl Workspace {
         (half_chord, (sag * ROUNDED_UP - common).max(0.0))
     }
 
-    /// Sets the joint values of one lane. False where they are not finite.
+    /// Sets the joint values of one lane. False where no bounds hold for them.
     pub fn set_lane(&mut self, robot: &CoveredRobot, lane: usize, q: &[f64]) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
             let value = step.multiplier * q[step.index] + step.offset;
-            is_valid &= value.is_finite();
+            is_valid &= step.accepts(value);
             self.values[i].0[lane] = if step.is_prismatic { value as f32 } else { reduced(value) as f32 };
         }
         is_valid

@@ -14,7 +14,7 @@ mod triangle_slices;
 mod voxel_grid;
 
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
 pub use ball::Ball;
 pub(crate) use ball::{ROUNDING_M, enclosing};
@@ -22,6 +22,10 @@ pub(crate) use ball::{ROUNDING_M, enclosing};
 use self::placement::PlacedShapes;
 use self::selection::CoverSelection;
 use self::voxel_grid::VoxelGrid;
+
+/// Shapes that reach farther from the origin are not covered, m: rounding errors of double precision would exceed
+/// [`ROUNDING_M`].
+const LARGEST_M: f64 = 1e4;
 
 /// Outer and inner spheres of a solid made of shapes.
 ///
@@ -47,12 +51,16 @@ impl SphereCover {
     /// Covers the union of shapes, each with its pose in the frame of the cover. No outer sphere protrudes from the solid by
     /// more than `slack_m`; gaps in open surfaces count as solid where the surface encloses them.
     ///
-    /// `None` where a shape is unbounded or has NaN or infinite numbers: no spheres enclose it. No shapes: an empty cover.
+    /// `None` where a shape is unbounded, has NaN or infinite numbers or reaches beyond 10 km: no spheres enclose it. No shapes: an empty cover.
     pub fn new(shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<Self> {
         let mut cover = Self::default();
         let mut others = Vec::new();
         for &(shape, pose) in shapes {
-            if shape.validate().is_err() || !pose.is_finite() || !shape.aabb(&pose).extent().is_finite() {
+            if shape.validate().is_err() || !pose.is_finite() {
+                return None;
+            }
+            let bounds = shape.aabb(&pose);
+            if !(bounds.extent().is_finite() && bounds.max_distance(Vec3::ZERO) <= LARGEST_M) {
                 return None;
             }
             match shape {

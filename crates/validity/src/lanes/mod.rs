@@ -9,6 +9,8 @@
 #![allow(clippy::inline_always)]
 
 mod sin_cos;
+#[cfg(test)]
+mod sin_cos_tests;
 
 use std::sync::OnceLock;
 

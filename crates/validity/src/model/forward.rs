@@ -4,7 +4,7 @@ use elbowroom_kinematics::Chain;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use fearless_simd::{Simd, f32x16};
 
-use super::joint_step::{FixedRotation, JointStep, LinkFrame, axis_rotation, moves, single};
+use super::joint_step::{FixedRotation, JointStep, LinkFrame, axis_rotation, moves, single, value_range};
 use crate::lanes::{LANES, PointRow, Row, V3, sin_cos, splat};
 
 /// A chain prepared for batched forward kinematics: fixed joints are folded into the poses of links.
@@ -14,7 +14,7 @@ pub(crate) struct BatchedChain {
     pub steps: Vec<JointStep>,
     /// Per link of the chain.
     pub links: Vec<LinkFrame>,
-    base_in_world: Pose,
+    pub base_in_world: Pose,
 }
 
 /// Poses of frames in the world, one per lane: columns of the rotation, origin.
@@ -39,7 +39,10 @@ impl BatchedChain {
             };
             let axis = axis_rotation(joint.axis);
             let limits = chain.joints()[chain.active_joints()[coupling.index].0].limits;
-            let ends = [limits.lower, limits.upper].map(|q| coupling.multiplier * q + coupling.offset);
+            // A mimic joint with multiplier 0 stands still, whatever the limits (0·∞ is NaN).
+            let turns_with_q = |q: f64| if coupling.multiplier == 0.0 { 0.0 } else { coupling.multiplier * q };
+            let ends = [limits.lower, limits.upper].map(|q| turns_with_q(q) + coupling.offset);
+            let [lower, upper] = value_range(!joint.kind.turns(), ends);
             steps.push(JointStep {
                 parent: parent.frame,
                 is_prismatic: !joint.kind.turns(),
@@ -49,8 +52,8 @@ impl BatchedChain {
                 index: coupling.index,
                 multiplier: coupling.multiplier,
                 offset: coupling.offset,
-                lower: ends[0].min(ends[1]),
-                upper: ends[0].max(ends[1]),
+                lower,
+                upper,
             });
             let in_frame = Pose::new(axis.inverse(), Vec3::ZERO);
             links[joint.child.0] = LinkFrame { frame: steps.len(), in_frame };

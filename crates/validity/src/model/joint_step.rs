@@ -5,6 +5,12 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// Entries of a rotation this near to 0 or ±1 count as exact.
 const PRINCIPAL_TOLERANCE: f64 = 1e-9;
+/// Slides are tested up to this far from their zero, m, where their limits are wider.
+const LONGEST_SLIDE_M: f64 = 100.0;
+/// Slides may be this far beyond their limits, m: for rounding and for what an inverse kinematics leaves.
+const BEYOND_LIMITS_M: f64 = 1e-3;
+/// Up to this, rad, the reduction of an angle to one turn in double precision is far more exact than single precision.
+const LARGEST_ANGLE_RAD: f64 = 1e6;
 
 /// A moving joint. The frame that it moves has its z axis along the joint's axis.
 #[derive(Debug, Clone)]
@@ -22,9 +28,26 @@ pub(crate) struct JointStep {
     pub index: usize,
     pub multiplier: f64,
     pub offset: f64,
-    /// Lowest and highest value within the limits, rad or m.
+    /// Lowest and highest value, rad or m: for a turning joint its limits, for a slide a little more, and never unlimited.
     pub lower: f64,
     pub upper: f64,
+}
+
+impl JointStep {
+    /// True for the values for which the bounds of motion and rounding hold. False for NaN.
+    #[inline]
+    pub fn accepts(&self, value: f64) -> bool {
+        if self.is_prismatic { value >= self.lower && value <= self.upper } else { value.abs() <= LARGEST_ANGLE_RAD }
+    }
+}
+
+/// Lowest and highest value of a step, from both ends of its range.
+pub(super) fn value_range(is_prismatic: bool, ends: [f64; 2]) -> [f64; 2] {
+    let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    if !is_prismatic {
+        return [lower, upper];
+    }
+    [(lower - BEYOND_LIMITS_M).max(-LONGEST_SLIDE_M), (upper + BEYOND_LIMITS_M).min(LONGEST_SLIDE_M)]
 }
 
 /// A constant rotation, by columns.

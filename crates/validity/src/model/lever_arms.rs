@@ -60,6 +60,34 @@ impl AxisCylinder {
     }
 }
 
+/// What the rounding errors of a body's points grow with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    /// Number of joints that move the body.
+    pub joints: usize,
+    /// Sum over these joints: how far a point of the body can be from the joint's origin, m.
+    pub arms_m: f64,
+    /// How far a point of the body, or an origin on the way to it, can be from the origin of the world, m.
+    pub world_m: f64,
+}
+
+impl Reach {
+    /// Of a body whose points are within `radius_m` of the origin of its joint's frame.
+    pub fn new(chain: &BatchedChain, frame: usize, radius_m: f64) -> Self {
+        let steps = chain.steps_to(frame);
+        let (mut arm_m, mut arms_m) = (radius_m, 0.0);
+        for &i in steps.iter().rev() {
+            let step = &chain.steps[i];
+            if step.is_prismatic {
+                arm_m += step.lower.abs().max(step.upper.abs());
+            }
+            arms_m += arm_m;
+            arm_m += step.at_zero.translation.length();
+        }
+        Self { joints: steps.len(), arms_m, world_m: arm_m + chain.base_in_world.translation.length() }
+    }
+}
+
 /// Per step of the chain: the largest distance of a point of the body from the axis of a turning joint, 1 for a slide, 0 for a
 /// joint that does not move the body. The balls are given in the frame of the body's joint.
 pub(super) fn lever_arms(chain: &BatchedChain, frame: usize, balls: impl Iterator<Item = Ball>) -> Vec<f64> {

@@ -7,6 +7,7 @@ mod lever_arms;
 mod pair_table;
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
@@ -19,7 +20,7 @@ pub(crate) use joint_step::single;
 pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
-use self::lever_arms::lever_arms;
+use self::lever_arms::{Reach, lever_arms};
 use crate::cover::{Ball, ROUNDING_M, SphereCover};
 use crate::error::ValidityError;
 
@@ -32,9 +33,13 @@ const FINE_DIAGONAL_M: f64 = 0.25;
 
 /// Largest error of a joint's rotation in single precision, rad: of its angle (up to 8 rad), of sine and cosine, and of the
 /// products of rotations. Counted in README.md of this crate.
-const ROTATION_ERROR_RAD: f64 = 4e-6;
-/// Rounding errors of coordinates, per metre that they can reach.
-const ROUNDING_SHARE: f64 = 2e-6;
+pub(crate) const ROTATION_ERROR_RAD: f64 = 4e-6;
+/// Rounding errors of coordinates per joint, and once more of comparisons, per metre that they can reach. Counted there, too.
+pub(crate) const ROUNDING_SHARE: f64 = 2e-6;
+/// The same of a margin, per metre.
+const MARGIN_SHARE: f64 = 1e-6;
+/// Robots that reach farther from the origin of the world are not covered, m.
+const LONGEST_REACH_M: f64 = 1e6;
 
 /// Index of a body in a [`CoveredRobot`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -125,9 +130,8 @@ impl CoveredRobot {
             tables: OnceLock::new(),
             dof,
         };
-        for link in robot.links_with_colliders() {
-            let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
-            covered.add_body(&robot.chain, link, &shapes)?;
+        for (link, cover) in link_covers(robot) {
+            covered.add_cover(&robot.chain, link, cover)?;
         }
         Ok(covered)
     }
@@ -143,17 +147,26 @@ impl CoveredRobot {
         link: LinkId,
         shapes: &[(&Shape, Pose)],
     ) -> Result<BodyId, ValidityError> {
+        self.add_cover(chain, link, SphereCover::new(shapes, slack_m(shapes)))
+    }
+
+    fn add_cover(
+        &mut self,
+        chain: &Chain,
+        link: LinkId,
+        cover: Option<SphereCover>,
+    ) -> Result<BodyId, ValidityError> {
         let name = || chain.links().get(link.0).cloned().unwrap_or_else(|| format!("number {}", link.0));
         let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
-        let cover =
-            SphereCover::new(shapes, slack_m(shapes)).ok_or_else(|| ValidityError::NotCovered { link: name() })?;
-        let radius_m = cover.outer.iter().map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
+        let cover = cover.ok_or_else(|| ValidityError::NotCovered { link: name() })?;
         let in_frame = |b: &Ball| Ball { centre: at.in_frame.transform_point(b.centre), ..*b };
+        let radius_m = cover.outer.iter().map(in_frame).map(|b| b.centre.length() + b.radius).fold(0.0, f64::max);
         let levers = lever_arms(&self.chain, at.frame, cover.outer.iter().map(in_frame));
-        let rounding_m = rounding_m(&levers, radius_m, at.in_frame);
-        if !rounding_m.is_finite() {
+        let reach = Reach::new(&self.chain, at.frame, radius_m);
+        if !(reach.world_m <= LONGEST_REACH_M) {
             return Err(ValidityError::NotCovered { link: name() });
         }
+        let rounding_m = rounding_m(reach);
         let first_inner = self.inner.len() as u32;
         self.inner.extend(cover.inner.iter().filter_map(|ball| inner_sphere(ball, &at.in_frame, rounding_m)));
         let inner = first_inner..self.inner.len() as u32;
@@ -175,7 +188,8 @@ impl CoveredRobot {
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
-        self.pairs.push(BodyPair { a, b, margin_m: (margin_m.max(0.0) as f32).next_up(), common_frame, joints });
+        let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
+        self.pairs.push(BodyPair { a, b, margin_m, common_frame, joints });
     }
 
     /// Number of values of a configuration.
@@ -201,6 +215,35 @@ impl CoveredRobot {
     }
 }
 
+/// The covers of all links with colliders, in the order of the chain, on all processors.
+fn link_covers(robot: &Robot) -> Vec<(LinkId, Option<SphereCover>)> {
+    let links: Vec<LinkId> = robot.links_with_colliders().collect();
+    let next = AtomicUsize::new(0);
+    let cover = |link: LinkId| {
+        let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
+        SphereCover::new(&shapes, slack_m(&shapes))
+    };
+    let work = || {
+        let mut done = Vec::new();
+        while let Some(&link) = links.get(next.fetch_add(1, Ordering::Relaxed)) {
+            done.push((link, cover(link)));
+        }
+        done
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(links.len());
+    let mut covers = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut covers = work();
+        for other in others {
+            // A panic of a thread goes on here.
+            covers.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+        covers
+    });
+    covers.sort_by_key(|(link, _)| *link);
+    covers
+}
+
 /// The slack of a cover by the size of what it covers.
 fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
     let bounds = shapes.iter().map(|(s, p)| s.aabb(p)).reduce(|a, b| a.union(&b));
@@ -208,11 +251,10 @@ fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
     if is_small { FINE_SLACK_M } else { SLACK_M }
 }
 
-/// Bound of the rounding errors of a point of a body.
-fn rounding_m(levers: &[f64], radius_m: f64, in_frame: Pose) -> f64 {
-    let finite: f64 = levers.iter().filter(|l| l.is_finite()).sum();
-    let reach = levers.iter().copied().filter(|l| l.is_finite()).fold(radius_m, f64::max);
-    ROTATION_ERROR_RAD * finite + ROUNDING_SHARE * (reach + in_frame.translation.length() + 1.0) + ROUNDING_M
+/// Bound of the rounding errors of a point of a body, and of what is computed from it.
+fn rounding_m(reach: Reach) -> f64 {
+    let terms = (reach.joints + 1) as f64;
+    ROTATION_ERROR_RAD * reach.arms_m + ROUNDING_SHARE * terms * reach.world_m + ROUNDING_M
 }
 
 fn inner_sphere(ball: &Ball, in_frame: &Pose, rounding_m: f64) -> Option<InnerSphere> {

@@ -15,6 +15,8 @@ use crate::cover::SphereCover;
 const MESH_SLACK_M: f64 = 0.005;
 /// Rounding errors of coordinates and distances in single precision, per metre of coordinates and extents.
 const ROUNDING_SHARE: f64 = 2e-6;
+/// Obstacles that are farther away or larger, margins included, are not enclosed: squares would overflow, m.
+const LARGEST_M: f64 = 1e8;
 
 /// Solids that do not move: shapes and points of a cloud.
 ///
@@ -43,8 +45,8 @@ pub struct ObstacleSet {
 }
 
 impl ObstacleSet {
-    /// Adds a shape that counts up to `margin_m` beyond its surface; returns its number. A shape with NaN or infinite numbers
-    /// makes every answer uncertain.
+    /// Adds a shape that counts up to `margin_m` beyond its surface; returns its number. A shape with NaN or infinite numbers,
+    /// or a coordinate beyond 10⁸ m, makes every answer uncertain.
     pub fn add_shape(&mut self, shape: &Shape, in_world: &Pose, margin_m: f64) -> usize {
         let id = self.next();
         if shape.validate().is_err() || !in_world.is_finite() || !margin_m.is_finite() {
@@ -55,7 +57,12 @@ impl ObstacleSet {
             Shape::HalfSpace(_) => 0.0,
             _ => shape.aabb(&Pose::IDENTITY).max_distance(Vec3::ZERO),
         };
-        let rounding_m = ROUNDING_SHARE * (in_world.translation.length() + extent + 1.0);
+        let size_m = in_world.translation.length() + extent + margin_m.max(0.0) + 1.0;
+        if !(size_m <= LARGEST_M) {
+            self.has_unknown = true;
+            return id;
+        }
+        let rounding_m = ROUNDING_SHARE * size_m;
         let core_radius = match shape {
             Shape::Sphere(s) => s.radius,
             Shape::Capsule(c) => c.radius,
@@ -79,16 +86,17 @@ impl ObstacleSet {
         id
     }
 
-    /// Adds the points of a cloud as balls of one radius; returns the number that they share. Points that are not finite make
-    /// every answer uncertain.
+    /// Adds the points of a cloud as balls of one radius; returns the number that they share. Points that are not finite, or
+    /// beyond 10⁸ m, make every answer uncertain.
     pub fn add_points(&mut self, points: &[Vec3], radius_m: f64) -> usize {
         let id = self.next();
         for p in points {
-            if !p.is_finite() || !radius_m.is_finite() {
+            let size_m = p.length() + radius_m.abs() + 1.0;
+            if !(size_m <= LARGEST_M) {
                 self.has_unknown = true;
                 continue;
             }
-            let rounding_m = ROUNDING_SHARE * (p.length() + 1.0);
+            let rounding_m = ROUNDING_SHARE * size_m;
             self.push_outer(RoundedSolid::point(*p, (radius_m + rounding_m) as f32), id);
             self.push_inner(RoundedSolid::point(*p, (radius_m - rounding_m) as f32), id);
         }

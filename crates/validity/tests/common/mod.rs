@@ -158,3 +158,10 @@ pub fn data() -> Option<PathBuf> {
     println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
     None
 }
+
+/// Joint number `i` of a serial chain, without limits.
+pub fn single_joint(i: usize, kind: JointKind, origin: Pose, axis: Vec3) -> Joint {
+    let name = format!("joint {i}");
+    let limits = Limits::UNLIMITED;
+    Joint { name, kind, parent: LinkId(i), child: LinkId(i + 1), origin, axis, limits, mimic: None }
+}
