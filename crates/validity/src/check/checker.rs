@@ -28,8 +28,8 @@ pub enum NotCertain {
 
 /// Answers whether configurations and edges of a robot are free; each thread has its own.
 ///
-/// Free and hit are proven: no rounding, no sample between two others and no gap of a cover makes a collision free. Assumes that
-/// prismatic joints are within their limits.
+/// Free and hit are proven: no rounding, no sample between two others and no gap of a cover makes a collision free. What the
+/// proofs do not reach, such as a slide beyond its limits or an angle of 10⁶ rad, is uncertain. See README.md of this crate.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -177,7 +177,9 @@ impl<'m> ValidityChecker<'m> {
         found.clear();
         for (b, body) in self.robot.bodies.iter().enumerate() {
             if body.frame != 0 {
-                found.extend((0..self.obstacles.len()).map(|o| NotCertain::Obstacle(BodyId(b), o)));
+                let is_checked = |o: &usize| !self.skipped.get(b * self.obstacles.len() + o).copied().unwrap_or(false);
+                let obstacles = (0..self.obstacles.len()).filter(is_checked);
+                found.extend(obstacles.map(|o| NotCertain::Obstacle(BodyId(b), o)));
             }
         }
         found.extend(self.robot.pairs.iter().map(|p| NotCertain::Bodies(p.a, p.b)));

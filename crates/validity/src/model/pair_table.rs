@@ -10,7 +10,7 @@ pub(crate) const CELLS: usize = 224;
 /// Width of a cell, rad.
 pub(crate) const CELL_RAD: f64 = std::f64::consts::TAU / CELLS as f64;
 /// A cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long at most.
-pub(crate) const BEYOND_RAD: f32 = 0.018;
+pub(crate) const BEYOND_RAD: f32 = 0.036;
 /// Pairs of one table, a bit each.
 pub(crate) const MAX_PAIRS: usize = 8;
 
