@@ -135,6 +135,27 @@ fn primitives_are_covered() {
 }
 
 #[test]
+fn the_proofs_notice_a_missing_ball() {
+    let block = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.07, 0.04, 0.02) });
+    let shapes = [(block.clone(), Pose::IDENTITY)];
+    let cover = SphereCover::new(&[(&block, Pose::IDENTITY)], 0.004).unwrap();
+    let is_proven = |balls: &[Ball]| {
+        let triangles = placed_triangles(&block, &Pose::IDENTITY);
+        let surface = triangles.iter().all(|&t| is_in_union(t, balls, MAX_DEPTH));
+        (surface, solid_is_in_union(&shapes, balls, Vec3::ZERO, 0.071, 7))
+    };
+    assert_eq!(is_proven(&cover.outer), (true, true));
+    let is_noticed = |&missing: &usize| {
+        let mut balls = cover.outer.clone();
+        balls.remove(missing);
+        is_proven(&balls) != (true, true)
+    };
+    let noticed = (0..cover.outer.len()).filter(is_noticed).count();
+    // A few lie in the union of others: a cover counts whole voxels.
+    assert!(noticed * 4 > cover.outer.len() * 3, "{noticed} of {}", cover.outer.len());
+}
+
+#[test]
 fn hulls_and_closed_meshes_are_covered() {
     let mut random = Random(2);
     for i in 0..8 {
