@@ -6,6 +6,8 @@
 //! `state_times WORKLOAD.json ROBOT.urdf [ROBOT.srdf]` asks what `cargo xtask planning --validity` wrote and prints one line of
 //! JSON.
 
+#![allow(clippy::print_stdout, reason = "an example prints what it measures")]
+
 use std::path::Path;
 use std::time::Instant;
 

@@ -50,7 +50,9 @@ fn every_instruction_set_gives_the_same_answers() {
             let mut checker = ValidityChecker::new(&covered, &set).with_simd_level(level);
             let mut answers = Vec::new();
             checker.states(&q, &mut answers).unwrap();
-            answers.iter().for_each(|&a| hash.add(a as usize));
+            for &answer in &answers {
+                hash.add(answer as usize);
+            }
             let mut pairs = Vec::new();
             // In software a fused sum takes a hundred times as long.
             for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate().step_by(2) {
