@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p elbowroom-validity --example cover_sizes -- ROBOT.urdf [SLACK_MM]`
 
+#![allow(clippy::print_stdout, reason = "an example prints what it measures")]
+
 use std::time::Instant;
 
 use elbowroom_formats::robot::{LoadOptions, load};

@@ -5,6 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{Random, mesh};
+use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_proximity::{
     Capsule, ConvexHull, Cuboid, Cylinder, Shape, Sphere, TriMesh, project_point, tessellate::tessellate,
 };
@@ -135,6 +136,27 @@ fn primitives_are_covered() {
 }
 
 #[test]
+fn the_proofs_notice_a_missing_ball() {
+    let block = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.07, 0.04, 0.02) });
+    let shapes = [(block.clone(), Pose::IDENTITY)];
+    let cover = SphereCover::new(&[(&block, Pose::IDENTITY)], 0.004).unwrap();
+    let is_proven = |balls: &[Ball]| {
+        let triangles = placed_triangles(&block, &Pose::IDENTITY);
+        let surface = triangles.iter().all(|&t| is_in_union(t, balls, MAX_DEPTH));
+        (surface, solid_is_in_union(&shapes, balls, Vec3::ZERO, 0.071, 7))
+    };
+    assert_eq!(is_proven(&cover.outer), (true, true));
+    let is_noticed = |&missing: &usize| {
+        let mut balls = cover.outer.clone();
+        balls.remove(missing);
+        is_proven(&balls) != (true, true)
+    };
+    let noticed = (0..cover.outer.len()).filter(is_noticed).count();
+    // A few lie in the union of others: a cover counts whole voxels.
+    assert!(noticed * 4 > cover.outer.len() * 3, "{noticed} of {}", cover.outer.len());
+}
+
+#[test]
 fn hulls_and_closed_meshes_are_covered() {
     let mut random = Random(2);
     for i in 0..8 {
@@ -187,7 +209,9 @@ fn open_meshes_and_soups_are_covered() {
 fn a_mesh_inside_out_has_no_inner_balls_outside() {
     let block = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.05, 0.04, 0.03) });
     let (vertices, mut triangles) = tessellate(&block, 1e-3);
-    triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    for triangle in &mut triangles {
+        triangle.swap(1, 2);
+    }
     let Ok(turned) = TriMesh::new(vertices, triangles) else { return };
     let turned = Shape::Mesh(Arc::new(turned));
     let cover = SphereCover::new(&[(&turned, Pose::IDENTITY)], 0.005).unwrap();
@@ -201,7 +225,7 @@ fn links_of_real_robots_are_covered() {
     let Some(data) = common::data() else { return };
     for name in ["panda/panda.urdf", "ur5e/ur5e.urdf"] {
         let path = data.join("urdf").join(name);
-        let robot = elbowroom_formats::robot::load(&path, &Default::default()).unwrap().robot;
+        let robot = load(&path, &LoadOptions::default()).unwrap().robot;
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
             let cover = SphereCover::new(&shapes, 0.005).unwrap();

@@ -8,7 +8,7 @@ use elbowroom_validity::{CoveredRobot, NotCertain, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
 /// Changes where an answer changes: on purpose with the covers or what an edge is divided into, else never.
-const EXPECTED: u64 = 0;
+const EXPECTED: u64 = 0x8d31_64ca_6197_474a;
 
 /// The hash of Fowler, Noll and Vo.
 struct Hash(u64);
@@ -37,24 +37,27 @@ fn every_instruction_set_gives_the_same_answers() {
     let levels = simd_levels();
     let mut hashes: Vec<Hash> = levels.iter().map(|_| Hash(0xcbf2_9ce4_8422_2325)).collect();
     let mut random = Random(2024);
-    for round in 0..4 {
+    for round in 0..2 {
         let joints = 3 + random.below(5);
         let robot = random.robot(joints);
         let solids = obstacles(&mut random, [4, 20][round % 2], 1.2);
         let set = obstacle_set(&solids);
         let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
         let dof = robot.chain.dof();
-        let q: Vec<f64> = (0..96).flat_map(|_| random.q(&robot.chain)).collect();
+        let q: Vec<f64> = (0..64).flat_map(|_| random.q(&robot.chain)).collect();
         let near: Vec<f64> = q.iter().map(|v| v * 0.9).collect();
         for (&level, hash) in levels.iter().zip(&mut hashes) {
             let mut checker = ValidityChecker::new(&covered, &set).with_simd_level(level);
             let mut answers = Vec::new();
             checker.states(&q, &mut answers).unwrap();
-            answers.iter().for_each(|&a| hash.add(a as usize));
+            for &answer in &answers {
+                hash.add(answer as usize);
+            }
             let mut pairs = Vec::new();
-            for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate() {
+            // In software a fused sum takes a hundred times as long.
+            for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate().step_by(2) {
                 hash.add(usize::from(checker.edge_is_free(from, to).unwrap()));
-                if i % 8 == 0 {
+                if i % 16 == 0 {
                     checker.uncertain_pairs(from, to, &mut pairs).unwrap();
                     for pair in &pairs {
                         let (a, b) = match *pair {

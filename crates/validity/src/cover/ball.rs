@@ -53,7 +53,7 @@ pub(crate) fn enclosing(balls: &[Ball]) -> Ball {
         let toward = (far.centre - centre).try_normalize().unwrap_or(Vec3::ZERO);
         // The farthest point of the farthest ball pulls the centre.
         let pull = far.centre + toward * far.radius - centre;
-        centre = centre + pull * (1.0 / f64::from(step + 1));
+        centre += pull * (1.0 / f64::from(step + 1));
         let radius = reach(centre, farthest(centre));
         if radius < best.0 {
             best = (radius, centre);

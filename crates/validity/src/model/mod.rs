@@ -110,7 +110,9 @@ impl CoveredRobot {
         };
         let pairs: Vec<_> =
             collision_pairs(&[robot], 0).into_iter().filter_map(|(a, b)| Some((body(a)?, body(b)?))).collect();
-        pairs.into_iter().for_each(|(a, b)| covered.add_pair(a, b, 0.0));
+        for (a, b) in pairs {
+            covered.add_pair(a, b, 0.0);
+        }
         Ok(covered)
     }
 

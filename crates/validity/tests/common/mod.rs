@@ -1,5 +1,5 @@
 //! Random robots and obstacles.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::print_stdout)]
 
 use std::path::PathBuf;
 use std::sync::Arc;
