@@ -16,6 +16,6 @@ mod validity;
 pub use check::{NotCertain, ValidityChecker};
 pub use cover::{Ball, SphereCover};
 pub use error::ValidityError;
-pub use model::{BodyId, CoveredRobot};
+pub use model::{CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;
 pub use validity::Validity;

@@ -9,7 +9,9 @@ use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits,
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_validity::{BodyId, CoveredRobot, ObstacleSet, SphereCover, Validity, ValidityChecker, ValidityError};
+use elbowroom_validity::{
+    CoveredLinkId, CoveredRobot, ObstacleSet, SphereCover, Validity, ValidityChecker, ValidityError,
+};
 
 fn sphere(radius: f64) -> Shape {
     Shape::Sphere(Sphere { radius })
@@ -90,7 +92,7 @@ fn slides_beyond_their_limits_are_not_certain() {
         Collider { name: String::new(), shape: sphere(0.05), in_link: Pose::from_translation(Vec3::X * 1.5) };
     robot.colliders[0].push(collider);
     let mut covered = CoveredRobot::without_pairs(&robot, Pose::IDENTITY).unwrap();
-    covered.add_pair(BodyId(0), BodyId(1), 0.0);
+    covered.add_pair(CoveredLinkId(0), CoveredLinkId(1), 0.0);
     let set = ObstacleSet::default();
     let mut checker = ValidityChecker::new(&covered, &set);
     assert_eq!(checker.state(&[0.0, 0.05]), Ok(Validity::Free));
@@ -144,9 +146,10 @@ fn balls_that_just_touch(base: Vec3, reach: f64, random: &mut Random) {
     let in_world = |link: usize, p: Vec3| base.transform_point(state.link_in_root(LinkId(link)).transform_point(p));
     let distance = in_world(first, at_first).distance(in_world(last, at_last));
     let mut covered = CoveredRobot::without_pairs(&Robot::new(chain.clone()), base).unwrap();
-    let one = covered.add_body(&chain, LinkId(first), &[(&sphere(0.5 * distance), Pose::from_translation(at_first))]);
+    let one =
+        covered.add_covered_link(&chain, LinkId(first), &[(&sphere(0.5 * distance), Pose::from_translation(at_first))]);
     let shape = sphere(0.5 * distance + 1e-6 * reach);
-    let other = covered.add_body(&chain, LinkId(last), &[(&shape, Pose::from_translation(at_last))]);
+    let other = covered.add_covered_link(&chain, LinkId(last), &[(&shape, Pose::from_translation(at_last))]);
     let nothing = ObstacleSet::default();
     let (one, other) = (one.unwrap(), other.unwrap());
     let among = |covered: &CoveredRobot, set: &ObstacleSet| {
@@ -163,7 +166,7 @@ fn balls_that_just_touch(base: Vec3, reach: f64, random: &mut Random) {
     assert!(found.0 != Validity::Free && !found.1, "an obstacle, base at {base:?}, q {q:?}");
     covered.add_pair(one, other, 0.0);
     let found = among(&covered, &nothing);
-    assert!(found.0 != Validity::Free && !found.1, "two bodies, base at {base:?}, q {q:?}");
+    assert!(found.0 != Validity::Free && !found.1, "two covered_links, base at {base:?}, q {q:?}");
 }
 
 #[test]
@@ -231,8 +234,8 @@ fn large_margins_of_pairs_keep_their_last_digits() {
     let margin = 1000.0;
     let at = Vec3::new(0.6, 0.0, 0.8) * (margin + 0.1 - 2e-6);
     let ball = (&sphere(0.05), Pose::from_translation(at));
-    let other = covered.add_body(&robot.chain, LinkId(0), &[ball]).unwrap();
-    covered.add_pair(BodyId(0), other, margin);
+    let other = covered.add_covered_link(&robot.chain, LinkId(0), &[ball]).unwrap();
+    covered.add_pair(CoveredLinkId(0), other, margin);
     let set = ObstacleSet::default();
     assert_ne!(ValidityChecker::new(&covered, &set).state(&[0.0]), Ok(Validity::Free));
 }

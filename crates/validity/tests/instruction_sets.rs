@@ -61,7 +61,7 @@ fn every_instruction_set_gives_the_same_answers() {
                     checker.uncertain_pairs(from, to, &mut pairs).unwrap();
                     for pair in &pairs {
                         let (a, b) = match *pair {
-                            NotCertain::Bodies(a, b) => (a.0, 1000 + b.0),
+                            NotCertain::Links(a, b) => (a.0, 1000 + b.0),
                             NotCertain::Obstacle(a, b) => (a.0, b),
                         };
                         hash.add(a);

@@ -7,7 +7,7 @@ use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_validity::{BodyId, CoveredRobot, ObstacleSet, Validity, ValidityChecker};
+use elbowroom_validity::{CoveredLinkId, CoveredRobot, ObstacleSet, Validity, ValidityChecker};
 
 const RADIUS_M: f64 = 0.06;
 
@@ -113,8 +113,8 @@ fn a_million_obstacles() {
     assert_eq!(checker.state(&[0.0; 3]), Ok(Validity::Free));
     assert_eq!(checker.state(&forward), Ok(Validity::Hit));
     assert_eq!(checker.edge_is_free(&[0.0; 3], &forward), Ok(false));
-    for body in 0..covered.bodies().len() {
-        checker.skip(BodyId(body), last);
+    for body in 0..covered.covered_links().len() {
+        checker.skip(CoveredLinkId(body), last);
     }
     assert_eq!(checker.state(&forward), Ok(Validity::Free));
     assert_eq!(checker.edge_is_free(&[0.0; 3], &forward), Ok(true));

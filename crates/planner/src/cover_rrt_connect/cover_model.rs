@@ -5,7 +5,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{PairState, Scene, SceneState};
 use elbowroom_spatial::Pose;
-use elbowroom_validity::{BodyId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError};
+use elbowroom_validity::{CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError};
 
 /// One robot of a scene with sphere covers of its links and of what it holds. Built once; serves all scenes with the same robot,
 /// whatever their objects are.
@@ -13,14 +13,14 @@ use elbowroom_validity::{BodyId, CoveredRobot, NotCertain, ObstacleSet, Validity
 pub struct CoverModel {
     pub(super) robot: CoveredRobot,
     /// The geometry of each body.
-    bodies: Vec<GeometryId>,
-    /// Bodies that the scene tests, and their margins.
+    covered_links: Vec<GeometryId>,
+    /// Covered links that the scene tests, and their margins.
     pairs: Vec<(usize, usize, f64)>,
     index: RobotId,
 }
 
 impl CoverModel {
-    /// Covers a robot with what it holds in a state; pairs of its bodies are those that the scene tests, kept farther apart than
+    /// Covers a robot with what it holds in a state; pairs of its links are those that the scene tests, kept farther apart than
     /// their margins and the clearance (m).
     ///
     /// # Errors
@@ -32,34 +32,36 @@ impl CoverModel {
         let r = &scene.robots()[robot.0];
         let mut covered = CoveredRobot::without_pairs(&r.robot, r.base_in_world)?;
         let link = |link: LinkId| GeometryId::Link { robot, link };
-        let mut bodies: Vec<GeometryId> = covered.bodies().map(link).collect();
+        let mut covered_links: Vec<GeometryId> = covered.covered_links().map(link).collect();
         for (i, object) in scene.objects().iter().enumerate() {
             let id = ObjectId(i);
             let Some(held) = state.attachment(id).filter(|a| a.robot == robot) else { continue };
-            covered.add_body(&r.robot.chain, held.link, &[(&object.shape, held.in_link)])?;
-            bodies.push(GeometryId::Object(id));
+            covered.add_covered_link(&r.robot.chain, held.link, &[(&object.shape, held.in_link)])?;
+            covered_links.push(GeometryId::Object(id));
         }
-        let pairs = tested_pairs(scene, state, &bodies);
+        let pairs = tested_pairs(scene, state, &covered_links);
         for &(a, b, margin_m) in &pairs {
-            covered.add_pair(BodyId(a), BodyId(b), margin_m + clearance_m);
+            covered.add_pair(CoveredLinkId(a), CoveredLinkId(b), margin_m + clearance_m);
         }
-        Ok(Self { robot: covered, bodies, pairs, index: robot })
+        Ok(Self { robot: covered, covered_links, pairs, index: robot })
     }
 
     /// True where the model was made for the same pairs, and nothing is held: then it serves another scene with the same robot.
     pub fn serves(&self, scene: &Scene, state: &SceneState) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
-        let held = self.bodies.iter().any(|b| matches!(b, GeometryId::Object(_)));
-        !holds && !held && self.pairs == tested_pairs(scene, state, &self.bodies)
+        let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
+        !holds && !held && self.pairs == tested_pairs(scene, state, &self.covered_links)
     }
 }
 
-/// Pairs of bodies that the scene tests, each with its margin in metres.
-fn tested_pairs(scene: &Scene, state: &SceneState, bodies: &[GeometryId]) -> Vec<(usize, usize, f64)> {
+/// Pairs of links that the scene tests, each with its margin in metres.
+fn tested_pairs(scene: &Scene, state: &SceneState, covered_links: &[GeometryId]) -> Vec<(usize, usize, f64)> {
     let mut pairs = Vec::new();
-    for i in 0..bodies.len() {
-        for j in i + 1..bodies.len() {
-            pairs.extend(tested_margin(scene, state, bodies[i], bodies[j]).map(|margin_m| (i, j, margin_m)));
+    for i in 0..covered_links.len() {
+        for j in i + 1..covered_links.len() {
+            pairs.extend(
+                tested_margin(scene, state, covered_links[i], covered_links[j]).map(|margin_m| (i, j, margin_m)),
+            );
         }
     }
     pairs
@@ -72,7 +74,7 @@ pub struct CoverObstacles {
     /// The geometry of each obstacle.
     sources: Vec<GeometryId>,
     /// Pairs that the scene does not test.
-    skipped: Vec<(BodyId, usize)>,
+    skipped: Vec<(CoveredLinkId, usize)>,
 }
 
 impl CoverObstacles {
@@ -82,7 +84,7 @@ impl CoverObstacles {
         let mut obstacles = Self { set: ObstacleSet::default(), sources: Vec::new(), skipped: Vec::new() };
         for (i, object) in scene.objects().iter().enumerate() {
             let id = GeometryId::Object(ObjectId(i));
-            if model.bodies.contains(&id) {
+            if model.covered_links.contains(&id) {
                 continue;
             }
             let Some(in_world) = state.pose(scene, id) else { continue };
@@ -109,13 +111,13 @@ impl CoverObstacles {
         shapes: &[(&Shape, Pose)],
         clearance_m: f64,
     ) {
-        let margins: Vec<_> = model.bodies.iter().map(|&body| tested_margin(scene, state, body, id)).collect();
+        let margins: Vec<_> = model.covered_links.iter().map(|&body| tested_margin(scene, state, body, id)).collect();
         let Some(largest) = margins.iter().flatten().copied().reduce(f64::max) else { return };
         for (shape, in_world) in shapes {
             let number = self.set.add_shape(shape, in_world, largest + clearance_m);
             self.sources.push(id);
             let untested = margins.iter().enumerate().filter(|(_, m)| m.is_none());
-            self.skipped.extend(untested.map(|(body, _)| (BodyId(body), number)));
+            self.skipped.extend(untested.map(|(body, _)| (CoveredLinkId(body), number)));
         }
     }
 
@@ -131,8 +133,8 @@ impl CoverObstacles {
     /// The geometries of a pair.
     pub(super) fn pair(&self, model: &CoverModel, pair: NotCertain) -> (GeometryId, GeometryId) {
         match pair {
-            NotCertain::Bodies(a, b) => (model.bodies[a.0], model.bodies[b.0]),
-            NotCertain::Obstacle(body, obstacle) => (model.bodies[body.0], self.sources[obstacle]),
+            NotCertain::Links(a, b) => (model.covered_links[a.0], model.covered_links[b.0]),
+            NotCertain::Obstacle(body, obstacle) => (model.covered_links[body.0], self.sources[obstacle]),
         }
     }
 }

@@ -9,8 +9,8 @@ use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 use super::cover_model::{CoverModel, CoverObstacles};
 use crate::rrt_connect::MotionValidator;
 
-/// Edges between two looks at the clock: a look costs as much as a short edge.
-const EDGES_PER_LOOK: u64 = 16;
+/// The clock is read once in so many edges: it costs as much as a short one.
+const EDGES_PER_CLOCK_READING: u64 = 16;
 /// Configurations of a block.
 const BLOCK: u64 = 16;
 
@@ -90,6 +90,6 @@ impl EdgeValidator for CoverValidator<'_> {
 
     fn is_exhausted(&mut self) -> bool {
         self.states_checked() > self.max_states
-            || (self.edges.is_multiple_of(EDGES_PER_LOOK) && Instant::now() >= self.deadline)
+            || (self.edges.is_multiple_of(EDGES_PER_CLOCK_READING) && Instant::now() >= self.deadline)
     }
 }

@@ -9,13 +9,6 @@ mod time_optimal;
 mod tree;
 mod tree_search;
 
-use crate::rrt_connect::{Random, length, lerp, path_length};
-
 pub use cover_model::{CoverModel, CoverObstacles};
 pub use planner::CoverRrtConnect;
 pub use time_optimal::TimedMotion;
-
-/// Draws configurations.
-trait ConfigurationSampler {
-    fn sample(&mut self, out: &mut [f64]);
-}

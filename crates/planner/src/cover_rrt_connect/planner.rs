@@ -8,10 +8,11 @@ use elbowroom_validity::Validity;
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::edge_validator::{CoverValidator, EdgeValidator};
 use super::shortcutting::Shortcutting;
-use super::tree_search::TreeSearch;
-use super::{ConfigurationSampler, Random, path_length};
+use super::tree_search::{ConfigurationSampler, TreeSearch};
 use crate::path::PathEnd;
-use crate::rrt_connect::{JointBounds, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, SamplingRegion};
+use crate::rrt_connect::{
+    JointBounds, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, SamplingRegion, path_length,
+};
 
 /// Configurations tried around an end that the covers leave open.
 const EXIT_TRIALS: usize = 400;
@@ -23,7 +24,7 @@ const COVER_SHARE: f64 = 0.5;
 /// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`] gives, far sooner.
 ///
 /// Edges are proven by the covers, sixteen configurations at a time. Where the covers leave an end open, the exact scene proves
-/// the way out of it; where they leave no path, the exact scene is searched.
+/// an edge that leaves it; where they leave no path, the exact scene is searched.
 ///
 /// ```
 /// use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectSettings};

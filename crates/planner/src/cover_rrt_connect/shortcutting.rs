@@ -1,7 +1,7 @@
 //! Shortcutting of a path whose edges the covers prove; every new edge is proven, too.
 
 use super::edge_validator::EdgeValidator;
-use super::{Random, length, lerp, path_length};
+use crate::rrt_connect::{Random, length, lerp, path_length};
 
 /// Rounds of leaving out waypoints, random shortcuts and pulled corners.
 const ROUNDS: usize = 4;
@@ -102,7 +102,7 @@ fn point_at(path: &[Vec<f64>], far: f64) -> (usize, Vec<f64>) {
     (path.len() - 2, path[path.len() - 1].clone())
 }
 
-/// A corner moved by a share of the way to the point between its neighbours that divides their segment as its edges do.
+/// A corner moved by a share of the distance to the point between its neighbours that divides their segment as its edges do.
 fn pulled(before: &[f64], corner: &[f64], after: &[f64], share: f64) -> Vec<f64> {
     let (a, b) = (length(before, corner), length(corner, after));
     let t = if a + b > 0.0 { a / (a + b) } else { 0.5 };

@@ -1,5 +1,7 @@
 //! A tree of configurations with a nearest-neighbour search over all nodes, in single precision.
 
+use crate::rrt_connect::length;
+
 /// Nodes whose coordinates are together in memory.
 const LANES: usize = 16;
 
@@ -35,7 +37,7 @@ impl Tree {
     /// Adds a node; returns its index.
     pub fn add(&mut self, parent: usize, q: &[f64]) -> usize {
         let node = self.len();
-        if node % LANES == 0 {
+        if node.is_multiple_of(LANES) {
             self.packs.push(vec![[f32::INFINITY; LANES]; self.dof]);
         }
         if let Some(pack) = self.packs.last_mut() {
@@ -69,7 +71,7 @@ impl Tree {
         }
         let lane = (0..LANES).fold(0, |least, lane| if best[lane] < best[least] { lane } else { least });
         let node = best_pack[lane] as usize * LANES + lane;
-        (node, super::length(self.q(node), q))
+        (node, length(self.q(node), q))
     }
 
     /// The nodes from one to the root.

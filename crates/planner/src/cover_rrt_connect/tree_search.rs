@@ -4,12 +4,17 @@
 
 use super::edge_validator::EdgeValidator;
 use super::tree::Tree;
-use super::{ConfigurationSampler, lerp};
+use crate::rrt_connect::{length, lerp};
 
 /// Longest edge, rad (and m).
 const EDGE_LENGTH: f64 = 1.0;
 /// Dynamic domain of a node after its first failure, rad (and m).
 const DOMAIN_RADIUS: f64 = 4.0;
+
+/// Draws configurations.
+pub(super) trait ConfigurationSampler {
+    fn sample(&mut self, out: &mut [f64]);
+}
 
 /// Two trees that grow towards each other.
 pub(super) struct TreeSearch<'v, V> {
@@ -80,7 +85,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
             if distance <= EDGE_LENGTH {
                 return Some(near);
             }
-            distance = super::length(self.trees[1].q(near), &target);
+            distance = length(self.trees[1].q(near), &target);
             if self.validator.is_exhausted() {
                 return None;
             }

@@ -4,10 +4,10 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 
-use super::segment::MotionTable;
+use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, V3, splat};
-use crate::model::{BodyPair, CoveredRobot, SphereNode};
+use crate::model::{CoveredRobot, LinkPair, SphereNode};
 use crate::obstacles::{Bounds, BoxTree, ObstacleSet, RoundedSolid};
 
 /// What a block is tested for.
@@ -38,8 +38,8 @@ impl BlockResult {
 /// Two things that are not certainly apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum NearPair {
-    /// Entries of the bodies.
-    Bodies(u32, u32),
+    /// Entries of the links.
+    Links(u32, u32),
     /// A body and an obstacle's number.
     Obstacle(u32, u32),
 }
@@ -91,7 +91,7 @@ impl BlockModel<'_> {
 }
 
 impl BlockModel<'_> {
-    /// Lanes in which two bodies are not farther apart than their margin and more.
+    /// Lanes in which two links are not farther apart than their margin and more.
     #[inline(always)]
     pub fn check_pair<S: Simd>(
         &self,
@@ -130,7 +130,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     fn obstacles(&mut self) {
         let robot = self.model.robot;
         // What is farthest from the base moves most and hits first.
-        for (index, body) in robot.bodies.iter().enumerate().rev() {
+        for (index, body) in robot.covered_links.iter().enumerate().rev() {
             if body.frame == 0 {
                 continue;
             }
@@ -186,7 +186,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         while at < end {
             let node = &robot.nodes[at as usize];
             let centre = self.workspace.centre(simd, robot, at);
-            let from = obstacle.from_core(simd, centre);
+            let from = obstacle.vector_from_core(simd, centre);
             let reach = Reach { radius: node.radius + obstacle.radius, half_chord, sag };
             let near = within(simd, from.vector, reach.radius + reach.half_chord);
             if near & self.request.active == 0 {
@@ -245,7 +245,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 continue;
             }
             if self.bodies_near(index, pair, 0.0) {
-                self.note(NearPair::Bodies(pair.a.0 as u32, pair.b.0 as u32));
+                self.note(NearPair::Links(pair.a.0 as u32, pair.b.0 as u32));
             }
             if self.is_done() {
                 return;
@@ -267,14 +267,14 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 }
             }
         }
-        for body in &robot.bodies {
+        for body in &robot.covered_links {
             if !body.nodes.is_empty() {
                 self.workspace.centre(simd, robot, body.nodes.start);
             }
         }
         self.workspace.square_reaches(simd, motion);
         for (index, pair) in robot.pairs.iter().enumerate() {
-            let (a, b) = (&robot.bodies[pair.a.0].nodes, &robot.bodies[pair.b.0].nodes);
+            let (a, b) = (&robot.covered_links[pair.a.0].nodes, &robot.covered_links[pair.b.0].nodes);
             if a.is_empty() || b.is_empty() {
                 self.workspace.near_pairs[index] = false;
             } else if self.workspace.near_pairs[index] {
@@ -288,11 +288,11 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends in the trees of two bodies. True where they are not proven apart.
+    /// Descends in the trees of two links. True where they are not proven apart.
     #[inline(always)]
-    fn bodies_near(&mut self, index: usize, pair: &BodyPair, more_m: f32) -> bool {
+    fn bodies_near(&mut self, index: usize, pair: &LinkPair, more_m: f32) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
-        let (a, b) = (&robot.bodies[pair.a.0], &robot.bodies[pair.b.0]);
+        let (a, b) = (&robot.covered_links[pair.a.0], &robot.covered_links[pair.b.0]);
         if a.nodes.is_empty() || b.nodes.is_empty() {
             return false;
         }

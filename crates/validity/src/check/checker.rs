@@ -3,12 +3,13 @@
 use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
+use super::motion_table::MotionTable;
 use super::pair_table_builder::pair_tables;
-use super::segment::{MotionTable, Stretch};
+use super::segment::Stretch;
 use super::workspace::Workspace;
 use crate::error::ValidityError;
 use crate::lanes::{LANES, detected_simd_level};
-use crate::model::{BodyId, CoveredRobot};
+use crate::model::{CoveredLinkId, CoveredRobot};
 use crate::obstacles::{BoxTree, ObstacleSet};
 use crate::validity::Validity;
 
@@ -20,10 +21,10 @@ const SHORTEST_CHORD_M: f64 = 0.004;
 /// Two things that are not proven apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum NotCertain {
-    /// Two bodies of the robot.
-    Bodies(BodyId, BodyId),
+    /// Two links of the robot.
+    Links(CoveredLinkId, CoveredLinkId),
     /// A body and the number of an obstacle.
-    Obstacle(BodyId, usize),
+    Obstacle(CoveredLinkId, usize),
 }
 
 /// Answers whether configurations and edges of a robot are free; each thread has its own.
@@ -89,10 +90,10 @@ impl<'m> ValidityChecker<'m> {
     }
 
     /// A body and an obstacle that may touch.
-    pub fn skip(&mut self, body: BodyId, obstacle: usize) {
+    pub fn skip(&mut self, body: CoveredLinkId, obstacle: usize) {
         let count = self.obstacles.len();
-        if body.0 < self.robot.bodies.len() && obstacle < count {
-            self.skipped.resize(self.robot.bodies.len() * count, false);
+        if body.0 < self.robot.covered_links.len() && obstacle < count {
+            self.skipped.resize(self.robot.covered_links.len() * count, false);
             self.skipped[body.0 * count + obstacle] = true;
         }
     }
@@ -175,14 +176,14 @@ impl<'m> ValidityChecker<'m> {
 
     fn every_pair(&self, found: &mut Vec<NotCertain>) {
         found.clear();
-        for (b, body) in self.robot.bodies.iter().enumerate() {
+        for (b, body) in self.robot.covered_links.iter().enumerate() {
             if body.frame != 0 {
                 let is_checked = |o: &usize| !self.skipped.get(b * self.obstacles.len() + o).copied().unwrap_or(false);
                 let obstacles = (0..self.obstacles.len()).filter(is_checked);
-                found.extend(obstacles.map(|o| NotCertain::Obstacle(BodyId(b), o)));
+                found.extend(obstacles.map(|o| NotCertain::Obstacle(CoveredLinkId(b), o)));
             }
         }
-        found.extend(self.robot.pairs.iter().map(|p| NotCertain::Bodies(p.a, p.b)));
+        found.extend(self.robot.pairs.iter().map(|p| NotCertain::Links(p.a, p.b)));
     }
 
     fn expect_count(&self, q: &[f64]) -> Result<(), ValidityError> {
@@ -289,7 +290,7 @@ fn block_count(length_m: f64) -> usize {
 
 fn public(pair: &NearPair) -> NotCertain {
     match *pair {
-        NearPair::Bodies(a, b) => NotCertain::Bodies(BodyId(a as usize), BodyId(b as usize)),
-        NearPair::Obstacle(body, obstacle) => NotCertain::Obstacle(BodyId(body as usize), obstacle as usize),
+        NearPair::Links(a, b) => NotCertain::Links(CoveredLinkId(a as usize), CoveredLinkId(b as usize)),
+        NearPair::Obstacle(body, obstacle) => NotCertain::Obstacle(CoveredLinkId(body as usize), obstacle as usize),
     }
 }

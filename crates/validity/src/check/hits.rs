@@ -7,7 +7,7 @@ use fearless_simd::{Simd, prelude::*};
 use super::block::{BlockModel, NearPair};
 use super::workspace::Workspace;
 use crate::lanes::{V3, splat};
-use crate::model::{Body, CoveredRobot, InnerSphere};
+use crate::model::{CoveredLink, CoveredRobot, InnerSphere};
 use crate::obstacles::{Bounds, BoxTree};
 
 impl BlockModel<'_> {
@@ -18,7 +18,7 @@ impl BlockModel<'_> {
         for pair in pairs {
             hits |= match *pair {
                 NearPair::Obstacle(body, obstacle) => self.obstacle_hits(simd, inner, workspace, body, obstacle),
-                NearPair::Bodies(a, b) => self.body_hits(simd, workspace, a, b),
+                NearPair::Links(a, b) => self.body_hits(simd, workspace, a, b),
             };
         }
         hits
@@ -33,7 +33,7 @@ impl BlockModel<'_> {
         body: u32,
         obstacle: u32,
     ) -> u32 {
-        let body = &self.robot.bodies[body as usize];
+        let body = &self.robot.covered_links[body as usize];
         let mut hits = 0;
         for sphere in inner_spheres(self.robot, body) {
             let centre = workspace.frames[body.frame].point(simd, sphere.centre);
@@ -42,7 +42,7 @@ impl BlockModel<'_> {
             inner.overlapping(simd, &bounds, &mut workspace.open, &mut found);
             for &i in found.iter().filter(|&&i| self.obstacles.inner_source[i as usize] == obstacle) {
                 let solid = &self.obstacles.inner[i as usize];
-                hits |= shorter(simd, solid.from_core(simd, centre).vector, sphere.radius + solid.radius);
+                hits |= shorter(simd, solid.vector_from_core(simd, centre).vector, sphere.radius + solid.radius);
             }
             workspace.found = found;
         }
@@ -51,7 +51,7 @@ impl BlockModel<'_> {
 
     #[inline(always)]
     fn body_hits<S: Simd>(&self, simd: S, workspace: &Workspace, a: u32, b: u32) -> u32 {
-        let (a, b) = (&self.robot.bodies[a as usize], &self.robot.bodies[b as usize]);
+        let (a, b) = (&self.robot.covered_links[a as usize], &self.robot.covered_links[b as usize]);
         let mut hits = 0;
         for one in inner_spheres(self.robot, a) {
             let centre = workspace.frames[a.frame].point(simd, one.centre);
@@ -64,7 +64,7 @@ impl BlockModel<'_> {
     }
 }
 
-fn inner_spheres<'r>(robot: &'r CoveredRobot, body: &Body) -> &'r [InnerSphere] {
+fn inner_spheres<'r>(robot: &'r CoveredRobot, body: &CoveredLink) -> &'r [InnerSphere] {
     &robot.inner[body.inner.start as usize..body.inner.end as usize]
 }
 

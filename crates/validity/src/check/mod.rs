@@ -3,6 +3,8 @@
 mod block;
 mod checker;
 mod hits;
+mod joint_stretch;
+mod motion_table;
 #[cfg(test)]
 mod motion_tests;
 mod pair_table_builder;

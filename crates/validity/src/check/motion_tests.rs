@@ -7,10 +7,12 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
 use fearless_simd::dispatch;
 
-use super::segment::{INTERVALS, MotionTable, Stretch};
+use super::joint_stretch::INTERVALS;
+use super::motion_table::MotionTable;
+use super::segment::Stretch;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, detected_simd_level};
-use crate::model::{BodyId, CoveredRobot};
+use crate::model::{CoveredLinkId, CoveredRobot};
 
 const BALL_M: f64 = 0.02;
 
@@ -51,7 +53,8 @@ impl Random {
         for i in 0..joints {
             use JointKind::{Continuous, Fixed, Prismatic, Revolute};
             let kind = [Revolute, Revolute, Continuous, Continuous, Prismatic, Fixed][self.below(6)];
-            let limits = if kind == Prismatic { Limits::range(-0.3 * size, 0.5 * size) } else { Limits::symmetric(3.0) };
+            let limits =
+                if kind == Prismatic { Limits::range(-0.3 * size, 0.5 * size) } else { Limits::symmetric(3.0) };
             let source = (0..i).find(|&j| matches!(list[j].kind, Revolute | Continuous) && list[j].mimic.is_none());
             let mimic = source.filter(|_| kind != Fixed && self.below(6) == 0);
             let multiplier = if kind == Prismatic { 0.1 * size } else { -0.5 };
@@ -77,7 +80,8 @@ impl Random {
     fn q(&mut self, chain: &Chain, unlimited: f64) -> Vec<f64> {
         let (lower, upper) = (chain.lower(), chain.upper());
         let ends = lower.iter().zip(&upper);
-        ends.map(|(&l, &u)| if l.is_finite() { self.between(l, u) } else { self.between(-unlimited, unlimited) }).collect()
+        ends.map(|(&l, &u)| if l.is_finite() { self.between(l, u) } else { self.between(-unlimited, unlimited) })
+            .collect()
     }
 }
 
@@ -99,11 +103,11 @@ impl Case {
         let centres: Vec<Vec3> = (0..=joints).map(|_| random.vec3(0.5 * size)).collect();
         let ball = Shape::Sphere(Sphere { radius: BALL_M });
         for (link, &centre) in centres.iter().enumerate() {
-            covered.add_body(&chain, LinkId(link), &[(&ball, Pose::from_translation(centre))]).unwrap();
+            covered.add_covered_link(&chain, LinkId(link), &[(&ball, Pose::from_translation(centre))]).unwrap();
         }
         for a in 0..=joints {
             for b in 0..a {
-                covered.add_pair(BodyId(a), BodyId(b), 0.0);
+                covered.add_pair(CoveredLinkId(a), CoveredLinkId(b), 0.0);
             }
         }
         let state = ChainState::new(&chain);
@@ -137,7 +141,7 @@ impl Case {
     /// Largest error of a ball's centre in a lane, as a share of what its radius was enlarged by.
     fn worst_share(&self, workspace: &Workspace, lane: usize) -> f64 {
         let mut worst: f64 = 0.0;
-        for (link, body) in self.covered.bodies.iter().enumerate() {
+        for (link, body) in self.covered.covered_links.iter().enumerate() {
             let node = &self.covered.nodes[body.nodes.start as usize];
             let centre = dispatch!(detected_simd_level(), simd => {
                 let mut out = crate::lanes::PointRow::ZERO;
@@ -216,9 +220,8 @@ fn compare_motion(case: &mut Case, from: &[f64], to: &[f64], random: &mut Random
     let pairs: Vec<(usize, usize, usize)> =
         case.covered.pairs.iter().enumerate().map(|(i, p)| (p.a.0, p.b.0, i)).collect();
     // A point of each ball's surface, besides its centre.
-    let on_ball: Vec<Vec3> = (0..links)
-        .map(|i| case.centres[i] + random.vec3(1.0).try_normalize().unwrap_or(Vec3::X) * BALL_M)
-        .collect();
+    let on_ball: Vec<Vec3> =
+        (0..links).map(|i| case.centres[i] + random.vec3(1.0).try_normalize().unwrap_or(Vec3::X) * BALL_M).collect();
     let mut most = [0.0_f64; 4];
     let share_of = |seen: f64, bound: f32| {
         let bound = f64::from(bound);
@@ -282,7 +285,10 @@ fn no_point_leaves_its_chord_farther_than_the_bound() {
             most.iter_mut().zip(seen).for_each(|(m, s)| *m = m.max(s));
         }
     }
-    println!("largest share of the bounds: bodies, half chord {:.3}, deviation {:.3}; pairs {:.3}, {:.3}", most[0], most[1], most[2], most[3]);
+    println!(
+        "largest share of the bounds: covered_links, half chord {:.3}, deviation {:.3}; pairs {:.3}, {:.3}",
+        most[0], most[1], most[2], most[3]
+    );
     // The bounds are reached nearly.
     assert!(most.iter().all(|&m| m > 0.5), "{most:?}");
 }
@@ -306,7 +312,7 @@ fn planar(joints: usize) -> Case {
     let ball = Shape::Sphere(Sphere { radius: BALL_M });
     let centres: Vec<Vec3> = (0..=joints).map(|_| Vec3::X * 0.5).collect();
     for link in 0..=joints {
-        covered.add_body(&chain, LinkId(link), &[(&ball, Pose::from_translation(centres[link]))]).unwrap();
+        covered.add_covered_link(&chain, LinkId(link), &[(&ball, Pose::from_translation(centres[link]))]).unwrap();
     }
     let state = ChainState::new(&chain);
     Case { chain, base: Pose::IDENTITY, covered, centres, state }

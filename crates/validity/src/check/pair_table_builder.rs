@@ -3,10 +3,10 @@
 use fearless_simd::dispatch;
 
 use super::block::{BlockModel, BlockRequest};
-use super::segment::MotionTable;
+use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, detected_simd_level};
-use crate::model::{BEYOND_RAD, BodyPair, CELL_RAD, CELLS, CoveredRobot, MAX_PAIRS, PairTable};
+use crate::model::{BEYOND_RAD, CELL_RAD, CELLS, CoveredRobot, LinkPair, MAX_PAIRS, PairTable};
 use crate::obstacles::{BoxTree, ObstacleSet};
 
 /// Slides with longer strokes are not covered by a table, m.
@@ -34,7 +34,7 @@ pub(crate) fn pair_tables(robot: &CoveredRobot) -> Vec<PairTable> {
 }
 
 /// The one or two independent turning joints of a pair, where all others are short slides.
-fn turning_steps(robot: &CoveredRobot, pair: &BodyPair) -> Option<[usize; 2]> {
+fn turning_steps(robot: &CoveredRobot, pair: &LinkPair) -> Option<[usize; 2]> {
     let mut turning = Vec::new();
     for joint in &pair.joints {
         let step = &robot.chain.steps[joint.step];
@@ -112,7 +112,7 @@ fn place(robot: &CoveredRobot, group: &Group, block: &[usize], workspace: &mut W
 }
 
 /// No point of one body moves farther against the other, from the centre of a cell to any value that it stands for.
-fn motion_within_cell_m(robot: &CoveredRobot, pair: &BodyPair) -> f32 {
+fn motion_within_cell_m(robot: &CoveredRobot, pair: &LinkPair) -> f32 {
     let turn = 0.5 * CELL_RAD + f64::from(BEYOND_RAD) + ROUNDING_RAD;
     let each = pair.joints.iter().map(|joint| {
         let step = &robot.chain.steps[joint.step];

@@ -7,36 +7,25 @@
 //! `i` slides. So no point leaves its chord farther than an eighth of `Σ_j ρ_j |Δ_j| (|Δ_j| + 2 Σ |Δ_i|)`, the inner sum over the
 //! turning joints before `j`, the first term in brackets for turning joints only.
 //!
-//! Two bodies of the robot are seen from the frame of the last joint that moves both: what moves both does not move one against
+//! Two links of the robot are seen from the frame of the last joint that moves both: what moves both does not move one against
 //! the other. The same sums over the joints behind it bound their relative motion.
 //!
 //! All sums are matrix products: a row of lever arms per joint ([`MotionTable`]), a lane per body or pair.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
-use fearless_simd::{Simd, f32x16, prelude::*};
+use fearless_simd::{Simd, prelude::*};
 
+use super::joint_stretch::{INTERVALS, JointStretch};
+use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, splat};
-use crate::model::{BatchedChain, CoveredRobot};
+use crate::model::CoveredRobot;
 
-/// Intervals between the lanes of a block.
-pub(crate) const INTERVALS: usize = LANES - 1;
 /// Rounding of the sums in single precision.
 const ROUNDED_UP: f32 = 1.000_02;
 /// A joint value that changes by more than this within one block is not tested, rad or m.
 const MAX_CHANGE: f64 = 4.5;
-/// Shares of a stretch at which the lanes are.
-const SHARES: Row = {
-    let mut shares = [0.0; LANES];
-    let mut lane = 0;
-    while lane < LANES {
-        shares[lane] = lane as f32 / INTERVALS as f32;
-        lane += 1;
-    }
-    Row(shares)
-};
-
 /// A stretch of a straight segment from `from` to `to`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretch<'q> {
@@ -45,90 +34,6 @@ pub(crate) struct Stretch<'q> {
     /// Where it begins and ends, as shares of the segment.
     pub begin: f64,
     pub end: f64,
-}
-
-/// The first value of a joint in a stretch, and how it changes.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct JointStretch {
-    first: f32,
-    change: f32,
-}
-
-impl JointStretch {
-    /// The values in the lanes.
-    #[inline(always)]
-    pub fn values<S: Simd>(self, simd: S) -> f32x16<S> {
-        SHARES.load(simd).mul_add_precise(splat(simd, self.change), splat(simd, self.first))
-    }
-}
-
-/// Lever arms of all bodies and pairs, sixteen columns at a time.
-#[derive(Debug, Clone)]
-pub(crate) struct MotionTable {
-    /// Number of columns, a multiple of the lanes.
-    columns: usize,
-    /// Column of the first pair; the bodies are before it.
-    first_pair: usize,
-    /// Per step and sixteen columns.
-    lever_m: Vec<Row>,
-    /// Per step, the longest lever arm of any body.
-    longest_m: Vec<f64>,
-    /// In the column of a pair, the sum of the radii of both bounding spheres and its margin.
-    root_radii_m: Vec<Row>,
-}
-
-impl MotionTable {
-    pub fn new(robot: &CoveredRobot) -> Self {
-        let first_pair = robot.bodies.len();
-        let columns = (first_pair + robot.pairs.len()).next_multiple_of(LANES);
-        let rows = columns / LANES;
-        let mut lever_m = vec![Row::ZERO; robot.chain.steps.len() * rows];
-        let mut set = |step: usize, column: usize, lever: f32| {
-            lever_m[step * rows + column / LANES].0[column % LANES] = lever;
-        };
-        let mut longest_m = vec![0.0_f64; robot.chain.steps.len()];
-        for (column, body) in robot.bodies.iter().enumerate() {
-            for (step, &lever) in body.lever_m.iter().enumerate() {
-                set(step, column, lever);
-                longest_m[step] = longest_m[step].max(f64::from(lever));
-            }
-        }
-        for (p, pair) in robot.pairs.iter().enumerate() {
-            pair.joints.iter().for_each(|joint| set(joint.step, first_pair + p, joint.lever_m));
-        }
-        let mut root_radii_m = vec![Row::ZERO; rows];
-        for (p, pair) in robot.pairs.iter().enumerate() {
-            let column = first_pair + p;
-            let radius = robot.bounding_radius_m(pair.a) + robot.bounding_radius_m(pair.b) + pair.margin_m;
-            root_radii_m[column / LANES].0[column % LANES] = radius;
-        }
-        Self { columns, first_pair, lever_m, longest_m, root_radii_m }
-    }
-
-    pub fn root_radii_m(&self) -> &[Row] {
-        &self.root_radii_m
-    }
-
-    pub fn columns(&self) -> usize {
-        self.columns
-    }
-
-    /// Column of a pair of bodies; that of a body is its number.
-    pub fn pair(&self, index: usize) -> usize {
-        self.first_pair + index
-    }
-
-    /// No point of the robot moves farther between two configurations, m.
-    pub fn displacement_m(&self, chain: &BatchedChain, from: &[f64], to: &[f64]) -> f64 {
-        let mut length = 0.0;
-        for (step, lever) in chain.steps.iter().zip(&self.longest_m) {
-            let change = (step.multiplier * (to[step.index] - from[step.index])).abs();
-            if change != 0.0 {
-                length += change * lever;
-            }
-        }
-        length
-    }
 }
 
 impl Workspace {
@@ -182,7 +87,7 @@ impl Workspace {
         (at(&self.half_chord_m), at(&self.sag_m))
     }
 
-    /// The same of the motion of two bodies against each other. What turns both is not in their deviation.
+    /// The same of the motion of two links against each other. What turns both is not in their deviation.
     #[inline(always)]
     pub fn pair_motion(&self, column: usize, common_frame: usize) -> (f32, f32) {
         let (half_chord, sag) = self.body_motion(column);

@@ -1,6 +1,7 @@
 //! Memory of a checker.
 
-use super::segment::{JointStretch, MotionTable};
+use super::joint_stretch::JointStretch;
+use super::motion_table::MotionTable;
 use crate::lanes::{LANES, PointRow, Row};
 use crate::model::{CoveredRobot, FrameLanes};
 
@@ -16,17 +17,17 @@ pub(crate) struct Workspace {
     stamp: u32,
     /// Per moving joint, its values in a stretch.
     pub stretch: Vec<JointStretch>,
-    /// Per body, then per pair of bodies: half of the longest chord, m.
+    /// Per body, then per pair of links: half of the longest chord, m.
     pub half_chord_m: Vec<Row>,
     /// The same: the largest deviation of a point from its chord, m.
     pub sag_m: Vec<Row>,
-    /// Per pair of bodies, the square of the distance at which their bounding spheres are near, m².
+    /// Per pair of links, the square of the distance at which their bounding spheres are near, m².
     pub reach_squares: Vec<Row>,
     /// Per frame, how much the turning joints that carry it change between lanes, rad.
     pub turned: Vec<f32>,
     /// Per step, how much its joint changes between lanes, rad or m.
     pub deltas: Vec<f32>,
-    /// Per pair of bodies, true where it must be checked in this block.
+    /// Per pair of links, true where it must be checked in this block.
     pub near_pairs: Vec<bool>,
     /// Packs still to visit.
     pub open: Vec<(u32, u32)>,
@@ -38,7 +39,7 @@ pub(crate) struct Workspace {
 
 impl Workspace {
     pub fn new(robot: &CoveredRobot, table: &MotionTable) -> Self {
-        let rows = table.columns() / LANES;
+        let rows = table.columns / LANES;
         Self {
             values: vec![Row::ZERO; robot.chain.steps.len()],
             frames: robot.chain.frames(),

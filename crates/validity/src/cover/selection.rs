@@ -197,7 +197,8 @@ impl<'g, 's> CoverSelection<'g, 's> {
         for_each_row(grid, ball, |row| {
             for i in row.surface {
                 let v = &grid.surface[i];
-                let is_released = ball.contains_box(v.centre(), v.half()) && !smaller.contains_box(v.centre(), v.half());
+                let is_released =
+                    ball.contains_box(v.centre(), v.half()) && !smaller.contains_box(v.centre(), v.half());
                 counts[i] = counts[i].saturating_sub(u16::from(is_released));
             }
         });

@@ -64,10 +64,10 @@ impl Lattice {
     pub fn slice(&self, triangle: [Vec3; 3], mut found: impl FnMut([i32; 3], Aabb)) {
         let mut corners = [Vec3::ZERO; 12];
         corners[..3].copy_from_slice(&triangle);
-        self.slice_axis(Polygon { corners, count: 3 }, 0, [0; 3], &mut found);
+        self.slice_axis(&Polygon { corners, count: 3 }, 0, [0; 3], &mut found);
     }
 
-    fn slice_axis(&self, polygon: Polygon, axis: usize, voxel: [i32; 3], found: &mut impl FnMut([i32; 3], Aabb)) {
+    fn slice_axis(&self, polygon: &Polygon, axis: usize, voxel: [i32; 3], found: &mut impl FnMut([i32; 3], Aabb)) {
         if axis == 3 {
             let bounds = Aabb::from_points(polygon.corners[..polygon.count].iter().copied());
             found(voxel, bounds);
@@ -80,13 +80,13 @@ impl Lattice {
             let mut at = voxel;
             at[axis] = i;
             let part = if is_single {
-                polygon
+                *polygon
             } else {
                 let above = polygon.clipped(axis, self.border(axis, i) - ROUNDING_M, -1.0);
                 above.clipped(axis, self.border(axis, i + 1) + ROUNDING_M, 1.0)
             };
             if part.count > 0 {
-                self.slice_axis(part, axis + 1, at, found);
+                self.slice_axis(&part, axis + 1, at, found);
             }
         }
     }

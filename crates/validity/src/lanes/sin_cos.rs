@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 
-use super::splat;
+use super::row::splat;
 
 /// π/2 in three parts, the first two with so few digits that products with whole numbers up to 2¹³ are exact.
 const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];

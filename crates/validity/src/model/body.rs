@@ -1,4 +1,4 @@
-//! Bodies: the covers of a robot's links as trees of spheres.
+//! Covered links: the covers of a robot's links as trees of spheres.
 
 use elbowroom_kinematics::LinkId;
 
@@ -25,7 +25,7 @@ pub(crate) struct SphereNode {
 
 /// A link (or what is attached to it) with a cover.
 #[derive(Debug, Clone)]
-pub(crate) struct Body {
+pub(crate) struct CoveredLink {
     pub link: LinkId,
     /// Frame of its joint; 0 where none moves it.
     pub frame: usize,

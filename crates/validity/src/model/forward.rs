@@ -1,5 +1,7 @@
 //! Batched forward kinematics: the frames of all moving joints for sixteen configurations at once.
 
+#![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
+
 use elbowroom_kinematics::Chain;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use fearless_simd::{Simd, f32x16};
@@ -39,7 +41,7 @@ impl BatchedChain {
             };
             let axis = axis_rotation(joint.axis);
             let limits = chain.joints()[chain.active_joints()[coupling.index].0].limits;
-            // A mimic joint with multiplier 0 stands still, whatever the limits (0·∞ is NaN).
+            // A mimic joint with multiplier 0 does not move, whatever the limits (0·∞ is NaN).
             let turns_with_q = |q: f64| if coupling.multiplier == 0.0 { 0.0 } else { coupling.multiplier * q };
             let ends = [limits.lower, limits.upper].map(|q| turns_with_q(q) + coupling.offset);
             let [lower, upper] = value_range(!joint.kind.turns(), ends);

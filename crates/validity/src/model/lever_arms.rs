@@ -67,7 +67,7 @@ pub(super) struct Reach {
     pub joints: usize,
     /// Sum over these joints: how far a point of the body can be from the joint's origin, m.
     pub arms_m: f64,
-    /// How far a point of the body, or an origin on the way to it, can be from the origin of the world, m.
+    /// How far a point of the body, or an origin on the path to it, can be from the origin of the world, m.
     pub world_m: f64,
 }
 

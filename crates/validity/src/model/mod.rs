@@ -1,4 +1,4 @@
-//! A robot prepared for validity checks: a chain for batched forward kinematics, and bodies covered by spheres.
+//! A robot prepared for validity checks: a chain for batched forward kinematics, and links covered by spheres.
 
 mod body;
 mod forward;
@@ -14,7 +14,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::Pose;
 
-pub(crate) use body::{Body, SphereNode};
+pub(crate) use body::{CoveredLink, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
 pub(crate) use joint_step::single;
 pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
@@ -43,13 +43,13 @@ const LONGEST_REACH_M: f64 = 1e6;
 
 /// Index of a body in a [`CoveredRobot`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct BodyId(pub usize);
+pub struct CoveredLinkId(pub usize);
 
-/// Two bodies of the robot that must not touch.
+/// Two links of the robot that must not touch.
 #[derive(Debug, Clone)]
-pub(crate) struct BodyPair {
-    pub a: BodyId,
-    pub b: BodyId,
+pub(crate) struct LinkPair {
+    pub a: CoveredLinkId,
+    pub b: CoveredLinkId,
     pub margin_m: f32,
     /// The frame in which both are seen: that of the last joint which moves both.
     pub common_frame: usize,
@@ -82,16 +82,16 @@ pub(crate) struct InnerSphere {
 /// let arm = elbowroom_robot::example::arm()?;
 /// let covered = CoveredRobot::new(&arm, Pose::IDENTITY)?;
 /// assert_eq!(covered.dof(), arm.chain.dof());
-/// assert_eq!(covered.bodies().len(), arm.links_with_colliders().count());
+/// assert_eq!(covered.covered_links().len(), arm.links_with_colliders().count());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct CoveredRobot {
     pub(crate) chain: BatchedChain,
-    pub(crate) bodies: Vec<Body>,
+    pub(crate) covered_links: Vec<CoveredLink>,
     pub(crate) nodes: Vec<SphereNode>,
     pub(crate) inner: Vec<InnerSphere>,
-    pub(crate) pairs: Vec<BodyPair>,
+    pub(crate) pairs: Vec<LinkPair>,
     /// Built at first use.
     pub(crate) tables: OnceLock<Vec<PairTable>>,
     dof: usize,
@@ -105,7 +105,9 @@ impl CoveredRobot {
     pub fn new(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
         let mut covered = Self::without_pairs(robot, base_in_world)?;
         let body = |id: GeometryId| match id {
-            GeometryId::Link { link, .. } => covered.bodies.iter().position(|b| b.link == link).map(BodyId),
+            GeometryId::Link { link, .. } => {
+                covered.covered_links.iter().position(|b| b.link == link).map(CoveredLinkId)
+            }
             GeometryId::Object(_) => None,
         };
         let pairs: Vec<_> =
@@ -125,7 +127,7 @@ impl CoveredRobot {
         let dof = robot.chain.dof();
         let mut covered = Self {
             chain,
-            bodies: Vec::new(),
+            covered_links: Vec::new(),
             nodes: Vec::new(),
             inner: Vec::new(),
             pairs: Vec::new(),
@@ -143,12 +145,12 @@ impl CoveredRobot {
     ///
     /// # Errors
     /// No such link, or a shape that no spheres enclose.
-    pub fn add_body(
+    pub fn add_covered_link(
         &mut self,
         chain: &Chain,
         link: LinkId,
         shapes: &[(&Shape, Pose)],
-    ) -> Result<BodyId, ValidityError> {
+    ) -> Result<CoveredLinkId, ValidityError> {
         self.add_cover(chain, link, SphereCover::new(shapes, slack_m(shapes)))
     }
 
@@ -157,7 +159,7 @@ impl CoveredRobot {
         chain: &Chain,
         link: LinkId,
         cover: Option<SphereCover>,
-    ) -> Result<BodyId, ValidityError> {
+    ) -> Result<CoveredLinkId, ValidityError> {
         let name = || chain.links().get(link.0).cloned().unwrap_or_else(|| format!("number {}", link.0));
         let Some(&at) = self.chain.links.get(link.0) else { return Err(ValidityError::NoSuchLink { index: link.0 }) };
         let cover = cover.ok_or_else(|| ValidityError::NotCovered { link: name() })?;
@@ -175,23 +177,23 @@ impl CoveredRobot {
         let (nodes, broad_phase) = push_tree(&mut self.nodes, &cover.outer, at, rounding_m);
         let lever_m = levers.iter().map(|&l| (l as f32).next_up()).map(|l| if l > f32::from_bits(1) { l } else { 0.0 });
         let lever_m = lever_m.collect();
-        self.bodies.push(Body { link, frame: at.frame, nodes, broad_phase, inner, lever_m });
-        Ok(BodyId(self.bodies.len() - 1))
+        self.covered_links.push(CoveredLink { link, frame: at.frame, nodes, broad_phase, inner, lever_m });
+        Ok(CoveredLinkId(self.covered_links.len() - 1))
     }
 
-    /// Two bodies must stay farther apart than a margin, m.
-    pub fn add_pair(&mut self, a: BodyId, b: BodyId, margin_m: f64) {
-        let (Some(one), Some(other)) = (self.bodies.get(a.0), self.bodies.get(b.0)) else { return };
+    /// Two links must stay farther apart than a margin, m.
+    pub fn add_pair(&mut self, a: CoveredLinkId, b: CoveredLinkId, margin_m: f64) {
+        let (Some(one), Some(other)) = (self.covered_links.get(a.0), self.covered_links.get(b.0)) else { return };
         let (of_a, of_b) = (self.chain.steps_to(one.frame), self.chain.steps_to(other.frame));
         let common = of_a.iter().zip(&of_b).take_while(|(i, j)| i == j).count();
-        let joint = |body: &Body, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
+        let joint = |body: &CoveredLink, step: usize| RelativeJoint { step, lever_m: body.lever_m[step] };
         let joints =
             of_a[common..].iter().map(|&i| joint(one, i)).chain(of_b[common..].iter().map(|&i| joint(other, i)));
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
         let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
-        self.pairs.push(BodyPair { a, b, margin_m, common_frame, joints });
+        self.pairs.push(LinkPair { a, b, margin_m, common_frame, joints });
     }
 
     /// Number of values of a configuration.
@@ -200,19 +202,19 @@ impl CoveredRobot {
     }
 
     /// The link of each body.
-    pub fn bodies(&self) -> impl ExactSizeIterator<Item = LinkId> + '_ {
-        self.bodies.iter().map(|b| b.link)
+    pub fn covered_links(&self) -> impl ExactSizeIterator<Item = LinkId> + '_ {
+        self.covered_links.iter().map(|b| b.link)
     }
 
     /// Radius of the sphere around a body; 0 where it has no spheres.
-    pub(crate) fn bounding_radius_m(&self, body: BodyId) -> f32 {
-        let nodes = &self.bodies[body.0].nodes;
+    pub(crate) fn bounding_radius_m(&self, body: CoveredLinkId) -> f32 {
+        let nodes = &self.covered_links[body.0].nodes;
         if nodes.is_empty() { 0.0 } else { self.nodes[nodes.start as usize].radius }
     }
 
     /// Number of spheres that enclose a body.
-    pub fn spheres(&self, body: BodyId) -> usize {
-        let Some(b) = self.bodies.get(body.0) else { return 0 };
+    pub fn spheres(&self, body: CoveredLinkId) -> usize {
+        let Some(b) = self.covered_links.get(body.0) else { return 0 };
         b.nodes.clone().filter(|&i| self.nodes[i as usize].end == i + 1).count()
     }
 }

@@ -1,4 +1,4 @@
-//! Tables of what can touch: for bodies that at most two turning joints move against each other, whether they are apart for
+//! Tables of what can touch: for links that at most two turning joints move against each other, whether they are apart for
 //! certain, cell by cell over the values of these joints.
 
 use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
@@ -7,6 +7,9 @@ use crate::lanes::{LANES, Row, splat};
 
 /// Cells per turn of a joint.
 pub(crate) const CELLS: usize = 224;
+/// The same, for lanes.
+#[allow(clippy::cast_possible_wrap, reason = "a small constant")]
+const ROW: i32 = CELLS as i32;
 /// Width of a cell, rad.
 pub(crate) const CELL_RAD: f64 = std::f64::consts::TAU / CELLS as f64;
 /// A cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long at most.
@@ -35,7 +38,7 @@ impl PairTable {
         }
         let row: i32x16<S> = cell(simd, values[self.steps[0]].load(simd)).to_int();
         let column: i32x16<S> = cell(simd, values[self.steps[1]].load(simd)).to_int();
-        let index = row * i32x16::splat(simd, CELLS as i32) + column;
+        let index = row * i32x16::splat(simd, ROW) + column;
         let mut at = [0_i32; LANES];
         index.store_slice(&mut at);
         at.iter().fold(0, |near, &i| near | self.cells.get(i as usize).copied().unwrap_or(u8::MAX))

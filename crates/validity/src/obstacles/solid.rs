@@ -1,5 +1,7 @@
 //! A convex obstacle with rounded edges: a box, point, segment or half-space, or a cylinder, with a radius around it.
 
+#![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
+
 use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::{Select, Simd, f32x16, prelude::*};
 
@@ -86,7 +88,7 @@ impl RoundedSolid {
 
     /// The vector from the core to a point of the world.
     #[inline(always)]
-    pub fn from_core<S: Simd>(&self, simd: S, at: V3<S>) -> FromCore<S> {
+    pub fn vector_from_core<S: Simd>(&self, simd: S, at: V3<S>) -> FromCore<S> {
         let offset = at.minus(V3::splat(simd, self.origin));
         let point = match &self.columns {
             None => offset,

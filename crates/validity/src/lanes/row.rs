@@ -1,0 +1,107 @@
+//! Rows of sixteen numbers, points of sixteen lanes, and the choice of the instruction set.
+
+#![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
+
+use std::sync::OnceLock;
+
+use fearless_simd::{Level as SimdLevel, Simd, f32x16, prelude::*};
+
+/// Number of lanes.
+pub(crate) const LANES: usize = 16;
+
+/// The best instruction set of this processor, detected once.
+#[inline]
+pub(crate) fn detected_simd_level() -> SimdLevel {
+    static DETECTED: OnceLock<SimdLevel> = OnceLock::new();
+    *DETECTED.get_or_init(SimdLevel::new)
+}
+
+/// The same number in all lanes.
+#[inline(always)]
+pub(crate) fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
+    f32x16::splat(simd, v)
+}
+
+/// One number per lane, in memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub(crate) struct Row(pub [f32; LANES]);
+
+impl Row {
+    pub const ZERO: Self = Self([0.0; LANES]);
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S) -> f32x16<S> {
+        f32x16::simd_from(simd, self.0)
+    }
+
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, lanes: f32x16<S>) {
+        lanes.store_slice(&mut self.0);
+    }
+}
+
+/// Three coordinates per lane, in memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PointRow(pub [Row; 3]);
+
+impl PointRow {
+    pub const ZERO: Self = Self([Row::ZERO; 3]);
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S) -> V3<S> {
+        V3(self.0[0].load(simd), self.0[1].load(simd), self.0[2].load(simd))
+    }
+
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, v: V3<S>) {
+        self.0[0].store(v.0);
+        self.0[1].store(v.1);
+        self.0[2].store(v.2);
+    }
+}
+
+/// Three coordinates per lane.
+#[derive(Clone, Copy)]
+pub(crate) struct V3<S: Simd>(pub f32x16<S>, pub f32x16<S>, pub f32x16<S>);
+
+impl<S: Simd> V3<S> {
+    #[inline(always)]
+    pub fn splat(simd: S, v: [f32; 3]) -> Self {
+        Self(f32x16::splat(simd, v[0]), f32x16::splat(simd, v[1]), f32x16::splat(simd, v[2]))
+    }
+
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> f32x16<S> {
+        self.2.mul_add_precise(o.2, self.1.mul_add_precise(o.1, self.0 * o.0))
+    }
+
+    #[inline(always)]
+    pub fn minus(self, o: Self) -> Self {
+        Self(self.0 - o.0, self.1 - o.1, self.2 - o.2)
+    }
+
+    #[inline(always)]
+    pub fn plus(self, o: Self) -> Self {
+        Self(self.0 + o.0, self.1 + o.1, self.2 + o.2)
+    }
+
+    /// `self·k + c`.
+    #[inline(always)]
+    pub fn times_plus(self, k: f32x16<S>, c: Self) -> Self {
+        Self(self.0.mul_add_precise(k, c.0), self.1.mul_add_precise(k, c.1), self.2.mul_add_precise(k, c.2))
+    }
+
+    /// The coordinates of the next lane in each; the last lane keeps its own.
+    #[inline(always)]
+    pub fn next_lane(self) -> Self {
+        Self(next_lane(self.0), next_lane(self.1), next_lane(self.2))
+    }
+}
+
+/// The value of the next lane in each; the last lane keeps its own.
+#[inline(always)]
+fn next_lane<S: Simd>(v: f32x16<S>) -> f32x16<S> {
+    let last = v[LANES - 1];
+    v.slide::<1>(f32x16::splat(v.simd, last))
+}
