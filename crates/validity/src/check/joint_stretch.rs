@@ -2,9 +2,9 @@
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
-use fearless_simd::{Simd, f32x16, prelude::*};
+use fearless_simd::{Simd, f32x16};
 
-use crate::lanes::{LANES, Row, splat};
+use crate::lanes::{Fused, LANES, Row, splat};
 
 /// Intervals between the lanes of a block.
 pub(crate) const INTERVALS: usize = LANES - 1;
@@ -30,6 +30,6 @@ impl JointStretch {
     /// The values in the lanes.
     #[inline(always)]
     pub fn values<S: Simd>(self, simd: S) -> f32x16<S> {
-        SHARES.load(simd).mul_add_precise(splat(simd, self.change), splat(simd, self.first))
+        SHARES.load(simd).fused(splat(simd, self.change), splat(simd, self.first))
     }
 }

@@ -14,12 +14,12 @@
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::Simd;
 
 use super::joint_stretch::{INTERVALS, JointStretch};
 use super::motion_table::MotionTable;
 use super::workspace::Workspace;
-use crate::lanes::{LANES, Row, splat};
+use crate::lanes::{Fused, LANES, Row, splat};
 use crate::model::CoveredRobot;
 
 /// Rounding of the sums in single precision.
@@ -74,8 +74,8 @@ impl Workspace {
             for r in 0..rows {
                 let lever = table.lever_m[i * rows + r].load(simd);
                 let (half_chord, sag) = (self.half_chord_m[r].load(simd), self.sag_m[r].load(simd));
-                self.half_chord_m[r].store(lever.mul_add_precise(chord, half_chord));
-                self.sag_m[r].store(lever.mul_add_precise(curved, sag));
+                self.half_chord_m[r].store(lever.fused(chord, half_chord));
+                self.sag_m[r].store(lever.fused(curved, sag));
             }
         }
     }

@@ -22,6 +22,37 @@ pub(crate) fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
     f32x16::splat(simd, v)
 }
 
+/// Multiplication and addition, rounded once.
+pub(crate) trait Fused: Sized {
+    /// `self·k + c`, rounded once on every instruction set.
+    fn fused(self, k: Self, c: Self) -> Self;
+}
+
+impl<S: Simd> Fused for f32x16<S> {
+    #[inline(always)]
+    fn fused(self, k: Self, c: Self) -> Self {
+        // Without an instruction for it, sixteen calls in line would make kernels large and slow to compile.
+        #[cfg(target_arch = "x86_64")]
+        if matches!(self.simd.level(), SimdLevel::Sse2(_) | SimdLevel::Sse4_2(_)) {
+            let [mut a, mut b, mut sum] = [[0.0; LANES]; 3];
+            self.store_slice(&mut a);
+            k.store_slice(&mut b);
+            c.store_slice(&mut sum);
+            fused_in_software(&a, &b, &mut sum);
+            return Self::simd_from(self.simd, sum);
+        }
+        self.mul_add_precise(k, c)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(never)]
+fn fused_in_software(a: &[f32; LANES], b: &[f32; LANES], sum: &mut [f32; LANES]) {
+    for lane in 0..LANES {
+        sum[lane] = a[lane].mul_add(b[lane], sum[lane]);
+    }
+}
+
 /// One number per lane, in memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
@@ -73,7 +104,7 @@ impl<S: Simd> V3<S> {
 
     #[inline(always)]
     pub fn dot(self, o: Self) -> f32x16<S> {
-        self.2.mul_add_precise(o.2, self.1.mul_add_precise(o.1, self.0 * o.0))
+        self.2.fused(o.2, self.1.fused(o.1, self.0 * o.0))
     }
 
     #[inline(always)]
@@ -89,7 +120,7 @@ impl<S: Simd> V3<S> {
     /// `self·k + c`.
     #[inline(always)]
     pub fn times_plus(self, k: f32x16<S>, c: Self) -> Self {
-        Self(self.0.mul_add_precise(k, c.0), self.1.mul_add_precise(k, c.1), self.2.mul_add_precise(k, c.2))
+        Self(self.0.fused(k, c.0), self.1.fused(k, c.1), self.2.fused(k, c.2))
     }
 
     /// The coordinates of the next lane in each; the last lane keeps its own.

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 
-use super::row::splat;
+use super::row::{Fused, splat};
 
 /// π/2 in three parts, the first two with so few digits that products with whole numbers up to 2¹³ are exact.
 const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
@@ -13,16 +13,14 @@ const COS: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5];
 #[inline(always)]
 pub(crate) fn sin_cos<S: Simd>(simd: S, angle: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let quarter = (angle * splat(simd, std::f32::consts::FRAC_2_PI)).round_ties_even();
-    let r = quarter.mul_add_precise(splat(simd, -HALF_PI[0]), angle);
-    let r = quarter.mul_add_precise(splat(simd, -HALF_PI[1]), r);
-    let r = quarter.mul_add_precise(splat(simd, -HALF_PI[2]), r);
+    let r = quarter.fused(splat(simd, -HALF_PI[0]), angle);
+    let r = quarter.fused(splat(simd, -HALF_PI[1]), r);
+    let r = quarter.fused(splat(simd, -HALF_PI[2]), r);
     let square = r * r;
-    let sin =
-        square.mul_add_precise(splat(simd, SIN[2]), splat(simd, SIN[1])).mul_add_precise(square, splat(simd, SIN[0]));
-    let sin = (sin * square).mul_add_precise(r, r);
-    let cos =
-        square.mul_add_precise(splat(simd, COS[2]), splat(simd, COS[1])).mul_add_precise(square, splat(simd, COS[0]));
-    let cos = (cos * square).mul_add_precise(square, square.mul_add_precise(splat(simd, -0.5), splat(simd, 1.0)));
+    let sin = square.fused(splat(simd, SIN[2]), splat(simd, SIN[1])).fused(square, splat(simd, SIN[0]));
+    let sin = (sin * square).fused(r, r);
+    let cos = square.fused(splat(simd, COS[2]), splat(simd, COS[1])).fused(square, splat(simd, COS[0]));
+    let cos = (cos * square).fused(square, square.fused(splat(simd, -0.5), splat(simd, 1.0)));
     let n: i32x16<S> = quarter.to_int();
     let one = i32x16::splat(simd, 1);
     let two = i32x16::splat(simd, 2);

@@ -6,7 +6,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use fearless_simd::{Select, Simd, f32x16, prelude::*};
 
 use super::box_tree::Bounds;
-use crate::lanes::{V3, splat};
+use crate::lanes::{Fused, V3, splat};
 use crate::model::single;
 
 /// Stands for unbounded: zero times it is zero.
@@ -111,8 +111,8 @@ impl RoundedSolid {
                     + support_along(simd, d.2, low[2], high[2])
             }
             Core::Cylinder { radius, half_length } => {
-                let across = d.1.mul_add_precise(d.1, d.0 * d.0).sqrt();
-                across.mul_add_precise(splat(simd, radius), d.2.abs() * splat(simd, half_length))
+                let across = d.1.fused(d.1, d.0 * d.0).sqrt();
+                across.fused(splat(simd, radius), d.2.abs() * splat(simd, half_length))
             }
         }
     }
@@ -149,7 +149,7 @@ impl Core {
             ),
             Self::Cylinder { radius, half_length } => {
                 let zero = splat(simd, 0.0);
-                let across = p.1.mul_add_precise(p.1, p.0 * p.0).sqrt();
+                let across = p.1.fused(p.1, p.0 * p.0).sqrt();
                 let outside = (across - splat(simd, radius)).max(zero);
                 let share = across.simd_gt(zero).select(outside / across, zero);
                 V3(p.0 * share, p.1 * share, beyond(simd, p.2, -half_length, half_length))
