@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use elbowroom_kinematics::LinkId;
+use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
@@ -125,6 +126,18 @@ impl Scene {
     /// True where the link or object has a shape.
     pub fn has_shape(&self, id: GeometryId) -> bool {
         self.model_of(id).is_some()
+    }
+
+    /// The shapes of a link or object as they are checked, scaled where the scene scales them, each with its pose in the frame of
+    /// the link or object. None where it has no shape.
+    pub fn shapes(&self, id: GeometryId) -> impl Iterator<Item = (&Shape, Pose)> + '_ {
+        let model = self.model_of(id).map(|m| &self.models[m]);
+        model.into_iter().flat_map(|m| m.exact.iter().map(|s| (&s.shape, s.in_geometry)))
+    }
+
+    /// Padding of a link or object, m; 0 where it has no shape.
+    pub fn padding_m(&self, id: GeometryId) -> f64 {
+        self.model_of(id).map_or(0.0, |m| self.models[m].padding_m)
     }
 
     pub(crate) fn model_of(&self, id: GeometryId) -> Option<usize> {

@@ -21,7 +21,7 @@ impl PlanningEngine for CoverRrtConnectEngine {
     /// Tries the goals one after the other, each within its share of the remaining time.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
         let (scene, start) = (problem.scene(), problem.start());
-        if !self.model.as_ref().is_some_and(|m| m.serves(scene, start)) {
+        if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, settings.clearance_m)) {
             self.model = CoverModel::new(scene, start, ROBOT, settings.clearance_m).ok();
         }
         let Some(model) = &self.model else { return RrtConnectEngine.solve(problem, settings) };

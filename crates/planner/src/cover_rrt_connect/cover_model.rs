@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::Shape;
-use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_scene::{PairState, Scene, SceneState};
 use elbowroom_spatial::Pose;
 use elbowroom_validity::{CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError};
@@ -17,6 +17,7 @@ pub struct CoverModel {
     /// Covered links that the scene tests, and their margins.
     pairs: Vec<(usize, usize, f64)>,
     index: RobotId,
+    clearance_m: f64,
 }
 
 impl CoverModel {
@@ -30,28 +31,44 @@ impl CoverModel {
     /// The scene has no such robot.
     pub fn new(scene: &Scene, state: &SceneState, robot: RobotId, clearance_m: f64) -> Result<Self, ValidityError> {
         let r = &scene.robots()[robot.0];
-        let mut covered = CoveredRobot::without_pairs(&r.robot, r.base_in_world)?;
+        let mut covered = CoveredRobot::without_pairs(&as_checked(scene, robot), r.base_in_world)?;
         let link = |link: LinkId| GeometryId::Link { robot, link };
         let mut covered_links: Vec<GeometryId> = covered.covered_links().map(link).collect();
-        for (i, object) in scene.objects().iter().enumerate() {
+        for i in 0..scene.objects().len() {
             let id = ObjectId(i);
             let Some(held) = state.attachment(id).filter(|a| a.robot == robot) else { continue };
-            covered.add_covered_link(&r.robot.chain, held.link, &[(&object.shape, held.in_link)])?;
+            let shapes: Vec<_> = scene.shapes(GeometryId::Object(id)).map(|(s, at)| (s, held.in_link * at)).collect();
+            covered.add_covered_link(&r.robot.chain, held.link, &shapes)?;
             covered_links.push(GeometryId::Object(id));
         }
         let pairs = tested_pairs(scene, state, &covered_links);
         for &(a, b, margin_m) in &pairs {
             covered.add_pair(CoveredLinkId(a), CoveredLinkId(b), margin_m + clearance_m);
         }
-        Ok(Self { robot: covered, covered_links, pairs, index: robot })
+        Ok(Self { robot: covered, covered_links, pairs, index: robot, clearance_m })
     }
 
-    /// True where the model was made for the same pairs, and nothing is held: then it serves another scene with the same robot.
-    pub fn serves(&self, scene: &Scene, state: &SceneState) -> bool {
+    /// True where the model was made for the same pairs and clearance (m), and nothing is held: then it serves another scene with the same robot.
+    pub fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
         let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
-        !holds && !held && self.pairs == tested_pairs(scene, state, &self.covered_links)
+        !holds
+            && !held
+            && self.clearance_m == clearance_m
+            && self.pairs == tested_pairs(scene, state, &self.covered_links)
     }
+}
+
+/// A robot with the shapes that the scene checks.
+fn as_checked(scene: &Scene, robot: RobotId) -> Robot {
+    let mut checked = scene.robots()[robot.0].robot.clone();
+    for (link, colliders) in checked.colliders.iter_mut().enumerate() {
+        let id = GeometryId::Link { robot, link: LinkId(link) };
+        for (collider, (shape, in_link)) in colliders.iter_mut().zip(scene.shapes(id)) {
+            (collider.shape, collider.in_link) = (shape.clone(), in_link);
+        }
+    }
+    checked
 }
 
 /// Pairs of links that the scene tests, each with its margin in metres.
@@ -82,20 +99,20 @@ impl CoverObstacles {
     /// (m).
     pub fn new(model: &CoverModel, scene: &Scene, state: &SceneState, clearance_m: f64) -> Self {
         let mut obstacles = Self { set: ObstacleSet::default(), sources: Vec::new(), skipped: Vec::new() };
-        for (i, object) in scene.objects().iter().enumerate() {
+        for i in 0..scene.objects().len() {
             let id = GeometryId::Object(ObjectId(i));
             if model.covered_links.contains(&id) {
                 continue;
             }
             let Some(in_world) = state.pose(scene, id) else { continue };
-            obstacles.add(model, scene, state, id, &[(&object.shape, in_world)], clearance_m);
+            let shapes: Vec<_> = scene.shapes(id).map(|(s, at)| (s, in_world * at)).collect();
+            obstacles.add(model, scene, state, id, &shapes, clearance_m);
         }
         for (r, other) in scene.robots().iter().enumerate().filter(|(r, _)| *r != model.index.0) {
             for link in other.robot.links_with_colliders() {
                 let id = GeometryId::Link { robot: RobotId(r), link };
                 let Some(link_in_world) = state.pose(scene, id) else { continue };
-                let colliders = &other.robot.colliders[link.0];
-                let shapes: Vec<_> = colliders.iter().map(|c| (&c.shape, link_in_world * c.in_link)).collect();
+                let shapes: Vec<_> = scene.shapes(id).map(|(s, at)| (s, link_in_world * at)).collect();
                 obstacles.add(model, scene, state, id, &shapes, clearance_m);
             }
         }
@@ -146,5 +163,6 @@ fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId
         return None;
     }
     let entry = scene.allowed_collision_matrix().get(a, b);
-    Some(entry.map_or(0.0, |e| e.margin_m))
+    // Pairs of held objects have no entry.
+    Some(entry.map_or_else(|| scene.padding_m(a) + scene.padding_m(b), |e| e.margin_m))
 }

@@ -134,7 +134,12 @@ impl<'m> CoverRrtConnect<'m> {
         self.covers.begin(self.exact.validator.deadline, settings.max_states);
         let bounds: &JointBounds = &self.exact.bounds;
         let from = bounds.clamped_end(PathEnd::Start, start.q(self.exact.robot()))?;
-        Ok([from, bounds.clamped_end(PathEnd::Goal, goal)?])
+        let to = bounds.clamped_end(PathEnd::Goal, goal)?;
+        if self.exact.has_other_robots() {
+            // Links that no joint moves are in no block; another robot may touch them all the same.
+            self.exact.free_margin_m(PathEnd::Start, &from)?;
+        }
+        Ok([from, to])
     }
 
     /// An end, or a configuration near by that the covers prove free and that an exactly proven edge joins with it.

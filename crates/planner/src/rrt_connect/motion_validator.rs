@@ -171,6 +171,11 @@ impl<'s> MotionValidator<'s> {
             && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
     }
 
+    /// True where the scene has more than its robot.
+    pub fn has_other_robots(&self) -> bool {
+        self.scene.robots().len() > 1
+    }
+
     /// The proof in the scene.
     fn sweep_is_free(&mut self, a: &[f64], b: &[f64]) -> bool {
         if !self.set_robot(a) {

@@ -253,6 +253,11 @@ impl<'s> RrtConnect<'s> {
         self.clearance_exits(ends, random, settings)
     }
 
+    /// True where the scene has more than its robot.
+    pub(crate) fn has_other_robots(&self) -> bool {
+        self.validator.has_other_robots()
+    }
+
     /// Its robot.
     pub(crate) fn robot(&self) -> RobotId {
         self.robot
