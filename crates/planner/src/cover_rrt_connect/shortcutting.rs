@@ -1,7 +1,7 @@
 //! Shortcutting of a path whose edges the covers prove; every new edge is proven, too.
 
 use super::edge_validator::EdgeValidator;
-use crate::rrt_connect::{Random, length, lerp, path_length};
+use crate::rrt_connect::{Random, length, path_length, point_at};
 
 /// Rounds of leaving out waypoints, random shortcuts and pulled corners.
 const ROUNDS: usize = 4;
@@ -85,21 +85,6 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
             }
         }
     }
-}
-
-/// The configuration after a length, and its segment.
-fn point_at(path: &[Vec<f64>], far: f64) -> (usize, Vec<f64>) {
-    let mut left = far;
-    for (segment, w) in path.windows(2).enumerate() {
-        let length = length(&w[0], &w[1]);
-        if left <= length && length > 0.0 {
-            let mut q = w[0].clone();
-            lerp(&w[0], &w[1], left / length, &mut q);
-            return (segment, q);
-        }
-        left -= length;
-    }
-    (path.len() - 2, path[path.len() - 1].clone())
 }
 
 /// A corner moved by a share of the distance to the point between its neighbours that divides their segment as its edges do.

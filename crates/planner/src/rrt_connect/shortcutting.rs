@@ -1,6 +1,6 @@
 //! Shortcutting of a path in the exact scene; every segment stays proven. For paths on the grid: `grid_shortcutting.rs`.
 
-use super::interpolation::{length, lerp, path_length};
+use super::interpolation::{length, path_length, point_at};
 use super::motion_validator::MotionValidator;
 use super::random::Random;
 use super::settings::ShortcuttingSettings;
@@ -91,21 +91,6 @@ impl Shortcutting<'_, '_> {
             }
         }
     }
-}
-
-/// The configuration after a length, and its segment.
-fn point_at(path: &[Vec<f64>], far: f64) -> (usize, Vec<f64>) {
-    let mut left = far;
-    for (segment, w) in path.windows(2).enumerate() {
-        let length = length(&w[0], &w[1]);
-        if left <= length && length > 0.0 {
-            let mut q = w[0].clone();
-            lerp(&w[0], &w[1], left / length, &mut q);
-            return (segment, q);
-        }
-        left -= length;
-    }
-    (path.len() - 2, path[path.len() - 1].clone())
 }
 
 /// A corner moved by a share of the distance to the foot of its perpendicular on the line between its neighbours.
