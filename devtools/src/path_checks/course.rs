@@ -26,6 +26,8 @@ pub struct Course {
     pub scene: Scene,
     pub asked: usize,
     pub found: usize,
+    /// Pairs of which it is proven that no path joins them.
+    pub disconnected: usize,
     pub straight: usize,
     /// Of the whole plan, per pair.
     pub planning: Vec<Duration>,
@@ -39,25 +41,40 @@ pub struct Course {
     pub paths: Vec<Polyline>,
 }
 
-pub const HEAD: &str = "Times in ms: median and 99th percentile; stops of corners; points checked by Coal, paths on which it finds a collision\n\n\
-cell                                      pairs  found straight |   plan    p99 | shorten    p99 |   time |  stops/corners |    points  colliding";
+pub const HEAD: &str = "none: proven that no path exists. Times in ms: median and 99th percentile; stops of corners; points checked by Coal, paths on which it finds a collision\n\n\
+cell                                      pairs  found   none straight |   plan    p99 | shorten    p99 |   time |  stops/corners |    points  colliding";
 
 impl Course {
     pub fn new(name: &str, urdf: PathBuf, scene: Scene) -> Self {
         let name = name.to_owned();
         let none = Vec::new;
         let [planning, simplifying, timing] = [none(), none(), none()];
-        let (paths, [asked, found, straight, stops, corners]) = (Vec::new(), [0; 5]);
-        Self { name, urdf, scene, asked, found, straight, planning, simplifying, timing, stops, corners, paths }
+        let (paths, [asked, found, disconnected, straight, stops, corners]) = (Vec::new(), [0; 6]);
+        Self {
+            name,
+            urdf,
+            scene,
+            asked,
+            found,
+            disconnected,
+            straight,
+            planning,
+            simplifying,
+            timing,
+            stops,
+            corners,
+            paths,
+        }
     }
 
     pub fn row(&self, check: &PathCheck) -> String {
         let [plan, shorten, time] = [&self.planning, &self.simplifying, &self.timing].map(|times| spread(times));
         format!(
-            "{:<40} {:>6} {:>6} {:>8} | {:>6.2} {:>6.1} | {:>7.2} {:>6.1} | {:>6.2} | {:>6}/{:<7} | {:>9}  {:>9}",
+            "{:<40} {:>6} {:>6} {:>6} {:>8} | {:>6.2} {:>6.1} | {:>7.2} {:>6.1} | {:>6.2} | {:>6}/{:<7} | {:>9}  {:>9}",
             self.name,
             self.asked,
             self.found,
+            self.disconnected,
             self.straight,
             plan[0],
             plan[1],
@@ -74,10 +91,11 @@ impl Course {
     pub fn json(&self, check: &PathCheck) -> String {
         let [plan, shorten, time] = [&self.planning, &self.simplifying, &self.timing].map(|times| spread(times));
         format!(
-            r#"{{"cell":"{}","pairs":{},"found":{},"straight":{},"plan_ms":{:.4},"plan_p99_ms":{:.4},"shorten_ms":{:.4},"shorten_p99_ms":{:.4},"time_ms":{:.4},"stops":{},"corners":{},"points":{},"colliding":{}}}"#,
+            r#"{{"cell":"{}","pairs":{},"found":{},"disconnected":{},"straight":{},"plan_ms":{:.4},"plan_p99_ms":{:.4},"shorten_ms":{:.4},"shorten_p99_ms":{:.4},"time_ms":{:.4},"stops":{},"corners":{},"points":{},"colliding":{}}}"#,
             self.name,
             self.asked,
             self.found,
+            self.disconnected,
             self.straight,
             plan[0],
             plan[1],

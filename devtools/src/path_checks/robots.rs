@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectError, RrtConnectSettings};
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, RrtConnect, RrtConnectError, RrtConnectSettings,
+};
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
@@ -43,8 +45,10 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
     };
     let scene = world::scene(&files.name, robot, around(size))?;
     let mut course = Course::new(&files.name, files.urdf.clone(), scene.clone());
-    let mut connect = RrtConnect::new(&scene, RobotId(0)).map_err(text)?;
     let (options, mut state) = (RrtConnectSettings::default(), SceneState::new(&scene));
+    let model = CoverModel::new(&scene, &state, RobotId(0), 0.0).map_err(text)?;
+    let obstacles = CoverObstacles::new(&model, &scene, &state, 0.0);
+    let mut connect = CoverRrtConnect::new(RrtConnect::new(&scene, RobotId(0)).map_err(text)?, &model, &obstacles);
     let mut states = free(&scene, 2 * pairs)?.into_iter();
     while let (Some(from), Some(to)) = (states.next(), states.next()) {
         course.asked += 1;
@@ -53,6 +57,11 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
         let route = match connect.plan(&state, &to, &options) {
             Ok(route) => route,
             Err(RrtConnectError::NotFound { .. }) => {
+                course.planning.push(clock.elapsed());
+                continue;
+            }
+            Err(RrtConnectError::Disconnected { .. }) => {
+                course.disconnected += 1;
                 course.planning.push(clock.elapsed());
                 continue;
             }
@@ -66,9 +75,9 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
         let clock = Instant::now();
         let motion = connect.time_parametrize(&state, &route, &limits, PERIOD, &options).map_err(text)?;
         course.timing.push(clock.elapsed());
-        course.stops += motion.stops();
+        course.stops += motion.stops;
         course.paths.push(along(&route.waypoints));
-        course.paths.push(motion.samples(PERIOD).map_err(text)?);
+        course.paths.push(motion.rows);
     }
     Ok(course)
 }

@@ -90,7 +90,9 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         };
         let answer = match found {
             Ok((path, motion)) => PathAnswer::found(robot, path, motion),
-            Err(e @ RrtConnectError::NotFound { .. }) => PathAnswer::none(robot, begin.elapsed(), e.to_string()),
+            Err(e @ (RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. })) => {
+                PathAnswer::none(robot, begin.elapsed(), e.to_string())
+            }
             Err(e) => return Err(refused(e)),
         };
         Ok(PathAnswer { regions, ..answer })

@@ -7,7 +7,8 @@ use elbowroom_scene::{SweepMove, SweepOptions};
 use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 
 use super::cover_model::{CoverModel, CoverObstacles};
-use crate::rrt_connect::MotionValidator;
+use super::disconnection_proof::{Projection, are_disconnected};
+use crate::rrt_connect::{JointRange, MotionValidator};
 
 /// The clock is read once in so many edges: it costs as much as a short one.
 const EDGES_PER_CLOCK_READING: u64 = 16;
@@ -49,6 +50,25 @@ impl<'m> CoverValidator<'m> {
         self.deadline = deadline;
         self.max_states = max_states;
         self.blocks_before = self.checker.blocks();
+    }
+
+    /// Goes on with a query until another time.
+    pub fn extend_deadline(&mut self, deadline: Instant) {
+        self.deadline = deadline;
+    }
+
+    /// True where it is proven that no path within the ranges joins two configurations; what that tests is not counted.
+    pub fn are_disconnected(
+        &mut self,
+        ranges: &[JointRange],
+        ends: [&[f64]; 2],
+        projection: &Projection,
+        deadline: Instant,
+    ) -> bool {
+        let before = self.checker.blocks();
+        let answer = are_disconnected(&mut self.checker, ranges, ends, projection, deadline);
+        self.blocks_before += self.checker.blocks() - before;
+        answer
     }
 
     /// Configurations that were tested in this query.

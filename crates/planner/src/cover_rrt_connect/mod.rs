@@ -2,6 +2,7 @@
 //! leave open at the ends.
 
 mod cover_model;
+mod disconnection_proof;
 mod edge_validator;
 mod planner;
 mod shortcutting;

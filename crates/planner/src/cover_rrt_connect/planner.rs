@@ -6,6 +6,7 @@ use elbowroom_scene::{SceneState, SweepOptions};
 use elbowroom_validity::Validity;
 
 use super::cover_model::{CoverModel, CoverObstacles};
+use super::disconnection_proof::Projection;
 use super::edge_validator::{CoverValidator, EdgeValidator};
 use super::shortcutting::Shortcutting;
 use super::tree_search::{ConfigurationSampler, TreeSearch};
@@ -20,6 +21,8 @@ const EXIT_TRIALS: usize = 400;
 const EXIT_RADIUS: f64 = 0.5;
 /// Share of the time limit after which the exact scene is searched.
 const COVER_SHARE: f64 = 0.5;
+/// Share of its time after which a search on covers is interrupted: there may be a proof that no path exists.
+const FIRST_SHARE: f64 = 0.02;
 
 /// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`] gives, far sooner.
 ///
@@ -95,8 +98,15 @@ impl<'m> CoverRrtConnect<'m> {
         } else {
             let region = search.exact.bounds.sampling_region(from, to);
             let mut sampler = Sampler { region, random: &mut random, round: 0 };
+            let last_deadline = search.exact.validator.deadline;
+            search.covers.extend_deadline(last_deadline.min(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
             let mut trees = TreeSearch::new(&mut search, from, to);
-            let found = trees.run(&mut sampler);
+            let mut found = trees.run(&mut sampler);
+            if found.is_none() {
+                trees.validator.expect_connected(from, to)?;
+                trees.validator.covers.extend_deadline(last_deadline);
+                found = trees.run(&mut sampler);
+            }
             let nodes = trees.nodes();
             found.ok_or_else(|| self.not_found(begin.elapsed(), nodes))?
         };
@@ -170,6 +180,31 @@ impl<'m> CoverRrtConnect<'m> {
 pub(super) struct EdgeSearch<'p, 'm> {
     pub exact: &'p mut RrtConnect<'m>,
     pub covers: &'p mut CoverValidator<'m>,
+}
+
+impl EdgeSearch<'_, '_> {
+    /// An error where it is proven that no path joins two configurations.
+    fn expect_connected(&mut self, from: &[f64], to: &[f64]) -> Result<(), RrtConnectError> {
+        let bounds = &self.exact.bounds;
+        let (ranges, deadline) = (bounds.ranges(), self.exact.validator.deadline);
+        for projection in projections(bounds.dof()) {
+            if self.covers.are_disconnected(&ranges, [from, to], &projection, deadline) {
+                return Err(RrtConnectError::Disconnected {
+                    joints: projection.joints.iter().map(|&j| bounds.name(j).to_owned()).collect(),
+                    nearer: bounds.equivalent_goals(from, to),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Each joint alone, then neighbours in the chain, with finer cells where there are fewer.
+fn projections(dof: usize) -> Vec<Projection> {
+    let neighbours = |count: usize, step: f64| {
+        (0..(dof + 1).saturating_sub(count)).map(move |j| Projection { joints: (j..j + count).collect(), step })
+    };
+    [(1, 0.01), (2, 0.04), (3, 0.1)].into_iter().flat_map(|(count, step)| neighbours(count, step)).collect()
 }
 
 impl EdgeValidator for EdgeSearch<'_, '_> {

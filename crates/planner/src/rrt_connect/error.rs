@@ -95,6 +95,20 @@ pub enum RrtConnectError {
         /// Joints of which the goal's posture has another value, full turns away and nearer to the start, rad.
         nearer: Vec<(String, f64)>,
     },
+    /// No path exists within the joint limits: some joints cannot get from start to goal without a collision, whatever the
+    /// others do. This is proven.
+    #[error(
+        "no path exists: {} cannot get from start to goal without a collision, whatever the other joints do: choose another \
+         posture as the goal{}",
+        names(joints),
+        nearer_goal_hint(nearer)
+    )]
+    Disconnected {
+        /// Names of the joints.
+        joints: Vec<String>,
+        /// Joints of which the goal's posture has another value, full turns away and nearer to the start, rad.
+        nearer: Vec<(String, f64)>,
+    },
     /// An invalid setting.
     #[error("{setting} is {value}: write {}", .setting.range())]
     InvalidSetting {
@@ -109,6 +123,11 @@ pub enum RrtConnectError {
     /// Values that the scene rejects, or a robot that it does not have.
     #[error(transparent)]
     Scene(#[from] SceneError),
+}
+
+fn names(joints: &[String]) -> String {
+    let each: Vec<_> = joints.iter().map(|joint| format!("`{joint}`")).collect();
+    each.join(" and ")
 }
 
 fn nearer_goal_hint(nearer: &[(String, f64)]) -> String {

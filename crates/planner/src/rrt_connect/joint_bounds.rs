@@ -1,6 +1,6 @@
 //! Joint limits, and the region from which configurations are sampled.
 
-use elbowroom_kinematics::{Chain, JointKind};
+use elbowroom_kinematics::{Chain, JointId, JointKind};
 
 use super::error::{JointUnit, RrtConnectError};
 use super::random::Random;
@@ -18,6 +18,27 @@ pub(crate) struct JointBounds {
     upper: Vec<f64>,
     names: Vec<String>,
     prismatic: Vec<bool>,
+    /// True where a full turn of the joint changes no posture.
+    repeats: Vec<bool>,
+}
+
+/// The values that a joint may take, rad or m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct JointRange {
+    /// Lower limit, or -∞.
+    pub lower: f64,
+    /// Upper limit, or +∞.
+    pub upper: f64,
+    pub is_prismatic: bool,
+    /// True where a full turn of the joint changes no posture.
+    pub repeats: bool,
+}
+
+/// True where what follows a joint turns by whole turns with it.
+fn repeats(chain: &Chain, index: usize) -> bool {
+    let follows = |id: usize| chain.coupling(JointId(id)).filter(|c| c.index == index);
+    (0..chain.joints().len())
+        .all(|id| follows(id).is_none_or(|c| chain.joints()[id].kind.turns() && c.multiplier.fract() == 0.0))
 }
 
 impl JointBounds {
@@ -28,7 +49,24 @@ impl JointBounds {
             upper: chain.upper(),
             names: joints().map(|j| j.name.clone()).collect(),
             prismatic: joints().map(|j| j.kind == JointKind::Prismatic).collect(),
+            repeats: (0..chain.dof()).map(|i| repeats(chain, i)).collect(),
         }
+    }
+
+    /// The values that each joint may take.
+    pub fn ranges(&self) -> Vec<JointRange> {
+        let range = |i: usize| JointRange {
+            lower: self.lower[i],
+            upper: self.upper[i],
+            is_prismatic: self.prismatic[i],
+            repeats: self.repeats[i],
+        };
+        (0..self.dof()).map(range).collect()
+    }
+
+    /// Name of a joint.
+    pub fn name(&self, index: usize) -> &str {
+        &self.names[index]
     }
 
     pub fn dof(&self) -> usize {

@@ -18,7 +18,7 @@ mod tree;
 mod tree_search;
 
 pub(crate) use interpolation::{length, lerp, path_length, point_at};
-pub(crate) use joint_bounds::{JointBounds, SamplingRegion};
+pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
 pub(crate) use random::Random;
 

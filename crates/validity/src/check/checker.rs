@@ -47,15 +47,15 @@ pub enum NotCertain {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ValidityChecker<'m> {
-    robot: &'m CoveredRobot,
+    pub(super) robot: &'m CoveredRobot,
     obstacles: &'m ObstacleSet,
     outer: BoxTree,
     inner: BoxTree,
     /// Per body and obstacle, true where the pair is not checked; empty where all are.
     skipped: Vec<bool>,
     motion: MotionTable,
-    workspace: Workspace,
-    pairs: Vec<NearPair>,
+    pub(super) workspace: Workspace,
+    pub(super) pairs: Vec<NearPair>,
     simd_level: SimdLevel,
     blocks: u64,
 }
@@ -215,7 +215,7 @@ impl<'m> ValidityChecker<'m> {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
         let result = self.run(BlockRequest { chords: false, active }, Some(&mut pairs));
-        let hits = if result.touching == 0 { 0 } else { self.hits(&pairs) };
+        let hits = if result.touching == 0 { 0 } else { self.hits(&pairs, &[]) };
         self.pairs = pairs;
         for (lane, answer) in answers.iter_mut().enumerate().filter(|(lane, _)| active >> lane & 1 == 1) {
             *answer = match (result.touching >> lane & 1, hits >> lane & 1) {
@@ -255,7 +255,7 @@ impl<'m> ValidityChecker<'m> {
             && self.stretch(&Stretch { begin: middle, ..*stretch }, length_m)
     }
 
-    fn run(&mut self, request: BlockRequest, pairs: Option<&mut Vec<NearPair>>) -> BlockResult {
+    pub(super) fn run(&mut self, request: BlockRequest, pairs: Option<&mut Vec<NearPair>>) -> BlockResult {
         self.blocks += 1;
         let model = BlockModel {
             robot: self.robot,
@@ -268,7 +268,7 @@ impl<'m> ValidityChecker<'m> {
         dispatch!(self.simd_level, simd => model.check(simd, workspace, request, pairs))
     }
 
-    fn hits(&mut self, pairs: &[NearPair]) -> u32 {
+    pub(super) fn hits(&mut self, pairs: &[NearPair], half_widths: &[f32]) -> u32 {
         let model = BlockModel {
             robot: self.robot,
             obstacles: self.obstacles,
@@ -277,7 +277,7 @@ impl<'m> ValidityChecker<'m> {
             skipped: &self.skipped,
         };
         let (inner, workspace) = (&self.inner, &mut self.workspace);
-        dispatch!(self.simd_level, simd => model.hits(simd, inner, workspace, pairs))
+        dispatch!(self.simd_level, simd => model.hits(simd, inner, workspace, pairs, half_widths))
     }
 }
 

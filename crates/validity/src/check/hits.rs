@@ -1,4 +1,7 @@
 //! Proven collisions: an inner sphere of a body overlaps something that lies in an obstacle or in another body.
+//!
+//! A box in joint space is proven in collision as a whole where the overlap at its centre is deeper than anything moves within
+//! the box (section 3 of README.md has the lever arms).
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -7,21 +10,56 @@ use fearless_simd::{Simd, prelude::*};
 use super::block::{BlockModel, NearPair};
 use super::workspace::Workspace;
 use crate::lanes::{V3, splat};
-use crate::model::{CoveredLink, CoveredRobot, InnerSphere};
+use crate::model::{CoveredLink, CoveredRobot, InnerSphere, LinkPair};
 use crate::obstacles::{Bounds, BoxTree};
 
+/// More than the relative rounding error of a sum of lever arms.
+const ROUNDED_UP: f32 = 1.0 + 2e-5;
+
 impl BlockModel<'_> {
-    /// Lanes of the last block at which one of the pairs certainly collides, one bit each.
+    /// Lanes of the last block at which one of the pairs certainly collides, one bit each, even if the joint of each step is
+    /// anywhere within its half width (rad or m) of the lane's value. No half widths: at the values themselves.
     #[inline(always)]
-    pub fn hits<S: Simd>(&self, simd: S, inner: &BoxTree, workspace: &mut Workspace, pairs: &[NearPair]) -> u32 {
+    pub fn hits<S: Simd>(
+        &self,
+        simd: S,
+        inner: &BoxTree,
+        workspace: &mut Workspace,
+        pairs: &[NearPair],
+        half_widths: &[f32],
+    ) -> u32 {
         let mut hits = 0;
         for pair in pairs {
+            let depth_m = self.motion_within(*pair, half_widths);
             hits |= match *pair {
-                NearPair::Obstacle(body, obstacle) => self.obstacle_hits(simd, inner, workspace, body, obstacle),
-                NearPair::Links(a, b) => self.body_hits(simd, workspace, a, b),
+                NearPair::Obstacle(body, obstacle) => {
+                    self.obstacle_hits(simd, inner, workspace, (body, obstacle), depth_m)
+                }
+                NearPair::Links(a, b) => self.body_hits(simd, workspace, (a, b), depth_m),
             };
         }
         hits
+    }
+
+    /// No two points of a pair move farther against each other than this, m.
+    fn motion_within(&self, pair: NearPair, half_widths: &[f32]) -> f32 {
+        let sum: f32 = match pair {
+            NearPair::Obstacle(link, _) => {
+                let levers = &self.robot.covered_links[link as usize].lever_m;
+                levers
+                    .iter()
+                    .zip(half_widths)
+                    .filter(|(lever, _)| **lever > 0.0)
+                    .map(|(lever, half)| lever * half)
+                    .sum()
+            }
+            NearPair::Links(a, b) => {
+                let is_pair = |p: &&LinkPair| (p.a.0, p.b.0) == (a as usize, b as usize);
+                let joints = self.robot.pairs.iter().find(is_pair).map_or(&[][..], |p| &p.joints);
+                joints.iter().map(|j| half_widths.get(j.step).map_or(0.0, |half| j.lever_m * half)).sum()
+            }
+        };
+        sum * ROUNDED_UP
     }
 
     #[inline(always)]
@@ -30,8 +68,8 @@ impl BlockModel<'_> {
         simd: S,
         inner: &BoxTree,
         workspace: &mut Workspace,
-        body: u32,
-        obstacle: u32,
+        (body, obstacle): (u32, u32),
+        depth_m: f32,
     ) -> u32 {
         let body = &self.robot.covered_links[body as usize];
         let mut hits = 0;
@@ -42,7 +80,8 @@ impl BlockModel<'_> {
             inner.overlapping(simd, &bounds, &mut workspace.open, &mut found);
             for &i in found.iter().filter(|&&i| self.obstacles.inner_source[i as usize] == obstacle) {
                 let solid = &self.obstacles.inner[i as usize];
-                hits |= shorter(simd, solid.vector_from_core(simd, centre).vector, sphere.radius + solid.radius);
+                hits |=
+                    shorter(simd, solid.vector_from_core(simd, centre).vector, sphere.radius + solid.radius - depth_m);
             }
             workspace.found = found;
         }
@@ -50,14 +89,14 @@ impl BlockModel<'_> {
     }
 
     #[inline(always)]
-    fn body_hits<S: Simd>(&self, simd: S, workspace: &Workspace, a: u32, b: u32) -> u32 {
+    fn body_hits<S: Simd>(&self, simd: S, workspace: &Workspace, (a, b): (u32, u32), depth_m: f32) -> u32 {
         let (a, b) = (&self.robot.covered_links[a as usize], &self.robot.covered_links[b as usize]);
         let mut hits = 0;
         for one in inner_spheres(self.robot, a) {
             let centre = workspace.frames[a.frame].point(simd, one.centre);
             for other in inner_spheres(self.robot, b) {
                 let to = workspace.frames[b.frame].point(simd, other.centre);
-                hits |= shorter(simd, centre.minus(to), one.radius + other.radius);
+                hits |= shorter(simd, centre.minus(to), one.radius + other.radius - depth_m);
             }
         }
         hits

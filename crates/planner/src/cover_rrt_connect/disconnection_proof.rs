@@ -1,0 +1,197 @@
+//! Proofs that no path exists (Basch, Guibas, Hsu, Nguyen: *Disconnection proofs for motion planning*, 2001).
+//!
+//! A few joints span a grid of closed cells. A cell is blocked where the covers prove that the robot collides in all of it,
+//! wherever the other joints are. A path never enters a blocked cell, so that it stays in cells that join at faces (a cell
+//! shares each of its edges and corners with the neighbours that complete the turn around them, and one that is blocked blocks
+//! the edge or corner, too). If the cells around the start are enclosed by blocked ones and the goal is not among them, there is no path.
+
+use std::time::Instant;
+
+use elbowroom_validity::ValidityChecker;
+
+use crate::rrt_connect::JointRange;
+
+/// Largest number of cells of a grid.
+const MAX_CELLS: usize = 8_000_000;
+/// Cells whose collision is tested together: a multiple of sixteen.
+const BATCH: usize = 64;
+
+/// Joints that span a grid, and the width of its cells.
+#[derive(Debug, Clone)]
+pub(super) struct Projection {
+    /// Indices of the joints.
+    pub joints: Vec<usize>,
+    /// Width of a cell, rad; metres of prismatic joints are a tenth.
+    pub step: f64,
+}
+
+/// A joint of the grid.
+#[derive(Debug, Clone)]
+struct Axis {
+    joint: usize,
+    min: f64,
+    step: f64,
+    count: usize,
+    /// True where the last cell is next to the first.
+    wraps: bool,
+}
+
+impl Axis {
+    fn new(joint: usize, range: &JointRange, step: f64) -> Option<Self> {
+        let step = if range.is_prismatic { 0.1 * step } else { step };
+        let (min, width, wraps) = match range {
+            r if r.lower.is_finite() && r.upper.is_finite() => (r.lower, r.upper - r.lower, false),
+            r if r.is_prismatic || !r.repeats => return None,
+            _ => (0.0, std::f64::consts::TAU, true),
+        };
+        let count = (width / step).ceil().max(1.0);
+        (count <= MAX_CELLS as f64).then(|| Self { joint, min, step: width / count, count: count as usize, wraps })
+    }
+
+    fn cell(&self, value: f64) -> usize {
+        let at = ((value - self.min) / self.step).floor();
+        let at = if self.wraps { at.rem_euclid(self.count as f64) } else { at };
+        (at.max(0.0) as usize).min(self.count - 1)
+    }
+
+    fn centre(&self, cell: usize) -> f64 {
+        self.min + (cell as f64 + 0.5) * self.step
+    }
+
+    /// The cell beside another, if there is one.
+    fn beside(&self, cell: usize, is_up: bool) -> Option<usize> {
+        let (first, last) = (0, self.count - 1);
+        match (is_up, self.wraps) {
+            (true, true) if cell == last => Some(first),
+            (false, true) if cell == first => Some(last),
+            (true, _) => (cell < last).then_some(cell + 1),
+            (false, _) => cell.checked_sub(1),
+        }
+    }
+}
+
+/// What is known of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cell {
+    Unknown,
+    Blocked,
+    /// Reached from the start (0) or from the goal (1).
+    Reached(u8),
+}
+
+/// Cells reached from both ends.
+struct Flood<'c, 'm> {
+    checker: &'c mut ValidityChecker<'m>,
+    axes: Vec<Axis>,
+    cells: Vec<Cell>,
+    /// A configuration for the joints that span nothing.
+    others: Vec<f64>,
+    half_widths: Vec<f64>,
+}
+
+/// True where it is proven that no path within the ranges joins two configurations. False proves nothing.
+pub(super) fn are_disconnected(
+    checker: &mut ValidityChecker,
+    ranges: &[JointRange],
+    [from, to]: [&[f64]; 2],
+    projection: &Projection,
+    deadline: Instant,
+) -> bool {
+    let axes: Option<Vec<Axis>> =
+        projection.joints.iter().map(|&j| Axis::new(j, ranges.get(j)?, projection.step)).collect();
+    let Some(axes) = axes.filter(|axes| !axes.is_empty()) else { return false };
+    let count = axes.iter().try_fold(1_usize, |product, axis| product.checked_mul(axis.count));
+    let Some(count) = count.filter(|&count| count <= MAX_CELLS) else { return false };
+    let mut half_widths = vec![f64::INFINITY; ranges.len()];
+    axes.iter().for_each(|axis| half_widths[axis.joint] = 0.5 * axis.step);
+    let mut flood = Flood { checker, axes, cells: vec![Cell::Unknown; count], others: from.to_vec(), half_widths };
+    flood.encloses_an_end(from, to, deadline)
+}
+
+impl Flood<'_, '_> {
+    /// Extends from both ends by turns until one cannot be extended (true), or they meet.
+    fn encloses_an_end(&mut self, from: &[f64], to: &[f64], deadline: Instant) -> bool {
+        let ends = [self.cell_of(from), self.cell_of(to)];
+        if ends[0] == ends[1] {
+            return false;
+        }
+        let mut fronts = [vec![ends[0]], vec![ends[1]]];
+        for side in [0, 1] {
+            self.cells[ends[side]] = Cell::Reached(side as u8);
+        }
+        let mut candidates = Vec::new();
+        for side in [0, 1].into_iter().cycle() {
+            if fronts[side].is_empty() {
+                return true;
+            }
+            if Instant::now() >= deadline || !self.extend(side as u8, &mut fronts[side], &mut candidates) {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Reaches the cells beside some of a front. False where the other end is reached.
+    fn extend(&mut self, side: u8, front: &mut Vec<usize>, candidates: &mut Vec<usize>) -> bool {
+        candidates.clear();
+        while let Some(cell) = front.pop() {
+            for beside in self.neighbours(cell).into_iter().flatten() {
+                match self.cells[beside] {
+                    Cell::Unknown => {
+                        // Until it is tested, so that it is listed once.
+                        self.cells[beside] = Cell::Blocked;
+                        candidates.push(beside);
+                    }
+                    Cell::Reached(other) if other != side => return false,
+                    _ => {}
+                }
+            }
+            if candidates.len() >= BATCH {
+                break;
+            }
+        }
+        let blocked = self.are_blocked(candidates);
+        for (&cell, _) in candidates.iter().zip(&blocked).filter(|(_, blocked)| !**blocked) {
+            self.cells[cell] = Cell::Reached(side);
+            front.push(cell);
+        }
+        true
+    }
+
+    /// True for the cells that are proven in collision as a whole.
+    fn are_blocked(&mut self, cells: &[usize]) -> Vec<bool> {
+        let mut centres = Vec::with_capacity(cells.len() * self.others.len());
+        for &cell in cells {
+            let first = centres.len();
+            centres.extend_from_slice(&self.others);
+            let mut rest = cell;
+            for axis in &self.axes {
+                centres[first + axis.joint] = axis.centre(rest % axis.count);
+                rest /= axis.count;
+            }
+        }
+        let mut blocked = Vec::new();
+        match self.checker.boxes_are_in_collision(&centres, &self.half_widths, &mut blocked) {
+            Ok(()) => blocked,
+            Err(_) => vec![false; cells.len()],
+        }
+    }
+
+    fn cell_of(&self, q: &[f64]) -> usize {
+        self.axes.iter().rev().fold(0, |index, axis| index * axis.count + axis.cell(q[axis.joint]))
+    }
+
+    /// The cells that share a face with one, two per axis.
+    fn neighbours(&self, cell: usize) -> Vec<Option<usize>> {
+        let (mut found, mut rest, mut stride) = (Vec::with_capacity(2 * self.axes.len()), cell, 1);
+        for axis in &self.axes {
+            let at = rest % axis.count;
+            for is_up in [true, false] {
+                found.push(axis.beside(at, is_up).map(|beside| cell - at * stride + beside * stride));
+            }
+            rest /= axis.count;
+            stride *= axis.count;
+        }
+        found
+    }
+}

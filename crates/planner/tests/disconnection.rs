@@ -1,0 +1,98 @@
+//! Proofs that no path exists: right where walls divide the joint space, and never where a path is known.
+
+use std::time::Duration;
+
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+};
+use elbowroom_proximity::{Cuboid, Shape};
+use elbowroom_robot::{RobotId, example};
+use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
+use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::{split_mix, unit};
+
+const ROBOT: RobotId = RobotId(0);
+
+fn scene(boxes: &[(Vec3, Vec3)]) -> Scene {
+    let mut builder = Scene::builder();
+    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    for (i, &(at, half_extents)) in boxes.iter().enumerate() {
+        let shape = Shape::Cuboid(Cuboid { half_extents });
+        builder.object(Object { name: format!("box {i}"), shape, in_world: Pose::from_translation(at) });
+    }
+    builder.build().unwrap()
+}
+
+fn plan(
+    scene: &Scene,
+    from: &[f64],
+    to: &[f64],
+    settings: &RrtConnectSettings,
+) -> Result<PlannedPath, RrtConnectError> {
+    let mut start = SceneState::new(scene);
+    start.set_q(scene, ROBOT, from).unwrap();
+    let model = CoverModel::new(scene, &start, ROBOT, 0.0).unwrap();
+    let obstacles = CoverObstacles::new(&model, scene, &start, 0.0);
+    CoverRrtConnect::new(RrtConnect::new(scene, ROBOT)?, &model, &obstacles).plan(&start, to, settings)
+}
+
+/// A wall in front from below the base to above the reach: the upper arm, bent forward, cannot turn through it.
+const WALL: (Vec3, Vec3) = (Vec3::new(0.45, 0.0, 0.4), Vec3::new(0.3, 0.02, 1.2));
+
+#[test]
+fn a_wall_from_which_the_arm_cannot_withdraw_separates_its_sides() {
+    // A roof keeps the upper arm down, a wall behind is the other side of the circle.
+    let roof = (Vec3::new(0.0, 0.0, 0.75), Vec3::new(1.5, 1.5, 0.15));
+    let behind = (Vec3::new(-0.45, 0.0, 0.4), Vec3::new(0.3, 0.02, 1.2));
+    let scene = scene(&[WALL, roof, behind]);
+    let settings = RrtConnectSettings { time_limit: Duration::from_secs(20), ..RrtConnectSettings::default() };
+    let error = plan(&scene, &[-1.2, 1.6, 0.3], &[1.2, 1.6, 0.3], &settings).unwrap_err();
+    let RrtConnectError::Disconnected { joints, .. } = &error else { panic!("{error}") };
+    assert!(joints.contains(&"waist".to_owned()), "{error}");
+    assert!(error.to_string().contains("`waist` and `shoulder` cannot get from start to goal"), "{error}");
+}
+
+#[test]
+fn a_wall_over_which_the_arm_lifts_separates_nothing() {
+    let path = plan(&scene(&[WALL]), &[-1.2, 1.6, 0.3], &[1.2, 1.6, 0.3], &RrtConnectSettings::default()).unwrap();
+    assert!(path.waypoints.len() > 2);
+}
+
+/// Where the planner in the exact scene has a path, nothing is proven against it, however little the search on covers may do.
+#[test]
+fn no_proof_contradicts_a_path() {
+    let mut seed = 7;
+    let mut within = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+    let (mut paths, mut proofs) = (0, 0);
+    for case in 0..60 {
+        let boxes: Vec<_> = (0..6)
+            .map(|_| {
+                let at = Vec3::new(within(-0.9, 0.9), within(-0.9, 0.9), within(0.0, 1.3));
+                (at, Vec3::new(within(0.02, 0.4), within(0.02, 0.4), within(0.02, 0.4)))
+            })
+            .collect();
+        let scene = scene(&boxes);
+        let mut exact = Checker::new(&scene, CheckerOptions::default());
+        let mut state = SceneState::new(&scene);
+        let mut free = Vec::new();
+        for _ in 0..400 {
+            let q = [within(-3.0, 3.0), within(-2.2, 2.2), within(-2.5, 2.5)];
+            state.set_q(&scene, ROBOT, &q).unwrap();
+            if exact.within(&state, 1e-3).is_none() {
+                free.push(q);
+            }
+        }
+        let &[from, .., to] = &free[..] else { continue };
+        // So few configurations that the search on covers is often interrupted.
+        let few = RrtConnectSettings { max_states: 64, seed: case, ..RrtConnectSettings::default() };
+        let answer = plan(&scene, &from, &to, &few);
+        state.set_q(&scene, ROBOT, &from).unwrap();
+        let many = RrtConnectSettings { max_states: 5_000, ..RrtConnectSettings::default() };
+        let known = RrtConnect::new(&scene, ROBOT).unwrap().plan(&state, &to, &many).is_ok();
+        let is_disconnected = matches!(answer, Err(RrtConnectError::Disconnected { .. }));
+        assert!(!(known && is_disconnected), "{case}: {boxes:?} {from:?} {to:?}");
+        paths += usize::from(known);
+        proofs += usize::from(is_disconnected);
+    }
+    assert!(paths > 20 && proofs > 0, "{paths} paths, {proofs} proofs");
+}
