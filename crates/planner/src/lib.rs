@@ -24,21 +24,25 @@ mod grid_time_parametrization;
 mod line_of_sight;
 mod local_detour;
 mod nearest_free_cell;
+mod orientation_constraint;
 mod path;
 mod replan;
 mod rrt_connect;
+mod task_space_region;
 mod theta_star;
 mod time_parametrization;
 
-pub use cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, TimedMotion};
+pub use cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, TimedMotion};
 pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
+pub use orientation_constraint::OrientationConstraint;
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
-    JointUnit, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting, RrtConnectSettings,
-    ShortcuttingSettings,
+    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting,
+    RrtConnectSettings, ShortcuttingSettings,
 };
+pub use task_space_region::TaskSpaceRegion;
 pub use time_parametrization::{
     BlendedPath, CornerBlend, KinematicLimits, LimitKind, TimeOptimalTrajectory, TimeParametrizationError, Trajectory,
     TrajectoryPoint,

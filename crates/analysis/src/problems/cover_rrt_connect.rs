@@ -18,7 +18,7 @@ pub struct CoverRrtConnectEngine {
 }
 
 impl PlanningEngine for CoverRrtConnectEngine {
-    /// Tries the goals one after the other, each within its share of the remaining time.
+    /// To whichever goal is found first.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
         let (scene, start) = (problem.scene(), problem.start());
         if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, settings.clearance_m)) {
@@ -29,17 +29,10 @@ impl PlanningEngine for CoverRrtConnectEngine {
         let Ok(exact) = problem.planner() else { return RrtConnectEngine.solve(problem, settings) };
         let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
         let begin = Instant::now();
-        let mut solution = Solution::default();
-        for (i, goal) in problem.goals().iter().enumerate() {
-            let left = settings.time_limit.saturating_sub(begin.elapsed());
-            let share = left / u32::try_from(problem.goals().len() - i).unwrap_or(u32::MAX);
-            let before = begin.elapsed();
-            match planner.plan(start, goal, &rrt_settings(settings, share)) {
-                Ok(path) => return found(path, before),
-                Err(e) => solution.reason = Some(reason(&e)),
-            }
+        match planner.plan_to_any(start, problem.goals(), &rrt_settings(settings, settings.time_limit)) {
+            Ok(path) => found(path, Duration::ZERO),
+            Err(e) => Solution { planning: begin.elapsed(), reason: Some(reason(&e)), ..Solution::default() },
         }
-        Solution { planning: begin.elapsed(), ..solution }
     }
 
     fn time(

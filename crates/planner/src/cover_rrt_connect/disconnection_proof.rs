@@ -103,7 +103,9 @@ pub(super) fn are_disconnected(
     let count = axes.iter().try_fold(1_usize, |product, axis| product.checked_mul(axis.count));
     let Some(count) = count.filter(|&count| count <= MAX_CELLS) else { return false };
     let mut half_widths = vec![f64::INFINITY; ranges.len()];
-    axes.iter().for_each(|axis| half_widths[axis.joint] = 0.5 * axis.step);
+    for axis in &axes {
+        half_widths[axis.joint] = 0.5 * axis.step;
+    }
     let mut flood = Flood { checker, axes, cells: vec![Cell::Unknown; count], others: from.to_vec(), half_widths };
     flood.encloses_an_end(from, to, deadline)
 }

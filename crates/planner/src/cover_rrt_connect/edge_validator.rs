@@ -1,6 +1,6 @@
 //! Validity of edges: by the covers, and by the exact scene where they are not certain.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{SweepMove, SweepOptions};
@@ -8,12 +8,15 @@ use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::{Projection, are_disconnected};
-use crate::rrt_connect::{JointRange, MotionValidator};
+use crate::rrt_connect::{JointRange, MotionValidator, RrtConnectError};
 
-/// The clock is read once in so many edges: it costs as much as a short one.
-const EDGES_PER_CLOCK_READING: u64 = 16;
+/// The clock is read once in so many questions: it costs as much as a short edge.
+const QUESTIONS_PER_CLOCK_READING: u64 = 16;
 /// Configurations of a block.
 const BLOCK: u64 = 16;
+
+/// Longest edge of a tree, rad (and m).
+const EDGE_LENGTH: f64 = 1.0;
 
 /// What a tree search asks.
 pub(super) trait EdgeValidator {
@@ -21,6 +24,17 @@ pub(super) trait EdgeValidator {
     fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool;
     /// True where the search must end.
     fn is_exhausted(&mut self) -> bool;
+
+    /// Longest edge of a tree, rad (and m).
+    fn longest_edge(&self) -> f64 {
+        EDGE_LENGTH
+    }
+
+    /// Moves a configuration to where a constraint is satisfied. False where that fails.
+    fn project(&mut self, q: &mut [f64]) -> bool {
+        let _ = q;
+        true
+    }
 }
 
 /// Proves edges by the covers; by the exact scene the pairs that the covers leave open.
@@ -34,7 +48,8 @@ pub(super) struct CoverValidator<'m> {
     max_states: u64,
     /// Blocks before the present query.
     blocks_before: u64,
-    edges: u64,
+    /// How often it was asked whether the search must end.
+    questions: u64,
     pairs: Vec<NotCertain>,
 }
 
@@ -42,7 +57,7 @@ impl<'m> CoverValidator<'m> {
     pub fn new(model: &'m CoverModel, obstacles: &'m CoverObstacles, robot: RobotId) -> Self {
         let checker = obstacles.checker(model);
         let (deadline, pairs) = (Instant::now(), Vec::new());
-        Self { checker, model, obstacles, robot, deadline, max_states: 0, blocks_before: 0, edges: 0, pairs }
+        Self { checker, model, obstacles, robot, deadline, max_states: 0, blocks_before: 0, questions: 0, pairs }
     }
 
     /// Begins a query.
@@ -76,6 +91,12 @@ impl<'m> CoverValidator<'m> {
         BLOCK * (self.checker.blocks() - self.blocks_before)
     }
 
+    /// That no path was found within the limits.
+    pub fn not_found(&self, after: Duration, nodes: usize) -> RrtConnectError {
+        let states_checked = self.states_checked();
+        RrtConnectError::NotFound { seconds: after.as_secs_f64(), states_checked, nodes, nearer: Vec::new() }
+    }
+
     /// What the covers say of a configuration.
     pub fn state(&mut self, q: &[f64]) -> Validity {
         self.checker.state(q).unwrap_or(Validity::Uncertain)
@@ -104,12 +125,12 @@ impl<'m> CoverValidator<'m> {
 
 impl EdgeValidator for CoverValidator<'_> {
     fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
-        self.edges += 1;
         self.checker.edge_is_free(from, to).unwrap_or(false)
     }
 
     fn is_exhausted(&mut self) -> bool {
+        self.questions += 1;
         self.states_checked() > self.max_states
-            || (self.edges.is_multiple_of(EDGES_PER_CLOCK_READING) && Instant::now() >= self.deadline)
+            || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && Instant::now() >= self.deadline)
     }
 }

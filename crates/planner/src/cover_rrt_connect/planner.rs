@@ -1,24 +1,19 @@
 //! The planner.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use elbowroom_scene::{SceneState, SweepOptions};
-use elbowroom_validity::Validity;
+use elbowroom_scene::SceneState;
 
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::Projection;
+use super::edge_search::EdgeSearch;
 use super::edge_validator::{CoverValidator, EdgeValidator};
+use super::query_ends::QueryEnds;
+use super::region_sampler::RegionSampler;
 use super::shortcutting::Shortcutting;
-use super::tree_search::{ConfigurationSampler, TreeSearch};
-use crate::path::PathEnd;
-use crate::rrt_connect::{
-    JointBounds, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, SamplingRegion, path_length,
-};
+use super::tree_search::TreeSearch;
+use crate::rrt_connect::{PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, length, path_length};
 
-/// Configurations tried around an end that the covers leave open.
-const EXIT_TRIALS: usize = 400;
-/// Largest distance of such a configuration from the end, rad (and m).
-const EXIT_RADIUS: f64 = 0.5;
 /// Share of the time limit after which the exact scene is searched.
 const COVER_SHARE: f64 = 0.5;
 /// Share of its time after which a search on covers is interrupted: there may be a proof that no path exists.
@@ -60,59 +55,76 @@ impl<'m> CoverRrtConnect<'m> {
     /// be where it was when the obstacles were made, and the clearance the same.
     ///
     /// # Errors
-    /// As [`RrtConnect::plan`].
+    /// As [`RrtConnect::plan`]; and [`RrtConnectError::Disconnected`] where it is proven that there is no path.
     pub fn plan(
         &mut self,
         start: &SceneState,
         goal: &[f64],
         settings: &RrtConnectSettings,
     ) -> Result<PlannedPath, RrtConnectError> {
+        self.plan_to_any(start, &[goal], settings)
+    }
+
+    /// As [`plan`](Self::plan), to whichever of several goals is found first; the last waypoint is that goal. Goals that are
+    /// beyond limits or not free are left out.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan): of the first goal where none is valid; [`RrtConnectError::NoGoal`] without goals.
+    pub fn plan_to_any<G: AsRef<[f64]>>(
+        &mut self,
+        start: &SceneState,
+        goals: &[G],
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
         let begin = Instant::now();
         let on_covers = RrtConnectSettings { time_limit: settings.time_limit.mul_f64(COVER_SHARE), ..*settings };
-        match self.plan_on_covers(begin, start, goal, &on_covers) {
+        match self.plan_on_covers(begin, start, goals, &on_covers) {
             Err(RrtConnectError::NotFound { .. }) => {}
             other => return other,
         }
-        let spent = begin.elapsed();
-        let rest = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(spent), ..*settings };
-        let mut path = self.exact.plan(start, goal, &rest)?;
-        path.planning_time += spent;
-        Ok(path)
+        self.plan_exactly(begin, start, goals, settings)
     }
 
-    fn plan_on_covers(
+    /// In the exact scene: one goal after the other, each in its share of the time that is left.
+    fn plan_exactly<G: AsRef<[f64]>>(
         &mut self,
         begin: Instant,
         start: &SceneState,
-        goal: &[f64],
+        goals: &[G],
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let mut answer = Err(RrtConnectError::NoGoal);
+        for (i, goal) in goals.iter().enumerate() {
+            let spent = begin.elapsed();
+            let left = settings.time_limit.saturating_sub(spent) / u32::try_from(goals.len() - i).unwrap_or(u32::MAX);
+            let found = self.exact.plan(start, goal.as_ref(), &RrtConnectSettings { time_limit: left, ..*settings });
+            if let Ok(path) = found {
+                return Ok(PlannedPath { planning_time: path.planning_time + spent, ..path });
+            }
+            // That one was not found says more than that another is invalid.
+            if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
+                answer = found;
+            }
+        }
+        answer
+    }
+
+    fn plan_on_covers<G: AsRef<[f64]>>(
+        &mut self,
+        begin: Instant,
+        start: &SceneState,
+        goals: &[G],
         settings: &RrtConnectSettings,
     ) -> Result<PlannedPath, RrtConnectError> {
         let mut random = Random::new(settings.seed);
-        let ends = self.ends(start, goal, settings)?;
-        let constrained = self.exact.constraint_exits(&ends, start, &mut random, settings)?;
-        let exits = [self.exit(&constrained, 0, &mut random)?, self.exit(&constrained, 1, &mut random)?];
-        let (from, to) = (&exits[0], &exits[1]);
-        let mut search = EdgeSearch { exact: &mut self.exact, covers: &mut self.covers };
-        let mut waypoints = if search.edge_is_free(from, to) {
-            exits.to_vec()
-        } else {
-            let region = search.exact.bounds.sampling_region(from, to);
-            let mut sampler = Sampler { region, random: &mut random, round: 0 };
-            let last_deadline = search.exact.validator.deadline;
-            search.covers.extend_deadline(last_deadline.min(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
-            let mut trees = TreeSearch::new(&mut search, from, to);
-            let mut found = trees.run(&mut sampler);
-            if found.is_none() {
-                trees.validator.expect_connected(from, to)?;
-                trees.validator.covers.extend_deadline(last_deadline);
-                found = trees.run(&mut sampler);
-            }
-            let nodes = trees.nodes();
-            found.ok_or_else(|| self.not_found(begin.elapsed(), nodes))?
+        let ends = self.edges().query_ends(start, goals, settings, &mut random)?;
+        let mut waypoints = match self.straight(&ends) {
+            Some(straight) => straight,
+            None => self.search(begin, &ends, settings, &mut random)?,
         };
         let planning_time = begin.elapsed();
         let raw_length_rad = path_length(&waypoints);
-        let mut search = EdgeSearch { exact: &mut self.exact, covers: &mut self.covers };
+        let mut search = self.edges();
         Shortcutting { validator: &mut search, random: &mut random }.run(&mut waypoints);
         let path = PlannedPath {
             length_rad: path_length(&waypoints),
@@ -122,80 +134,66 @@ impl<'m> CoverRrtConnect<'m> {
             simplification_time: begin.elapsed().saturating_sub(planning_time),
             states_checked: self.covers.states_checked(),
         };
-        Ok(path.with_ends(constrained).with_ends(ends))
+        Ok(ends.completed(path))
     }
 
-    fn not_found(&self, after: Duration, nodes: usize) -> RrtConnectError {
-        let states_checked = self.covers.states_checked();
-        RrtConnectError::NotFound { seconds: after.as_secs_f64(), states_checked, nodes, nearer: Vec::new() }
+    pub(super) fn edges(&mut self) -> EdgeSearch<'_, 'm> {
+        EdgeSearch { exact: &mut self.exact, covers: &mut self.covers }
     }
 
-    /// Both ends within limits; the validators are prepared for the query.
-    fn ends(
+    /// The straight segment to a goal, the nearest first.
+    fn straight(&mut self, ends: &QueryEnds) -> Option<Vec<Vec<f64>>> {
+        let from = ends.from();
+        let mut goals: Vec<&[f64]> = ends.goals().collect();
+        goals.sort_by(|a, b| length(from, a).total_cmp(&length(from, b)));
+        let mut search = self.edges();
+        let reached = goals.into_iter().find(|to| search.edge_is_free(from, to))?;
+        Some(vec![from.to_vec(), reached.to_vec()])
+    }
+
+    /// Waypoints from the start to a goal.
+    fn search(
         &mut self,
-        start: &SceneState,
-        goal: &[f64],
+        begin: Instant,
+        ends: &QueryEnds,
         settings: &RrtConnectSettings,
-    ) -> Result<[Vec<f64>; 2], RrtConnectError> {
-        if let Some((setting, value)) = settings.invalid() {
-            return Err(RrtConnectError::InvalidSetting { setting, value });
+        random: &mut Random,
+    ) -> Result<Vec<Vec<f64>>, RrtConnectError> {
+        let region = self.exact.bounds.sampling_region_of(ends.all());
+        let mut sampler = RegionSampler::new(region, random);
+        let last_deadline = self.exact.validator.deadline;
+        self.covers.extend_deadline(last_deadline.min(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
+        let mut search = self.edges();
+        let mut trees = TreeSearch::new(&mut search, ends.from(), ends.goals());
+        let mut found = trees.run(&mut sampler);
+        if found.is_none() {
+            trees.validator.expect_connected(ends)?;
+            trees.validator.covers.extend_deadline(last_deadline);
+            found = trees.run(&mut sampler);
         }
-        self.exact.begin(start, goal, settings)?;
-        self.covers.begin(self.exact.validator.deadline, settings.max_states);
-        let bounds: &JointBounds = &self.exact.bounds;
-        let from = bounds.clamped_end(PathEnd::Start, start.q(self.exact.robot()))?;
-        let to = bounds.clamped_end(PathEnd::Goal, goal)?;
-        if self.exact.has_other_robots() {
-            // Links that no joint moves are in no block; another robot may touch them all the same.
-            self.exact.free_margin_m(PathEnd::Start, &from)?;
-        }
-        Ok([from, to])
+        let nodes = trees.nodes();
+        found.ok_or_else(|| self.covers.not_found(begin.elapsed(), nodes))
     }
-
-    /// An end, or a configuration near by that the covers prove free and that an exactly proven edge joins with it.
-    fn exit(&mut self, ends: &[Vec<f64>; 2], which: usize, random: &mut Random) -> Result<Vec<f64>, RrtConnectError> {
-        let q = &ends[which];
-        if self.covers.state(q) == Validity::Free {
-            return Ok(q.clone());
-        }
-        let margin = self.exact.free_margin_m([PathEnd::Start, PathEnd::Goal][which], q)?;
-        let sweep = self.exact.validator.sweep;
-        let sweep = SweepOptions { tolerance_m: sweep.tolerance_m.min(0.5 * margin), ..sweep };
-        let region = self.exact.bounds.sampling_region(q, q);
-        let mut sample = q.clone();
-        for trial in 0..EXIT_TRIALS {
-            let share = EXIT_RADIUS * ((trial + 1) as f64 / EXIT_TRIALS as f64).powi(2).max(0.02);
-            region.around(q, share, random, &mut sample);
-            if self.covers.state(&sample) == Validity::Free
-                && self.covers.is_free_exactly(&mut self.exact.validator, q, &sample, &sweep)
-            {
-                return Ok(sample);
-            }
-        }
-        Err(self.not_found(Duration::ZERO, 0))
-    }
-}
-
-/// Edges that the covers prove, within the constraint.
-pub(super) struct EdgeSearch<'p, 'm> {
-    pub exact: &'p mut RrtConnect<'m>,
-    pub covers: &'p mut CoverValidator<'m>,
 }
 
 impl EdgeSearch<'_, '_> {
-    /// An error where it is proven that no path joins two configurations.
-    fn expect_connected(&mut self, from: &[f64], to: &[f64]) -> Result<(), RrtConnectError> {
+    /// An error where it is proven that no path leads from the start to any goal.
+    fn expect_connected(&mut self, ends: &QueryEnds) -> Result<(), RrtConnectError> {
         let bounds = &self.exact.bounds;
         let (ranges, deadline) = (bounds.ranges(), self.exact.validator.deadline);
-        for projection in projections(bounds.dof()) {
-            if self.covers.are_disconnected(&ranges, [from, to], &projection, deadline) {
-                return Err(RrtConnectError::Disconnected {
-                    joints: projection.joints.iter().map(|&j| bounds.name(j).to_owned()).collect(),
-                    nearer: bounds.equivalent_goals(from, to),
-                });
+        let mut proof = None;
+        for to in ends.goals() {
+            let mut all = projections(bounds.dof()).into_iter();
+            let from = ends.from();
+            match all.find(|some| self.covers.are_disconnected(&ranges, [from, to], some, deadline)) {
+                Some(projection) => proof = proof.or(Some((projection.joints, to))),
+                None => return Ok(()),
             }
         }
-        Ok(())
+        proof.map_or(Ok(()), |(joints, to)| {
+            let joints = joints.iter().map(|&j| bounds.name(j).to_owned()).collect();
+            Err(RrtConnectError::Disconnected { joints, nearer: bounds.equivalent_goals(ends.from(), to) })
+        })
     }
 }
 
@@ -205,37 +203,4 @@ fn projections(dof: usize) -> Vec<Projection> {
         (0..(dof + 1).saturating_sub(count)).map(move |j| Projection { joints: (j..j + count).collect(), step })
     };
     [(1, 0.01), (2, 0.04), (3, 0.1)].into_iter().flat_map(|(count, step)| neighbours(count, step)).collect()
-}
-
-impl EdgeValidator for EdgeSearch<'_, '_> {
-    fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
-        self.covers.edge_is_free(from, to) && self.exact.validator.constraint_allows(from, to)
-    }
-
-    fn is_exhausted(&mut self) -> bool {
-        self.covers.is_exhausted()
-    }
-}
-
-/// Draws from the region around the ends first, later from all of it, and now and then near the ends again.
-struct Sampler<'r> {
-    region: SamplingRegion,
-    random: &'r mut Random,
-    round: u32,
-}
-
-/// One in so many samples stays near the ends.
-const NEAR_ROUNDS: u32 = 4;
-/// Share of the region about the ends that is sampled first, and in those rounds.
-const NEAR_SHARE: f64 = 0.3;
-/// Samples after which the whole region is sampled.
-const WIDENING_ROUNDS: f64 = 40.0;
-
-impl ConfigurationSampler for Sampler<'_> {
-    fn sample(&mut self, out: &mut [f64]) {
-        let is_near = self.round % NEAR_ROUNDS == NEAR_ROUNDS - 1;
-        let wide = (NEAR_SHARE + f64::from(self.round) / WIDENING_ROUNDS).min(1.0);
-        self.region.sample(if is_near { NEAR_SHARE } else { wide }, self.random, out);
-        self.round = self.round.saturating_add(1);
-    }
 }

@@ -6,10 +6,11 @@ use super::edge_validator::EdgeValidator;
 use super::tree::Tree;
 use crate::rrt_connect::{length, lerp};
 
-/// Longest edge, rad (and m).
-const EDGE_LENGTH: f64 = 1.0;
 /// Dynamic domain of a node after its first failure, rad (and m).
 const DOMAIN_RADIUS: f64 = 4.0;
+
+/// A step of a connection that comes nearer to its target by less than this share is its last.
+pub(super) const LEAST_PROGRESS: f64 = 0.05;
 
 /// Draws configurations.
 pub(super) trait ConfigurationSampler {
@@ -25,8 +26,10 @@ pub(super) struct TreeSearch<'v, V> {
 }
 
 impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
-    pub fn new(validator: &'v mut V, start: &[f64], goal: &[f64]) -> Self {
-        Self { validator, trees: [Tree::new(start), Tree::new(goal)], is_swapped: false }
+    /// From a start to any of several goals.
+    pub fn new<'q>(validator: &'v mut V, start: &'q [f64], goals: impl IntoIterator<Item = &'q [f64]>) -> Self {
+        let trees = [Tree::new(start.len(), [start]), Tree::new(start.len(), goals)];
+        Self { validator, trees, is_swapped: false }
     }
 
     /// Number of nodes in both trees.
@@ -59,10 +62,11 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
     fn extend(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<usize> {
         let mut next = target.to_vec();
         let from = &self.trees[tree];
-        if distance > EDGE_LENGTH {
-            lerp(from.q(near), target, EDGE_LENGTH / distance, &mut next);
+        let longest = self.validator.longest_edge();
+        if distance > longest {
+            lerp(from.q(near), target, longest / distance, &mut next);
         }
-        if !self.validator.edge_is_free(from.q(near), &next) {
+        if !self.validator.project(&mut next) || !self.validator.edge_is_free(from.q(near), &next) {
             let radius = &mut self.trees[tree].radii[near];
             *radius = radius.min(DOMAIN_RADIUS as f32) * 0.999_9;
             if !radius.is_finite() {
@@ -77,19 +81,16 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
     fn connect(&mut self, node: usize) -> Option<usize> {
         let target = self.trees[0].q(node).to_vec();
         let (mut near, mut distance) = self.trees[1].nearest(&target);
-        loop {
-            if distance == 0.0 {
-                return Some(near);
-            }
+        while distance > 0.0 && !self.validator.is_exhausted() {
             near = self.extend(1, near, &target, distance)?;
-            if distance <= EDGE_LENGTH {
-                return Some(near);
-            }
-            distance = length(self.trees[1].q(near), &target);
-            if self.validator.is_exhausted() {
+            let left = length(self.trees[1].q(near), &target);
+            // A projection may lead elsewhere.
+            if left > distance * (1.0 - LEAST_PROGRESS) {
                 return None;
             }
+            distance = left;
         }
+        (distance == 0.0).then_some(near)
     }
 
     fn path(&self, node: usize, other: usize) -> Vec<Vec<f64>> {

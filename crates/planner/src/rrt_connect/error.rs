@@ -27,6 +27,17 @@ impl std::fmt::Display for JointUnit {
     }
 }
 
+/// What ends a linear move before its target.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LinearMoveEnd {
+    /// No joint values within the limits continue the line without a leap.
+    #[error("the joints cannot follow: the line leaves the reach or a joint's limits, or passes a singularity")]
+    Unreachable,
+    /// The line is not proven free there.
+    #[error("it is not free")]
+    NotFree,
+}
+
 /// Why there is no path.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RrtConnectError {
@@ -108,6 +119,19 @@ pub enum RrtConnectError {
         joints: Vec<String>,
         /// Joints of which the goal's posture has another value, full turns away and nearer to the start, rad.
         nearer: Vec<(String, f64)>,
+    },
+    /// No goal was given, or a region of goals contains no configuration that was found.
+    #[error("there is no goal: write at least one configuration, or a pose that the robot reaches")]
+    NoGoal,
+    /// A linear move cannot be followed to its end.
+    #[error(
+        "the straight line can be followed for {percent:.1} % only, there {end}: plan a free motion, or move start or target"
+    )]
+    LinearMove {
+        /// How much of it.
+        percent: f64,
+        /// Why.
+        end: LinearMoveEnd,
     },
     /// An invalid setting.
     #[error("{setting} is {value}: write {}", .setting.range())]

@@ -94,6 +94,11 @@ impl JointBounds {
         Ok(q)
     }
 
+    /// True where all values are within the limits.
+    pub fn contains(&self, q: &[f64]) -> bool {
+        q.iter().enumerate().all(|(i, v)| *v >= self.lower[i] && *v <= self.upper[i])
+    }
+
     /// Narrows the limits.
     pub fn narrow(&mut self, limits: impl Iterator<Item = (f64, f64)>) {
         for ((lower, upper), (low, high)) in self.lower.iter_mut().zip(&mut self.upper).zip(limits) {
@@ -120,8 +125,19 @@ impl JointBounds {
     /// The region between two configurations and around them: up to the limits; half a turn beyond both ends where there are
     /// none.
     pub fn sampling_region(&self, from: &[f64], to: &[f64]) -> SamplingRegion {
+        self.sampling_region_of([from, to])
+    }
+
+    /// The same for several configurations.
+    pub fn sampling_region_of<'q>(&self, ends: impl IntoIterator<Item = &'q [f64]>) -> SamplingRegion {
+        let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); self.dof()];
+        for q in ends {
+            for ((low, high), &value) in extremes.iter_mut().zip(q) {
+                (*low, *high) = (low.min(value), high.max(value));
+            }
+        }
         let each = |i: usize| {
-            let (low, high) = (from[i].min(to[i]), from[i].max(to[i]));
+            let (low, high) = extremes[i];
             let beyond = if self.prismatic[i] { UNBOUNDED_SLIDE_M } else { std::f64::consts::PI };
             let least = if self.lower[i].is_finite() { self.lower[i] } else { low - beyond };
             let most = if self.upper[i].is_finite() { self.upper[i] } else { high + beyond };
@@ -144,6 +160,11 @@ impl SamplingRegion {
             let (from, to) = (low + (least - low) * share, high + (most - high) * share);
             *value = random.between(from, to).clamp(*least, *most);
         }
+    }
+
+    /// True for a configuration of the region.
+    pub fn contains(&self, q: &[f64]) -> bool {
+        q.iter().zip(&self.each).all(|(value, [least, _, _, most])| value >= least && value <= most)
     }
 
     /// A sample within a distance of a configuration in each value.

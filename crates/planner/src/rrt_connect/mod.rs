@@ -20,9 +20,10 @@ mod tree_search;
 pub(crate) use interpolation::{length, lerp, path_length, point_at};
 pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
+pub(crate) use path_constraint::ConstraintChecker;
 pub(crate) use random::Random;
 
-pub use error::{JointUnit, RrtConnectError};
+pub use error::{JointUnit, LinearMoveEnd, RrtConnectError};
 pub use path_constraint::PathConstraint;
 pub use planned_path::PlannedPath;
 pub use planner::RrtConnect;

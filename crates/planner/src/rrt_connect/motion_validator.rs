@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{
-    Checker, CheckerOptions, PairContact, PairDistance, Scene, SceneError, SceneState, Selection, SweepMove,
-    SweepOptions,
+    Checker, CheckerOptions, PairContact, PairDistance, Scene, SceneError, SceneRobot, SceneState, Selection,
+    SweepMove, SweepOptions,
 };
 
 use super::interpolation::lerp;
@@ -61,6 +61,11 @@ impl<'s> MotionValidator<'s> {
         self.state.set_q(self.scene, self.robot, goal)?;
         self.states_checked = 0;
         Ok(())
+    }
+
+    /// Its robot in the scene.
+    pub fn placed_robot(&self) -> &'s SceneRobot {
+        &self.scene.robots()[self.robot.0]
     }
 
     pub fn name(&self, geometry: GeometryId) -> String {

@@ -31,6 +31,18 @@ pub trait PathConstraint: Debug {
 
     /// The violation at a configuration, or the nearest one, in words: "region `press`".
     fn describe_nearest(&mut self, q: &[f64]) -> String;
+
+    /// Longest edge of a tree, rad (and m), where the constraint leaves only a thin part of the joint space: then samples are
+    /// moved by [`project`](Self::project). `None` where most configurations satisfy it.
+    fn projected_edge_length(&self) -> Option<f64> {
+        None
+    }
+
+    /// Moves a configuration by little to one that satisfies the constraint; leaves it where it does. False where that fails.
+    fn project(&mut self, q: &mut [f64]) -> bool {
+        let _ = q;
+        true
+    }
 }
 
 impl<C: PathConstraint + ?Sized> PathConstraint for &mut C {
@@ -48,6 +60,14 @@ impl<C: PathConstraint + ?Sized> PathConstraint for &mut C {
 
     fn describe_nearest(&mut self, q: &[f64]) -> String {
         (**self).describe_nearest(q)
+    }
+
+    fn projected_edge_length(&self) -> Option<f64> {
+        (**self).projected_edge_length()
+    }
+
+    fn project(&mut self, q: &mut [f64]) -> bool {
+        (**self).project(q)
     }
 }
 
@@ -67,6 +87,16 @@ impl<'c> ConstraintChecker<'c> {
         let distance = self.constraint.distance_m(q, 0.0);
         // Comparisons with NaN are false.
         (!(distance > 0.0)).then(|| (self.constraint.describe_nearest(q), distance))
+    }
+
+    /// As [`PathConstraint::projected_edge_length`].
+    pub fn projected_edge_length(&self) -> Option<f64> {
+        self.constraint.projected_edge_length()
+    }
+
+    /// As [`PathConstraint::project`].
+    pub fn project(&mut self, q: &mut [f64]) -> bool {
+        self.constraint.project(q)
     }
 
     /// True where the margin of paths is kept, with the margin of a proof.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use elbowroom_robot::RobotId;
-use elbowroom_scene::{Scene, SceneError, SceneState, SweepOptions};
+use elbowroom_scene::{Scene, SceneError, SceneRobot, SceneState, SweepOptions};
 
 use super::clearance_exit::{ClearanceExit, ExitError};
 use super::error::RrtConnectError;
@@ -258,7 +258,12 @@ impl<'s> RrtConnect<'s> {
         self.validator.has_other_robots()
     }
 
-    /// Its robot.
+    /// Its robot in the scene.
+    pub(crate) fn placed_robot(&self) -> &'s SceneRobot {
+        self.validator.placed_robot()
+    }
+
+    /// Number of its robot.
     pub(crate) fn robot(&self) -> RobotId {
         self.robot
     }

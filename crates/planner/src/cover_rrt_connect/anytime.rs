@@ -1,0 +1,100 @@
+//! Shorter and shorter paths until a deadline.
+
+use std::time::{Duration, Instant};
+
+use elbowroom_scene::SceneState;
+
+use super::cost_bounded_search::CostBoundedSearch;
+use super::edge_validator::EdgeValidator;
+use super::informed_sampler::InformedSampler;
+use super::planner::CoverRrtConnect;
+use super::query_ends::QueryEnds;
+use super::shortcutting::Shortcutting;
+use crate::rrt_connect::{PlannedPath, Random, RrtConnectError, RrtConnectSettings, length, path_length};
+
+/// A shorter path must be shorter by this share.
+const LEAST_GAIN: f64 = 1e-3;
+
+/// A path that was made shorter until a deadline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnytimePath {
+    /// The shortest.
+    pub path: PlannedPath,
+    /// Time since the beginning and length (rad, and m) of each path that was the shortest so far; the first is the first found.
+    pub improvements: Vec<(Duration, f64)>,
+    /// True where no path can be shorter by more than 0.1 %: it is as long as the straight segment.
+    pub is_shortest: bool,
+}
+
+impl CoverRrtConnect<'_> {
+    /// As [`plan_to_any`](Self::plan_to_any), then searches for shorter paths, each proven free, until the time limit (or the
+    /// limit of configurations) is reached: the lengths converge to the shortest (AORRTC).
+    ///
+    /// # Errors
+    /// As [`plan_to_any`](Self::plan_to_any).
+    pub fn plan_anytime<G: AsRef<[f64]>>(
+        &mut self,
+        start: &SceneState,
+        goals: &[G],
+        settings: &RrtConnectSettings,
+    ) -> Result<AnytimePath, RrtConnectError> {
+        let begin = Instant::now();
+        let path = self.plan_to_any(start, goals, settings)?;
+        let mut improvements = vec![(begin.elapsed(), path.length_rad)];
+        let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(begin.elapsed()), ..*settings };
+        let mut random = Random::new(settings.seed);
+        // In the exact scene ends may be free that the covers cannot leave.
+        let Ok(ends) = self.edges().query_ends(start, goals, &left, &mut random) else {
+            return Ok(AnytimePath { path, improvements, is_shortest: false });
+        };
+        let (mut best, mut is_shortest) = (path, false);
+        while !is_shortest && !self.covers.is_exhausted() {
+            let Some(other) = self.shorter(&ends, &best, &mut random) else { break };
+            // The segments to the ends may make it longer.
+            if other.length_rad >= best.length_rad {
+                continue;
+            }
+            let planning_time = begin.elapsed();
+            best = PlannedPath { planning_time, ..other };
+            improvements.push((planning_time, best.length_rad));
+            is_shortest = Self::is_straight(&ends, &best);
+        }
+        is_shortest |= Self::is_straight(&ends, &best);
+        Ok(AnytimePath { path: best, improvements, is_shortest })
+    }
+
+    /// True where a path is hardly longer than the segment to the nearest goal.
+    fn is_straight(ends: &QueryEnds, path: &PlannedPath) -> bool {
+        path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
+    }
+
+    /// A path that is shorter than another by at least the least gain.
+    fn shorter(&mut self, ends: &QueryEnds, than: &PlannedPath, random: &mut Random) -> Option<PlannedPath> {
+        let before = Instant::now();
+        let goals: Vec<Vec<f64>> = ends.goals().map(<[f64]>::to_vec).collect();
+        let region = self.exact.bounds.sampling_region_of(ends.all());
+        let bound = than.length_rad * (1.0 - LEAST_GAIN) - ends.exit_length();
+        let mut search = self.edges();
+        let mut sampler = InformedSampler::new(ends.from().to_vec(), goals.clone(), region, random);
+        let mut waypoints = CostBoundedSearch::new(&mut search, ends.from(), &goals, bound).run(&mut sampler)?;
+        let raw_length_rad = path_length(&waypoints);
+        Shortcutting { validator: &mut search, random }.run(&mut waypoints);
+        let path = PlannedPath {
+            length_rad: path_length(&waypoints),
+            raw_length_rad,
+            waypoints,
+            planning_time: before.elapsed(),
+            simplification_time: Duration::ZERO,
+            states_checked: self.covers.states_checked(),
+        };
+        Some(ends.completed(path))
+    }
+}
+
+impl QueryEnds {
+    /// Length of the segment to the nearest goal, rad (and m).
+    fn straight_length(&self) -> f64 {
+        let (start, goals) = self.ends();
+        goals.map(|goal| length(start, goal)).fold(f64::INFINITY, f64::min)
+    }
+}

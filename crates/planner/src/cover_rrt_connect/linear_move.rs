@@ -1,0 +1,155 @@
+//! Moves of the tip along a straight line.
+
+use std::time::Instant;
+
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_kinematics::{Chain, ChainState, LinkId};
+use elbowroom_scene::SceneState;
+use elbowroom_spatial::Pose;
+
+use super::edge_validator::EdgeValidator;
+use super::planner::CoverRrtConnect;
+use crate::path::PathEnd;
+use crate::rrt_connect::{LinearMoveEnd, PlannedPath, RrtConnectError, RrtConnectSettings, length, lerp, path_length};
+
+/// First step along the line: the tip moves at most this far, m, and turns at most as many rad.
+const STEP: f64 = 0.05;
+/// A step shorter than this share of the line is not divided further.
+const SHORTEST_STEP: f64 = 1e-6;
+/// A step in which the joints move farther than this has changed the posture, rad (and m).
+const LONGEST_JOINT_STEP: f64 = 0.5;
+
+/// A straight line of a tip: its position moves evenly along the line, its orientation turns evenly by the shortest rotation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearMove {
+    /// The link that the tip belongs to.
+    pub link: LinkId,
+    /// The tip in the frame of the link.
+    pub tip_in_link: Pose,
+    /// Where the line ends.
+    pub target_in_world: Pose,
+    /// How far the tip may be from the line where the joints move straight between waypoints, m.
+    pub tolerance_m: f64,
+    /// How far it may be turned from the orientation on the line, rad.
+    pub tolerance_rad: f64,
+}
+
+impl CoverRrtConnect<'_> {
+    /// The joint path of a straight line of the tip from the robot's configuration in `start`, in one posture, proven free. The
+    /// deviation from the line is measured at quarters of each segment.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan) for the start; [`RrtConnectError::LinearMove`] with the share of the line that can be followed.
+    pub fn plan_linear(
+        &mut self,
+        start: &SceneState,
+        line: &LinearMove,
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let begin = Instant::now();
+        let robot = self.exact.robot();
+        let from = self.edges().ends(start, start.q(robot), settings)?[0].clone();
+        self.exact.free_margin_m(PathEnd::Start, &from)?;
+        let placed = self.exact.placed_robot();
+        let mut follower = LineFollower::new(&placed.robot.chain, placed.base_in_world, line, &from);
+        let mut waypoints = vec![from];
+        while follower.share < 1.0 {
+            let before = &waypoints[waypoints.len() - 1];
+            let percent = 100.0 * follower.share;
+            let ended = |end: LinearMoveEnd| RrtConnectError::LinearMove { percent, end };
+            let next = follower.next(before).ok_or_else(|| ended(LinearMoveEnd::Unreachable))?;
+            if !self.is_proven(before, &next) {
+                return Err(ended(LinearMoveEnd::NotFree));
+            }
+            waypoints.push(next);
+        }
+        let length_rad = path_length(&waypoints);
+        Ok(PlannedPath {
+            waypoints,
+            length_rad,
+            raw_length_rad: length_rad,
+            planning_time: begin.elapsed(),
+            simplification_time: std::time::Duration::ZERO,
+            states_checked: self.covers.states_checked(),
+        })
+    }
+
+    fn is_proven(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let sweep = self.exact.validator.sweep;
+        self.edges().edge_is_free(from, to) || self.covers.is_free_exactly(&mut self.exact.validator, from, to, &sweep)
+    }
+}
+
+/// Follows a line with the joints.
+struct LineFollower<'c> {
+    chain: &'c Chain,
+    line: &'c LinearMove,
+    solver: IkSolver,
+    state: ChainState,
+    from_in_root: Pose,
+    to_in_root: Pose,
+    /// Share of the line that was followed.
+    share: f64,
+    /// Longest share of a step.
+    step: f64,
+}
+
+impl<'c> LineFollower<'c> {
+    fn new(chain: &'c Chain, base_in_world: Pose, line: &'c LinearMove, q: &[f64]) -> Self {
+        let mut follower = Self {
+            chain,
+            line,
+            solver: IkSolver::new(chain, line.link, line.tip_in_link, IkOptions::default()),
+            state: ChainState::new(chain),
+            from_in_root: Pose::IDENTITY,
+            to_in_root: base_in_world.inverse_mul(&line.target_in_world),
+            share: 0.0,
+            step: 1.0,
+        };
+        follower.from_in_root = follower.tip_in_root(q);
+        let way = follower.from_in_root.inverse_mul(&follower.to_in_root);
+        let size = way.translation.length().max(way.rotation.angle());
+        follower.step = 1.0 / (size / STEP).ceil().max(1.0);
+        follower
+    }
+
+    fn tip_in_root(&mut self, q: &[f64]) -> Pose {
+        self.state.q.copy_from_slice(q);
+        self.chain.forward(&mut self.state);
+        self.state.link_in_root(self.line.link) * self.line.tip_in_link
+    }
+
+    fn on_line(&self, share: f64) -> Pose {
+        self.from_in_root.interpolate(&self.to_in_root, share)
+    }
+
+    /// The next configuration, as far along the line as the tolerance permits.
+    fn next(&mut self, from: &[f64]) -> Option<Vec<f64>> {
+        let mut step = self.step.min(1.0 - self.share);
+        while step > SHORTEST_STEP {
+            // Rounding must not leave a last step of no length.
+            let to_share = if self.share + step > 1.0 - SHORTEST_STEP { 1.0 } else { self.share + step };
+            let mut to = from.to_vec();
+            if self.solver.refine(&self.on_line(to_share), &mut to)
+                && length(from, &to) <= LONGEST_JOINT_STEP
+                && self.stays_near(from, &to, to_share)
+            {
+                self.share = to_share;
+                return Some(to);
+            }
+            step *= 0.5;
+        }
+        None
+    }
+
+    /// True where the tip is within the tolerance of the line at the quarters of a segment.
+    fn stays_near(&mut self, from: &[f64], to: &[f64], to_share: f64) -> bool {
+        let mut q = from.to_vec();
+        [0.25, 0.5, 0.75].iter().all(|&part| {
+            lerp(from, to, part, &mut q);
+            let wanted = self.on_line(self.share + (to_share - self.share) * part);
+            let off = wanted.inverse_mul(&self.tip_in_root(&q));
+            off.translation.length() <= self.line.tolerance_m && off.rotation.angle() <= self.line.tolerance_rad
+        })
+    }
+}
