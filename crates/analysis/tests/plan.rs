@@ -17,7 +17,7 @@ use elbowroom_spatial::Vec3;
 
 fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
     let options = RrtConnectSettings { time_limit: Duration::from_secs(2), ..RrtConnectSettings::default() };
-    PathRequest { robot: Some(robot.into()), from: Some(from.into()), to: to.into(), options, period_s: None }
+    PathRequest { robot: Some(robot.into()), from: Some(from.into()), to: to.into(), options, ..PathRequest::default() }
 }
 
 /// Checks every row and some points in between by exact geometry; and the speeds between rows.
@@ -124,4 +124,18 @@ fn paths_of_real_robots_lead_around_a_post() {
     let answer = plan(&cell, &go).unwrap();
     assert!(waypoints(&answer) > 2);
     check(&cell, &answer, &go);
+}
+
+#[test]
+fn an_optimized_path_is_free_and_no_longer_than_the_first() {
+    let post = "[object.post]\nshape = \"box\"\nat = [1100, 0, 500]\nsize = [100, 100, 1600]\n";
+    let cell = parse(&format!("{HEAD}[robot.arm]\n{ARM}{post}"));
+    let first = request("arm", &HERE, &THERE);
+    let mut optimized = PathRequest { optimize: true, ..first.clone() };
+    optimized.options.time_limit = Duration::from_millis(500);
+    let [first, shorter] = [&first, &optimized].map(|request| plan(&cell, request).unwrap());
+    check(&cell, &shorter, &optimized);
+    let cost = |answer: &PathAnswer| answer.motion.as_ref().unwrap().cost_rad;
+    assert!(cost(&shorter) <= cost(&first), "{} > {}", cost(&shorter), cost(&first));
+    assert!(cost(&shorter) >= 1.6, "the straight segment is 1.6 rad long");
 }

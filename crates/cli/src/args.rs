@@ -337,6 +337,9 @@ pub(crate) struct PlanArgs {
     /// Time limit of the search in seconds; with --problems, of each problem
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: f64,
+    /// Go on until the time limit, with shorter and shorter paths
+    #[arg(long)]
+    pub(crate) optimize: bool,
     /// Security margin to all obstacles, in metres
     #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) clearance: f64,

@@ -32,6 +32,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
             ..RrtConnectSettings::default()
         },
         period_s: args.period,
+        optimize: args.optimize,
     };
     let answer = plan::plan(&cell, &request)?;
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {

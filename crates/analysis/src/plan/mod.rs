@@ -33,6 +33,8 @@ pub struct PathRequest {
     pub options: RrtConnectSettings,
     /// Period of the samples, s; `None`: the cell's tick.
     pub period_s: Option<f64>,
+    /// Goes on until the time limit, with shorter and shorter paths.
+    pub optimize: bool,
 }
 
 /// Plans a collision-free path and times it.
@@ -82,7 +84,8 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         if let Some(constraint) = constraint {
             exact = exact.with_constraint(constraint);
         }
-        let query = Query { state: &state, goal: &request.to, settings: &request.options, limits: &limits, period_s };
+        let (goal, settings, optimize) = (&request.to[..], &request.options, request.optimize);
+        let query = Query { state: &state, goal, settings, limits: &limits, period_s, optimize };
         let begin = Instant::now();
         let found = match (&model, &obstacles) {
             (Some(model), Some(obstacles)) => query.on_covers(CoverRrtConnect::new(exact, model, obstacles)),
@@ -106,11 +109,16 @@ struct Query<'q> {
     settings: &'q RrtConnectSettings,
     limits: &'q KinematicLimits,
     period_s: f64,
+    optimize: bool,
 }
 
 impl Query<'_> {
     fn on_covers(&self, mut planner: CoverRrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        let path = planner.plan(self.state, self.goal, self.settings)?;
+        let path = if self.optimize {
+            planner.plan_anytime(self.state, &[self.goal], self.settings)?.path
+        } else {
+            planner.plan(self.state, self.goal, self.settings)?
+        };
         let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
         Ok((path, motion))
     }

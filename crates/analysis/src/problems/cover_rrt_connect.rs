@@ -29,7 +29,13 @@ impl PlanningEngine for CoverRrtConnectEngine {
         let Ok(exact) = problem.planner() else { return RrtConnectEngine.solve(problem, settings) };
         let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
         let begin = Instant::now();
-        match planner.plan_to_any(start, problem.goals(), &rrt_settings(settings, settings.time_limit)) {
+        let (goals, limits) = (problem.goals(), rrt_settings(settings, settings.time_limit));
+        let answer = if settings.optimize {
+            planner.plan_anytime(start, goals, &limits).map(|anytime| anytime.path)
+        } else {
+            planner.plan_to_any(start, goals, &limits)
+        };
+        match answer {
             Ok(path) => found(path, Duration::ZERO),
             Err(e) => Solution { planning: begin.elapsed(), reason: Some(reason(&e)), ..Solution::default() },
         }

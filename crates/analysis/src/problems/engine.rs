@@ -35,12 +35,14 @@ pub struct ProblemSettings {
     pub seed: u64,
     /// Period of the samples of timed paths, s.
     pub period_s: f64,
+    /// Goes on until the time limit, with shorter and shorter paths.
+    pub optimize: bool,
 }
 
 impl Default for ProblemSettings {
-    /// 5 s, no clearance, seed 1, samples every 2 ms.
+    /// 5 s, no clearance, seed 1, samples every 2 ms, the first path found.
     fn default() -> Self {
-        Self { time_limit: Duration::from_secs(5), clearance_m: 0.0, seed: 1, period_s: 0.002 }
+        Self { time_limit: Duration::from_secs(5), clearance_m: 0.0, seed: 1, period_s: 0.002, optimize: false }
     }
 }
 

@@ -63,6 +63,7 @@ fn settings(args: &PlanArgs) -> Result<ProblemSettings, Failure> {
         clearance_m: args.clearance,
         seed: args.seed,
         period_s: args.period.unwrap_or(defaults.period_s),
+        optimize: args.optimize,
     })
 }
 
