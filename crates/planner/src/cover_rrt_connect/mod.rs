@@ -9,6 +9,7 @@ mod edge_search;
 mod edge_validator;
 mod informed_sampler;
 mod linear_move;
+mod node_packs;
 mod planner;
 mod query_ends;
 mod region_sampler;
