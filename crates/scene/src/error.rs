@@ -16,6 +16,14 @@ pub enum SceneError {
         /// Number of robots.
         count: usize,
     },
+    /// Robots that cannot be merged.
+    #[error("the robots cannot be merged to `{robot}`: {what}: name each robot once")]
+    Merge {
+        /// Name of the merged robot.
+        robot: String,
+        /// Why, in words.
+        what: String,
+    },
     /// An object's index is out of range.
     #[error("there is no object {index}; the scene has {count}, counted from 0")]
     NoSuchObject {
