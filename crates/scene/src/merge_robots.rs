@@ -146,12 +146,11 @@ impl MergedRobots {
         for object in (0..scene.objects().len()).map(ObjectId) {
             let id = GeometryId::Object(object);
             let in_object = scene.shapes(id).next().map_or(Pose::IDENTITY, |(_, in_object)| in_object);
-            match state.attachment(object) {
-                Some(held) => merged.attach_at(&self.scene, object, self.attachment(held, in_object))?,
-                None => {
-                    let in_world = state.pose(scene, id).unwrap_or(scene.objects()[object.0].in_world);
-                    merged.place(&self.scene, object, in_world * in_object)?;
-                }
+            if let Some(held) = state.attachment(object) {
+                merged.attach_at(&self.scene, object, self.attachment(held, in_object))?;
+            } else {
+                let in_world = state.pose(scene, id).unwrap_or(scene.objects()[object.0].in_world);
+                merged.place(&self.scene, object, in_world * in_object)?;
             }
         }
         Ok(merged)
