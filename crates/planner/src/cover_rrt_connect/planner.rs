@@ -125,7 +125,7 @@ impl<'m> CoverRrtConnect<'m> {
         let planning_time = begin.elapsed();
         let raw_length_rad = path_length(&waypoints);
         let mut search = self.edges();
-        Shortcutting { validator: &mut search, random: &mut random }.run(&mut waypoints);
+        Shortcutting { validator: &mut search }.run(&mut waypoints);
         let path = PlannedPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,

@@ -1,21 +1,20 @@
 //! Shortcutting of a path whose edges the covers prove; every new edge is proven, too.
 
 use super::edge_validator::EdgeValidator;
-use crate::rrt_connect::{Random, length, path_length, point_at};
+use crate::rrt_connect::{length, lerp, path_length};
 
-/// Rounds of leaving out waypoints, random shortcuts and pulled corners.
-const ROUNDS: usize = 4;
-/// Random shortcuts per round.
-const SHORTCUTS: usize = 10;
+/// Rounds of leaving out waypoints and cutting corners.
+const ROUNDS: usize = 8;
 /// A round that gains a smaller share than this is the last.
 const MIN_GAIN: f64 = 0.01;
-/// Shares of the way from a corner to the line between its neighbours.
-const PULLS: [f64; 2] = [0.8, 0.35];
+/// How far from a corner it is cut, as shares of the shorter of its edges. What is left of both edges is proven already.
+const CUTS: [f64; 2] = [0.75, 0.35];
+/// A cut that gains a smaller share of both edges than this is not worth an edge.
+const MIN_CUT_GAIN: f64 = 0.004;
 
 /// Shortens a path.
 pub(super) struct Shortcutting<'v, V> {
     pub validator: &'v mut V,
-    pub random: &'v mut Random,
 }
 
 impl<V: EdgeValidator> Shortcutting<'_, V> {
@@ -26,8 +25,7 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
                 return;
             }
             let before = path_length(path);
-            self.random_shortcuts(path);
-            self.pull_corners(path);
+            self.cut_corners(path);
             self.skip_waypoints(path);
             if path_length(path) > before * (1.0 - MIN_GAIN) {
                 return;
@@ -53,44 +51,37 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
         }
     }
 
-    /// Edges between two random points of the path.
-    fn random_shortcuts(&mut self, path: &mut Vec<Vec<f64>>) {
-        for _ in 0..SHORTCUTS {
-            if path.len() < 3 {
-                return;
-            }
-            let all = path_length(path);
-            let (s, t) = (self.random.unit() * all, self.random.unit() * all);
-            let ((i, a), (j, b)) = (point_at(path, s.min(t)), point_at(path, s.max(t)));
-            if i != j && (s - t).abs() - length(&a, &b) > 1e-3 * all && self.validator.edge_is_free(&a, &b) {
-                path.splice(i + 1..=j, [a, b]);
-                path.dedup();
-            }
-        }
-    }
-
-    /// Moves corners towards the line between their neighbours.
-    fn pull_corners(&mut self, path: &mut [Vec<f64>]) {
-        for n in 1..path.len().saturating_sub(1) {
-            for share in PULLS {
-                let moved = pulled(&path[n - 1], &path[n], &path[n + 1], share);
-                let around = |q: &[f64]| length(&path[n - 1], q) + length(q, &path[n + 1]);
-                if around(&moved) < around(&path[n]) * (1.0 - 1e-4)
-                    && self.validator.edge_is_free(&path[n - 1], &moved)
-                    && self.validator.edge_is_free(&moved, &path[n + 1])
-                {
-                    path[n] = moved;
-                    break;
+    /// Replaces corners by an edge between points before and after them.
+    fn cut_corners(&mut self, path: &mut Vec<Vec<f64>>) {
+        let mut corner = 1;
+        while corner + 1 < path.len() {
+            corner += match self.cut(&path[corner - 1], &path[corner], &path[corner + 1]) {
+                Some(ends) => {
+                    path.splice(corner..=corner, ends);
+                    2
                 }
-            }
+                None => 1,
+            };
         }
     }
-}
 
-/// A corner moved by a share of the distance to the point between its neighbours that divides their segment as its edges do.
-fn pulled(before: &[f64], corner: &[f64], after: &[f64], share: f64) -> Vec<f64> {
-    let (a, b) = (length(before, corner), length(corner, after));
-    let t = if a + b > 0.0 { a / (a + b) } else { 0.5 };
-    let line = before.iter().zip(after).map(|(x, y)| x + (y - x) * t);
-    corner.iter().zip(line).map(|(c, l)| c + (l - c) * share).collect()
+    /// The ends of a proven edge across a corner, the farthest first.
+    fn cut(&mut self, before: &[f64], corner: &[f64], after: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let edges = [length(before, corner), length(corner, after)];
+        let shorter = edges[0].min(edges[1]);
+        for distance in CUTS.map(|share| share * shorter) {
+            let mut ends = [corner.to_vec(), corner.to_vec()];
+            lerp(corner, before, distance / edges[0], &mut ends[0]);
+            lerp(corner, after, distance / edges[1], &mut ends[1]);
+            let gain = 2.0 * distance - length(&ends[0], &ends[1]);
+            // False for edges without length, too.
+            if !(gain > MIN_CUT_GAIN * (edges[0] + edges[1])) {
+                return None;
+            }
+            if self.validator.edge_is_free(&ends[0], &ends[1]) {
+                return Some(ends);
+            }
+        }
+        None
+    }
 }

@@ -17,7 +17,7 @@ mod shortcutting;
 mod tree;
 mod tree_search;
 
-pub(crate) use interpolation::{length, lerp, path_length, point_at};
+pub(crate) use interpolation::{length, lerp, path_length};
 pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
 pub(crate) use path_constraint::ConstraintChecker;
