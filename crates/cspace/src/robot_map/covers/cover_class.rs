@@ -1,12 +1,13 @@
 //! The covers of the links that the same axes move.
 
 use elbowroom_spatial::Vec3;
+use elbowroom_validity::lanes::{LANES, PointRow, Row};
 use elbowroom_validity::{Ball, SphereCover};
 
 use super::super::error::RobotMapError;
 use super::super::rigid_groups::RigidGroup;
 use super::axis_roles::AxisRoles;
-use super::ball_tree::ball_tree;
+use super::ball_tree::{LEAF, ball_tree};
 use super::block_level::{BlockLevel, single};
 use super::step_chain::StepChain;
 use crate::Grid;
@@ -15,21 +16,38 @@ use crate::Grid;
 const WIDEST_BLOCK: f64 = 0.3;
 /// More boxes than this make larger ones worth while.
 const MOST_BLOCKS: usize = 4096;
+/// Most large balls of a group of links.
+const MOST_PROBES: usize = 12;
 /// Most halvings.
 const MOST_LEVELS: u32 = 8;
 
-/// A sphere of a link's cover, or a node of its tree.
+/// Balls about a link that are tested at a time: each is a leaf of its cover, or encloses the balls of another group.
+#[derive(Debug, Clone)]
+pub(super) struct CoverGroup {
+    /// Centres in the frame of the last step of its path, m.
+    pub centres: PointRow,
+    /// m.
+    pub radii: Row,
+    /// Per ball, the number of the group below, or [`LEAF`].
+    pub below: [u32; LANES],
+    /// Lanes that have a ball.
+    pub lanes: u32,
+    /// Lanes that have a leaf.
+    pub leaves: u32,
+    pub largest: f32,
+    /// Number of its path.
+    pub path: u32,
+}
+
+/// A large ball of a link's cover: finds boxes that are in contact throughout.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct CoverNode {
+pub(super) struct Probe {
     /// In the frame of the last step of its path, m.
     pub centre: [f32; 3],
     /// m.
     pub radius: f32,
     /// Number of its path.
     pub path: u32,
-    /// Number of the node after all that are below this one.
-    pub end: u32,
-    pub is_leaf: bool,
 }
 
 /// A step in a path.
@@ -50,13 +68,13 @@ pub(super) struct CoverPath {
     pub steps: Vec<PathStep>,
 }
 
-/// Bound of a node's motion within a box, m.
+/// Bounds of the motion of a group's balls within a box, m.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct NodeMotion {
-    /// Length of the path of its centre.
-    pub path: f32,
-    /// Distance of its centre from where its velocity leads.
-    pub curvature: f32,
+pub(super) struct GroupMotion {
+    /// Length of the path of a centre.
+    pub paths: Row,
+    /// Distance of a centre from where its velocity leads.
+    pub curvatures: Row,
 }
 
 /// Covers of links that the axis in lanes and the same others move.
@@ -64,14 +82,17 @@ pub(super) struct NodeMotion {
 pub(super) struct CoverClass {
     /// Which of the two other axes move the links.
     pub uses: [bool; 2],
-    pub nodes: Vec<CoverNode>,
-    /// Root nodes, one per group of links.
+    pub groups: Vec<CoverGroup>,
+    /// Root groups, one per group of links.
     pub roots: Vec<u32>,
+    pub probes: Vec<Probe>,
     pub paths: Vec<CoverPath>,
     /// Cells first.
     pub levels: Vec<BlockLevel>,
-    /// Per level and node.
-    pub motions: Vec<Vec<NodeMotion>>,
+    /// Per level and group of balls.
+    pub motions: Vec<Vec<GroupMotion>>,
+    /// Per level and probe, the length of its path, m.
+    pub probe_paths: Vec<Vec<f32>>,
     /// Largest lever arm, m.
     pub reach_m: f64,
 }
@@ -117,38 +138,45 @@ impl CoverClass {
     ) -> Self {
         let mut class = Self {
             uses,
-            nodes: Vec::new(),
+            groups: Vec::new(),
             roots: Vec::new(),
+            probes: Vec::new(),
             paths: Vec::new(),
             levels: Vec::new(),
             motions: Vec::new(),
+            probe_paths: Vec::new(),
             reach_m: 0.0,
         };
         for group in groups {
             class.add_group(group, steps, roles);
         }
         let paths: Vec<&[usize]> = groups.iter().map(|group| group.path.as_slice()).collect();
-        let levers = class.levers(steps, &paths);
-        class.reach_m = levers.iter().flatten().copied().fold(0.0, f64::max);
         for level in 0..=class.top_level(grid, roles) {
-            class.levels.push(BlockLevel::new(level, grid, roles, uses, steps));
+            let level = BlockLevel::new(level, grid, roles, uses, steps);
+            class.add_motions(steps, &paths, &level.half);
+            class.levels.push(level);
         }
-        let motions = |level: &BlockLevel| class.motions(steps, &paths, &levers, &level.half);
-        class.motions = class.levels.iter().map(motions).collect();
         class
     }
 
     fn add_group(&mut self, group: &CoveredGroup<'_>, steps: &StepChain, roles: &AxisRoles) {
         let Some(&last) = group.path.last() else { return };
         let in_frame = steps.child_in_frame(last);
-        let first = self.nodes.len();
+        let first = self.groups.len() as u32;
         let path = self.paths.len() as u32;
-        self.roots.push(first as u32);
-        let node = |ball: Ball, end: usize, is_leaf: bool| {
+        self.roots.push(first);
+        let below = |at: u32| if at == LEAF { LEAF } else { first + at };
+        for part in ball_tree(&group.cover.outer) {
+            let mut balls = CoverGroup::empty(path);
+            for (lane, (ball, &at)) in part.balls.iter().zip(&part.below).enumerate() {
+                balls.set(lane, single(in_frame.transform_point(ball.centre)), ball.radius as f32, below(at));
+            }
+            self.groups.push(balls);
+        }
+        for ball in probes(&group.cover.outer) {
             let centre = single(in_frame.transform_point(ball.centre));
-            CoverNode { centre, radius: ball.radius as f32, path, end: (first + end) as u32, is_leaf }
-        };
-        self.nodes.extend(ball_tree(&group.cover.outer).iter().map(|n| node(n.ball, n.end, n.is_leaf)));
+            self.probes.push(Probe { centre, radius: ball.radius as f32, path });
+        }
         let path_step = |&at: &usize| {
             let step = &steps.steps[at];
             let axis = roles.others.iter().position(|&axis| axis == step.axis)?;
@@ -157,27 +185,31 @@ impl CoverClass {
         self.paths.push(CoverPath { last: last as u32, steps: group.path.iter().filter_map(path_step).collect() });
     }
 
-    /// Per node, its lever arms.
-    fn levers(&self, steps: &StepChain, paths: &[&[usize]]) -> Vec<Vec<f64>> {
-        let levers = |node: &CoverNode| {
-            let [x, y, z] = node.centre.map(f64::from);
-            steps.lever_arms(paths[node.path as usize], Vec3::new(x, y, z))
+    /// Adds the bounds of the motions in boxes of these half widths.
+    fn add_motions(&mut self, steps: &StepChain, paths: &[&[usize]], half: &[f64; 3]) {
+        let reach = std::cell::Cell::new(self.reach_m);
+        let motion = |path: u32, centre: [f32; 3]| {
+            let path = paths[path as usize];
+            let [x, y, z] = centre.map(f64::from);
+            let levers = steps.lever_arms(path, Vec3::new(x, y, z));
+            reach.set(levers.iter().copied().fold(reach.get(), f64::max));
+            steps.motion(path, &levers, half)
         };
-        self.nodes.iter().map(levers).collect()
-    }
-
-    fn motions(
-        &self,
-        steps: &StepChain,
-        paths: &[&[usize]],
-        levers: &[Vec<f64>],
-        half: &[f64; 3],
-    ) -> Vec<NodeMotion> {
-        let motion = |(node, levers): (&CoverNode, &Vec<f64>)| {
-            let motion = steps.motion(paths[node.path as usize], levers, half);
-            NodeMotion { path: (motion.path_m as f32).next_up(), curvature: (motion.curvature_m as f32).next_up() }
+        let of_group = |group: &CoverGroup| {
+            let mut bounds = GroupMotion { paths: Row::ZERO, curvatures: Row::ZERO };
+            for lane in 0..group.lanes.count_ones() as usize {
+                let found = motion(group.path, group.centre(lane));
+                bounds.paths.0[lane] = (found.path_m as f32).next_up();
+                bounds.curvatures.0[lane] = (found.curvature_m as f32).next_up();
+            }
+            bounds
         };
-        self.nodes.iter().zip(levers).map(motion).collect()
+        let motions = self.groups.iter().map(of_group).collect();
+        let of_probe = |probe: &Probe| (motion(probe.path, probe.centre).path_m as f32).next_up();
+        let probe_paths = self.probes.iter().map(of_probe).collect();
+        self.motions.push(motions);
+        self.probe_paths.push(probe_paths);
+        self.reach_m = reach.get();
     }
 
     /// The level of the largest boxes.
@@ -191,4 +223,39 @@ impl CoverClass {
         let is_enough = |level: &u32| widest(level + 1) > WIDEST_BLOCK && blocks(*level) <= MOST_BLOCKS;
         (0..MOST_LEVELS).find(is_enough).unwrap_or(MOST_LEVELS)
     }
+}
+
+impl CoverGroup {
+    fn empty(path: u32) -> Self {
+        let (centres, radii) = (PointRow::ZERO, Row::ZERO);
+        Self { centres, radii, below: [LEAF; LANES], lanes: 0, leaves: 0, largest: 0.0, path }
+    }
+
+    fn set(&mut self, lane: usize, centre: [f32; 3], radius: f32, below: u32) {
+        for (row, c) in self.centres.0.iter_mut().zip(centre) {
+            row.0[lane] = c;
+        }
+        self.radii.0[lane] = radius;
+        self.below[lane] = below;
+        self.lanes |= 1 << lane;
+        self.leaves |= u32::from(below == LEAF) << lane;
+        self.largest = self.largest.max(radius);
+    }
+
+    fn centre(&self, lane: usize) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.centres.0[k].0[lane])
+    }
+}
+
+/// The largest balls, none with its centre in another.
+fn probes(balls: &[Ball]) -> Vec<Ball> {
+    let mut sorted = balls.to_vec();
+    sorted.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let mut found: Vec<Ball> = Vec::new();
+    for ball in sorted {
+        if found.len() < MOST_PROBES && !found.iter().any(|f| f.contains(ball.centre)) {
+            found.push(ball);
+        }
+    }
+    found
 }

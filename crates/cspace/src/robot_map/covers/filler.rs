@@ -1,26 +1,16 @@
 //! Boxes of joint space, halved until each is free or blocked.
 
 use elbowroom_validity::lanes::{LANES, detected_simd_level};
-use fearless_simd::{Level as SimdLevel, Simd, dispatch};
+use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::axis_roles::AxisRoles;
 use super::cell_bits::{CellBits, CellBox};
-use super::cover_class::{CoverClass, CoverNode};
-use super::kernel::{HalfWidths, NodePlace, Target, assess};
-use super::obstacle::Element;
-use super::obstacle_lanes::{ContactCore, ObstacleLanes};
+use super::cover_class::CoverClass;
+use super::group_test::{BoxTest, NearGroup, Witness};
+use super::kernel::HalfWidths;
+use super::obstacle_lanes::ObstacleLanes;
+use super::place_memo::PlaceMemo;
 use super::step_chain::Step;
-
-/// A node is replaced by those below where its radius is larger than this share of its motion in a box.
-const EXPANSION_SHARE: f32 = 1.5;
-
-/// A node of a cover and an element of the obstacle that may touch in some of sixteen boxes.
-#[derive(Debug, Clone, Copy)]
-struct NearPair {
-    node: u32,
-    element: u32,
-    lanes: u32,
-}
 
 /// Sixteen boxes that differ in the axis in lanes alone.
 #[derive(Debug, Clone, Copy)]
@@ -49,23 +39,15 @@ pub(super) struct Filler<'a> {
     /// The joint of the axis in lanes.
     first: &'a Step,
     simd_level: SimdLevel,
-    /// Pairs in question, box by box.
-    pairs: Vec<NearPair>,
+    /// Groups in question, box by box.
+    pairs: Vec<NearGroup>,
     /// Those that are left.
-    left: Vec<NearPair>,
-    open: Vec<NearPair>,
+    left: Vec<NearGroup>,
+    open: Vec<NearGroup>,
+    places: PlaceMemo,
+    witness: Option<Witness>,
     pub bits: CellBits,
     pub uncertain: Vec<OpenCells>,
-}
-
-/// What is known of sixteen boxes.
-#[derive(Debug, Clone, Copy)]
-struct Known {
-    /// Not yet known to be in contact.
-    live: u32,
-    /// Where any pair is near.
-    near: u32,
-    contact: u32,
 }
 
 impl<'a> Filler<'a> {
@@ -79,6 +61,8 @@ impl<'a> Filler<'a> {
             pairs: Vec::new(),
             left: Vec::new(),
             open: Vec::new(),
+            places: PlaceMemo::default(),
+            witness: None,
             bits: CellBits::new(roles),
             uncertain: Vec::new(),
         }
@@ -87,12 +71,14 @@ impl<'a> Filler<'a> {
     /// Fills the map, class by class.
     pub fn fill(&mut self) {
         for (number, class) in self.classes.iter().enumerate() {
+            self.places.start(class);
+            self.witness = None;
             let level = class.levels.len() - 1;
             let blocks = class.levels[level].blocks;
             for others in (0..blocks[0]).flat_map(|i| (0..blocks[1]).map(move |j| [i, j])) {
                 for group in 0..self.obstacle.poses[level].len() {
                     self.pairs.clear();
-                    let pair = |&node: &u32| NearPair { node, element: 0, lanes: 0xffff };
+                    let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
                     self.pairs.extend(class.roots.iter().map(pair));
                     self.divide(number, Boxes { level, others, group }, 0);
                 }
@@ -134,9 +120,9 @@ impl<'a> Filler<'a> {
             let from = self.pairs.len();
             for at in left..self.left.len() {
                 let pair = self.left[at];
-                let lanes = part(pair.lanes & open);
-                if lanes != 0 {
-                    self.pairs.push(NearPair { lanes, ..pair });
+                let boxes = part(pair.boxes & open);
+                if boxes != 0 {
+                    self.pairs.push(NearGroup { boxes, ..pair });
                 }
             }
             for i in 0..=usize::from(uses[0]) {
@@ -181,124 +167,38 @@ impl<'a> Filler<'a> {
             live &= !self.bits.sixteen(boxes.others, boxes.group);
         }
         let half = &covers.levels[boxes.level].half;
-        let task = BoxTask {
+        let half = HalfWidths {
+            lanes: (half[self.roles.lanes] * self.first.multiplier) as f32 * (1.0 + 1e-6),
+            lanes_turn: self.first.turns,
+            others: self.roles.others.map(|axis| half[axis] as f32 * (1.0 + 1e-6)),
+        };
+        let Boxes { level, others, group } = boxes;
+        let mut test = BoxTest {
             obstacle: self.obstacle,
             class: covers,
-            boxes,
-            half: HalfWidths {
-                lanes: (half[self.roles.lanes] * self.first.multiplier) as f32 * (1.0 + 1e-6),
-                lanes_turn: self.first.turns,
-                others: self.roles.others.map(|axis| half[axis] as f32 * (1.0 + 1e-6)),
-            },
+            level,
+            frames: covers.levels[level].frames(others),
+            poses: &self.obstacle.poses[level][group],
+            half,
+            live,
+            near: 0,
+            contact: 0,
         };
-        let mut known = Known { live, near: 0, contact: 0 };
+        self.places.enter(level, others);
         let (pairs, left, open) = (&self.pairs[from..], &mut self.left, &mut self.open);
+        let (places, witness) = (&mut self.places, &mut self.witness);
         let simd_level = self.simd_level;
-        dispatch!(simd_level, simd => task.assess(simd, pairs, &mut known, open, left));
-        known
+        dispatch!(simd_level, simd => test.run(simd, pairs, places, witness, open, left));
+        Known { near: test.near, contact: test.contact }
     }
 }
 
-/// A test of sixteen boxes.
-struct BoxTask<'a> {
-    obstacle: &'a ObstacleLanes<'a>,
-    class: &'a CoverClass,
-    boxes: Boxes,
-    half: HalfWidths,
-}
-
-impl BoxTask<'_> {
-    /// Tests pairs; adds those that are left to `left`.
-    #[inline(always)]
-    #[allow(clippy::inline_always, reason = "part of a kernel")]
-    fn assess<S: Simd>(
-        &self,
-        simd: S,
-        pairs: &[NearPair],
-        known: &mut Known,
-        open: &mut Vec<NearPair>,
-        left: &mut Vec<NearPair>,
-    ) {
-        let (class, level) = (self.class, self.boxes.level);
-        let are_cells = level == 0;
-        let frames = class.levels[level].frames(self.boxes.others);
-        let motions = &class.motions[level];
-        let poses = &self.obstacle.poses[level][self.boxes.group];
-        let rounding = self.obstacle.rounding;
-        for &first in pairs {
-            open.clear();
-            open.push(first);
-            while let Some(pair) = open.pop() {
-                let live = pair.lanes & known.live;
-                if live == 0 {
-                    continue;
-                }
-                let node = &class.nodes[pair.node as usize];
-                let element = &self.obstacle.elements[pair.element as usize];
-                let motion = motions[pair.node as usize];
-                let place = NodePlace::new(node, &class.paths[node.path as usize], frames, self.half);
-                let is_leaf = node.is_leaf && element.is_leaf;
-                let contact = self.obstacle.contacts[pair.element as usize].filter(|_| node.is_leaf && self.proves_contact());
-                let contact = contact.map(|c| ContactCore { radius: node.radius + c.radius - rounding, ..c });
-                let reach = node.radius + element.radius + rounding;
-                let target = Target { poses, core: element.core, centre: element.centre, reach, contact };
-                let found = assess(simd, &place, &target, motion, are_cells, live);
-                known.contact |= found.contact;
-                known.live &= !found.contact;
-                let near = found.near & !found.contact;
-                if near == 0 {
-                    continue;
-                }
-                if !is_leaf && (are_cells || expands(node, element, motion.path)) {
-                    expand(NearPair { lanes: near, ..pair }, class, self.obstacle.elements, open);
-                } else if are_cells && !self.obstacle.is_exact {
-                    known.contact |= near;
-                    known.live &= !near;
-                } else {
-                    known.near |= near;
-                    if !are_cells {
-                        left.push(NearPair { lanes: near, ..pair });
-                    }
-                }
-            }
-            if known.live == 0 {
-                break;
-            }
-        }
-    }
-
-    /// True where a contact that is found spares anything.
-    fn proves_contact(&self) -> bool {
-        self.boxes.level > 0 || self.obstacle.is_exact
-    }
-}
-
-/// True where a pair is to be replaced by those below it.
-fn expands(node: &CoverNode, element: &Element, path_m: f32) -> bool {
-    let radius = match (node.is_leaf, element.is_leaf) {
-        (false, true) => node.radius,
-        (true, false) => element.radius,
-        _ => node.radius.max(element.radius),
-    };
-    radius > EXPANSION_SHARE * path_m
-}
-
-/// Adds the pairs below: of the larger one of both.
-fn expand(pair: NearPair, class: &CoverClass, elements: &[Element], open: &mut Vec<NearPair>) {
-    let (node, element) = (&class.nodes[pair.node as usize], &elements[pair.element as usize]);
-    if element.is_leaf || (!node.is_leaf && node.radius >= element.radius) {
-        let mut child = pair.node + 1;
-        while child < node.end {
-            open.push(NearPair { node: child, ..pair });
-            child = class.nodes[child as usize].end;
-        }
-    } else {
-        let mut child = pair.element + 1;
-        while child < element.end {
-            open.push(NearPair { element: child, ..pair });
-            child = elements[child as usize].end;
-        }
-    }
+/// What is known of sixteen boxes.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    /// Where any ball is near.
+    near: u32,
+    contact: u32,
 }
 
 /// Each of eight bits twice.

@@ -1,30 +1,18 @@
-//! The kernel: a sphere of the robot in sixteen boxes of joint space.
+//! The kernels: sixteen balls of the robot in one box of joint space, and one ball in sixteen boxes.
 //!
-//! The boxes differ in the value of the axis in lanes alone. Seen from the first joint, the centre of the sphere is the same at
-//! the centres of all of them, and so are its displacements by half a box along each axis: only the obstacle turns.
-//!
-//! A box is free of a sphere if a plane separates the sphere from the obstacle in the whole box. The plane is the one across
-//! the shortest way from the obstacle at the centre of the box; toward it the sphere moves by no more than the displacements
-//! along the normal, and a bound of the curvature.
+//! A box is free of a ball if a plane separates the ball from the obstacle in the whole box. The plane is the one across the
+//! shortest way from the obstacle at the centre of the box; toward it the ball moves by no more than its displacements by half
+//! the box along the normal, and a bound of the curvature.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
-use elbowroom_validity::lanes::{V3, splat};
+use elbowroom_validity::lanes::{PointRow, V3, splat};
 use fearless_simd::{Simd, prelude::*};
 
 use super::block_level::Frame;
-use super::cover_class::{CoverNode, CoverPath, NodeMotion};
+use super::cover_class::{CoverGroup, CoverPath, GroupMotion, Probe};
 use super::obstacle_lanes::{ContactCore, PoseLanes};
 use super::solid_core::SolidCore;
-
-/// A sphere at the centre of a box, seen from the first joint.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NodePlace {
-    /// m.
-    pub centre: [f32; 3],
-    /// Displacement by half the box along the axis in lanes, and along the two others, to first order, m.
-    pub along: [[f32; 3]; 3],
-}
 
 /// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
 #[derive(Debug, Clone, Copy)]
@@ -34,109 +22,152 @@ pub(super) struct HalfWidths {
     pub others: [f32; 2],
 }
 
-impl NodePlace {
+/// Sixteen balls at the centre of a box, seen from the first joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GroupPlace {
+    /// m.
+    centres: PointRow,
+    /// Displacements by half the box along the two axes that are not in lanes, to first order, m.
+    along: [PointRow; 2],
+}
+
+impl GroupPlace {
+    pub const ZERO: Self = Self { centres: PointRow::ZERO, along: [PointRow::ZERO; 2] };
+
     #[inline(always)]
-    pub fn new(node: &CoverNode, path: &CoverPath, frames: &[Frame], half: HalfWidths) -> Self {
-        let frame = &frames[path.last as usize];
-        let mut p = frame.origin;
-        for (column, at) in frame.columns.iter().zip(node.centre) {
-            for k in 0..3 {
-                p[k] = column[k] * at + p[k];
-            }
-        }
-        let h = half.lanes;
-        let first = if half.lanes_turn { [-h * p[1], h * p[0], 0.0] } else { [0.0, 0.0, h] };
-        let mut along = [first, [0.0; 3], [0.0; 3]];
+    pub fn compute<S: Simd>(
+        &mut self,
+        simd: S,
+        group: &CoverGroup,
+        path: &CoverPath,
+        frames: &[Frame],
+        half: HalfWidths,
+    ) {
+        let Frame { columns: [x, y, z], origin } = &frames[path.last as usize];
+        let local = group.centres.load(simd);
+        let p = V3::splat(simd, *x).times_plus(local.0, V3::splat(simd, *origin));
+        let p = V3::splat(simd, *y).times_plus(local.1, p);
+        let p = V3::splat(simd, *z).times_plus(local.2, p);
+        self.centres.store(p);
+        self.along = [PointRow::ZERO; 2];
         for step in &path.steps {
             let Frame { columns: [_, _, z], origin } = &frames[step.step as usize];
-            let r = [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]];
-            let cross = [z[1] * r[2] - z[2] * r[1], z[2] * r[0] - z[0] * r[2], z[0] * r[1] - z[1] * r[0]];
-            let velocity = if step.turns { cross } else { *z };
             let by = step.multiplier * half.others[step.axis];
-            for k in 0..3 {
-                along[1 + step.axis][k] += by * velocity[k];
-            }
+            let along = V3::splat(simd, z.map(|c| c * by));
+            let velocity = if step.turns { cross(along, p.minus(V3::splat(simd, *origin))) } else { along };
+            let sum = self.along[step.axis].load(simd).plus(velocity);
+            self.along[step.axis].store(sum);
         }
-        Self { centre: p, along }
     }
+}
+
+/// Pose of the first joint's frame in that of the obstacle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CellPose {
+    pub columns: [[f32; 3]; 3],
+    pub origin: [f32; 3],
 }
 
 /// A solid about a point of the obstacle's frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Target<'a> {
-    pub poses: &'a PoseLanes,
+pub(super) struct Target {
     pub core: SolidCore,
     pub centre: [f32; 3],
-    /// Sum of the radii of both, and of rounding errors, m.
+    /// Its radius, and rounding errors, m.
     pub reach: f32,
-    /// What proves a contact: the sum of the radii, less rounding errors.
-    pub contact: Option<ContactCore>,
 }
 
-/// What is known of a pair in sixteen boxes, one bit each.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PairLanes {
-    /// Not proven apart.
-    pub near: u32,
-    /// In contact at every configuration of the box (in a cell: at one, at least).
-    pub contact: u32,
-}
-
-/// A sphere and a solid in the boxes `live`.
+/// Balls of a group that are not proven apart from a solid in the whole box, one bit each.
 #[inline(always)]
-pub(super) fn assess<S: Simd>(
+pub(super) fn near_balls<S: Simd>(
     simd: S,
-    place: &NodePlace,
-    target: &Target<'_>,
-    motion: NodeMotion,
-    are_cells: bool,
-    live: u32,
-) -> PairLanes {
-    let p = point(simd, target.poses, place.centre).minus(V3::splat(simd, target.centre));
+    group: &CoverGroup,
+    place: &GroupPlace,
+    motion: &GroupMotion,
+    pose: &CellPose,
+    target: &Target,
+    half: HalfWidths,
+) -> u32 {
+    let arm = place.centres.load(simd);
+    let [x, y, z] = pose.columns.map(|c| V3::splat(simd, c));
+    let offset = [0, 1, 2].map(|k| pose.origin[k] - target.centre[k]);
+    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, V3::splat(simd, offset))));
     let vector = target.core.vector_to(simd, p);
     let squared = vector.dot(vector);
-    let far = target.reach + motion.path;
-    let near = not_above(squared.simd_gt(splat(simd, far * far)).to_bitmask() as u32, live);
+    let reach = group.radii.load(simd) + splat(simd, target.reach);
+    let far = reach + motion.paths.load(simd);
+    let near = group.lanes & !(squared.simd_gt(far * far).to_bitmask() as u32);
     if near == 0 {
-        return PairLanes::default();
+        return 0;
     }
-    let distance = squared.sqrt();
-    let u = to_arm(simd, target.poses, vector);
-    let mut needed = distance * splat(simd, target.reach + motion.curvature);
-    needed = needed + u.dot(V3::splat(simd, place.along[0])).abs();
-    needed = needed + u.dot(V3::splat(simd, place.along[1])).abs();
-    needed = needed + u.dot(V3::splat(simd, place.along[2])).abs();
-    let near = not_above(squared.simd_gt(needed).to_bitmask() as u32, near);
-    let mut lanes = PairLanes { near, contact: 0 };
-    if let Some(contact) = target.contact.filter(|_| near != 0) {
-        let stays = if are_cells { 0.0 } else { motion.path };
-        let limit = splat(simd, contact.radius - stays);
-        let inside = contact.core.signed_distance(simd, p);
-        lanes.contact = inside.simd_le(limit).to_bitmask() as u32 & near;
+    let u = V3(x.dot(vector), y.dot(vector), z.dot(vector));
+    let mut needed = squared.sqrt() * (reach + motion.curvatures.load(simd));
+    let lanes = splat(simd, half.lanes);
+    let along_lanes = if half.lanes_turn { u.1 * arm.0 - u.0 * arm.1 } else { u.2 };
+    needed = needed + (along_lanes * lanes).abs();
+    needed = needed + u.dot(place.along[0].load(simd)).abs();
+    needed = needed + u.dot(place.along[1].load(simd)).abs();
+    near & !(squared.simd_gt(needed).to_bitmask() as u32)
+}
+
+/// Balls of a group that touch what proves a contact at the centre of the box, one bit each.
+#[inline(always)]
+pub(super) fn touching_balls<S: Simd>(
+    simd: S,
+    group: &CoverGroup,
+    place: &GroupPlace,
+    pose: &CellPose,
+    centre: [f32; 3],
+    contact: ContactCore,
+    rounding: f32,
+) -> u32 {
+    let arm = place.centres.load(simd);
+    let [x, y, z] = pose.columns.map(|c| V3::splat(simd, c));
+    let offset = [0, 1, 2].map(|k| pose.origin[k] - centre[k]);
+    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, V3::splat(simd, offset))));
+    let limit = group.radii.load(simd) + splat(simd, contact.radius - rounding);
+    group.lanes & contact.core.signed_distance(simd, p).simd_le(limit).to_bitmask() as u32
+}
+
+/// The centre of a ball at the centre of a box, seen from the first joint.
+#[inline(always)]
+pub(super) fn probe_centre(probe: &Probe, frame: &Frame) -> [f32; 3] {
+    let mut p = frame.origin;
+    for (column, at) in frame.columns.iter().zip(probe.centre) {
+        for k in 0..3 {
+            p[k] += column[k] * at;
+        }
     }
-    lanes
+    p
 }
 
-/// The lanes of `live` without those that are certainly above a limit; NaN is not.
+/// Which of sixteen boxes have a ball within `limit` of a core at the centre; the ball's centre is seen from the first joint,
+/// `offset` is the core's place.
 #[inline(always)]
-fn not_above(above: u32, live: u32) -> u32 {
-    live & !above
+pub(super) fn touching_boxes<S: Simd>(
+    simd: S,
+    poses: &PoseLanes,
+    ball: [f32; 3],
+    core: SolidCore,
+    offset: [f32; 3],
+    limit: f32,
+) -> u32 {
+    let at = poses.columns[0].load(simd).times_plus(splat(simd, ball[0]), poses.origin.load(simd));
+    let at = poses.columns[1].load(simd).times_plus(splat(simd, ball[1]), at);
+    let p = poses.columns[2].load(simd).times_plus(splat(simd, ball[2]), at).minus(V3::splat(simd, offset));
+    core.signed_distance(simd, p).simd_le(splat(simd, limit)).to_bitmask() as u32
 }
 
-/// A point of the first joint's frame in that of the obstacle.
 #[inline(always)]
-fn point<S: Simd>(simd: S, poses: &PoseLanes, p: [f32; 3]) -> V3<S> {
-    let at = poses.columns[0].load(simd).times_plus(splat(simd, p[0]), poses.origin.load(simd));
-    let at = poses.columns[1].load(simd).times_plus(splat(simd, p[1]), at);
-    poses.columns[2].load(simd).times_plus(splat(simd, p[2]), at)
+fn cross<S: Simd>(a: V3<S>, b: V3<S>) -> V3<S> {
+    V3(a.1 * b.2 - a.2 * b.1, a.2 * b.0 - a.0 * b.2, a.0 * b.1 - a.1 * b.0)
 }
 
-/// A vector of the obstacle's frame in that of the first joint.
-#[inline(always)]
-fn to_arm<S: Simd>(simd: S, poses: &PoseLanes, v: V3<S>) -> V3<S> {
-    V3(
-        poses.columns[0].load(simd).dot(v),
-        poses.columns[1].load(simd).dot(v),
-        poses.columns[2].load(simd).dot(v),
-    )
+impl PoseLanes {
+    /// The pose of one lane.
+    #[inline]
+    pub fn pose(&self, lane: usize) -> CellPose {
+        let point = |row: &PointRow| [0, 1, 2].map(|k: usize| row.0[k].0[lane]);
+        CellPose { columns: [0, 1, 2].map(|c: usize| point(&self.columns[c])), origin: point(&self.origin) }
+    }
 }

@@ -14,7 +14,7 @@
 //! | `step_chain.rs`, `cover_class.rs`, `ball_tree.rs` | the moving joints; covers of the links and their motion |
 //! | `block_level.rs` | boxes of one size, and where the joints are at their centres |
 //! | `obstacle.rs`, `solid_core.rs`, `obstacle_lanes.rs` | obstacles; distances from them; an obstacle seen from sixteen cells |
-//! | `filler.rs`, `kernel.rs` | division of boxes; sixteen cells at a time |
+//! | `filler.rs`, `group_test.rs`, `place_memo.rs`, `kernel.rs` | boxes halved; one box; places that are known; sixteen balls at a time |
 //! | `settlement.rs` | cells that the covers leave open, by exact queries |
 //! | `cell_bits.rs` | blocked cells as bits |
 
@@ -25,9 +25,11 @@ mod builder;
 mod cell_bits;
 mod cover_class;
 mod filler;
+mod group_test;
 mod kernel;
 mod obstacle;
 mod obstacle_lanes;
+mod place_memo;
 mod settlement;
 mod solid_core;
 mod step_chain;

@@ -5,11 +5,14 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_validity::{Ball, SphereCover};
 
 use super::super::error::RobotMapError;
-use super::ball_tree::ball_tree;
+use super::ball_tree::split;
 use super::solid_core::SolidCore;
 
 /// Least extent of a mesh whose form is looked at, m.
 const LEAST_EXTENT_M: f64 = 1e-9;
+
+/// Children of an inner node of a tree of balls.
+const FAN_OUT: usize = 4;
 
 /// A solid of an obstacle, or a node of a tree of balls.
 #[derive(Debug, Clone, Copy)]
@@ -81,19 +84,28 @@ impl CoverObstacle {
     fn covered(shape: &Shape, slack_m: f64) -> Result<Self, RobotMapError> {
         let invalid = || RobotMapError::InvalidPlacement("an obstacle".into());
         let cover = SphereCover::new(&[(shape, Pose::IDENTITY)], slack_m).ok_or_else(invalid)?;
-        let tree = ball_tree(&cover.outer);
         let reach = |b: &Ball| b.centre.length() + b.radius;
         let reach_m = cover.outer.iter().map(reach).fold(0.0, f64::max);
-        let elements = tree.iter().map(|node| Element {
-            centre: [node.ball.centre.x as f32, node.ball.centre.y as f32, node.ball.centre.z as f32],
-            core: SolidCore::Point,
-            radius: node.ball.radius as f32,
-            end: node.end as u32,
-            is_leaf: node.is_leaf,
-        });
-        let elements = elements.collect();
+        let mut elements = Vec::new();
+        push_balls(&mut elements, &mut cover.outer.clone());
         Ok(Self { elements, frame: Pose::IDENTITY, is_exact: false, reach_m, shape: shape.clone() })
     }
+}
+
+/// Adds the tree of some balls, in depth-first order.
+fn push_balls(elements: &mut Vec<Element>, balls: &mut [Ball]) {
+    if balls.is_empty() {
+        return;
+    }
+    let is_leaf = balls.len() == 1;
+    let ball = if is_leaf { balls[0] } else { Ball::enclosing(balls) };
+    let at = elements.len();
+    let centre = [ball.centre.x as f32, ball.centre.y as f32, ball.centre.z as f32];
+    elements.push(Element { centre, core: SolidCore::Point, radius: ball.radius as f32, end: 0, is_leaf });
+    if !is_leaf {
+        split(balls, FAN_OUT).into_iter().for_each(|part| push_balls(elements, part));
+    }
+    elements[at].end = elements.len() as u32;
 }
 
 fn box_core(half: Vec3) -> SolidCore {

@@ -1,0 +1,218 @@
+//! Sixteen boxes of joint space against the groups of balls that may be near in them.
+
+use elbowroom_validity::lanes::LANES;
+use fearless_simd::Simd;
+
+use super::ball_tree::LEAF;
+use super::block_level::Frame;
+use super::cover_class::{CoverClass, CoverGroup};
+use super::kernel::{HalfWidths, Target, near_balls, probe_centre, touching_balls, touching_boxes};
+use super::obstacle::Element;
+use super::obstacle_lanes::{ContactCore, ObstacleLanes, PoseLanes};
+use super::place_memo::PlaceMemo;
+use crate::bits::ones;
+
+/// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
+const EXPANSION_SHARE: f32 = 1.0;
+
+/// Balls of a group and an element of the obstacle that may touch in some of sixteen boxes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearGroup {
+    pub group: u32,
+    pub element: u32,
+    pub boxes: u32,
+    pub balls: u32,
+}
+
+/// The group and the element that touched last: neighbouring cells are likely to be blocked by them, too.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Witness {
+    group: u32,
+    element: u32,
+}
+
+/// A test of sixteen boxes.
+pub(super) struct BoxTest<'a> {
+    pub obstacle: &'a ObstacleLanes<'a>,
+    pub class: &'a CoverClass,
+    pub level: usize,
+    pub frames: &'a [Frame],
+    pub poses: &'a PoseLanes,
+    pub half: HalfWidths,
+    /// Boxes not yet known to be in contact.
+    pub live: u32,
+    /// Boxes where any ball is near.
+    pub near: u32,
+    /// Boxes that are in contact throughout; cells that are blocked.
+    pub contact: u32,
+}
+
+#[allow(clippy::inline_always, reason = "parts of a kernel")]
+impl BoxTest<'_> {
+    /// Tests groups; adds those that are left to `left`.
+    #[inline(always)]
+    pub fn run<S: Simd>(
+        &mut self,
+        simd: S,
+        pairs: &[NearGroup],
+        places: &mut PlaceMemo,
+        witness: &mut Option<Witness>,
+        open: &mut Vec<NearGroup>,
+        left: &mut Vec<NearGroup>,
+    ) {
+        self.probe(simd);
+        open.clear();
+        if let Some(Witness { group, element }) = witness.filter(|_| self.level == 0) {
+            let balls = self.class.groups[group as usize].leaves;
+            self.test(simd, NearGroup { group, element, boxes: self.live, balls }, places, witness, open, &mut Vec::new());
+            open.clear();
+        }
+        for &pair in pairs {
+            open.push(pair);
+            while let Some(pair) = open.pop() {
+                if self.live == 0 {
+                    return;
+                }
+                self.test(simd, pair, places, witness, open, left);
+            }
+        }
+    }
+
+    /// Finds boxes in contact with the large balls.
+    #[inline(always)]
+    fn probe<S: Simd>(&mut self, simd: S) {
+        let ([element], [Some(contact)]) = (self.obstacle.elements, self.obstacle.contacts.as_slice()) else { return };
+        let deepest = contact.core.depth();
+        for (probe, &path_m) in self.class.probes.iter().zip(&self.class.probe_paths[self.level]) {
+            let stays = if self.level == 0 { 0.0 } else { path_m };
+            let limit = probe.radius + contact.radius - self.obstacle.rounding - stays;
+            if limit <= -deepest || self.live == 0 {
+                continue;
+            }
+            let path = &self.class.paths[probe.path as usize];
+            let ball = probe_centre(probe, &self.frames[path.last as usize]);
+            let found = touching_boxes(simd, self.poses, ball, contact.core, element.centre, limit) & self.live;
+            self.contact |= found;
+            self.live &= !found;
+        }
+    }
+
+    /// Tests a group in its boxes; adds what is below to `open` and what is left to `left`.
+    #[inline(always)]
+    fn test<S: Simd>(
+        &mut self,
+        simd: S,
+        pair: NearGroup,
+        places: &mut PlaceMemo,
+        witness: &mut Option<Witness>,
+        open: &mut Vec<NearGroup>,
+        left: &mut Vec<NearGroup>,
+    ) {
+        let boxes = pair.boxes & self.live;
+        if boxes == 0 {
+            return;
+        }
+        let class = self.class;
+        let group = &class.groups[pair.group as usize];
+        let element = &self.obstacle.elements[pair.element as usize];
+        let motion = &class.motions[self.level][pair.group as usize];
+        let place = places.place(simd, class, self.level, pair.group, self.frames, self.half);
+        let reach = element.radius + self.obstacle.rounding;
+        let target = Target { core: element.core, centre: element.centre, reach };
+        let mut near_boxes = [0; LANES];
+        let (mut any, mut rest) = (0, boxes);
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let pose = self.poses.pose(lane);
+            let near = near_balls(simd, group, place, motion, &pose, &target, self.half) & pair.balls;
+            if near == 0 {
+                continue;
+            }
+            if self.level == 0 && element.is_leaf && near & group.leaves != 0 {
+                if self.is_blocked(simd, group, place, &pose, pair.element, near & group.leaves) {
+                    self.contact |= 1 << lane;
+                    self.live &= !(1 << lane);
+                    *witness = Some(Witness { group: pair.group, element: pair.element });
+                    continue;
+                }
+                self.near |= 1 << lane;
+            }
+            any |= near;
+            let mut balls = near;
+            while balls != 0 {
+                near_boxes[balls.trailing_zeros() as usize] |= 1 << lane;
+                balls &= balls - 1;
+            }
+        }
+        if any != 0 {
+            self.divide(pair, any, &near_boxes, open, left);
+        }
+    }
+
+    /// True where a cell is blocked by leaves that are near.
+    #[inline(always)]
+    fn is_blocked<S: Simd>(
+        &self,
+        simd: S,
+        group: &CoverGroup,
+        place: &super::kernel::GroupPlace,
+        pose: &super::kernel::CellPose,
+        element: u32,
+        near: u32,
+    ) -> bool {
+        if !self.obstacle.is_exact {
+            return true;
+        }
+        let centre = self.obstacle.elements[element as usize].centre;
+        let touches = |contact: ContactCore| {
+            touching_balls(simd, group, place, pose, centre, contact, self.obstacle.rounding) & near != 0
+        };
+        self.obstacle.contacts[element as usize].is_some_and(touches)
+    }
+
+    /// Replaces the larger balls that are near by those in them, and the element where it is larger; keeps the rest.
+    fn divide(
+        &mut self,
+        pair: NearGroup,
+        any: u32,
+        near_boxes: &[u32; LANES],
+        open: &mut Vec<NearGroup>,
+        left: &mut Vec<NearGroup>,
+    ) {
+        let group = &self.class.groups[pair.group as usize];
+        let element = &self.obstacle.elements[pair.element as usize];
+        let paths = &self.class.motions[self.level][pair.group as usize].paths.0;
+        let are_cells = self.level == 0;
+        let is_large = |radius: f32, ball: usize| are_cells || radius > EXPANSION_SHARE * paths[ball];
+        let (mut of_element, mut kept) = (0, 0);
+        for ball in ones(any.into()) {
+            let is_leaf = group.below[ball] == LEAF;
+            let element_first = !element.is_leaf && (is_leaf || element.radius > group.radii.0[ball]);
+            if element_first && is_large(element.radius, ball) {
+                of_element |= 1 << ball;
+            } else if !element_first && !is_leaf && is_large(group.radii.0[ball], ball) {
+                open.push(NearGroup { group: group.below[ball], boxes: near_boxes[ball], balls: 0xffff, ..pair });
+            } else {
+                kept |= 1 << ball;
+            }
+        }
+        let boxes = |balls: u32| ones(balls.into()).fold(0, |sum, ball| sum | near_boxes[ball]);
+        if of_element != 0 {
+            push_elements(NearGroup { boxes: boxes(of_element), balls: of_element, ..pair }, self.obstacle.elements, open);
+        }
+        if kept != 0 && !are_cells {
+            self.near |= boxes(kept);
+            left.push(NearGroup { boxes: boxes(kept), balls: kept, ..pair });
+        }
+    }
+}
+
+/// Adds the same balls with the elements below.
+fn push_elements(pair: NearGroup, elements: &[Element], open: &mut Vec<NearGroup>) {
+    let mut child = pair.element + 1;
+    while child < elements[pair.element as usize].end {
+        open.push(NearGroup { element: child, ..pair });
+        child = elements[child as usize].end;
+    }
+}
