@@ -61,7 +61,7 @@ fn measure(name: &str, others: &str, exact: bool, case: &Case, samples: usize) {
     let prepared: Vec<CoverObstacle> = case.obstacles.iter().map(|(s, _)| builder.obstacle(s).unwrap()).collect();
     let placed: Vec<(&CoverObstacle, Pose)> =
         prepared.iter().zip(&case.obstacles).map(|(o, (_, at))| (o, *at)).collect();
-    let repetitions = if exact { 2 } else { REPETITIONS };
+    let repetitions = std::env::var("REPS").map_or(if exact { 2 } else { REPETITIONS }, |s| s.parse().unwrap());
     let shortest = |places: &[(&CoverObstacle, Pose)]| {
         let mut shortest = f64::INFINITY;
         for _ in 0..repetitions {

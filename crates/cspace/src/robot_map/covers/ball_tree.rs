@@ -30,8 +30,9 @@ fn push(groups: &mut Vec<BallGroup>, balls: &mut [Ball]) -> u32 {
         groups[number] = BallGroup { balls: balls.to_vec(), below: vec![LEAF; balls.len()] };
         return number as u32;
     }
-    // As many parts as fill the groups below.
-    let parts = balls.len().div_ceil(LANES).min(LANES);
+    // As few parts as leave full groups at the bottom.
+    let below = LANES.pow((balls.len() - 1).ilog(LANES));
+    let parts = balls.len().div_ceil(below);
     for part in split(balls, parts) {
         let ball = Ball::enclosing(part);
         let below = if part.len() == 1 { LEAF } else { push(groups, part) };

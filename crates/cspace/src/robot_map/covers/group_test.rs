@@ -6,14 +6,14 @@ use fearless_simd::Simd;
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
 use super::cover_class::{CoverClass, CoverGroup};
-use super::kernel::{HalfWidths, Target, near_balls, probe_centre, touching_balls, touching_boxes};
+use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, probe_centre, touching_balls, touching_boxes};
 use super::obstacle::Element;
-use super::obstacle_lanes::{ContactCore, ObstacleLanes, PoseLanes};
+use super::obstacle_lanes::{CellPose, ContactCore, ObstacleLanes, PoseLanes};
 use super::place_memo::PlaceMemo;
 use crate::bits::ones;
 
 /// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
-const EXPANSION_SHARE: f32 = 1.0;
+#[allow(dead_code)] const EXPANSION_SHARE: f32 = 1.0;
 
 /// Balls of a group and an element of the obstacle that may touch in some of sixteen boxes.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +30,7 @@ pub(super) struct Witness {
     group: u32,
     element: u32,
 }
+
 
 /// A test of sixteen boxes.
 pub(super) struct BoxTest<'a> {
@@ -156,8 +157,8 @@ impl BoxTest<'_> {
         &self,
         simd: S,
         group: &CoverGroup,
-        place: &super::kernel::GroupPlace,
-        pose: &super::kernel::CellPose,
+        place: &GroupPlace,
+        pose: &CellPose,
         element: u32,
         near: u32,
     ) -> bool {
@@ -165,10 +166,12 @@ impl BoxTest<'_> {
             return true;
         }
         let centre = self.obstacle.elements[element as usize].centre;
-        let touches = |contact: ContactCore| {
-            touching_balls(simd, group, place, pose, centre, contact, self.obstacle.rounding) & near != 0
-        };
-        self.obstacle.contacts[element as usize].is_some_and(touches)
+        match self.obstacle.contacts[element as usize] {
+            Some(contact) => {
+                touching_balls(simd, group, place, pose, centre, contact, self.obstacle.rounding) & near != 0
+            }
+            None => false,
+        }
     }
 
     /// Replaces the larger balls that are near by those in them, and the element where it is larger; keeps the rest.
@@ -184,7 +187,7 @@ impl BoxTest<'_> {
         let element = &self.obstacle.elements[pair.element as usize];
         let paths = &self.class.motions[self.level][pair.group as usize].paths.0;
         let are_cells = self.level == 0;
-        let is_large = |radius: f32, ball: usize| are_cells || radius > EXPANSION_SHARE * paths[ball];
+        let is_large = |radius: f32, ball: usize| are_cells || radius > share() * paths[ball];
         let (mut of_element, mut kept) = (0, 0);
         for ball in ones(any.into()) {
             let is_leaf = group.below[ball] == LEAF;
@@ -207,6 +210,8 @@ impl BoxTest<'_> {
         }
     }
 }
+
+fn share() -> f32 { static S: std::sync::OnceLock<f32> = std::sync::OnceLock::new(); *S.get_or_init(|| std::env::var("SHARE").map_or(1.0, |s| s.parse().unwrap())) } //STATS
 
 /// Adds the same balls with the elements below.
 fn push_elements(pair: NearGroup, elements: &[Element], open: &mut Vec<NearGroup>) {

@@ -11,7 +11,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::block_level::Frame;
 use super::cover_class::{CoverGroup, CoverPath, GroupMotion, Probe};
-use super::obstacle_lanes::{ContactCore, PoseLanes};
+use super::obstacle_lanes::{CellPose, ContactCore, PoseLanes};
 use super::solid_core::SolidCore;
 
 /// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
@@ -53,19 +53,12 @@ impl GroupPlace {
         for step in &path.steps {
             let Frame { columns: [_, _, z], origin } = &frames[step.step as usize];
             let by = step.multiplier * half.others[step.axis];
-            let along = V3::splat(simd, z.map(|c| c * by));
+            let along = V3::splat(simd, [z[0] * by, z[1] * by, z[2] * by]);
             let velocity = if step.turns { cross(along, p.minus(V3::splat(simd, *origin))) } else { along };
             let sum = self.along[step.axis].load(simd).plus(velocity);
             self.along[step.axis].store(sum);
         }
     }
-}
-
-/// Pose of the first joint's frame in that of the obstacle.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct CellPose {
-    pub columns: [[f32; 3]; 3],
-    pub origin: [f32; 3],
 }
 
 /// A solid about a point of the obstacle's frame.
@@ -89,9 +82,8 @@ pub(super) fn near_balls<S: Simd>(
     half: HalfWidths,
 ) -> u32 {
     let arm = place.centres.load(simd);
-    let [x, y, z] = pose.columns.map(|c| V3::splat(simd, c));
-    let offset = [0, 1, 2].map(|k| pose.origin[k] - target.centre[k]);
-    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, V3::splat(simd, offset))));
+    let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, target.centre);
+    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, origin)));
     let vector = target.core.vector_to(simd, p);
     let squared = vector.dot(vector);
     let reach = group.radii.load(simd) + splat(simd, target.reach);
@@ -122,9 +114,8 @@ pub(super) fn touching_balls<S: Simd>(
     rounding: f32,
 ) -> u32 {
     let arm = place.centres.load(simd);
-    let [x, y, z] = pose.columns.map(|c| V3::splat(simd, c));
-    let offset = [0, 1, 2].map(|k| pose.origin[k] - centre[k]);
-    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, V3::splat(simd, offset))));
+    let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, centre);
+    let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, origin)));
     let limit = group.radii.load(simd) + splat(simd, contact.radius - rounding);
     group.lanes & contact.core.signed_distance(simd, p).simd_le(limit).to_bitmask() as u32
 }
@@ -163,11 +154,20 @@ fn cross<S: Simd>(a: V3<S>, b: V3<S>) -> V3<S> {
     V3(a.1 * b.2 - a.2 * b.1, a.2 * b.0 - a.0 * b.2, a.0 * b.1 - a.1 * b.0)
 }
 
-impl PoseLanes {
-    /// The pose of one lane.
-    #[inline]
-    pub fn pose(&self, lane: usize) -> CellPose {
-        let point = |row: &PointRow| [0, 1, 2].map(|k: usize| row.0[k].0[lane]);
-        CellPose { columns: [0, 1, 2].map(|c: usize| point(&self.columns[c])), origin: point(&self.origin) }
+/// A pose in all lanes, its origin seen from a point.
+struct PoseSplat<S: Simd> {
+    x: V3<S>,
+    y: V3<S>,
+    z: V3<S>,
+    origin: V3<S>,
+}
+
+// No closures: they are compiled for the lowest instruction set.
+impl<S: Simd> PoseSplat<S> {
+    #[inline(always)]
+    fn new(simd: S, pose: &CellPose, from: [f32; 3]) -> Self {
+        let [x, y, z] = pose.columns;
+        let at = [pose.origin[0] - from[0], pose.origin[1] - from[1], pose.origin[2] - from[2]];
+        Self { x: V3::splat(simd, x), y: V3::splat(simd, y), z: V3::splat(simd, z), origin: V3::splat(simd, at) }
     }
 }

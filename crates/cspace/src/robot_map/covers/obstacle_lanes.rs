@@ -15,11 +15,34 @@ use crate::Grid;
 /// translations, each rounded (3·10⁻⁷), and the products and sums of three of them.
 const ROUNDING_SHARE: f64 = 5e-6;
 
+/// Pose of the first joint's frame in that of the obstacle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CellPose {
+    pub columns: [[f32; 3]; 3],
+    pub origin: [f32; 3],
+}
+
 /// Poses of the first joint's frame in that of the obstacle, one per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PoseLanes {
     pub columns: [PointRow; 3],
     pub origin: PointRow,
+}
+
+impl PoseLanes {
+    /// The pose of one lane.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn pose(&self, lane: usize) -> CellPose {
+        let [x, y, z] = &self.columns;
+        CellPose { columns: [of_lane(x, lane), of_lane(y, lane), of_lane(z, lane)], origin: of_lane(&self.origin, lane) }
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a kernel")]
+fn of_lane(row: &PointRow, lane: usize) -> [f32; 3] {
+    [row.0[0].0[lane], row.0[1].0[lane], row.0[2].0[lane]]
 }
 
 /// What proves a contact: every point of a cover's sphere is within its slack of the link.
