@@ -110,32 +110,37 @@ impl<'a> Filler<'a> {
         let level = boxes.level - 1;
         let uses = self.classes[class].uses;
         let blocks = self.classes[class].levels[level].blocks;
-        for half in 0..2 {
-            // Each box becomes two lanes; the first eight boxes fill the first sixteen.
-            let part = |lanes: u32| doubled(lanes >> (8 * half) & 0xff);
-            let group = 2 * boxes.group + half as usize;
-            if part(open) == 0 || group >= self.obstacle.poses[level].len() {
-                continue;
-            }
-            let from = self.pairs.len();
-            for at in left..self.left.len() {
-                let pair = self.left[at];
-                let boxes = part(pair.boxes & open);
-                if boxes != 0 {
-                    self.pairs.push(NearGroup { boxes, ..pair });
-                }
-            }
-            for i in 0..=usize::from(uses[0]) {
-                for j in 0..=usize::from(uses[1]) {
-                    let at = [[boxes.others[0], i], [boxes.others[1], j]];
-                    let others = [0, 1].map(|k| if uses[k] { 2 * at[k][0] + at[k][1] } else { 0 });
-                    if others[0] < blocks[0] && others[1] < blocks[1] {
-                        self.divide(class, Boxes { level, others, group }, from);
+        // Boxes that differ in the axis in lanes alone follow each other: the links are at the same places in them.
+        for i in 0..=usize::from(uses[0]) {
+            for j in 0..=usize::from(uses[1]) {
+                let at = [[boxes.others[0], i], [boxes.others[1], j]];
+                let others = [0, 1].map(|k| if uses[k] { 2 * at[k][0] + at[k][1] } else { 0 });
+                if others[0] < blocks[0] && others[1] < blocks[1] {
+                    for half in 0..2 {
+                        self.divide_half(class, Boxes { level, others, group: boxes.group }, half, open, left);
                     }
                 }
             }
-            self.pairs.truncate(from);
         }
+    }
+
+    /// Divides one half of the boxes of the axis in lanes: each box becomes two lanes, eight boxes fill sixteen.
+    fn divide_half(&mut self, class: usize, boxes: Boxes, half: usize, open: u32, left: usize) {
+        let part = |lanes: u32| doubled(lanes >> (8 * half) & 0xff);
+        let group = 2 * boxes.group + half;
+        if part(open) == 0 || group >= self.obstacle.poses[boxes.level].len() {
+            return;
+        }
+        let from = self.pairs.len();
+        for at in left..self.left.len() {
+            let pair = self.left[at];
+            let lanes = part(pair.boxes & open);
+            if lanes != 0 {
+                self.pairs.push(NearGroup { boxes: lanes, ..pair });
+            }
+        }
+        self.divide(class, Boxes { group, ..boxes }, from);
+        self.pairs.truncate(from);
     }
 
     /// Blocks boxes.

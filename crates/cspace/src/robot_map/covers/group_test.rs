@@ -8,7 +8,7 @@ use super::block_level::Frame;
 use super::cover_class::{CoverClass, CoverGroup};
 use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, probe_centre, touching_balls, touching_boxes};
 use super::obstacle::Element;
-use super::obstacle_lanes::{CellPose, ContactCore, ObstacleLanes, PoseLanes};
+use super::obstacle_lanes::{CellPose, ObstacleLanes, PoseLanes};
 use super::place_memo::PlaceMemo;
 use crate::bits::ones;
 
@@ -117,7 +117,7 @@ impl BoxTest<'_> {
         let group = &class.groups[pair.group as usize];
         let element = &self.obstacle.elements[pair.element as usize];
         let motion = &class.motions[self.level][pair.group as usize];
-        let place = places.place(simd, class, self.level, pair.group, self.frames, self.half);
+        let place = places.place(simd, class, pair.group, self.frames, self.half);
         let reach = element.radius + self.obstacle.rounding;
         let target = Target { core: element.core, centre: element.centre, reach };
         let mut near_boxes = [0; LANES];

@@ -6,15 +6,11 @@ use super::block_level::Frame;
 use super::cover_class::CoverClass;
 use super::kernel::{GroupPlace, HalfWidths};
 
-/// Places of a class's groups, level by level.
+/// Places of a class's groups in one box.
 #[derive(Debug, Default)]
 pub(super) struct PlaceMemo {
-    levels: Vec<LevelMemo>,
-}
-
-#[derive(Debug)]
-struct LevelMemo {
-    others: [usize; 2],
+    /// Level and numbers of the box.
+    of: Option<(usize, [usize; 2])>,
     /// Changes with the box.
     version: u32,
     /// The version of each place.
@@ -25,22 +21,17 @@ struct LevelMemo {
 impl PlaceMemo {
     /// For another class.
     pub fn start(&mut self, class: &CoverClass) {
-        let count = class.groups.len();
-        let memo = || LevelMemo {
-            others: [usize::MAX; 2],
-            version: 0,
-            versions: vec![0; count],
-            places: vec![GroupPlace::ZERO; count],
-        };
-        self.levels = class.levels.iter().map(|_| memo()).collect();
+        self.of = None;
+        let count = self.places.len().max(class.groups.len());
+        self.versions.resize(count, 0);
+        self.places.resize(count, GroupPlace::ZERO);
     }
 
     /// For a box of a level.
     pub fn enter(&mut self, level: usize, others: [usize; 2]) {
-        let memo = &mut self.levels[level];
-        if memo.others != others {
-            memo.others = others;
-            memo.version += 1;
+        if self.of != Some((level, others)) {
+            self.of = Some((level, others));
+            self.version += 1;
         }
     }
 
@@ -51,18 +42,16 @@ impl PlaceMemo {
         &mut self,
         simd: S,
         class: &CoverClass,
-        level: usize,
         group: u32,
         frames: &[Frame],
         half: HalfWidths,
     ) -> &GroupPlace {
-        let memo = &mut self.levels[level];
         let at = group as usize;
-        if memo.versions[at] != memo.version {
-            memo.versions[at] = memo.version;
+        if self.versions[at] != self.version {
+            self.versions[at] = self.version;
             let balls = &class.groups[at];
-            memo.places[at].compute(simd, balls, &class.paths[balls.path as usize], frames, half);
+            self.places[at].compute(simd, balls, &class.paths[balls.path as usize], frames, half);
         }
-        &memo.places[at]
+        &self.places[at]
     }
 }
