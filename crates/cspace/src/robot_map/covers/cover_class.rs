@@ -16,8 +16,9 @@ use crate::Grid;
 const WIDEST_BLOCK: f64 = 0.3;
 /// More boxes than this make larger ones worth while.
 const MOST_BLOCKS: usize = 4096;
-/// Most large balls of a group of links.
-const MOST_PROBES: usize = 12;
+/// Most large balls of a group of links, and of a class.
+const MOST_PROBES: usize = 10;
+const MOST_PROBES_OF_CLASS: usize = 32;
 /// Most halvings.
 const MOST_LEVELS: u32 = 8;
 
@@ -174,6 +175,9 @@ impl CoverClass {
             self.groups.push(balls);
         }
         for ball in probes(&group.cover.outer) {
+            if self.probes.len() == MOST_PROBES_OF_CLASS {
+                break;
+            }
             let centre = single(in_frame.transform_point(ball.centre));
             self.probes.push(Probe { centre, radius: ball.radius as f32, path });
         }

@@ -19,6 +19,8 @@ struct Boxes {
     others: [usize; 2],
     /// Boxes of the axis in lanes from `16 · group` on.
     group: usize,
+    /// Large balls that may touch, one bit each.
+    probes: u32,
 }
 
 /// Cells that are not proven free, nor blocked.
@@ -80,7 +82,7 @@ impl<'a> Filler<'a> {
                     self.pairs.clear();
                     let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
                     self.pairs.extend(class.roots.iter().map(pair));
-                    self.divide(number, Boxes { level, others, group }, 0);
+                    self.divide(number, Boxes { level, others, group, probes: !0 >> (32 - class.probes.len()) }, 0);
                 }
             }
         }
@@ -90,6 +92,7 @@ impl<'a> Filler<'a> {
     fn divide(&mut self, class: usize, boxes: Boxes, from: usize) {
         let left = self.left.len();
         let known = self.assess(class, boxes, from);
+        let boxes = Boxes { probes: known.probes, ..boxes };
         if known.contact != 0 {
             self.block(class, boxes, known.contact);
         }
@@ -117,7 +120,7 @@ impl<'a> Filler<'a> {
                 let others = [0, 1].map(|k| if uses[k] { 2 * at[k][0] + at[k][1] } else { 0 });
                 if others[0] < blocks[0] && others[1] < blocks[1] {
                     for half in 0..2 {
-                        self.divide_half(class, Boxes { level, others, group: boxes.group }, half, open, left);
+                        self.divide_half(class, Boxes { level, others, ..boxes }, half, open, left);
                     }
                 }
             }
@@ -166,6 +169,7 @@ impl<'a> Filler<'a> {
     fn assess(&mut self, class: usize, boxes: Boxes, from: usize) -> Known {
         let count = self.roles.lane_count().div_ceil(1 << boxes.level) - LANES * boxes.group;
         let mut live = if count >= LANES { 0xffff } else { (1 << count) - 1 };
+        live &= self.pairs[from..].iter().fold(0, |all, pair| all | pair.boxes);
         let covers = &self.classes[class];
         if boxes.level == 0 {
             // What links of fewer axes block needs no test; these were filled before.
@@ -177,7 +181,7 @@ impl<'a> Filler<'a> {
             lanes_turn: self.first.turns,
             others: self.roles.others.map(|axis| half[axis] as f32 * (1.0 + 1e-6)),
         };
-        let Boxes { level, others, group } = boxes;
+        let Boxes { level, others, group, probes } = boxes;
         let mut test = BoxTest {
             obstacle: self.obstacle,
             class: covers,
@@ -186,6 +190,7 @@ impl<'a> Filler<'a> {
             poses: &self.obstacle.poses[level][group],
             half,
             live,
+            probes,
             near: 0,
             contact: 0,
         };
@@ -194,7 +199,7 @@ impl<'a> Filler<'a> {
         let (places, witness) = (&mut self.places, &mut self.witness);
         let simd_level = self.simd_level;
         dispatch!(simd_level, simd => test.run(simd, pairs, places, witness, open, left));
-        Known { near: test.near, contact: test.contact }
+        Known { near: test.near, contact: test.contact, probes: test.probes }
     }
 }
 
@@ -204,6 +209,8 @@ struct Known {
     /// Where any ball is near.
     near: u32,
     contact: u32,
+    /// Large balls that may still touch.
+    probes: u32,
 }
 
 /// Each of eight bits twice.

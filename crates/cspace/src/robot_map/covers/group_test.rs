@@ -6,14 +6,14 @@ use fearless_simd::Simd;
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
 use super::cover_class::{CoverClass, CoverGroup};
-use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, probe_centre, touching_balls, touching_boxes};
+use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, at_most, distance_from_core, probe_centre, touching_balls};
 use super::obstacle::Element;
 use super::obstacle_lanes::{CellPose, ObstacleLanes, PoseLanes};
 use super::place_memo::PlaceMemo;
 use crate::bits::ones;
 
 /// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
-#[allow(dead_code)] const EXPANSION_SHARE: f32 = 1.0;
+const EXPANSION_SHARE: f32 = 3.0;
 
 /// Balls of a group and an element of the obstacle that may touch in some of sixteen boxes.
 #[derive(Debug, Clone, Copy)]
@@ -40,8 +40,10 @@ pub(super) struct BoxTest<'a> {
     pub frames: &'a [Frame],
     pub poses: &'a PoseLanes,
     pub half: HalfWidths,
-    /// Boxes not yet known to be in contact.
+    /// Boxes not yet known to be in contact, in which balls are in question.
     pub live: u32,
+    /// Probes that may touch in some of the boxes, one bit each.
+    pub probes: u32,
     /// Boxes where any ball is near.
     pub near: u32,
     /// Boxes that are in contact throughout; cells that are blocked.
@@ -83,16 +85,22 @@ impl BoxTest<'_> {
     #[inline(always)]
     fn probe<S: Simd>(&mut self, simd: S) {
         let ([element], [Some(contact)]) = (self.obstacle.elements, self.obstacle.contacts.as_slice()) else { return };
-        let deepest = contact.core.depth();
-        for (probe, &path_m) in self.class.probes.iter().zip(&self.class.probe_paths[self.level]) {
+        let paths = &self.class.probe_paths[self.level];
+        let mut rest = self.probes;
+        while rest != 0 && self.live != 0 {
+            let number = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let (probe, path_m) = (&self.class.probes[number], paths[number]);
             let stays = if self.level == 0 { 0.0 } else { path_m };
-            let limit = probe.radius + contact.radius - self.obstacle.rounding - stays;
-            if limit <= -deepest || self.live == 0 {
-                continue;
-            }
+            let reach = probe.radius + contact.radius - self.obstacle.rounding;
             let path = &self.class.paths[probe.path as usize];
             let ball = probe_centre(probe, &self.frames[path.last as usize]);
-            let found = touching_boxes(simd, self.poses, ball, contact.core, element.centre, limit) & self.live;
+            let distance = distance_from_core(simd, self.poses, ball, contact.core, element.centre);
+            if at_most(simd, distance, reach + path_m) & self.live == 0 {
+                self.probes &= !(1 << number);
+                continue;
+            }
+            let found = at_most(simd, distance, reach - stays) & self.live;
             self.contact |= found;
             self.live &= !found;
         }
@@ -187,7 +195,7 @@ impl BoxTest<'_> {
         let element = &self.obstacle.elements[pair.element as usize];
         let paths = &self.class.motions[self.level][pair.group as usize].paths.0;
         let are_cells = self.level == 0;
-        let is_large = |radius: f32, ball: usize| are_cells || radius > share() * paths[ball];
+        let is_large = |radius: f32, ball: usize| are_cells || radius > EXPANSION_SHARE * paths[ball];
         let (mut of_element, mut kept) = (0, 0);
         for ball in ones(any.into()) {
             let is_leaf = group.below[ball] == LEAF;
@@ -210,8 +218,6 @@ impl BoxTest<'_> {
         }
     }
 }
-
-fn share() -> f32 { static S: std::sync::OnceLock<f32> = std::sync::OnceLock::new(); *S.get_or_init(|| std::env::var("SHARE").map_or(1.0, |s| s.parse().unwrap())) } //STATS
 
 /// Adds the same balls with the elements below.
 fn push_elements(pair: NearGroup, elements: &[Element], open: &mut Vec<NearGroup>) {

@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
 use elbowroom_validity::lanes::{PointRow, V3, splat};
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
 use super::cover_class::{CoverGroup, CoverPath, GroupMotion, Probe};
@@ -132,21 +132,26 @@ pub(super) fn probe_centre(probe: &Probe, frame: &Frame) -> [f32; 3] {
     p
 }
 
-/// Which of sixteen boxes have a ball within `limit` of a core at the centre; the ball's centre is seen from the first joint,
-/// `offset` is the core's place.
+/// Distances of a ball's centre from a core at the centres of sixteen boxes; it is seen from the first joint, `offset` is the
+/// core's place.
 #[inline(always)]
-pub(super) fn touching_boxes<S: Simd>(
+pub(super) fn distance_from_core<S: Simd>(
     simd: S,
     poses: &PoseLanes,
     ball: [f32; 3],
     core: SolidCore,
     offset: [f32; 3],
-    limit: f32,
-) -> u32 {
+) -> f32x16<S> {
     let at = poses.columns[0].load(simd).times_plus(splat(simd, ball[0]), poses.origin.load(simd));
     let at = poses.columns[1].load(simd).times_plus(splat(simd, ball[1]), at);
     let p = poses.columns[2].load(simd).times_plus(splat(simd, ball[2]), at).minus(V3::splat(simd, offset));
-    core.signed_distance(simd, p).simd_le(splat(simd, limit)).to_bitmask() as u32
+    core.signed_distance(simd, p)
+}
+
+/// Lanes that are at most a limit, one bit each; NaN is not.
+#[inline(always)]
+pub(super) fn at_most<S: Simd>(simd: S, v: f32x16<S>, limit: f32) -> u32 {
+    v.simd_le(splat(simd, limit)).to_bitmask() as u32
 }
 
 #[inline(always)]

@@ -57,16 +57,6 @@ impl SolidCore {
         }
     }
 
-    /// No point is deeper in the core, m.
-    pub fn depth(self) -> f32 {
-        match self {
-            Self::Point => 0.0,
-            Self::Box([x, y, z]) => x.min(y).min(z),
-            Self::Cylinder { radius, half_length } => radius.min(half_length),
-            Self::HalfSpace => f32::INFINITY,
-        }
-    }
-
     /// What is deeper in the core than a distance.
     pub fn eroded(self, by: f32) -> Option<Self> {
         let core = match self {
