@@ -6,7 +6,7 @@ use fearless_simd::{Level as SimdLevel, dispatch};
 use super::axis_roles::AxisRoles;
 use super::cell_bits::{CellBits, CellBox};
 use super::cover_class::CoverClass;
-use super::group_test::{BoxTest, NearGroup, Witness};
+use super::group_test::{BoxTest, NearGroup, Witnesses};
 use super::kernel::HalfWidths;
 use super::obstacle_lanes::ObstacleLanes;
 use super::place_memo::PlaceMemo;
@@ -47,7 +47,7 @@ pub(super) struct Filler<'a> {
     left: Vec<NearGroup>,
     open: Vec<NearGroup>,
     places: PlaceMemo,
-    witness: Option<Witness>,
+    witnesses: Witnesses,
     pub bits: CellBits,
     pub uncertain: Vec<OpenCells>,
 }
@@ -64,7 +64,7 @@ impl<'a> Filler<'a> {
             left: Vec::new(),
             open: Vec::new(),
             places: PlaceMemo::default(),
-            witness: None,
+            witnesses: Witnesses::default(),
             bits: CellBits::new(roles),
             uncertain: Vec::new(),
         }
@@ -74,7 +74,7 @@ impl<'a> Filler<'a> {
     pub fn fill(&mut self) {
         for (number, class) in self.classes.iter().enumerate() {
             self.places.start(class);
-            self.witness = None;
+            self.witnesses = Witnesses::default();
             let level = class.levels.len() - 1;
             let blocks = class.levels[level].blocks;
             for others in (0..blocks[0]).flat_map(|i| (0..blocks[1]).map(move |j| [i, j])) {
@@ -196,9 +196,9 @@ impl<'a> Filler<'a> {
         };
         self.places.enter(level, others);
         let (pairs, left, open) = (&self.pairs[from..], &mut self.left, &mut self.open);
-        let (places, witness) = (&mut self.places, &mut self.witness);
+        let (places, witnesses) = (&mut self.places, &mut self.witnesses);
         let simd_level = self.simd_level;
-        dispatch!(simd_level, simd => test.run(simd, pairs, places, witness, open, left));
+        dispatch!(simd_level, simd => test.run(simd, pairs, places, witnesses, open, left));
         Known { near: test.near, contact: test.contact, probes: test.probes }
     }
 }

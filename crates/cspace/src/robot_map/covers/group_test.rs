@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
 use super::cover_class::{CoverClass, CoverGroup};
-use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, at_most, distance_from_core, probe_centre, touching_balls};
+use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, at_most, distance_from_core, near_boxes, probe_centre, touching_balls};
 use super::obstacle::Element;
 use super::obstacle_lanes::{CellPose, ObstacleLanes, PoseLanes};
 use super::place_memo::PlaceMemo;
@@ -24,13 +24,32 @@ pub(super) struct NearGroup {
     pub balls: u32,
 }
 
-/// The group and the element that touched last: neighbouring cells are likely to be blocked by them, too.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Witness {
+/// Most balls that are remembered.
+const MOST_WITNESSES: usize = 4;
+
+/// A ball and an element that blocked a cell: neighbouring cells are likely to be blocked by them, too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Witness {
     group: u32,
+    ball: u32,
     element: u32,
 }
 
+/// The balls that blocked cells last.
+#[derive(Debug, Default)]
+pub(super) struct Witnesses {
+    known: [Option<Witness>; MOST_WITNESSES],
+    oldest: usize,
+}
+
+impl Witnesses {
+    fn add(&mut self, witness: Witness) {
+        if !self.known.contains(&Some(witness)) {
+            self.known[self.oldest] = Some(witness);
+            self.oldest = (self.oldest + 1) % MOST_WITNESSES;
+        }
+    }
+}
 
 /// A test of sixteen boxes.
 pub(super) struct BoxTest<'a> {
@@ -59,16 +78,14 @@ impl BoxTest<'_> {
         simd: S,
         pairs: &[NearGroup],
         places: &mut PlaceMemo,
-        witness: &mut Option<Witness>,
+        witnesses: &mut Witnesses,
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
         self.probe(simd);
         open.clear();
-        if let Some(Witness { group, element }) = witness.filter(|_| self.level == 0) {
-            let balls = self.class.groups[group as usize].leaves;
-            self.test(simd, NearGroup { group, element, boxes: self.live, balls }, places, witness, open, &mut Vec::new());
-            open.clear();
+        if self.level == 0 && !self.obstacle.is_exact {
+            self.recall(simd, places, witnesses);
         }
         for &pair in pairs {
             open.push(pair);
@@ -76,7 +93,7 @@ impl BoxTest<'_> {
                 if self.live == 0 {
                     return;
                 }
-                self.test(simd, pair, places, witness, open, left);
+                self.test(simd, pair, places, witnesses, open, left);
             }
         }
     }
@@ -106,6 +123,26 @@ impl BoxTest<'_> {
         }
     }
 
+    /// Finds cells that are blocked by what blocked others.
+    #[inline(always)]
+    fn recall<S: Simd>(&mut self, simd: S, places: &mut PlaceMemo, witnesses: &Witnesses) {
+        for witness in &witnesses.known {
+            let Some(Witness { group, ball, element }) = *witness else { return };
+            if self.live == 0 {
+                return;
+            }
+            let element = &self.obstacle.elements[element as usize];
+            let reach = element.radius + self.obstacle.rounding;
+            let target = Target { core: element.core, centre: element.centre, reach };
+            let place = places.place(simd, self.class, group, self.frames, self.half);
+            let motion = &self.class.motions[0][group as usize];
+            let balls = &self.class.groups[group as usize];
+            let near = near_boxes(simd, balls, place, ball as usize, motion, self.poses, &target, self.half) & self.live;
+            self.contact |= near;
+            self.live &= !near;
+        }
+    }
+
     /// Tests a group in its boxes; adds what is below to `open` and what is left to `left`.
     #[inline(always)]
     fn test<S: Simd>(
@@ -113,7 +150,7 @@ impl BoxTest<'_> {
         simd: S,
         pair: NearGroup,
         places: &mut PlaceMemo,
-        witness: &mut Option<Witness>,
+        witnesses: &mut Witnesses,
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
@@ -128,7 +165,7 @@ impl BoxTest<'_> {
         let place = places.place(simd, class, pair.group, self.frames, self.half);
         let reach = element.radius + self.obstacle.rounding;
         let target = Target { core: element.core, centre: element.centre, reach };
-        let mut near_boxes = [0; LANES];
+        let mut boxes_of = [0; LANES];
         let (mut any, mut rest) = (0, boxes);
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
@@ -142,7 +179,8 @@ impl BoxTest<'_> {
                 if self.is_blocked(simd, group, place, &pose, pair.element, near & group.leaves) {
                     self.contact |= 1 << lane;
                     self.live &= !(1 << lane);
-                    *witness = Some(Witness { group: pair.group, element: pair.element });
+                    let ball = (near & group.leaves).trailing_zeros();
+                    witnesses.add(Witness { group: pair.group, ball, element: pair.element });
                     continue;
                 }
                 self.near |= 1 << lane;
@@ -150,12 +188,12 @@ impl BoxTest<'_> {
             any |= near;
             let mut balls = near;
             while balls != 0 {
-                near_boxes[balls.trailing_zeros() as usize] |= 1 << lane;
+                boxes_of[balls.trailing_zeros() as usize] |= 1 << lane;
                 balls &= balls - 1;
             }
         }
         if any != 0 {
-            self.divide(pair, any, &near_boxes, open, left);
+            self.divide(pair, any, &boxes_of, open, left);
         }
     }
 
@@ -187,7 +225,7 @@ impl BoxTest<'_> {
         &mut self,
         pair: NearGroup,
         any: u32,
-        near_boxes: &[u32; LANES],
+        boxes_of: &[u32; LANES],
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
@@ -203,12 +241,12 @@ impl BoxTest<'_> {
             if element_first && is_large(element.radius, ball) {
                 of_element |= 1 << ball;
             } else if !element_first && !is_leaf && is_large(group.radii.0[ball], ball) {
-                open.push(NearGroup { group: group.below[ball], boxes: near_boxes[ball], balls: 0xffff, ..pair });
+                open.push(NearGroup { group: group.below[ball], boxes: boxes_of[ball], balls: 0xffff, ..pair });
             } else {
                 kept |= 1 << ball;
             }
         }
-        let boxes = |balls: u32| ones(balls.into()).fold(0, |sum, ball| sum | near_boxes[ball]);
+        let boxes = |balls: u32| ones(balls.into()).fold(0, |sum, ball| sum | boxes_of[ball]);
         if of_element != 0 {
             push_elements(NearGroup { boxes: boxes(of_element), balls: of_element, ..pair }, self.obstacle.elements, open);
         }

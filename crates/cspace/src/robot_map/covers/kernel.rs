@@ -11,7 +11,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
 use super::cover_class::{CoverGroup, CoverPath, GroupMotion, Probe};
-use super::obstacle_lanes::{CellPose, ContactCore, PoseLanes};
+use super::obstacle_lanes::{CellPose, ContactCore, PoseLanes, of_lane};
 use super::solid_core::SolidCore;
 
 /// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
@@ -120,6 +120,41 @@ pub(super) fn touching_balls<S: Simd>(
     group.lanes & contact.core.signed_distance(simd, p).simd_le(limit).to_bitmask() as u32
 }
 
+/// Which of sixteen boxes have a ball of a group not proven apart from a solid.
+#[inline(always)]
+pub(super) fn near_boxes<S: Simd>(
+    simd: S,
+    group: &CoverGroup,
+    place: &GroupPlace,
+    ball: usize,
+    motion: &GroupMotion,
+    poses: &PoseLanes,
+    target: &Target,
+    half: HalfWidths,
+) -> u32 {
+    let arm = of_lane(&place.centres, ball);
+    let p = to_obstacle(simd, poses, arm).minus(V3::splat(simd, target.centre));
+    let vector = target.core.vector_to(simd, p);
+    let squared = vector.dot(vector);
+    let reach = group.radii.0[ball] + target.reach;
+    let [x, y, z] = &poses.columns;
+    let u = V3(x.load(simd).dot(vector), y.load(simd).dot(vector), z.load(simd).dot(vector));
+    let first = if half.lanes_turn { [-arm[1], arm[0], 0.0] } else { [0.0, 0.0, 1.0] };
+    let mut needed = squared.sqrt() * splat(simd, reach + motion.curvatures.0[ball]);
+    needed = (u.dot(V3::splat(simd, first)) * splat(simd, half.lanes)).abs() + needed;
+    needed = u.dot(V3::splat(simd, of_lane(&place.along[0], ball))).abs() + needed;
+    needed = u.dot(V3::splat(simd, of_lane(&place.along[1], ball))).abs() + needed;
+    0xffff & !(squared.simd_gt(needed).to_bitmask() as u32)
+}
+
+/// A point of the first joint's frame in that of the obstacle.
+#[inline(always)]
+fn to_obstacle<S: Simd>(simd: S, poses: &PoseLanes, p: [f32; 3]) -> V3<S> {
+    let at = poses.columns[0].load(simd).times_plus(splat(simd, p[0]), poses.origin.load(simd));
+    let at = poses.columns[1].load(simd).times_plus(splat(simd, p[1]), at);
+    poses.columns[2].load(simd).times_plus(splat(simd, p[2]), at)
+}
+
 /// The centre of a ball at the centre of a box, seen from the first joint.
 #[inline(always)]
 pub(super) fn probe_centre(probe: &Probe, frame: &Frame) -> [f32; 3] {
@@ -142,10 +177,7 @@ pub(super) fn distance_from_core<S: Simd>(
     core: SolidCore,
     offset: [f32; 3],
 ) -> f32x16<S> {
-    let at = poses.columns[0].load(simd).times_plus(splat(simd, ball[0]), poses.origin.load(simd));
-    let at = poses.columns[1].load(simd).times_plus(splat(simd, ball[1]), at);
-    let p = poses.columns[2].load(simd).times_plus(splat(simd, ball[2]), at).minus(V3::splat(simd, offset));
-    core.signed_distance(simd, p)
+    core.signed_distance(simd, to_obstacle(simd, poses, ball).minus(V3::splat(simd, offset)))
 }
 
 /// Lanes that are at most a limit, one bit each; NaN is not.

@@ -41,7 +41,7 @@ impl PoseLanes {
 
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a kernel")]
-fn of_lane(row: &PointRow, lane: usize) -> [f32; 3] {
+pub(super) fn of_lane(row: &PointRow, lane: usize) -> [f32; 3] {
     [row.0[0].0[lane], row.0[1].0[lane], row.0[2].0[lane]]
 }
 
