@@ -16,9 +16,6 @@ use crate::Grid;
 const WIDEST_BLOCK: f64 = 0.3;
 /// More boxes than this make larger ones worth while.
 const MOST_BLOCKS: usize = 4096;
-/// Most large balls of a group of links, and of a class.
-const MOST_PROBES: usize = 10;
-const MOST_PROBES_OF_CLASS: usize = 32;
 /// Most halvings.
 const MOST_LEVELS: u32 = 8;
 
@@ -36,17 +33,6 @@ pub(super) struct CoverGroup {
     /// Lanes that have a leaf.
     pub leaves: u32,
     pub largest: f32,
-    /// Number of its path.
-    pub path: u32,
-}
-
-/// A large ball of a link's cover: finds boxes that are in contact throughout.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Probe {
-    /// In the frame of the last step of its path, m.
-    pub centre: [f32; 3],
-    /// m.
-    pub radius: f32,
     /// Number of its path.
     pub path: u32,
 }
@@ -86,14 +72,13 @@ pub(super) struct CoverClass {
     pub groups: Vec<CoverGroup>,
     /// Root groups, one per group of links.
     pub roots: Vec<u32>,
-    pub probes: Vec<Probe>,
+    /// Groups of the largest balls: they find boxes that are in contact throughout.
+    pub probes: Vec<u32>,
     pub paths: Vec<CoverPath>,
     /// Cells first.
     pub levels: Vec<BlockLevel>,
     /// Per level and group of balls.
     pub motions: Vec<Vec<GroupMotion>>,
-    /// Per level and probe, the length of its path, m.
-    pub probe_paths: Vec<Vec<f32>>,
     /// Largest lever arm, m.
     pub reach_m: f64,
 }
@@ -145,7 +130,6 @@ impl CoverClass {
             paths: Vec::new(),
             levels: Vec::new(),
             motions: Vec::new(),
-            probe_paths: Vec::new(),
             reach_m: 0.0,
         };
         for group in groups {
@@ -174,13 +158,12 @@ impl CoverClass {
             }
             self.groups.push(balls);
         }
-        for ball in probes(&group.cover.outer) {
-            if self.probes.len() == MOST_PROBES_OF_CLASS {
-                break;
-            }
-            let centre = single(in_frame.transform_point(ball.centre));
-            self.probes.push(Probe { centre, radius: ball.radius as f32, path });
+        let mut probes = CoverGroup::empty(path);
+        for (lane, ball) in largest(&group.cover.outer).iter().enumerate() {
+            probes.set(lane, single(in_frame.transform_point(ball.centre)), ball.radius as f32, LEAF);
         }
+        self.probes.push(self.groups.len() as u32);
+        self.groups.push(probes);
         let path_step = |&at: &usize| {
             let step = &steps.steps[at];
             let axis = roles.others.iter().position(|&axis| axis == step.axis)?;
@@ -209,10 +192,7 @@ impl CoverClass {
             bounds
         };
         let motions = self.groups.iter().map(of_group).collect();
-        let of_probe = |probe: &Probe| (motion(probe.path, probe.centre).path_m as f32).next_up();
-        let probe_paths = self.probes.iter().map(of_probe).collect();
         self.motions.push(motions);
-        self.probe_paths.push(probe_paths);
         self.reach_m = reach.get();
     }
 
@@ -230,12 +210,12 @@ impl CoverClass {
 }
 
 impl CoverGroup {
-    fn empty(path: u32) -> Self {
+    pub fn empty(path: u32) -> Self {
         let (centres, radii) = (PointRow::ZERO, Row::ZERO);
         Self { centres, radii, below: [LEAF; LANES], lanes: 0, leaves: 0, largest: 0.0, path }
     }
 
-    fn set(&mut self, lane: usize, centre: [f32; 3], radius: f32, below: u32) {
+    pub fn set(&mut self, lane: usize, centre: [f32; 3], radius: f32, below: u32) {
         for (row, c) in self.centres.0.iter_mut().zip(centre) {
             row.0[lane] = c;
         }
@@ -246,18 +226,18 @@ impl CoverGroup {
         self.largest = self.largest.max(radius);
     }
 
-    fn centre(&self, lane: usize) -> [f32; 3] {
+    pub fn centre(&self, lane: usize) -> [f32; 3] {
         [0, 1, 2].map(|k| self.centres.0[k].0[lane])
     }
 }
 
 /// The largest balls, none with its centre in another.
-fn probes(balls: &[Ball]) -> Vec<Ball> {
+fn largest(balls: &[Ball]) -> Vec<Ball> {
     let mut sorted = balls.to_vec();
     sorted.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     let mut found: Vec<Ball> = Vec::new();
     for ball in sorted {
-        if found.len() < MOST_PROBES && !found.iter().any(|f| f.contains(ball.centre)) {
+        if found.len() < LANES && !found.iter().any(|f| f.contains(ball.centre)) {
             found.push(ball);
         }
     }

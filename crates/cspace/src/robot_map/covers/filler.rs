@@ -6,11 +6,12 @@ use fearless_simd::{Level as SimdLevel, dispatch};
 use super::axis_roles::AxisRoles;
 use super::cell_bits::{CellBits, CellBox};
 use super::cover_class::CoverClass;
-use super::group_test::{BoxTest, NearGroup, Witnesses};
+use super::group_test::{BoxTest, NearGroup};
 use super::kernel::HalfWidths;
 use super::obstacle_lanes::ObstacleLanes;
 use super::place_memo::PlaceMemo;
 use super::step_chain::Step;
+use super::witnesses::Witnesses;
 
 /// Sixteen boxes that differ in the axis in lanes alone.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +20,7 @@ struct Boxes {
     others: [usize; 2],
     /// Boxes of the axis in lanes from `16 · group` on.
     group: usize,
-    /// Large balls that may touch, one bit each.
+    /// Groups of the largest balls that may touch, one bit each.
     probes: u32,
 }
 
@@ -47,7 +48,7 @@ pub(super) struct Filler<'a> {
     left: Vec<NearGroup>,
     open: Vec<NearGroup>,
     places: PlaceMemo,
-    witnesses: Witnesses,
+    witnesses: Vec<Witnesses>,
     pub bits: CellBits,
     pub uncertain: Vec<OpenCells>,
 }
@@ -64,7 +65,7 @@ impl<'a> Filler<'a> {
             left: Vec::new(),
             open: Vec::new(),
             places: PlaceMemo::default(),
-            witnesses: Witnesses::default(),
+            witnesses: Vec::new(),
             bits: CellBits::new(roles),
             uncertain: Vec::new(),
         }
@@ -74,15 +75,15 @@ impl<'a> Filler<'a> {
     pub fn fill(&mut self) {
         for (number, class) in self.classes.iter().enumerate() {
             self.places.start(class);
-            self.witnesses = Witnesses::default();
+            self.witnesses = Witnesses::none(class);
             let level = class.levels.len() - 1;
             let blocks = class.levels[level].blocks;
             for others in (0..blocks[0]).flat_map(|i| (0..blocks[1]).map(move |j| [i, j])) {
-                for group in 0..self.obstacle.poses[level].len() {
+                for group in 0..self.obstacle.poses[level].len().div_ceil(LANES) {
                     self.pairs.clear();
                     let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
                     self.pairs.extend(class.roots.iter().map(pair));
-                    self.divide(number, Boxes { level, others, group, probes: !0 >> (32 - class.probes.len()) }, 0);
+                    self.divide(number, Boxes { level, others, group, probes: !0 }, 0);
                 }
             }
         }
@@ -131,7 +132,7 @@ impl<'a> Filler<'a> {
     fn divide_half(&mut self, class: usize, boxes: Boxes, half: usize, open: u32, left: usize) {
         let part = |lanes: u32| doubled(lanes >> (8 * half) & 0xff);
         let group = 2 * boxes.group + half;
-        if part(open) == 0 || group >= self.obstacle.poses[boxes.level].len() {
+        if part(open) == 0 || group * LANES >= self.obstacle.poses[boxes.level].len() {
             return;
         }
         let from = self.pairs.len();
@@ -187,7 +188,7 @@ impl<'a> Filler<'a> {
             class: covers,
             level,
             frames: covers.levels[level].frames(others),
-            poses: &self.obstacle.poses[level][group],
+            poses: &self.obstacle.poses[level][LANES * group..],
             half,
             live,
             probes,
@@ -209,7 +210,7 @@ struct Known {
     /// Where any ball is near.
     near: u32,
     contact: u32,
-    /// Large balls that may still touch.
+    /// Groups of the largest balls that may still touch.
     probes: u32,
 }
 

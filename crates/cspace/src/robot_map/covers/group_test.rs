@@ -1,15 +1,16 @@
 //! Sixteen boxes of joint space against the groups of balls that may be near in them.
 
-use elbowroom_validity::lanes::LANES;
+use elbowroom_validity::lanes::{LANES, splat};
 use fearless_simd::Simd;
 
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
 use super::cover_class::{CoverClass, CoverGroup};
-use super::kernel::{GroupPlace, HalfWidths, Target, near_balls, at_most, distance_from_core, near_boxes, probe_centre, touching_balls};
+use super::kernel::{GroupPlace, HalfWidths, Target, at_most, gaps, near_balls};
 use super::obstacle::Element;
-use super::obstacle_lanes::{CellPose, ObstacleLanes, PoseLanes};
+use super::obstacle_lanes::{CellPose, ObstacleLanes};
 use super::place_memo::PlaceMemo;
+use super::witnesses::Witnesses;
 use crate::bits::ones;
 
 /// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
@@ -24,44 +25,17 @@ pub(super) struct NearGroup {
     pub balls: u32,
 }
 
-/// Most balls that are remembered.
-const MOST_WITNESSES: usize = 4;
-
-/// A ball and an element that blocked a cell: neighbouring cells are likely to be blocked by them, too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Witness {
-    group: u32,
-    ball: u32,
-    element: u32,
-}
-
-/// The balls that blocked cells last.
-#[derive(Debug, Default)]
-pub(super) struct Witnesses {
-    known: [Option<Witness>; MOST_WITNESSES],
-    oldest: usize,
-}
-
-impl Witnesses {
-    fn add(&mut self, witness: Witness) {
-        if !self.known.contains(&Some(witness)) {
-            self.known[self.oldest] = Some(witness);
-            self.oldest = (self.oldest + 1) % MOST_WITNESSES;
-        }
-    }
-}
-
 /// A test of sixteen boxes.
 pub(super) struct BoxTest<'a> {
     pub obstacle: &'a ObstacleLanes<'a>,
     pub class: &'a CoverClass,
     pub level: usize,
     pub frames: &'a [Frame],
-    pub poses: &'a PoseLanes,
+    pub poses: &'a [CellPose],
     pub half: HalfWidths,
     /// Boxes not yet known to be in contact, in which balls are in question.
     pub live: u32,
-    /// Probes that may touch in some of the boxes, one bit each.
+    /// Groups of the largest balls that may touch in some of the boxes, one bit each.
     pub probes: u32,
     /// Boxes where any ball is near.
     pub near: u32,
@@ -78,14 +52,14 @@ impl BoxTest<'_> {
         simd: S,
         pairs: &[NearGroup],
         places: &mut PlaceMemo,
-        witnesses: &mut Witnesses,
+        witnesses: &mut [Witnesses],
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
-        self.probe(simd);
+        self.probe(simd, places);
         open.clear();
         if self.level == 0 && !self.obstacle.is_exact {
-            self.recall(simd, places, witnesses);
+            self.recall(simd, witnesses);
         }
         for &pair in pairs {
             open.push(pair);
@@ -98,48 +72,59 @@ impl BoxTest<'_> {
         }
     }
 
-    /// Finds boxes in contact with the large balls.
+    /// Finds boxes in contact with the largest balls.
     #[inline(always)]
-    fn probe<S: Simd>(&mut self, simd: S) {
+    fn probe<S: Simd>(&mut self, simd: S, places: &mut PlaceMemo) {
         let ([element], [Some(contact)]) = (self.obstacle.elements, self.obstacle.contacts.as_slice()) else { return };
-        let paths = &self.class.probe_paths[self.level];
-        let mut rest = self.probes;
-        while rest != 0 && self.live != 0 {
-            let number = rest.trailing_zeros() as usize;
-            rest &= rest - 1;
-            let (probe, path_m) = (&self.class.probes[number], paths[number]);
-            let stays = if self.level == 0 { 0.0 } else { path_m };
-            let reach = probe.radius + contact.radius - self.obstacle.rounding;
-            let path = &self.class.paths[probe.path as usize];
-            let ball = probe_centre(probe, &self.frames[path.last as usize]);
-            let distance = distance_from_core(simd, self.poses, ball, contact.core, element.centre);
-            if at_most(simd, distance, reach + path_m) & self.live == 0 {
-                self.probes &= !(1 << number);
+        for (number, &at) in self.class.probes.iter().enumerate() {
+            if self.probes >> number & 1 == 0 {
                 continue;
             }
-            let found = at_most(simd, distance, reach - stays) & self.live;
-            self.contact |= found;
-            self.live &= !found;
+            let group = &self.class.groups[at as usize];
+            let place = places.place(simd, self.class, at, self.frames, self.half);
+            let paths = self.class.motions[self.level][at as usize].paths.load(simd);
+            let zero = splat(simd, 0.0);
+            let stays = if self.level == 0 { zero } else { zero - paths };
+            let (mut near, mut rest) = (0, self.live);
+            while rest != 0 {
+                let lane = rest.trailing_zeros();
+                rest &= rest - 1;
+                let pose = &self.poses[lane as usize];
+                let gaps = gaps(simd, group, place, pose, element.centre, *contact, self.obstacle.rounding);
+                if at_most(gaps, stays) & group.lanes != 0 {
+                    self.contact |= 1 << lane;
+                    self.live &= !(1 << lane);
+                }
+                near |= at_most(gaps, paths) & group.lanes;
+            }
+            self.probes &= !(u32::from(near == 0) << number);
         }
     }
 
-    /// Finds cells that are blocked by what blocked others.
+    /// Finds cells that are blocked by balls that blocked others.
     #[inline(always)]
-    fn recall<S: Simd>(&mut self, simd: S, places: &mut PlaceMemo, witnesses: &Witnesses) {
-        for witness in &witnesses.known {
-            let Some(Witness { group, ball, element }) = *witness else { return };
-            if self.live == 0 {
-                return;
+    fn recall<S: Simd>(&mut self, simd: S, witnesses: &[Witnesses]) {
+        for witnesses in witnesses {
+            let group = &witnesses.group;
+            if group.lanes == 0 || self.live == 0 {
+                continue;
             }
-            let element = &self.obstacle.elements[element as usize];
+            let path = &self.class.paths[group.path as usize];
+            let mut place = GroupPlace::ZERO;
+            place.compute(simd, group, path, self.frames, self.half);
+            let element = &self.obstacle.elements[witnesses.element as usize];
             let reach = element.radius + self.obstacle.rounding;
             let target = Target { core: element.core, centre: element.centre, reach };
-            let place = places.place(simd, self.class, group, self.frames, self.half);
-            let motion = &self.class.motions[0][group as usize];
-            let balls = &self.class.groups[group as usize];
-            let near = near_boxes(simd, balls, place, ball as usize, motion, self.poses, &target, self.half) & self.live;
-            self.contact |= near;
-            self.live &= !near;
+            let mut rest = self.live;
+            while rest != 0 {
+                let lane = rest.trailing_zeros();
+                rest &= rest - 1;
+                let pose = &self.poses[lane as usize];
+                if near_balls(simd, group, &place, &witnesses.motion, pose, &target, self.half) != 0 {
+                    self.contact |= 1 << lane;
+                    self.live &= !(1 << lane);
+                }
+            }
         }
     }
 
@@ -150,7 +135,7 @@ impl BoxTest<'_> {
         simd: S,
         pair: NearGroup,
         places: &mut PlaceMemo,
-        witnesses: &mut Witnesses,
+        witnesses: &mut [Witnesses],
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
@@ -170,17 +155,17 @@ impl BoxTest<'_> {
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            let pose = self.poses.pose(lane);
-            let near = near_balls(simd, group, place, motion, &pose, &target, self.half) & pair.balls;
+            let pose = &self.poses[lane];
+            let near = near_balls(simd, group, place, motion, pose, &target, self.half) & pair.balls;
             if near == 0 {
                 continue;
             }
             if self.level == 0 && element.is_leaf && near & group.leaves != 0 {
-                if self.is_blocked(simd, group, place, &pose, pair.element, near & group.leaves) {
+                if self.is_blocked(simd, group, place, pose, pair.element, near & group.leaves) {
                     self.contact |= 1 << lane;
                     self.live &= !(1 << lane);
                     let ball = (near & group.leaves).trailing_zeros();
-                    witnesses.add(Witness { group: pair.group, ball, element: pair.element });
+                    witnesses[group.path as usize].add(class, pair.group, ball, pair.element);
                     continue;
                 }
                 self.near |= 1 << lane;
@@ -214,7 +199,8 @@ impl BoxTest<'_> {
         let centre = self.obstacle.elements[element as usize].centre;
         match self.obstacle.contacts[element as usize] {
             Some(contact) => {
-                touching_balls(simd, group, place, pose, centre, contact, self.obstacle.rounding) & near != 0
+                let gaps = gaps(simd, group, place, pose, centre, contact, self.obstacle.rounding);
+                at_most(gaps, splat(simd, 0.0)) & near != 0
             }
             None => false,
         }

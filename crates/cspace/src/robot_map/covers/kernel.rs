@@ -1,4 +1,4 @@
-//! The kernels: sixteen balls of the robot in one box of joint space, and one ball in sixteen boxes.
+//! The kernels: sixteen balls of the robot in one box of joint space.
 //!
 //! A box is free of a ball if a plane separates the ball from the obstacle in the whole box. The plane is the one across the
 //! shortest way from the obstacle at the centre of the box; toward it the ball moves by no more than its displacements by half
@@ -10,8 +10,8 @@ use elbowroom_validity::lanes::{PointRow, V3, splat};
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
-use super::cover_class::{CoverGroup, CoverPath, GroupMotion, Probe};
-use super::obstacle_lanes::{CellPose, ContactCore, PoseLanes, of_lane};
+use super::cover_class::{CoverGroup, CoverPath, GroupMotion};
+use super::obstacle_lanes::{CellPose, ContactCore};
 use super::solid_core::SolidCore;
 
 /// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
@@ -102,9 +102,10 @@ pub(super) fn near_balls<S: Simd>(
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
 }
 
-/// Balls of a group that touch what proves a contact at the centre of the box, one bit each.
+/// Distances of a group's balls from what proves a contact with the obstacle at the centre of the box, less the sums of the
+/// radii: at most 0 where they touch.
 #[inline(always)]
-pub(super) fn touching_balls<S: Simd>(
+pub(super) fn gaps<S: Simd>(
     simd: S,
     group: &CoverGroup,
     place: &GroupPlace,
@@ -112,78 +113,18 @@ pub(super) fn touching_balls<S: Simd>(
     centre: [f32; 3],
     contact: ContactCore,
     rounding: f32,
-) -> u32 {
+) -> f32x16<S> {
     let arm = place.centres.load(simd);
     let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, centre);
     let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, origin)));
-    let limit = group.radii.load(simd) + splat(simd, contact.radius - rounding);
-    group.lanes & contact.core.signed_distance(simd, p).simd_le(limit).to_bitmask() as u32
-}
-
-/// Which of sixteen boxes have a ball of a group not proven apart from a solid.
-#[inline(always)]
-pub(super) fn near_boxes<S: Simd>(
-    simd: S,
-    group: &CoverGroup,
-    place: &GroupPlace,
-    ball: usize,
-    motion: &GroupMotion,
-    poses: &PoseLanes,
-    target: &Target,
-    half: HalfWidths,
-) -> u32 {
-    let arm = of_lane(&place.centres, ball);
-    let p = to_obstacle(simd, poses, arm).minus(V3::splat(simd, target.centre));
-    let vector = target.core.vector_to(simd, p);
-    let squared = vector.dot(vector);
-    let reach = group.radii.0[ball] + target.reach;
-    let [x, y, z] = &poses.columns;
-    let u = V3(x.load(simd).dot(vector), y.load(simd).dot(vector), z.load(simd).dot(vector));
-    let first = if half.lanes_turn { [-arm[1], arm[0], 0.0] } else { [0.0, 0.0, 1.0] };
-    let mut needed = squared.sqrt() * splat(simd, reach + motion.curvatures.0[ball]);
-    needed = (u.dot(V3::splat(simd, first)) * splat(simd, half.lanes)).abs() + needed;
-    needed = u.dot(V3::splat(simd, of_lane(&place.along[0], ball))).abs() + needed;
-    needed = u.dot(V3::splat(simd, of_lane(&place.along[1], ball))).abs() + needed;
-    0xffff & !(squared.simd_gt(needed).to_bitmask() as u32)
-}
-
-/// A point of the first joint's frame in that of the obstacle.
-#[inline(always)]
-fn to_obstacle<S: Simd>(simd: S, poses: &PoseLanes, p: [f32; 3]) -> V3<S> {
-    let at = poses.columns[0].load(simd).times_plus(splat(simd, p[0]), poses.origin.load(simd));
-    let at = poses.columns[1].load(simd).times_plus(splat(simd, p[1]), at);
-    poses.columns[2].load(simd).times_plus(splat(simd, p[2]), at)
-}
-
-/// The centre of a ball at the centre of a box, seen from the first joint.
-#[inline(always)]
-pub(super) fn probe_centre(probe: &Probe, frame: &Frame) -> [f32; 3] {
-    let mut p = frame.origin;
-    for (column, at) in frame.columns.iter().zip(probe.centre) {
-        for k in 0..3 {
-            p[k] += column[k] * at;
-        }
-    }
-    p
-}
-
-/// Distances of a ball's centre from a core at the centres of sixteen boxes; it is seen from the first joint, `offset` is the
-/// core's place.
-#[inline(always)]
-pub(super) fn distance_from_core<S: Simd>(
-    simd: S,
-    poses: &PoseLanes,
-    ball: [f32; 3],
-    core: SolidCore,
-    offset: [f32; 3],
-) -> f32x16<S> {
-    core.signed_distance(simd, to_obstacle(simd, poses, ball).minus(V3::splat(simd, offset)))
+    let reach = group.radii.load(simd) + splat(simd, contact.radius - rounding);
+    contact.core.signed_distance(simd, p) - reach
 }
 
 /// Lanes that are at most a limit, one bit each; NaN is not.
 #[inline(always)]
-pub(super) fn at_most<S: Simd>(simd: S, v: f32x16<S>, limit: f32) -> u32 {
-    v.simd_le(splat(simd, limit)).to_bitmask() as u32
+pub(super) fn at_most<S: Simd>(v: f32x16<S>, limit: f32x16<S>) -> u32 {
+    v.simd_le(limit).to_bitmask() as u32
 }
 
 #[inline(always)]

@@ -33,6 +33,7 @@ mod place_memo;
 mod settlement;
 mod solid_core;
 mod step_chain;
+mod witnesses;
 
 pub use builder::{CoverMapBuilder, CoverMapSettings};
 pub use obstacle::CoverObstacle;

@@ -1,7 +1,6 @@
 //! An obstacle at its place, seen from sixteen values of the axis in lanes.
 
 use elbowroom_spatial::Pose;
-use elbowroom_validity::lanes::{LANES, PointRow};
 
 use super::axis_roles::AxisRoles;
 use super::block_level::single;
@@ -22,29 +21,6 @@ pub(super) struct CellPose {
     pub origin: [f32; 3],
 }
 
-/// Poses of the first joint's frame in that of the obstacle, one per lane.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PoseLanes {
-    pub columns: [PointRow; 3],
-    pub origin: PointRow,
-}
-
-impl PoseLanes {
-    /// The pose of one lane.
-    #[inline(always)]
-    #[allow(clippy::inline_always, reason = "part of a kernel")]
-    pub fn pose(&self, lane: usize) -> CellPose {
-        let [x, y, z] = &self.columns;
-        CellPose { columns: [of_lane(x, lane), of_lane(y, lane), of_lane(z, lane)], origin: of_lane(&self.origin, lane) }
-    }
-}
-
-#[inline(always)]
-#[allow(clippy::inline_always, reason = "part of a kernel")]
-pub(super) fn of_lane(row: &PointRow, lane: usize) -> [f32; 3] {
-    [row.0[0].0[lane], row.0[1].0[lane], row.0[2].0[lane]]
-}
-
 /// What proves a contact: every point of a cover's sphere is within its slack of the link.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ContactCore {
@@ -59,8 +35,8 @@ pub(super) struct ObstacleLanes<'a> {
     pub elements: &'a [Element],
     /// Per element, what proves a contact with a sphere of a cover; none for inner nodes.
     pub contacts: Vec<Option<ContactCore>>,
-    /// Per level, sixteen boxes of the axis in lanes after the other.
-    pub poses: Vec<Vec<PoseLanes>>,
+    /// Per level and box of the first axis.
+    pub poses: Vec<Vec<CellPose>>,
     /// Rounding errors of a distance, m.
     pub rounding: f32,
     /// Counted contacts are those of the solids; otherwise those of the covers.
@@ -89,7 +65,7 @@ impl<'a> ObstacleLanes<'a> {
             let boxes = roles.lane_count().div_ceil(size);
             let value = |at: usize| axis.border(at * size) + 0.5 * size as f64 * axis.step();
             let pose = |at: usize| at_zero * first.moved(value(at) * first.multiplier);
-            (0..boxes.div_ceil(LANES)).map(|group| pose_lanes(group * LANES, pose)).collect()
+            (0..boxes).map(|at| CellPose::new(&pose(at))).collect()
         };
         Self {
             elements: &obstacle.elements,
@@ -101,20 +77,14 @@ impl<'a> ObstacleLanes<'a> {
     }
 }
 
-fn pose_lanes(first: usize, pose: impl Fn(usize) -> Pose) -> PoseLanes {
-    let mut rows = PoseLanes { columns: [PointRow::ZERO; 3], origin: PointRow::ZERO };
-    for lane in 0..LANES {
-        let pose = pose(first + lane);
-        let columns = [pose.rotation.x_axis(), pose.rotation.y_axis(), pose.rotation.z_axis()].map(single);
-        let origin = single(pose.translation);
-        for k in 0..3 {
-            for (row, column) in rows.columns.iter_mut().zip(&columns) {
-                row.0[k].0[lane] = column[k];
-            }
-            rows.origin.0[k].0[lane] = origin[k];
+impl CellPose {
+    fn new(pose: &Pose) -> Self {
+        let rotation = pose.rotation;
+        Self {
+            columns: [rotation.x_axis(), rotation.y_axis(), rotation.z_axis()].map(single),
+            origin: single(pose.translation),
         }
     }
-    rows
 }
 
 fn contact(element: &Element, obstacle: &CoverObstacle, slack_m: Option<f64>) -> Option<ContactCore> {
