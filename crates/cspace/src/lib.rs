@@ -46,7 +46,7 @@ pub use occupancy_bitmap::OccupancyBitmap;
 pub use planar_arm::{ArmDimension, ArmError, PlanarArm};
 pub use planar_map::{PlanarMapBuilder, PlanarMapError};
 pub use robot_map::{
-    BoxTree, CellBox, CoverMapBuilder, CoverMapSettings, CoverObstacle, MAX_JOINTS, OccupancyArray, RemainingJoints, RobotMapBuilder, RobotMapError, RobotMapSettings,
-    RobotMapStats,
+    BoxTree, CellBox, CoverMapBuilder, CoverMapSettings, CoverObstacle, MAX_JOINTS, OccupancyArray, RemainingJoints,
+    RobotMapBuilder, RobotMapError, RobotMapSettings, RobotMapStats,
 };
 pub use seed_expansion::{SeedExpansion, expand_from_seeds};

@@ -8,7 +8,8 @@ mod robots;
 use std::sync::Arc;
 
 use elbowroom_cspace::{
-    CoverMapBuilder, CoverMapSettings, Grid, GridAxis, Layer, OccupancyBitmap, RemainingJoints, RobotMapError,
+    CoverMapBuilder, CoverMapSettings, Grid, GridAxis, Layer, OccupancyBitmap, PlanarArm, RemainingJoints,
+    RobotMapError,
 };
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere};
@@ -201,6 +202,63 @@ fn no_collision_of_random_robots_lies_in_a_free_cell() {
         touched += u32::from(compare(&case, &grid, &found, 4000) > 0);
     }
     assert!(touched >= 6, "{touched}");
+}
+
+/// The arm of `PlanarArm::KR125_SIZED` as links of round solids; its joints are 0 at these planar angles, and the third turns
+/// the other way round where `reversed`.
+fn planar_robot(zero: [f64; 3], reversed: bool) -> Robot {
+    let arm = PlanarArm::KR125_SIZED;
+    let at = |x, z, pitch| Pose::from_xyz_rpy([x, 0.0, z], [0.0, pitch, 0.0]);
+    let joint = |i: usize, origin: Pose, axis: Vec3, [lower, upper]: [f64; 2]| Joint {
+        name: ["a", "b", "c"][i].into(),
+        kind: JointKind::Revolute,
+        parent: LinkId(i),
+        child: LinkId(i + 1),
+        origin,
+        axis,
+        limits: Limits { lower: lower.to_radians(), upper: upper.to_radians(), ..Limits::symmetric(1.0) },
+        mimic: None,
+    };
+    let sense = if reversed { -1.0 } else { 1.0 };
+    let third = if reversed { [-150.0, 120.0] } else { [-120.0, 150.0] };
+    let joints = vec![
+        joint(0, Pose::from_xyz_rpy([0.0; 3], [0.0, 0.0, zero[0]]), Vec3::Z, [-170.0, 170.0]),
+        joint(1, at(arm.offset_m, arm.height_m, zero[1]), Vec3::Y, [-90.0, 90.0]),
+        joint(2, at(0.0, arm.upper_length_m, zero[2]), Vec3::Y * sense, third),
+    ];
+    let links = (0..4).map(|i| format!("link_{i}")).collect();
+    let mut robot = Robot::new(Chain::new("planar", links, joints).unwrap());
+    let mut add = |link: usize, shape, in_link| {
+        robot.colliders[link].push(Collider { name: String::new(), shape, in_link });
+    };
+    let half_length = 0.5 * arm.upper_length_m;
+    add(2, Shape::Capsule(Capsule { half_length, radius: arm.upper_radius_m }), at(0.0, half_length, 0.0));
+    let (half_length, radius) = (0.5 * arm.fore_length_m, arm.fore_radius_m);
+    add(3, Shape::Cylinder(Cylinder { half_length, radius }), at(half_length, 0.0, std::f64::consts::FRAC_PI_2));
+    add(3, Shape::Sphere(Sphere { radius }), Pose::IDENTITY);
+    add(3, Shape::Sphere(Sphere { radius: arm.wrist_radius_m }), at(arm.fore_length_m, 0.0, 0.0));
+    robot
+}
+
+#[test]
+fn arms_in_a_plane_have_the_planar_filler() {
+    for (zero, reversed) in [([0.0; 3], false), ([0.4, 0.3, -0.7], false), ([0.0, -0.2, 0.5], true)] {
+        let mut case = Case::new(vec![
+            cuboid([1.3, 0.4, 0.9], [0.0, 0.0, 0.5], [0.5, 0.4, 0.6]),
+            (Shape::Sphere(Sphere { radius: 0.25 }), Pose::from_xyz_rpy([0.9, -0.6, 1.4], [0.0; 3])),
+            (
+                Shape::Cylinder(Cylinder { half_length: 0.3, radius: 0.2 }),
+                Pose::from_xyz_rpy([-1.2, 0.3, 0.6], [0.0; 3]),
+            ),
+        ]);
+        case.robot = planar_robot(zero, reversed);
+        case.base = Pose::from_xyz_rpy([0.1, -0.05, 0.02], [0.1, 0.2, 0.3]);
+        case.step = 5.0;
+        assert!(builder(&case, &grid(&case), CoverMapSettings::default()).is_planar());
+        check(&case, 20_000);
+        case.robot.colliders[2][0].in_link.translation.y = 0.01;
+        assert!(!builder(&case, &grid(&case), CoverMapSettings::default()).is_planar());
+    }
 }
 
 #[test]

@@ -81,7 +81,8 @@ fn measure(name: &str, others: &str, exact: bool, case: &Case, samples: usize) {
     let hits = if samples == 0 { 1 } else { compare(case, &grid, &map, samples) };
     assert!(hits > 0, "no sample is in collision: the test is void");
     let mode = if exact { "exact" } else { "covers" };
-    let needless = if others == "any" || samples == 0 { f64::NAN } else { 100.0 * needless_share(case, &grid, &map, 1000) };
+    let needless =
+        if others == "any" || samples == 0 { f64::NAN } else { 100.0 * needless_share(case, &grid, &map, 1000) };
     println!(
         "{name:<14} {others:<7} {mode:<7} {build_ms:>8.0} {all_ms:>8.2} {one_ms:>9.2} {:>9} {needless:>7.2} %",
         map.blocked()

@@ -77,17 +77,18 @@ mod tests {
                 (0..count).map(|_| Ball { centre: Vec3::new(next(), next(), next()), radius: 0.1 * next() }).collect();
             let groups = ball_tree(&balls);
             let mut leaves = 0;
-            let mut open: Vec<(u32, Option<Ball>)> = vec![(0, None)];
+            let mut open: Vec<(u32, Vec<Ball>)> = vec![(0, Vec::new())];
             while let Some((group, above)) = open.pop() {
                 let group = &groups[group as usize];
                 assert!((1..=LANES).contains(&group.balls.len()));
                 for (ball, &below) in group.balls.iter().zip(&group.below) {
-                    let fits = |a: &Ball| a.centre.distance(ball.centre) + ball.radius <= a.radius + 1e-12;
-                    assert!(above.as_ref().is_none_or(fits));
-                    leaves += usize::from(below == LEAF);
                     if below != LEAF {
-                        open.push((below, Some(*ball)));
+                        open.push((below, above.iter().copied().chain([*ball]).collect()));
+                        continue;
                     }
+                    leaves += 1;
+                    let fits = |a: &Ball| a.centre.distance(ball.centre) + ball.radius <= a.radius;
+                    assert!(above.iter().all(fits));
                 }
             }
             assert_eq!(leaves, count);

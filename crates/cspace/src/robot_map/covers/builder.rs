@@ -18,6 +18,7 @@ use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
 use super::filler::{Filler, OpenCells};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
+use super::planar_filler::PlanarFiller;
 use super::settlement::Settlement;
 use super::step_chain::StepChain;
 use crate::bits::ones;
@@ -27,6 +28,10 @@ use crate::{Grid, Layer, RowSpan};
 const SLACK_SHARE: f64 = 0.002;
 const LEAST_SLACK_M: f64 = 0.001;
 const MOST_SLACK_M: f64 = 0.005;
+
+/// Most cells of all three axes, and of the two that are not in lanes: tables of them take 256 MiB and 200 MB.
+const MOST_CELLS: usize = 1 << 31;
+const MOST_ROWS: usize = 1 << 20;
 
 /// Settings of a [`CoverMapBuilder`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -64,6 +69,7 @@ pub struct CoverMapBuilder {
     roles: AxisRoles,
     steps: StepChain,
     classes: Vec<CoverClass>,
+    planar: Option<PlanarFiller>,
     slack_m: f64,
     is_exact: bool,
 }
@@ -72,7 +78,7 @@ impl CoverMapBuilder {
     /// For a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the joint values.
     ///
     /// # Errors
-    /// As [`RobotMapBuilder::new`], and links that are not all carried by one joint of the map.
+    /// As [`RobotMapBuilder::new`], links that are not all carried by one joint of the map, and more cells than tables hold.
     pub fn new(
         robot: &Robot,
         base_in_world: Pose,
@@ -84,8 +90,13 @@ impl CoverMapBuilder {
         let exact = RobotMapBuilder::new(robot, base_in_world, grid.axes(), &joints, remaining)?;
         let groups = RigidGroups::new(robot, &exact.chain)?.groups;
         let roles = AxisRoles::new(grid, &groups).ok_or(RobotMapError::NoCommonJoint)?;
+        let [first, second] = roles.other_counts();
+        if first * second > MOST_ROWS || grid.cells() > MOST_CELLS {
+            return Err(RobotMapError::Memory { mib: MOST_CELLS >> 23 });
+        }
         let reach = reach_m(robot);
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
+        let planar = PlanarFiller::new(&exact.chain, &groups, grid, slack_m);
         let mut steps = StepChain::default();
         let covers = covers(&groups, slack_m)?;
         let covered: Vec<CoveredGroup<'_>> = groups
@@ -98,12 +109,18 @@ impl CoverMapBuilder {
             })
             .collect();
         let classes = classes(&covered, &steps, grid, &roles);
-        Ok(Self { grid: grid.clone(), roles, steps, classes, slack_m, is_exact: settings.exact, exact })
+        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slack_m, is_exact: settings.exact, exact })
     }
 
     /// The grid.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// True where the robot is an arm in a plane with round links: convex obstacles then take hundredths of a millisecond, as
+    /// with a [`PlanarMapBuilder`](crate::PlanarMapBuilder).
+    pub fn is_planar(&self) -> bool {
+        self.planar.is_some()
     }
 
     /// Largest protrusion of a cover from its link, m.
@@ -130,9 +147,14 @@ impl CoverMapBuilder {
     /// # Errors
     /// A pose that is not finite, or too far away.
     pub fn layer(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<Layer, RobotMapError> {
-        let placed = [PlacedObstacle::new(&obstacle.shape, in_world)?];
-        if self.exact.is_blocked_throughout(&placed) {
+        obstacle.validate_place(in_world)?;
+        if self.exact.has_static_solids()
+            && self.exact.is_blocked_throughout(&[PlacedObstacle::new(&obstacle.shape, in_world)?])
+        {
             return Ok(full(&self.grid));
+        }
+        if let Some(layer) = self.planar.as_ref().and_then(|planar| planar.layer(&obstacle.shape, in_world)) {
+            return Ok(layer);
         }
         let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
         let slack_m = self.is_exact.then_some(self.slack_m);
@@ -140,7 +162,9 @@ impl CoverMapBuilder {
         let mut filler = Filler::new(&lanes, &self.classes, self.roles, first);
         filler.fill();
         let Filler { mut bits, uncertain, .. } = filler;
-        self.settle(&placed, &uncertain, &mut bits);
+        if self.is_exact {
+            self.settle(&[PlacedObstacle::new(&obstacle.shape, in_world)?], &uncertain, &mut bits);
+        }
         Ok(bits.to_layer(self.grid.shape()))
     }
 

@@ -115,13 +115,7 @@ pub(super) fn classes(
 }
 
 impl CoverClass {
-    fn new(
-        uses: [bool; 2],
-        groups: &[&CoveredGroup<'_>],
-        steps: &StepChain,
-        grid: &Grid,
-        roles: &AxisRoles,
-    ) -> Self {
+    fn new(uses: [bool; 2], groups: &[&CoveredGroup<'_>], steps: &StepChain, grid: &Grid, roles: &AxisRoles) -> Self {
         let mut class = Self {
             uses,
             groups: Vec::new(),

@@ -234,7 +234,11 @@ impl BoxTest<'_> {
         }
         let boxes = |balls: u32| ones(balls.into()).fold(0, |sum, ball| sum | boxes_of[ball]);
         if of_element != 0 {
-            push_elements(NearGroup { boxes: boxes(of_element), balls: of_element, ..pair }, self.obstacle.elements, open);
+            push_elements(
+                NearGroup { boxes: boxes(of_element), balls: of_element, ..pair },
+                self.obstacle.elements,
+                open,
+            );
         }
         if kept != 0 && !are_cells {
             self.near |= boxes(kept);

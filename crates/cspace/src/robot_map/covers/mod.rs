@@ -14,7 +14,9 @@
 //! | `step_chain.rs`, `cover_class.rs`, `ball_tree.rs` | the moving joints; covers of the links and their motion |
 //! | `block_level.rs` | boxes of one size, and where the joints are at their centres |
 //! | `obstacle.rs`, `solid_core.rs`, `obstacle_lanes.rs` | obstacles; distances from them; an obstacle seen from sixteen cells |
-//! | `filler.rs`, `group_test.rs`, `place_memo.rs`, `kernel.rs` | boxes halved; one box; places that are known; sixteen balls at a time |
+//! | `filler.rs`, `group_test.rs`, `witnesses.rs` | boxes halved; one box; balls that blocked others |
+//! | `kernel.rs`, `place_memo.rs` | sixteen balls at a time; places that are known |
+//! | `planar_filler.rs` | arms in a plane with round links, which have a faster filler |
 //! | `settlement.rs` | cells that the covers leave open, by exact queries |
 //! | `cell_bits.rs` | blocked cells as bits |
 
@@ -30,6 +32,7 @@ mod kernel;
 mod obstacle;
 mod obstacle_lanes;
 mod place_memo;
+mod planar_filler;
 mod settlement;
 mod solid_core;
 mod step_chain;

@@ -7,6 +7,7 @@ use elbowroom_validity::{Ball, SphereCover};
 use super::super::error::RobotMapError;
 use super::ball_tree::split;
 use super::solid_core::SolidCore;
+use crate::ConvexObstacle;
 
 /// Least extent of a mesh whose form is looked at, m.
 const LEAST_EXTENT_M: f64 = 1e-9;
@@ -72,6 +73,15 @@ impl CoverObstacle {
         }
     }
 
+    /// Refuses a place that is not finite, or too far away.
+    pub(super) fn validate_place(&self, in_world: &Pose) -> Result<(), RobotMapError> {
+        let farthest = in_world.translation.abs().max_element() + self.reach_m + self.frame.translation.length();
+        if in_world.is_finite() && farthest <= ConvexObstacle::MAX_COORDINATE_M {
+            return Ok(());
+        }
+        Err(RobotMapError::InvalidPlacement("an obstacle".into()))
+    }
+
     fn solid(shape: &Shape, core: SolidCore, radius: f64, frame: Pose) -> Self {
         let reach_m = match shape {
             Shape::HalfSpace(_) => 0.0,
@@ -113,7 +123,7 @@ fn box_core(half: Vec3) -> SolidCore {
 }
 
 /// The box whose eight corners are the vertices of a mesh: half extents, and its frame.
-fn box_of(mesh: &TriMesh) -> Option<(Vec3, Pose)> {
+pub(super) fn box_of(mesh: &TriMesh) -> Option<(Vec3, Pose)> {
     let corners = mesh.vertices();
     if corners.len() != 8 {
         return None;
