@@ -7,7 +7,7 @@ use elbowroom_cspace::{
     CoverMapBuilder, CoverMapSettings, Grid, GridAxis, Layer, OccupancyBitmap, RemainingJoints, RobotMapBuilder,
     RobotMapError,
 };
-use elbowroom_proximity::Shape;
+use elbowroom_formats::Shape;
 use elbowroom_spatial::Pose;
 
 use super::BlockedCells;
@@ -29,7 +29,8 @@ impl MapFiller {
         exact: bool,
     ) -> Result<Self, RobotMapError> {
         let (model, base) = (&robot.robot, robot.base_in_world);
-        if let (false, Ok(axes), Ok(joints)) = (exact, <[GridAxis; 3]>::try_from(axes), <[usize; 3]>::try_from(joints))
+        let three = <[GridAxis; 3]>::try_from(axes.to_vec()).ok().zip(<[usize; 3]>::try_from(joints).ok());
+        if let Some((axes, joints)) = three.filter(|_| !exact)
             && let Ok(grid) = Grid::new(axes)
         {
             match CoverMapBuilder::new(model, base, &grid, joints, others, CoverMapSettings::default()) {

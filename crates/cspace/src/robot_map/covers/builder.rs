@@ -25,9 +25,9 @@ use crate::bits::ones;
 use crate::{Grid, Layer, RowSpan};
 
 /// Slack of covers as a share of the robot's reach, and its limits, m.
-const SLACK_SHARE: f64 = 0.002;
+const SLACK_SHARE: f64 = 0.0018;
 const LEAST_SLACK_M: f64 = 0.001;
-const MOST_SLACK_M: f64 = 0.005;
+const MOST_SLACK_M: f64 = 0.0045;
 
 /// Most cells of all three axes, and of the two that are not in lanes: tables of them take 256 MiB and 200 MB.
 const MOST_CELLS: usize = 1 << 31;
@@ -36,7 +36,7 @@ const MOST_ROWS: usize = 1 << 20;
 /// Settings of a [`CoverMapBuilder`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CoverMapSettings {
-    /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 5 mm.
+    /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 4.5 mm.
     pub slack_m: Option<f64>,
     /// True: cells that the covers leave open are settled by exact queries. False: they are blocked.
     pub exact: bool,
