@@ -7,7 +7,7 @@ use elbowroom_cspace::{
     CoverMapBuilder, CoverMapSettings, Grid, GridAxis, Layer, OccupancyBitmap, RemainingJoints, RobotMapBuilder,
     RobotMapError,
 };
-use elbowroom_formats::Shape;
+use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
 use super::BlockedCells;
