@@ -12,11 +12,11 @@ use elbowroom_kinematics::JointKind;
 use elbowroom_robot::ObjectId;
 
 pub use self::blocked_cells::BlockedCells;
-use self::filler::MapFiller;
+use self::solids_map::SolidsMap;
 use crate::plan::request_validation::select_robot;
 
 mod blocked_cells;
-mod filler;
+mod solids_map;
 
 /// A request for the map of a robot.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -104,12 +104,12 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         };
         wrong(format!("robot \"{}\": {e}", robot.name), hint)
     };
-    let filler = MapFiller::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
-    let base = filler.base_in_world();
+    let solids_map = SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
+    let base = solids_map.base_in_world();
     let solids = |o: &elbowroom_scene::Object| request.model.solids(&o.shape, &o.in_world, &base);
     let mut obstacles = Vec::with_capacity(cell.objects.len());
     for object in &cell.objects {
-        let (blocks, time) = filler.fill(&solids(object)).map_err(refuse)?;
+        let (blocks, time) = solids_map.fill(&solids(object)).map_err(refuse)?;
         obstacles.push(MapObstacle { name: object.name.clone(), model: request.model, blocks, time });
     }
     let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
@@ -119,7 +119,7 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         }
         let all: Vec<_> =
             cell.objects.iter().enumerate().filter(|o| which(ObjectId(o.0))).flat_map(|o| solids(o.1)).collect();
-        filler.fill(&all).map(|(cells, _)| cells.blocked()).map_err(refuse)
+        solids_map.fill(&all).map(|(cells, _)| cells.blocked()).map_err(refuse)
     };
     let dense = blocked_cells::union(&axes, obstacles.iter().map(|o| &o.blocks));
     let blocked = count(dense.as_ref(), &|_| true)?;

@@ -13,12 +13,12 @@ use super::super::error::RobotMapError;
 use super::super::placed_obstacle::PlacedObstacle;
 use super::super::rigid_groups::{RigidGroup, RigidGroups};
 use super::axis_roles::AxisRoles;
+use super::box_division::{BoxDivision, OpenCells};
 use super::cell_bits::{CellBits, CellBox};
 use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
-use super::filler::{Filler, OpenCells};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
-use super::planar_filler::PlanarFiller;
+use super::planar_arm_map::PlanarArmMap;
 use super::settlement::Settlement;
 use super::step_chain::StepChain;
 use crate::bits::ones;
@@ -69,7 +69,7 @@ pub struct CoverMapBuilder {
     roles: AxisRoles,
     steps: StepChain,
     classes: Vec<CoverClass>,
-    planar: Option<PlanarFiller>,
+    planar: Option<PlanarArmMap>,
     slack_m: f64,
     is_exact: bool,
 }
@@ -96,7 +96,7 @@ impl CoverMapBuilder {
         }
         let reach = reach_m(robot);
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
-        let planar = PlanarFiller::new(&exact.chain, &groups, grid, slack_m);
+        let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
         let mut steps = StepChain::default();
         let covers = covers(&groups, slack_m)?;
         let covered: Vec<CoveredGroup<'_>> = groups
@@ -159,9 +159,9 @@ impl CoverMapBuilder {
         let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
         let slack_m = self.is_exact.then_some(self.slack_m);
         let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles, slack_m);
-        let mut filler = Filler::new(&lanes, &self.classes, self.roles, first);
-        filler.fill();
-        let Filler { mut bits, uncertain, .. } = filler;
+        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
+        division.run();
+        let BoxDivision { mut bits, uncertain, .. } = division;
         if self.is_exact {
             self.settle(&[PlacedObstacle::new(&obstacle.shape, in_world)?], &uncertain, &mut bits);
         }

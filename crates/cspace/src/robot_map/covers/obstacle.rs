@@ -9,7 +9,7 @@ use super::ball_tree::split;
 use super::solid_core::SolidCore;
 use crate::ConvexObstacle;
 
-/// Least extent of a mesh whose form is looked at, m.
+/// Least extent of a mesh that can be a box, m.
 const LEAST_EXTENT_M: f64 = 1e-9;
 
 /// Children of an inner node of a tree of balls.

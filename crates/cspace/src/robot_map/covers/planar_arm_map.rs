@@ -19,7 +19,7 @@ const CIRCLE_POINTS: u32 = 64;
 
 /// Fills the map of an arm in a plane.
 #[derive(Debug, Clone)]
-pub(super) struct PlanarFiller {
+pub(super) struct PlanarArmMap {
     builder: Arc<Mutex<PlanarMapBuilder>>,
     base_in_world: Pose,
     /// Cells of the third axis where it has the opposite sense.
@@ -34,7 +34,7 @@ struct PlacedSolid {
     pose: Pose,
 }
 
-impl PlanarFiller {
+impl PlanarArmMap {
     /// `None` where the joints or the links are others, or where capsules would protrude from the links by more than
     /// `tolerance_m`.
     pub fn new(chain: &DrivenChain, groups: &[RigidGroup], grid: &Grid, tolerance_m: f64) -> Option<Self> {

@@ -35,7 +35,7 @@ pub(super) struct OpenCells {
 }
 
 /// Fills the map of one obstacle.
-pub(super) struct Filler<'a> {
+pub(super) struct BoxDivision<'a> {
     obstacle: &'a ObstacleLanes<'a>,
     classes: &'a [CoverClass],
     roles: AxisRoles,
@@ -53,7 +53,7 @@ pub(super) struct Filler<'a> {
     pub uncertain: Vec<OpenCells>,
 }
 
-impl<'a> Filler<'a> {
+impl<'a> BoxDivision<'a> {
     pub fn new(obstacle: &'a ObstacleLanes<'a>, classes: &'a [CoverClass], roles: AxisRoles, first: &'a Step) -> Self {
         Self {
             obstacle,
@@ -72,7 +72,7 @@ impl<'a> Filler<'a> {
     }
 
     /// Fills the map, class by class.
-    pub fn fill(&mut self) {
+    pub fn run(&mut self) {
         for (number, class) in self.classes.iter().enumerate() {
             self.places.start(class);
             self.witnesses = Witnesses::none(class);

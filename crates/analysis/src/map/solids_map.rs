@@ -13,14 +13,14 @@ use elbowroom_spatial::Pose;
 use super::BlockedCells;
 
 /// Computes the cells that solids block.
-pub(super) enum MapFiller {
+pub(super) enum SolidsMap {
     /// On sphere covers of the links: three joints that hang on one of them.
     Covers(Box<CoverMapBuilder>),
     /// With the robot's own solids.
     Exact(RobotMapBuilder),
 }
 
-impl MapFiller {
+impl SolidsMap {
     pub fn new(
         robot: &CellRobot,
         axes: &[GridAxis],
