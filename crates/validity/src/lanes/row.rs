@@ -25,6 +25,7 @@ pub fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
 /// Multiplication and addition, rounded once.
 pub trait Fused: Sized {
     /// `self·k + c`, rounded once on every instruction set.
+    #[must_use]
     fn fused(self, k: Self, c: Self) -> Self;
 }
 
