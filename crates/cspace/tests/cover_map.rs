@@ -124,7 +124,7 @@ fn an_open_row_is_settled_where_another_link_blocks_its_first_cell() {
     case.base = Pose::from_xyz_rpy([0.1, -0.05, 0.02], [0.1, 0.2, 0.3]);
     case.step = 6.0;
     case.fixed = Some(vec![0.0, 0.0, 0.0, 0.4, -0.9, 1.0]);
-    let q = [0.14075780521470288, 1.26013349257392, 1.9639711955376886];
+    let q = [0.140_757_805_214_702_88, 1.260_133_492_573_92, 1.963_971_195_537_688_6];
     let cell = grid(&case).cell(q).unwrap();
     for exact in [false, true] {
         assert!(map(&case, CoverMapSettings { exact, ..CoverMapSettings::default() }).is_blocked(cell), "{exact}");

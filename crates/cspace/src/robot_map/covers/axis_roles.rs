@@ -26,7 +26,7 @@ impl AxisRoles {
         let is_alone = |group: &RigidGroup| group.joints[1..].iter().all(|joint| joint.axis != first.axis);
         let lanes = first.axis;
         let fits = groups.iter().all(|group| has_it_first(group) && is_alone(group));
-        let others = [(lanes == 0) as usize, if lanes == 2 { 1 } else { 2 }];
+        let others = [usize::from(lanes == 0), if lanes == 2 { 1 } else { 2 }];
         fits.then(|| Self { lanes, others, counts: computed_counts(grid, groups) })
     }
 

@@ -51,7 +51,7 @@ impl BlockLevel {
                     let axis_cells = &grid.axes()[axis];
                     values[axis] = axis_cells.border(at * size) + 0.5 * size as f64 * axis_cells.step();
                 }
-                frames.extend(steps.from_first(&values).iter().map(Frame::new));
+                frames.extend(steps.seen_from_first(&values).iter().map(Frame::new));
             }
         }
         Self { half, blocks, frames, steps: steps.steps.len() }

@@ -96,9 +96,9 @@ pub(super) fn near_balls<S: Simd>(
     let mut needed = squared.sqrt() * (reach + motion.curvatures.load(simd));
     let lanes = splat(simd, half.lanes);
     let along_lanes = if half.lanes_turn { u.1 * arm.0 - u.0 * arm.1 } else { u.2 };
-    needed = needed + (along_lanes * lanes).abs();
-    needed = needed + u.dot(place.along[0].load(simd)).abs();
-    needed = needed + u.dot(place.along[1].load(simd)).abs();
+    needed += (along_lanes * lanes).abs();
+    needed += u.dot(place.along[0].load(simd)).abs();
+    needed += u.dot(place.along[1].load(simd)).abs();
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
 }
 

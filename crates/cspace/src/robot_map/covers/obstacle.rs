@@ -113,7 +113,9 @@ fn push_balls(elements: &mut Vec<Element>, balls: &mut [Ball]) {
     let centre = [ball.centre.x as f32, ball.centre.y as f32, ball.centre.z as f32];
     elements.push(Element { centre, core: SolidCore::Point, radius: ball.radius as f32, end: 0, is_leaf });
     if !is_leaf {
-        split(balls, FAN_OUT).into_iter().for_each(|part| push_balls(elements, part));
+        for part in split(balls, FAN_OUT) {
+            push_balls(elements, part);
+        }
     }
     elements[at].end = elements.len() as u32;
 }

@@ -81,7 +81,7 @@ impl StepChain {
     }
 
     /// Frames of all steps seen from that of the first, which is carried by the base alone.
-    pub fn from_first(&self, values: &[f64; 3]) -> Vec<Pose> {
+    pub fn seen_from_first(&self, values: &[f64; 3]) -> Vec<Pose> {
         let mut frames: Vec<Pose> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
             let value = values[step.axis] * step.multiplier;
