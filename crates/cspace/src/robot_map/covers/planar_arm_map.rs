@@ -69,7 +69,11 @@ impl PlanarArmMap {
         let is_reversed = along[1].dot(along[2]) < 0.0;
         let offsets = [0.0, fit.upper_angle, fit.fore_angle - fit.upper_angle];
         let planar_grid = planar_grid(grid, offsets, is_reversed)?;
-        let builder = PlanarMapBuilder::new(fit.arm, &planar_grid).ok()?;
+        let mut builder = PlanarMapBuilder::new(fit.arm, &planar_grid).ok()?;
+        // Once for all: the first layer takes twice as long as later ones.
+        let reach = Vec3::X * fit.arm.reach_m();
+        let cuboid = ConvexObstacle::cuboid(Pose::from_translation(reach), Vec3::new(0.2, 0.2, 0.2)).ok()?;
+        builder.build_layer(&cuboid, &mut Layer::new());
         let reversed = is_reversed.then(|| grid.shape()[2] as u16);
         Some(Self { builder: Arc::new(Mutex::new(builder)), base_in_world: base, reversed })
     }
