@@ -214,6 +214,7 @@ pub(crate) enum Written {
   elbowroom map cell.toml                       a table of the blocked cells per object
   elbowroom map cell.toml --out map.npy --json  the cells as NumPy reads them, 0 free, 1 blocked
   elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
+  elbowroom map cell.toml --exact               fewer cells blocked needlessly, tenths of a second per object
   elbowroom map cell.toml --model spheres=8     the obstacle model of the paper, for comparison
 
 Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees
@@ -228,6 +229,9 @@ pub(crate) struct MapArgs {
     /// Obstacle model: exact, slices, sphere, spheres=N or box
     #[arg(long, default_value = "exact")]
     pub(crate) model: ObstacleModel,
+    /// The robot's own solids decide at the border, not sphere covers of its links (always so unless there are three joints)
+    #[arg(long)]
+    pub(crate) exact: bool,
     /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) out: Option<PathBuf>,

@@ -17,7 +17,7 @@ use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let map = map::map(&cell, &MapRequest { robot: args.robot.clone(), model: args.model })?;
+    let map = map::map(&cell, &MapRequest { robot: args.robot.clone(), model: args.model, exact: args.exact })?;
     map.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(path) = &args.out {
         write(&map, path)?;

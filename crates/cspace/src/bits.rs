@@ -28,26 +28,51 @@ pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
 
 /// Calls `found(first, last)` for every run of bits that are set.
 pub(crate) fn for_each_run(words: &[u64], mut found: impl FnMut(u16, u16)) {
-    let bit = |k: usize| words.get(k / 64).is_some_and(|w| w >> (k % 64) & 1 == 1);
+    let end = words.len() * 64;
     let mut k = 0;
-    while k < words.len() * 64 {
-        if words[k / 64] >> (k % 64) == 0 {
+    while k < end {
+        let rest = words[k / 64] >> (k % 64);
+        if rest == 0 {
             k = (k / 64 + 1) * 64;
-        } else if bit(k) {
-            let first = k;
-            while bit(k) {
-                k += 1;
-            }
-            found(first as u16, (k - 1) as u16);
-        } else {
-            k += 1;
+            continue;
         }
+        k += rest.trailing_zeros() as usize;
+        let first = k;
+        while k < end {
+            let clear = !words[k / 64] >> (k % 64);
+            if clear != 0 {
+                k += clear.trailing_zeros() as usize;
+                break;
+            }
+            k = (k / 64 + 1) * 64;
+        }
+        found(first as u16, (k - 1) as u16);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_are_found_as_bit_by_bit() {
+        let mut state = 9;
+        for round in 0..500 {
+            let random = |state: &mut u64| elbowroom_testkit::random::linear_congruential(state);
+            let words: [u64; 3] = [0; 3].map(|_| match round % 3 {
+                0 => random(&mut state),
+                1 => random(&mut state) | random(&mut state) << 1 | random(&mut state) >> 3 | !0 << (round % 64),
+                _ => [0, !0][round / 3 % 2],
+            });
+            let bit = |k: usize| words[k / 64] >> (k % 64) & 1 == 1;
+            let mut found = Vec::new();
+            for_each_run(&words, |first, last| {
+                assert!(first <= last && (last == 191 || !bit(usize::from(last) + 1)));
+                found.extend(usize::from(first)..=usize::from(last));
+            });
+            assert_eq!(found, (0..192).filter(|&k| bit(k)).collect::<Vec<_>>());
+        }
+    }
 
     #[test]
     fn every_range_of_a_row_is_set_as_bit_by_bit() {

@@ -4,14 +4,14 @@
 //! shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision, not by its centre alone (S2,
 //! "Real-time joint-space models").
 //!
-//! Two builders compute blocked cells:
+//! Three builders compute blocked cells:
 //!
-//! | | [`PlanarMapBuilder`], [`JointMap`] | [`RobotMapBuilder`] |
-//! | --- | --- | --- |
-//! | robot | two capsules and a sphere in a plane ([`PlanarArm`]) | any chain of links, any solids, 1 to 8 joints |
-//! | obstacles | convex | any: meshes, floors |
-//! | time, 2 degrees | some hundredths of a millisecond | tenths of a second |
-//! | result | spans of rows ([`Layer`]) | a tree of boxes ([`BoxTree`]) |
+//! | | [`PlanarMapBuilder`], [`JointMap`] | [`CoverMapBuilder`] | [`RobotMapBuilder`] |
+//! | --- | --- | --- | --- |
+//! | robot | two capsules and a sphere ([`PlanarArm`]) | any links and solids, 3 joints | the same, 1 to 8 joints |
+//! | obstacles | convex | any: meshes, floors | any: meshes, floors |
+//! | time, 2 degrees | hundredths of a millisecond | milliseconds | tenths of a second |
+//! | result | spans of rows ([`Layer`]) | spans of rows ([`Layer`]) | a tree of boxes ([`BoxTree`]) |
 
 mod bits;
 mod cell_changes;
@@ -46,7 +46,7 @@ pub use occupancy_bitmap::OccupancyBitmap;
 pub use planar_arm::{ArmDimension, ArmError, PlanarArm};
 pub use planar_map::{PlanarMapBuilder, PlanarMapError};
 pub use robot_map::{
-    BoxTree, CellBox, MAX_JOINTS, OccupancyArray, RemainingJoints, RobotMapBuilder, RobotMapError, RobotMapSettings,
-    RobotMapStats,
+    BoxTree, CellBox, CoverMapBuilder, CoverMapSettings, CoverObstacle, MAX_JOINTS, OccupancyArray, RemainingJoints,
+    RobotMapBuilder, RobotMapError, RobotMapSettings, RobotMapStats,
 };
 pub use seed_expansion::{SeedExpansion, expand_from_seeds};

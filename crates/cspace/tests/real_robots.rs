@@ -5,47 +5,17 @@
 //! the repository).
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
+#[path = "common/real.rs"]
+mod real;
 #[path = "common/robots.rs"]
 mod robots;
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 use elbowroom_cspace::ObstacleModel;
 use elbowroom_formats::robot::{LoadOptions, load};
-use elbowroom_proximity::{Cylinder, Shape, Sphere};
-use elbowroom_robot::Robot;
-use elbowroom_spatial::Pose;
-use robots::{Case, box_mesh, cuboid};
-
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from);
-    folder.join("urdf").is_dir().then_some(folder)
-}
-
-/// Length from base to tip along the links, metres.
-fn reach(robot: &Robot) -> f64 {
-    let chain = &robot.chain;
-    chain.path(chain.tip()).iter().map(|j| chain.joints()[j.0].origin.translation.length()).sum()
-}
-
-/// A table, a column, a sphere, an obstacle over the base axis, and a small rotated mesh.
-fn obstacles(reach: f64) -> Vec<(Shape, Pose)> {
-    let at = |x: f64, y: f64, z: f64| [x * reach, y * reach, z * reach];
-    let place = |x, y, z, rpy| Pose::from_xyz_rpy(at(x, y, z), rpy);
-    vec![
-        cuboid(at(0.5, 0.0, 0.1), [0.0, 0.0, 0.3], at(0.2, 0.4, 0.2)),
-        (
-            Shape::Cylinder(Cylinder { half_length: 0.4 * reach, radius: 0.05 * reach }),
-            place(0.2, -0.45, 0.4, [0.1, 0.0, 0.0]),
-        ),
-        (Shape::Sphere(Sphere { radius: 0.08 * reach }), place(-0.35, 0.3, 0.5, [0.0; 3])),
-        (Shape::Mesh(Arc::new(box_mesh(0.1 * reach))), place(0.02, 0.01, 0.95, [0.5, 0.3, 0.2])),
-        (Shape::Mesh(Arc::new(box_mesh(0.12 * reach))), place(-0.5, -0.2, 0.25, [0.5, 0.3, 0.2])),
-    ]
-}
+use real::{ROBOTS, data, obstacles, reach};
+use robots::Case;
 
 #[test]
 #[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_robots -- --ignored --nocapture"]
@@ -54,12 +24,11 @@ fn no_collision_lies_in_a_free_cell() {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
         return;
     };
-    let names = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
     println!(
         "{:<14} {:>4} {:<10} {:>9} {:>9} {:>8} {:>9}",
         "robot", "step", "model", "ms", "blocked", "missed", "needless"
     );
-    for name in names {
+    for name in ROBOTS {
         let file = data.join("urdf").join(name).join(format!("{name}.urdf"));
         let robot = load(&file, &LoadOptions::default()).unwrap().robot;
         let reach = reach(&robot);

@@ -8,7 +8,7 @@
 mod check;
 mod cover;
 mod error;
-mod lanes;
+pub mod lanes;
 mod model;
 mod obstacles;
 mod validity;
@@ -16,6 +16,6 @@ mod validity;
 pub use check::{NotCertain, ValidityChecker};
 pub use cover::{Ball, SphereCover};
 pub use error::ValidityError;
-pub use model::{CoveredLinkId, CoveredRobot};
+pub use model::{AxisCylinder, CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;
 pub use validity::Validity;

@@ -43,7 +43,7 @@ const SLABS_PER_THREAD: usize = 8;
 /// ```
 #[derive(Debug, Clone)]
 pub struct RobotMapBuilder {
-    chain: DrivenChain,
+    pub(super) chain: DrivenChain,
     pieces: RobotPieces,
     axes: Vec<GridAxis>,
     settings: RobotMapSettings,
@@ -108,17 +108,9 @@ impl RobotMapBuilder {
         }
         let threads = self.threads();
         let slabs = self.slabs(threads);
-        let task = SubdivisionTask {
-            chain: &self.chain,
-            pieces: &self.pieces,
-            axes: &self.axes,
-            obstacles: &obstacles,
-            containment_candidates: &self.containment_candidates(&obstacles),
-            bisections: self.bisections(),
-            max_checks_per_cell: self.settings.max_checks_per_cell,
-            max_nodes: self.settings.max_bytes / size_of::<Node>(),
-            used_nodes: &AtomicUsize::new(0),
-        };
+        let candidates = self.containment_candidates(&obstacles);
+        let used_nodes = AtomicUsize::new(0);
+        let task = self.task(&obstacles, &candidates, &used_nodes);
         let mut tree = BoxTree { axes: self.axes.clone(), slabs: Vec::with_capacity(slabs.len()) };
         let mut stats = RobotMapStats::default();
         for (cells, result) in slabs.iter().zip(run(task, &slabs, threads)) {
@@ -131,7 +123,27 @@ impl RobotMapBuilder {
         Ok((tree, stats))
     }
 
-    fn threads(&self) -> usize {
+    /// What all threads share.
+    pub(super) fn task<'a>(
+        &'a self,
+        obstacles: &'a [PlacedObstacle],
+        containment_candidates: &'a [ContainmentCandidate],
+        used_nodes: &'a AtomicUsize,
+    ) -> SubdivisionTask<'a> {
+        SubdivisionTask {
+            chain: &self.chain,
+            pieces: &self.pieces,
+            axes: &self.axes,
+            obstacles,
+            containment_candidates,
+            bisections: self.bisections(),
+            max_checks_per_cell: self.settings.max_checks_per_cell,
+            max_nodes: self.settings.max_bytes / size_of::<Node>(),
+            used_nodes,
+        }
+    }
+
+    pub(super) fn threads(&self) -> usize {
         let available = || std::thread::available_parallelism().map_or(1, Into::into);
         self.settings.threads.unwrap_or_else(available).max(1)
     }
@@ -149,8 +161,13 @@ impl RobotMapBuilder {
         out
     }
 
+    /// True where swept volumes are moved by no axis of the map.
+    pub(super) fn has_static_solids(&self) -> bool {
+        !self.pieces.static_solids.is_empty()
+    }
+
     /// True where an obstacle touches a swept volume that no axis of the map moves.
-    fn is_blocked_throughout(&self, obstacles: &[PlacedObstacle]) -> bool {
+    pub(super) fn is_blocked_throughout(&self, obstacles: &[PlacedObstacle]) -> bool {
         let touches = |(shape, in_world): &(Shape, Pose), obstacle: &PlacedObstacle| {
             collides(shape, in_world, &obstacle.shape, &obstacle.in_world)
         };
@@ -173,7 +190,7 @@ impl RobotMapBuilder {
     }
 
     /// Closed meshes of the robot, each with the obstacles that fit inside.
-    fn containment_candidates(&self, obstacles: &[PlacedObstacle]) -> Vec<ContainmentCandidate> {
+    pub(super) fn containment_candidates(&self, obstacles: &[PlacedObstacle]) -> Vec<ContainmentCandidate> {
         let mut out = Vec::new();
         for (closed_mesh, ClosedMesh { piece, .. }) in self.pieces.closed_meshes.iter().enumerate() {
             for (obstacle, _) in obstacles.iter().enumerate().filter(|(_, o)| o.fits_inside(piece.radius)) {

@@ -31,6 +31,9 @@ pub enum RobotMapError {
     /// A solid or the base has a pose or a size that is not finite.
     #[error("{0} has a place or a size that is NaN, infinite or beyond 1e5 m: give metres")]
     InvalidPlacement(String),
+    /// The links of the map do not hang on one joint, or its axis moves another joint, too.
+    #[error("the links do not all hang on one joint of the map that moves alone: use RobotMapBuilder")]
+    NoCommonJoint,
     /// The map would exceed the memory limit.
     #[error("the map needs more than {mib} MiB: make the steps larger, or allow more memory")]
     Memory {

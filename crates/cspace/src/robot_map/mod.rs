@@ -8,16 +8,18 @@
 //! | --- | --- |
 //! | `builder.rs`, `settings.rs`, `error.rs` | [`RobotMapBuilder`]: all of it together, on threads |
 //! | `driven_chain.rs` | which joints are axes of the map, and which of them move each link |
-//! | `robot_pieces.rs`, `solid_pieces.rs`, `triangle_soup.rs` | the robot in small pieces, each with the joints that move it |
+//! | `rigid_groups.rs`, `robot_pieces.rs`, `solid_pieces.rs`, `triangle_soup.rs` | the robot in small pieces, each with the joints that move it |
 //! | `enclosure.rs` | solids swept by joints that are not axes of the map |
 //! | `motion_bound.rs` | bound of the motion of a piece within a box of joint space |
 //! | `placed_obstacle.rs`, `obstacle_solids.rs` | obstacles, and simpler solids in their place |
 //! | `subdivision.rs`, `pair_evaluator.rs`, `cell_contact.rs`, `pair_distance.rs` | bisected boxes; pairs in a box; cells at the boundary; one pair |
+//! | `covers/` | maps on sphere covers, in real time |
 //! | `box_tree.rs`, `occupancy_array.rs` | the map as a tree of boxes, or one byte per cell |
 
 mod box_tree;
 mod builder;
 mod cell_contact;
+mod covers;
 mod driven_chain;
 mod enclosure;
 mod error;
@@ -27,6 +29,7 @@ mod occupancy_array;
 mod pair_distance;
 mod pair_evaluator;
 mod placed_obstacle;
+mod rigid_groups;
 mod robot_pieces;
 mod settings;
 mod solid_pieces;
@@ -35,6 +38,7 @@ mod triangle_soup;
 
 pub use box_tree::{BoxTree, CellBox};
 pub use builder::RobotMapBuilder;
+pub use covers::{CoverMapBuilder, CoverMapSettings, CoverObstacle};
 pub use driven_chain::RemainingJoints;
 pub use error::RobotMapError;
 pub use occupancy_array::OccupancyArray;

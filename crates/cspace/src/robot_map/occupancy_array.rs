@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::box_tree::BoxTree;
-use crate::{GridAxis, npy};
+use crate::{GridAxis, OccupancyBitmap, npy};
 
 /// One byte per cell, 1 for blocked; the last axis varies fastest, as in NumPy.
 ///
@@ -39,12 +39,13 @@ impl OccupancyArray {
             if map.axes() != axes {
                 return None;
             }
-            occupancy.add(map);
+            occupancy.add_tree(map);
         }
         Some(occupancy)
     }
 
-    fn add(&mut self, map: &BoxTree) {
+    /// Blocks the cells of a tree over the same axes.
+    pub fn add_tree(&mut self, map: &BoxTree) {
         let last = self.shape.len() - 1;
         map.for_each_box(|b| {
             let mut cell: Vec<usize> = b.first.iter().map(|&c| c.into()).collect();
@@ -59,6 +60,17 @@ impl OccupancyArray {
                 }
             }
         });
+    }
+
+    /// Blocks the cells of a table of the same shape.
+    pub fn add_table(&mut self, table: &OccupancyBitmap) {
+        for [i, j, k] in table.iter() {
+            let cell = [i, j, k].map(usize::from);
+            let at = cell.iter().zip(&self.shape).fold(0, |at, (c, n)| at * n + c);
+            if let Some(cell) = self.cells.get_mut(at) {
+                *cell = 1;
+            }
+        }
     }
 
     /// Number of blocked cells.

@@ -6,6 +6,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{WarmStart, Workspace};
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::box_tree::CellRange;
 use super::driven_chain::DrivenChain;
 use super::motion_bound::MotionBound;
 use super::pair_distance::distance_within;
@@ -57,6 +58,21 @@ pub(super) struct SubdivisionTask<'a> {
 pub(super) struct JointBox {
     pub center: [f64; MAX_JOINTS],
     pub half: [f64; MAX_JOINTS],
+}
+
+impl JointBox {
+    /// Centre and half widths of a range of cells, within the limits.
+    pub fn new(axes: &[GridAxis], cells: &CellRange) -> Self {
+        let mut joint_box = Self { center: [0.0; MAX_JOINTS], half: [0.0; MAX_JOINTS] };
+        for (i, axis) in axes.iter().enumerate() {
+            let low = axis.border(cells.first[i].into());
+            let high = axis.border(cells.end[i].into()).min(axis.max()).max(low);
+            joint_box.center[i] = 0.5 * (low + high);
+            // A value on the border belongs to one of two cells: both include it.
+            joint_box.half[i] = 0.5 * (high - low) + 1e-8 * axis.step();
+        }
+        joint_box
+    }
 }
 
 /// Evaluates pairs; one per thread.

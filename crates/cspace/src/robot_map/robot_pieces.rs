@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use elbowroom_kinematics::{ChainState, JointId, JointKind, LinkId};
+use elbowroom_kinematics::{JointId, JointKind, LinkId};
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::Robot;
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::driven_chain::{DrivenChain, DrivingJoint, LinkJoints};
-use super::enclosure::swept_enclosure;
+use super::driven_chain::{DrivenChain, DrivingJoint};
 use super::error::RobotMapError;
+use super::rigid_groups::{RigidGroup, RigidGroups};
 use super::solid_pieces::{SolidPiece, as_mesh, split_capsule};
 use super::triangle_soup::TriangleSoup;
 use crate::ConvexObstacle;
@@ -72,11 +72,10 @@ pub(super) struct RobotPieces {
     pub static_solids: Vec<(Shape, Pose)>,
 }
 
-/// The solids that the same joints of the map move.
+/// The solids of a group by kind, in the frame of the last joint's child.
 #[derive(Debug, Default)]
-struct RigidGroup {
-    joints: Vec<DrivingJoint>,
-    /// All flat-sided solids, in the frame of the last joint's child.
+struct GroupShapes {
+    /// All flat-sided solids.
     soup: TriangleSoup,
     round: Vec<(Shape, Pose)>,
 }
@@ -84,32 +83,8 @@ struct RigidGroup {
 impl RobotPieces {
     pub fn new(robot: &Robot, chain: &DrivenChain) -> Result<Self, RobotMapError> {
         let mut all = Self::default();
-        let mut groups: Vec<RigidGroup> = Vec::new();
-        let state = chain.state();
-        for (link, link_joints) in chain.links.iter().enumerate() {
-            let Some(last) = link_joints.driving.last() else {
-                all.add_static(robot, chain, link)?;
-                continue;
-            };
-            let is_same = |group: &RigidGroup| group.joints.last().is_some_and(|joint| joint.child == last.child);
-            let at = groups.iter().position(is_same).unwrap_or_else(|| {
-                groups.push(RigidGroup { joints: link_joints.driving.clone(), ..RigidGroup::default() });
-                groups.len() - 1
-            });
-            for collider in &robot.colliders[link] {
-                let invalid = || RobotMapError::InvalidPlacement(format!("link `{}`", chain.chain.links()[link]));
-                if !collider.in_link.is_finite() || collider.shape.validate().is_err() {
-                    return Err(invalid());
-                }
-                let (shape, in_carrier) = match link_joints.swept.as_slice() {
-                    [] => (collider.shape.clone(), collider.in_link),
-                    swept => swept_enclosure(&collider.shape, collider.in_link, swept).ok_or_else(invalid)?,
-                };
-                let carrier = if link_joints.swept.is_empty() { LinkId(link) } else { link_joints.carrier };
-                let in_last = relative_pose(&state, last.child, carrier) * in_carrier;
-                all.add_solid(chain, &mut groups[at], &as_mesh(&shape), in_last).ok_or_else(invalid)?;
-            }
-        }
+        let RigidGroups { groups, static_solids } = RigidGroups::new(robot, chain)?;
+        all.static_solids = static_solids;
         for group in groups {
             let link = group.joints.last().map_or(String::new(), |joint| chain.chain.links()[joint.child.0].clone());
             let invalid = || RobotMapError::InvalidPlacement(format!("a solid that moves with link `{link}`"));
@@ -118,36 +93,34 @@ impl RobotPieces {
         Ok(all)
     }
 
-    /// Adds the swept volumes of a link that only swept joints move.
-    fn add_static(&mut self, robot: &Robot, chain: &DrivenChain, link: usize) -> Result<(), RobotMapError> {
-        let LinkJoints { swept, carrier, .. } = &chain.links[link];
-        if swept.is_empty() {
-            return Ok(());
-        }
-        let carrier_in_world = chain.link_in_world(&chain.state(), *carrier);
-        for collider in &robot.colliders[link] {
-            let invalid = || RobotMapError::InvalidPlacement(format!("link `{}`", chain.chain.links()[link]));
-            let (shape, in_carrier) = swept_enclosure(&collider.shape, collider.in_link, swept).ok_or_else(invalid)?;
-            self.static_solids.push((shape, carrier_in_world * in_carrier));
-        }
-        Ok(())
-    }
-
-    fn add_solid(&mut self, chain: &DrivenChain, group: &mut RigidGroup, shape: &Shape, in_last: Pose) -> Option<()> {
-        let Shape::Mesh(mesh) = shape else {
-            group.round.push((shape.clone(), in_last));
+    /// Adds a solid of a group to those with flat sides or to the round ones, and to the closed meshes.
+    fn add_solid(
+        &mut self,
+        chain: &DrivenChain,
+        joints: &[DrivingJoint],
+        shapes: &mut GroupShapes,
+        solid: &(Shape, Pose),
+    ) -> Option<()> {
+        let (shape, in_last) = (as_mesh(&solid.0), solid.1);
+        let Shape::Mesh(mesh) = &shape else {
+            shapes.round.push((shape, in_last));
             return Some(());
         };
-        group.soup.add(mesh, &in_last);
+        shapes.soup.add(mesh, &in_last);
         if mesh.has_interior() {
-            let piece = RobotPiece::new(chain, SolidPiece::new(shape.clone()).placed(&in_last), &group.joints)?;
+            let piece = RobotPiece::new(chain, SolidPiece::new(shape.clone()).placed(&in_last), joints)?;
             self.closed_meshes.push(ClosedMesh { mesh: Arc::clone(mesh), piece });
         }
         Some(())
     }
 
     fn add_pieces(&mut self, chain: &DrivenChain, group: RigidGroup) -> Option<()> {
-        let RigidGroup { joints, soup, round } = group;
+        let RigidGroup { joints, solids } = group;
+        let mut shapes = GroupShapes::default();
+        for solid in &solids {
+            self.add_solid(chain, &joints, &mut shapes, solid)?;
+        }
+        let GroupShapes { soup, round } = shapes;
         let link = joints.last()?.child;
         let farthest_axis = lever_arms(chain, link, 0.0, &joints)?.into_iter().fold(0.0, f64::max);
         let size = |reach: f64| PIECE_SIZE_RATIO * (farthest_axis + reach);
@@ -162,11 +135,6 @@ impl RobotPieces {
         }
         Some(())
     }
-}
-
-/// Pose of a link in the frame of another.
-fn relative_pose(state: &ChainState, frame: LinkId, link: LinkId) -> Pose {
-    state.link_in_root(frame).inverse_mul(&state.link_in_root(link))
 }
 
 /// Bounds of the distances of points within `reach` of a link's origin from the axes of the joints before it, metres.

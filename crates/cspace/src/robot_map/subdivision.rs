@@ -64,7 +64,7 @@ impl<'a> Subdivision<'a> {
             task.used_nodes.store(task.max_nodes, Ordering::Relaxed);
             return Err(NodeLimitReached);
         }
-        let joint_box = self.joint_box(cells);
+        let joint_box = JointBox::new(task.axes, cells);
         self.evaluator.set_configuration(&joint_box.center);
         self.evaluator.stats.boxes += 1;
         let mut from = first;
@@ -174,19 +174,6 @@ impl<'a> Subdivision<'a> {
             self.nodes[node] = Node::Split { axis: axis as u8, at, right: right as u32 };
         }
         Ok(())
-    }
-
-    /// Centre and half widths of a range of cells, within the limits.
-    fn joint_box(&self, cells: &CellRange) -> JointBox {
-        let mut joint_box = JointBox { center: [0.0; MAX_JOINTS], half: [0.0; MAX_JOINTS] };
-        for (i, axis) in self.evaluator.task.axes.iter().enumerate() {
-            let low = axis.border(cells.first[i].into());
-            let high = axis.border(cells.end[i].into()).min(axis.max()).max(low);
-            joint_box.center[i] = 0.5 * (low + high);
-            // A value on the border belongs to one of two cells: both include it.
-            joint_box.half[i] = 0.5 * (high - low) + 1e-8 * axis.step();
-        }
-        joint_box
     }
 }
 

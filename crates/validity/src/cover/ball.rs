@@ -20,6 +20,11 @@ impl Ball {
         self.centre.distance(p) <= self.radius
     }
 
+    /// A ball that encloses others; no balls: radius 0 at the origin.
+    pub fn enclosing(balls: &[Self]) -> Self {
+        enclosing(balls)
+    }
+
     /// True where the ball contains an axis-aligned box, with room for rounding errors.
     pub(crate) fn contains_box(&self, centre: Vec3, half: Vec3) -> bool {
         farthest_squared(self.centre, centre, half) <= (self.radius - ROUNDING_M).powi(2) && self.radius > ROUNDING_M

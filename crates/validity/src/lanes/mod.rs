@@ -13,5 +13,5 @@ mod sin_cos;
 #[cfg(test)]
 mod sin_cos_tests;
 
-pub(crate) use row::{Fused, LANES, PointRow, Row, V3, detected_simd_level, splat};
+pub use row::{Fused, LANES, PointRow, Row, V3, detected_simd_level, splat};
 pub(crate) use sin_cos::sin_cos;

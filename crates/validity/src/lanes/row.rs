@@ -7,24 +7,25 @@ use std::sync::OnceLock;
 use fearless_simd::{Level as SimdLevel, Simd, f32x16, prelude::*};
 
 /// Number of lanes.
-pub(crate) const LANES: usize = 16;
+pub const LANES: usize = 16;
 
 /// The best instruction set of this processor, detected once.
 #[inline]
-pub(crate) fn detected_simd_level() -> SimdLevel {
+pub fn detected_simd_level() -> SimdLevel {
     static DETECTED: OnceLock<SimdLevel> = OnceLock::new();
     *DETECTED.get_or_init(SimdLevel::new)
 }
 
 /// The same number in all lanes.
 #[inline(always)]
-pub(crate) fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
+pub fn splat<S: Simd>(simd: S, v: f32) -> f32x16<S> {
     f32x16::splat(simd, v)
 }
 
 /// Multiplication and addition, rounded once.
-pub(crate) trait Fused: Sized {
+pub trait Fused: Sized {
     /// `self·k + c`, rounded once on every instruction set.
+    #[must_use]
     fn fused(self, k: Self, c: Self) -> Self;
 }
 
@@ -56,16 +57,19 @@ fn fused_in_software(a: &[f32; LANES], b: &[f32; LANES], sum: &mut [f32; LANES])
 /// One number per lane, in memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Row(pub [f32; LANES]);
+pub struct Row(pub [f32; LANES]);
 
 impl Row {
+    /// 0 in all lanes.
     pub const ZERO: Self = Self([0.0; LANES]);
 
+    /// From memory.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> f32x16<S> {
         f32x16::simd_from(simd, self.0)
     }
 
+    /// To memory.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, lanes: f32x16<S>) {
         lanes.store_slice(&mut self.0);
@@ -74,16 +78,19 @@ impl Row {
 
 /// Three coordinates per lane, in memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PointRow(pub [Row; 3]);
+pub struct PointRow(pub [Row; 3]);
 
 impl PointRow {
+    /// 0 in all lanes.
     pub const ZERO: Self = Self([Row::ZERO; 3]);
 
+    /// From memory.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> V3<S> {
         V3(self.0[0].load(simd), self.0[1].load(simd), self.0[2].load(simd))
     }
 
+    /// To memory.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, v: V3<S>) {
         self.0[0].store(v.0);
@@ -93,37 +100,45 @@ impl PointRow {
 }
 
 /// Three coordinates per lane.
-#[derive(Clone, Copy)]
-pub(crate) struct V3<S: Simd>(pub f32x16<S>, pub f32x16<S>, pub f32x16<S>);
+#[derive(Debug, Clone, Copy)]
+pub struct V3<S: Simd>(pub f32x16<S>, pub f32x16<S>, pub f32x16<S>);
 
 impl<S: Simd> V3<S> {
+    /// The same vector in all lanes.
     #[inline(always)]
     pub fn splat(simd: S, v: [f32; 3]) -> Self {
         Self(f32x16::splat(simd, v[0]), f32x16::splat(simd, v[1]), f32x16::splat(simd, v[2]))
     }
 
+    /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> f32x16<S> {
         self.2.fused(o.2, self.1.fused(o.1, self.0 * o.0))
     }
 
+    /// Difference.
+    #[must_use]
     #[inline(always)]
     pub fn minus(self, o: Self) -> Self {
         Self(self.0 - o.0, self.1 - o.1, self.2 - o.2)
     }
 
+    /// Sum.
+    #[must_use]
     #[inline(always)]
     pub fn plus(self, o: Self) -> Self {
         Self(self.0 + o.0, self.1 + o.1, self.2 + o.2)
     }
 
     /// `self·k + c`.
+    #[must_use]
     #[inline(always)]
     pub fn times_plus(self, k: f32x16<S>, c: Self) -> Self {
         Self(self.0.fused(k, c.0), self.1.fused(k, c.1), self.2.fused(k, c.2))
     }
 
     /// The coordinates of the next lane in each; the last lane keeps its own.
+    #[must_use]
     #[inline(always)]
     pub fn next_lane(self) -> Self {
         Self(next_lane(self.0), next_lane(self.1), next_lane(self.2))

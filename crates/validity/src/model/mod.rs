@@ -1,5 +1,6 @@
 //! A robot prepared for validity checks: a chain for batched forward kinematics, and links covered by spheres.
 
+mod axis_cylinder;
 mod body;
 mod forward;
 mod joint_step;
@@ -14,6 +15,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::Pose;
 
+pub use axis_cylinder::AxisCylinder;
 pub(crate) use body::{CoveredLink, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
 pub(crate) use joint_step::single;

@@ -1,0 +1,67 @@
+//! The cells that an object blocks, as a table or as a tree of boxes.
+
+use elbowroom_cspace::{BoxTree, Grid, GridAxis, OccupancyArray, OccupancyBitmap};
+
+/// The cells that an object blocks.
+#[derive(Debug, Clone)]
+pub enum BlockedCells {
+    /// One bit per cell of three axes.
+    Table {
+        /// The axes.
+        grid: Grid,
+        /// The cells.
+        table: OccupancyBitmap,
+    },
+    /// Any number of axes.
+    Tree(BoxTree),
+}
+
+impl BlockedCells {
+    /// True where a configuration (rad or m, one value per axis) lies in a blocked cell, where it lies outside the limits,
+    /// and where the number of values is wrong.
+    pub fn is_blocked(&self, q: &[f64]) -> bool {
+        match self {
+            Self::Table { grid, table } => {
+                let cell = <[f64; 3]>::try_from(q).ok().and_then(|q| grid.cell(q));
+                cell.is_none_or(|cell| table.is_blocked(cell))
+            }
+            Self::Tree(tree) => tree.is_blocked(q),
+        }
+    }
+
+    /// The same for a cell, by its number on each axis.
+    pub fn is_blocked_cell(&self, cell: &[u16]) -> bool {
+        match self {
+            Self::Table { table, .. } => <[u16; 3]>::try_from(cell).map_or(true, |cell| table.is_blocked(cell)),
+            Self::Tree(tree) => tree.is_blocked_cell(cell),
+        }
+    }
+
+    /// Number of blocked cells.
+    pub fn blocked(&self) -> u64 {
+        match self {
+            Self::Table { table, .. } => table.blocked() as u64,
+            Self::Tree(tree) => tree.blocked(),
+        }
+    }
+
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Table { grid, table } => grid.rows() * table.words_per_row() * size_of::<u64>(),
+            Self::Tree(tree) => tree.bytes(),
+        }
+    }
+}
+
+/// The cells that any of some objects blocks; `None` where there are too many.
+pub(super) fn union<'b>(axes: &[GridAxis], all: impl IntoIterator<Item = &'b BlockedCells>) -> Option<OccupancyArray> {
+    let mut union = OccupancyArray::new(axes, [])?;
+    for cells in all {
+        match cells {
+            BlockedCells::Table { table, .. } => union.add_table(table),
+            BlockedCells::Tree(tree) => union.add_tree(tree),
+        }
+    }
+    Some(union)
+}

@@ -1,0 +1,64 @@
+//! Which axis of the map is in lanes, and how many cells of each axis differ.
+
+use std::f64::consts::TAU;
+
+use super::super::rigid_groups::RigidGroup;
+use crate::Grid;
+
+/// The axes of a map by what they do.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisRoles {
+    /// The axis of the first joint of every link that the map moves.
+    pub lanes: usize,
+    /// The other two, ascending.
+    pub others: [usize; 2],
+    /// Cells of each axis that are computed: of one turn where the axis has more.
+    pub counts: [usize; 3],
+}
+
+impl AxisRoles {
+    /// `None` where the links have not all the same first joint, or its axis moves another joint, too.
+    pub fn new(grid: &Grid, groups: &[RigidGroup]) -> Option<Self> {
+        let Some(first) = groups.first().and_then(|group| group.joints.first()) else {
+            return Some(Self { lanes: 0, others: [1, 2], counts: grid.shape() });
+        };
+        let has_it_first = |group: &RigidGroup| group.joints.first().is_some_and(|joint| joint.child == first.child);
+        let is_alone = |group: &RigidGroup| group.joints[1..].iter().all(|joint| joint.axis != first.axis);
+        let lanes = first.axis;
+        let fits = groups.iter().all(|group| has_it_first(group) && is_alone(group));
+        let others = [usize::from(lanes == 0), if lanes == 2 { 1 } else { 2 }];
+        fits.then(|| Self { lanes, others, counts: computed_counts(grid, groups) })
+    }
+
+    /// Number of cells of the axis in lanes.
+    pub fn lane_count(&self) -> usize {
+        self.counts[self.lanes]
+    }
+
+    /// Numbers of cells of the two other axes.
+    pub fn other_counts(&self) -> [usize; 2] {
+        self.others.map(|axis| self.counts[axis])
+    }
+
+    /// A cell by its number on each axis of the map.
+    pub fn cell(&self, lane: usize, others: [usize; 2]) -> [u16; 3] {
+        let mut cell = [0; 3];
+        cell[self.lanes] = lane as u16;
+        for (&axis, &at) in self.others.iter().zip(&others) {
+            cell[axis] = at as u16;
+        }
+        cell
+    }
+}
+
+/// Cells of each axis that differ: those of one turn where the axis has more, and all its joints turn whole turns.
+fn computed_counts(grid: &Grid, groups: &[RigidGroup]) -> [usize; 3] {
+    [0, 1, 2].map(|number| {
+        let axis = &grid.axes()[number];
+        let period = (TAU / axis.step()).round();
+        let joints = || groups.iter().flat_map(|g| &g.joints).filter(|joint| joint.axis == number);
+        let is_periodic = joints().all(|joint| joint.turns && joint.multiplier.fract() == 0.0);
+        let divides = (period * axis.step() - TAU).abs() <= 1e-12 * TAU;
+        if is_periodic && divides { axis.count().min(period as usize) } else { axis.count() }
+    })
+}

@@ -1,0 +1,223 @@
+//! Boxes of joint space, halved until each is free or blocked.
+
+use elbowroom_validity::lanes::{LANES, detected_simd_level};
+use fearless_simd::{Level as SimdLevel, dispatch};
+
+use super::axis_roles::AxisRoles;
+use super::cell_bits::{CellBits, CellBox};
+use super::cover_class::CoverClass;
+use super::group_test::{BoxTest, NearGroup};
+use super::kernel::HalfWidths;
+use super::obstacle_lanes::ObstacleLanes;
+use super::place_memo::PlaceMemo;
+use super::step_chain::Step;
+use super::witnesses::Witnesses;
+
+/// Sixteen boxes that differ in the axis in lanes alone.
+#[derive(Debug, Clone, Copy)]
+struct Boxes {
+    level: usize,
+    others: [usize; 2],
+    /// Boxes of the axis in lanes from `16 · group` on.
+    group: usize,
+    /// Groups of the largest balls that may touch, one bit each.
+    probes: u32,
+}
+
+/// Cells that are not proven free, nor blocked.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OpenCells {
+    /// Number of the class of covers.
+    pub class: usize,
+    pub others: [usize; 2],
+    pub group: usize,
+    pub lanes: u32,
+}
+
+/// Fills the map of one obstacle.
+pub(super) struct BoxDivision<'a> {
+    obstacle: &'a ObstacleLanes<'a>,
+    classes: &'a [CoverClass],
+    roles: AxisRoles,
+    /// The joint of the axis in lanes.
+    first: &'a Step,
+    simd_level: SimdLevel,
+    /// Groups in question, box by box.
+    pairs: Vec<NearGroup>,
+    /// Those that are left.
+    left: Vec<NearGroup>,
+    open: Vec<NearGroup>,
+    places: PlaceMemo,
+    witnesses: Vec<Witnesses>,
+    pub bits: CellBits,
+    pub uncertain: Vec<OpenCells>,
+}
+
+impl<'a> BoxDivision<'a> {
+    pub fn new(obstacle: &'a ObstacleLanes<'a>, classes: &'a [CoverClass], roles: AxisRoles, first: &'a Step) -> Self {
+        Self {
+            obstacle,
+            classes,
+            roles,
+            first,
+            simd_level: detected_simd_level(),
+            pairs: Vec::new(),
+            left: Vec::new(),
+            open: Vec::new(),
+            places: PlaceMemo::default(),
+            witnesses: Vec::new(),
+            bits: CellBits::new(roles),
+            uncertain: Vec::new(),
+        }
+    }
+
+    /// Fills the map, class by class.
+    pub fn run(&mut self) {
+        for (number, class) in self.classes.iter().enumerate() {
+            self.places.start(class);
+            self.witnesses = Witnesses::none(class);
+            let level = class.levels.len() - 1;
+            let blocks = class.levels[level].blocks;
+            for others in (0..blocks[0]).flat_map(|i| (0..blocks[1]).map(move |j| [i, j])) {
+                for group in 0..self.obstacle.poses[level].len().div_ceil(LANES) {
+                    self.pairs.clear();
+                    let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
+                    self.pairs.extend(class.roots.iter().map(pair));
+                    self.divide(number, Boxes { level, others, group, probes: !0 }, 0);
+                }
+            }
+        }
+    }
+
+    /// Divides boxes; the pairs in question are those from `from` on.
+    fn divide(&mut self, class: usize, boxes: Boxes, from: usize) {
+        let left = self.left.len();
+        let known = self.assess(class, boxes, from);
+        let boxes = Boxes { probes: known.probes, ..boxes };
+        if known.contact != 0 {
+            self.block(class, boxes, known.contact);
+        }
+        let open = known.near & !known.contact;
+        if open != 0 {
+            if boxes.level == 0 {
+                let Boxes { others, group, .. } = boxes;
+                self.uncertain.push(OpenCells { class, others, group, lanes: open });
+            } else {
+                self.divide_parts(class, boxes, open, left);
+            }
+        }
+        self.left.truncate(left);
+    }
+
+    /// Halves the boxes that are open along each axis.
+    fn divide_parts(&mut self, class: usize, boxes: Boxes, open: u32, left: usize) {
+        let level = boxes.level - 1;
+        let uses = self.classes[class].uses;
+        let blocks = self.classes[class].levels[level].blocks;
+        // Boxes that differ in the axis in lanes alone follow each other: the links are at the same places in them.
+        for i in 0..=usize::from(uses[0]) {
+            for j in 0..=usize::from(uses[1]) {
+                let at = [[boxes.others[0], i], [boxes.others[1], j]];
+                let others = [0, 1].map(|k| if uses[k] { 2 * at[k][0] + at[k][1] } else { 0 });
+                if others[0] < blocks[0] && others[1] < blocks[1] {
+                    for half in 0..2 {
+                        self.divide_half(class, Boxes { level, others, ..boxes }, half, open, left);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Divides one half of the boxes of the axis in lanes: each box becomes two lanes, eight boxes fill sixteen.
+    fn divide_half(&mut self, class: usize, boxes: Boxes, half: usize, open: u32, left: usize) {
+        let part = |lanes: u32| doubled(lanes >> (8 * half) & 0xff);
+        let group = 2 * boxes.group + half;
+        if part(open) == 0 || group * LANES >= self.obstacle.poses[boxes.level].len() {
+            return;
+        }
+        let from = self.pairs.len();
+        for at in left..self.left.len() {
+            let pair = self.left[at];
+            let lanes = part(pair.boxes & open);
+            if lanes != 0 {
+                self.pairs.push(NearGroup { boxes: lanes, ..pair });
+            }
+        }
+        self.divide(class, Boxes { group, ..boxes }, from);
+        self.pairs.truncate(from);
+    }
+
+    /// Blocks boxes.
+    fn block(&mut self, class: usize, boxes: Boxes, lanes: u32) {
+        let uses = self.classes[class].uses;
+        if boxes.level == 0 && uses == [true, true] {
+            self.bits.set_sixteen(boxes.others, boxes.group, lanes);
+            return;
+        }
+        let size = 1usize << boxes.level;
+        let range = |at: usize| [at * size, (at + 1) * size];
+        let others = [0, 1].map(|k| if uses[k] { range(boxes.others[k]) } else { [0, usize::MAX] });
+        let mut rest = lanes;
+        while rest != 0 {
+            let first = rest.trailing_zeros();
+            let run = (!(rest >> first)).trailing_zeros();
+            rest &= !(((1u32 << run) - 1) << first);
+            let begin = (boxes.group * LANES + first as usize) * size;
+            self.bits.set(&CellBox { lanes: [begin, begin + run as usize * size], others });
+        }
+    }
+
+    fn assess(&mut self, class: usize, boxes: Boxes, from: usize) -> Known {
+        let count = self.roles.lane_count().div_ceil(1 << boxes.level) - LANES * boxes.group;
+        let mut live = if count >= LANES { 0xffff } else { (1 << count) - 1 };
+        live &= self.pairs[from..].iter().fold(0, |all, pair| all | pair.boxes);
+        let covers = &self.classes[class];
+        if boxes.level == 0 {
+            // What links of fewer axes block needs no test; these were filled before.
+            live &= !self.bits.sixteen(boxes.others, boxes.group);
+        }
+        let half = &covers.levels[boxes.level].half;
+        let half = HalfWidths {
+            lanes: (half[self.roles.lanes] * self.first.multiplier) as f32 * (1.0 + 1e-6),
+            lanes_turn: self.first.turns,
+            others: self.roles.others.map(|axis| half[axis] as f32 * (1.0 + 1e-6)),
+        };
+        let Boxes { level, others, group, probes } = boxes;
+        let mut test = BoxTest {
+            obstacle: self.obstacle,
+            class: covers,
+            level,
+            frames: covers.levels[level].frames(others),
+            poses: &self.obstacle.poses[level][LANES * group..],
+            half,
+            live,
+            probes,
+            near: 0,
+            contact: 0,
+        };
+        self.places.enter(level, others);
+        let (pairs, left, open) = (&self.pairs[from..], &mut self.left, &mut self.open);
+        let (places, witnesses) = (&mut self.places, &mut self.witnesses);
+        let simd_level = self.simd_level;
+        dispatch!(simd_level, simd => test.run(simd, pairs, places, witnesses, open, left));
+        Known { near: test.near, contact: test.contact, probes: test.probes }
+    }
+}
+
+/// What is known of sixteen boxes.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    /// Where any ball is near.
+    near: u32,
+    contact: u32,
+    /// Groups of the largest balls that may still touch.
+    probes: u32,
+}
+
+/// Each of eight bits twice.
+fn doubled(bits: u32) -> u32 {
+    let spread = (bits | bits << 4) & 0x0f0f;
+    let spread = (spread | spread << 2) & 0x3333;
+    let spread = (spread | spread << 1) & 0x5555;
+    spread | spread << 1
+}

@@ -1,0 +1,237 @@
+//! Builds layers of a robot's map on covers.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use elbowroom_proximity::Shape;
+use elbowroom_robot::Robot;
+use elbowroom_spatial::Pose;
+use elbowroom_validity::SphereCover;
+
+use super::super::builder::RobotMapBuilder;
+use super::super::driven_chain::RemainingJoints;
+use super::super::error::RobotMapError;
+use super::super::placed_obstacle::PlacedObstacle;
+use super::super::rigid_groups::{RigidGroup, RigidGroups};
+use super::axis_roles::AxisRoles;
+use super::box_division::{BoxDivision, OpenCells};
+use super::cell_bits::{CellBits, CellBox};
+use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
+use super::obstacle::CoverObstacle;
+use super::obstacle_lanes::ObstacleLanes;
+use super::planar_arm_map::PlanarArmMap;
+use super::settlement::Settlement;
+use super::step_chain::StepChain;
+use crate::bits::ones;
+use crate::{Grid, Layer, RowSpan};
+
+/// Slack of covers as a share of the robot's reach, and its limits, m.
+const SLACK_SHARE: f64 = 0.0018;
+const LEAST_SLACK_M: f64 = 0.001;
+const MOST_SLACK_M: f64 = 0.0045;
+
+/// Most cells of all three axes, and of the two that are not in lanes: tables of them take 256 MiB and 200 MB.
+const MOST_CELLS: usize = 1 << 31;
+const MOST_ROWS: usize = 1 << 20;
+
+/// Settings of a [`CoverMapBuilder`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoverMapSettings {
+    /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 4.5 mm.
+    pub slack_m: Option<f64>,
+    /// True: cells that the covers leave open are settled by exact queries. False: they are blocked.
+    pub exact: bool,
+}
+
+/// Builds maps of one robot on sphere covers of its links, in milliseconds: a [`Layer`] per obstacle, over three axes.
+///
+/// A layer blocks every cell in which any configuration has a link that the axes move in contact with the obstacle.
+///
+/// ```
+/// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, LayerMap, RemainingJoints};
+/// use elbowroom_proximity::{Shape, Sphere};
+/// use elbowroom_robot::example;
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let robot = example::arm()?;
+/// let grid = Grid::new(["a", "b", "c"].map(|name| GridAxis::from_degrees(name, -90.0, 90.0, 3.0).unwrap()))?;
+/// let settings = CoverMapSettings::default();
+/// let builder = CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], RemainingJoints::Swept, settings)?;
+/// let ball = builder.obstacle(&Shape::Sphere(Sphere { radius: 0.2 }))?;
+/// let mut map = LayerMap::new(&grid);
+/// map.set_layer("ball", builder.layer(&ball, &Pose::from_translation(Vec3::new(0.7, 0.0, 0.7)))?);
+/// assert!(map.is_blocked([0.0, 0.6, 0.6]) && !map.is_blocked([1.5, 0.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CoverMapBuilder {
+    /// The robot's own solids.
+    exact: RobotMapBuilder,
+    grid: Grid,
+    roles: AxisRoles,
+    steps: StepChain,
+    classes: Vec<CoverClass>,
+    planar: Option<PlanarArmMap>,
+    slack_m: f64,
+    is_exact: bool,
+}
+
+impl CoverMapBuilder {
+    /// For a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the joint values.
+    ///
+    /// # Errors
+    /// As [`RobotMapBuilder::new`], links that are not all carried by one joint of the map, and more cells than tables hold.
+    pub fn new(
+        robot: &Robot,
+        base_in_world: Pose,
+        grid: &Grid,
+        joints: [usize; 3],
+        remaining: RemainingJoints<'_>,
+        settings: CoverMapSettings,
+    ) -> Result<Self, RobotMapError> {
+        let exact = RobotMapBuilder::new(robot, base_in_world, grid.axes(), &joints, remaining)?;
+        let groups = RigidGroups::new(robot, &exact.chain)?.groups;
+        let roles = AxisRoles::new(grid, &groups).ok_or(RobotMapError::NoCommonJoint)?;
+        let [first, second] = roles.other_counts();
+        if first * second > MOST_ROWS || grid.cells() > MOST_CELLS {
+            return Err(RobotMapError::Memory { mib: MOST_CELLS >> 23 });
+        }
+        let reach = reach_m(robot);
+        let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
+        let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
+        let mut steps = StepChain::default();
+        let covers = covers(&groups, slack_m)?;
+        let covered: Vec<CoveredGroup<'_>> = groups
+            .iter()
+            .zip(covers)
+            .map(|(group, cover)| CoveredGroup {
+                group,
+                cover,
+                path: steps.add_path(&exact.chain, grid.axes(), &group.joints),
+            })
+            .collect();
+        let classes = classes(&covered, &steps, grid, &roles);
+        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slack_m, is_exact: settings.exact, exact })
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// True where the robot is an arm in a plane with round links: convex obstacles then take hundredths of a millisecond, as
+    /// with a [`PlanarMapBuilder`](crate::PlanarMapBuilder).
+    pub fn is_planar(&self) -> bool {
+        self.planar.is_some()
+    }
+
+    /// Largest protrusion of a cover from its link, m.
+    pub fn slack_m(&self) -> f64 {
+        self.slack_m
+    }
+
+    /// The frame of the first axis in the world, for [`ObstacleModel::solids`](crate::ObstacleModel::solids): its z lies
+    /// along the axis.
+    pub fn base_in_world(&self) -> Pose {
+        self.exact.base_in_world()
+    }
+
+    /// An obstacle for [`layer`](Self::layer), prepared once for all its poses.
+    ///
+    /// # Errors
+    /// A shape with NaN or infinite numbers.
+    pub fn obstacle(&self, shape: &Shape) -> Result<CoverObstacle, RobotMapError> {
+        CoverObstacle::new(shape, self.slack_m)
+    }
+
+    /// The cells that an obstacle blocks, placed in the world.
+    ///
+    /// # Errors
+    /// A pose that is not finite, or too far away.
+    pub fn layer(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<Layer, RobotMapError> {
+        obstacle.validate_place(in_world)?;
+        if self.exact.has_static_solids()
+            && self.exact.is_blocked_throughout(&[PlacedObstacle::new(&obstacle.shape, in_world)?])
+        {
+            return Ok(full(&self.grid));
+        }
+        if let Some(layer) = self.planar.as_ref().and_then(|planar| planar.layer(&obstacle.shape, in_world)) {
+            return Ok(layer);
+        }
+        let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
+        let slack_m = self.is_exact.then_some(self.slack_m);
+        let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles, slack_m);
+        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
+        division.run();
+        let BoxDivision { mut bits, uncertain, .. } = division;
+        if self.is_exact {
+            self.settle(&[PlacedObstacle::new(&obstacle.shape, in_world)?], &uncertain, &mut bits);
+        }
+        Ok(bits.to_layer(self.grid.shape()))
+    }
+
+    /// Settles the open cells by exact queries.
+    fn settle(&self, placed: &[PlacedObstacle], uncertain: &[OpenCells], bits: &mut CellBits) {
+        let candidates = self.exact.containment_candidates(placed);
+        let used = AtomicUsize::new(0);
+        let mut settlement = Settlement::new(self.exact.task(placed, &candidates, &used));
+        for open in uncertain {
+            let uses = self.classes[open.class].uses;
+            let mut axes = [true; 3];
+            for (axis, is_used) in self.roles.others.into_iter().zip(uses) {
+                axes[axis] = is_used;
+            }
+            // An open cell of a link that fewer axes move stands for all values of the others: it is settled where some of
+            // these are blocked already, too.
+            let is_single = uses == [true, true];
+            let known = if is_single { bits.sixteen(open.others, open.group) } else { 0 };
+            for lane in ones(u64::from(open.lanes & !known)) {
+                let lane = 16 * open.group + lane;
+                if settlement.may_touch(self.roles.cell(lane, open.others), axes) {
+                    let range = |k: usize| {
+                        if uses[k] { [open.others[k], open.others[k] + 1] } else { [0, usize::MAX] }
+                    };
+                    bits.set(&CellBox { lanes: [lane, lane + 1], others: [range(0), range(1)] });
+                }
+            }
+        }
+    }
+}
+
+/// The covers of groups of links, on as many threads as the machine runs at once.
+fn covers(groups: &[RigidGroup], slack_m: f64) -> Result<Vec<SphereCover>, RobotMapError> {
+    let threads = std::thread::available_parallelism().map_or(1, Into::into).min(groups.len());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        while let Some((at, group)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, groups.get(at)?)))
+        {
+            done.push((at, cover(group, slack_m)));
+        }
+        done
+    };
+    let mut all = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut all = work();
+        for other in others {
+            match other.join() {
+                Ok(done) => all.extend(done),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        all
+    });
+    all.sort_by_key(|(at, _)| *at);
+    all.into_iter().map(|(_, cover)| cover).collect()
+}
+
+/// Length from base to tip along the links, m.
+fn reach_m(robot: &Robot) -> f64 {
+    let chain = &robot.chain;
+    chain.path(chain.tip()).iter().map(|j| chain.joints()[j.0].origin.translation.length()).sum()
+}
+
+/// A layer of all cells.
+fn full(grid: &Grid) -> Layer {
+    let last = (grid.shape()[2] - 1) as u16;
+    Layer { spans: (0..grid.rows() as u32).map(|row| RowSpan { row, first: 0, last }).collect() }
+}

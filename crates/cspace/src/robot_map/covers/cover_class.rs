@@ -1,0 +1,239 @@
+//! The covers of the links that the same axes move.
+
+use elbowroom_spatial::Vec3;
+use elbowroom_validity::lanes::{LANES, PointRow, Row};
+use elbowroom_validity::{Ball, SphereCover};
+
+use super::super::error::RobotMapError;
+use super::super::rigid_groups::RigidGroup;
+use super::axis_roles::AxisRoles;
+use super::ball_tree::{LEAF, ball_tree};
+use super::block_level::{BlockLevel, single};
+use super::step_chain::StepChain;
+use crate::Grid;
+
+/// Boxes are not larger than this, rad or m, unless there are too many of them.
+const WIDEST_BLOCK: f64 = 0.3;
+/// More boxes than this make larger ones worth while.
+const MOST_BLOCKS: usize = 4096;
+/// Most halvings.
+const MOST_LEVELS: u32 = 8;
+
+/// Balls about a link that are tested at a time: each is a leaf of its cover, or encloses the balls of another group.
+#[derive(Debug, Clone)]
+pub(super) struct CoverGroup {
+    /// Centres in the frame of the last step of its path, m.
+    pub centres: PointRow,
+    /// m.
+    pub radii: Row,
+    /// Per ball, the number of the group below, or [`LEAF`].
+    pub below: [u32; LANES],
+    /// Lanes that have a ball.
+    pub lanes: u32,
+    /// Lanes that have a leaf.
+    pub leaves: u32,
+    pub largest: f32,
+    /// Number of its path.
+    pub path: u32,
+}
+
+/// A step in a path.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PathStep {
+    pub step: u32,
+    /// Which of the two other axes moves it.
+    pub axis: usize,
+    pub multiplier: f32,
+    pub turns: bool,
+}
+
+/// The steps that move a link, but for the first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CoverPath {
+    /// The last step.
+    pub last: u32,
+    pub steps: Vec<PathStep>,
+}
+
+/// Bounds of the motion of a group's balls within a box, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GroupMotion {
+    /// Length of the path of a centre.
+    pub paths: Row,
+    /// Distance of a centre from where its velocity leads.
+    pub curvatures: Row,
+}
+
+/// Covers of links that the axis in lanes and the same others move.
+#[derive(Debug, Clone)]
+pub(super) struct CoverClass {
+    /// Which of the two other axes move the links.
+    pub uses: [bool; 2],
+    pub groups: Vec<CoverGroup>,
+    /// Root groups, one per group of links.
+    pub roots: Vec<u32>,
+    /// Groups of the largest balls: they find boxes that are in contact throughout.
+    pub probes: Vec<u32>,
+    pub paths: Vec<CoverPath>,
+    /// Cells first.
+    pub levels: Vec<BlockLevel>,
+    /// Per level and group of balls.
+    pub motions: Vec<Vec<GroupMotion>>,
+    /// Largest lever arm, m.
+    pub reach_m: f64,
+}
+
+/// A group of links with its cover and its path of steps.
+#[derive(Debug)]
+pub(super) struct CoveredGroup<'a> {
+    pub group: &'a RigidGroup,
+    pub cover: SphereCover,
+    pub path: Vec<usize>,
+}
+
+/// The cover of a group's solids.
+pub(super) fn cover(group: &RigidGroup, slack_m: f64) -> Result<SphereCover, RobotMapError> {
+    let solids: Vec<_> = group.solids.iter().map(|(shape, pose)| (shape, *pose)).collect();
+    let invalid = || RobotMapError::InvalidPlacement("a link of the robot".into());
+    SphereCover::new(&solids, slack_m).ok_or_else(invalid)
+}
+
+/// The classes of some groups, those that few axes move first.
+pub(super) fn classes(
+    groups: &[CoveredGroup<'_>],
+    steps: &StepChain,
+    grid: &Grid,
+    roles: &AxisRoles,
+) -> Vec<CoverClass> {
+    let uses = |group: &CoveredGroup<'_>| roles.others.map(|axis| group.group.joints.iter().any(|j| j.axis == axis));
+    let kinds = [[false, false], [true, false], [false, true], [true, true]];
+    let of_kind = |kind: [bool; 2]| {
+        let here: Vec<_> = groups.iter().filter(|g| !g.cover.outer.is_empty() && uses(g) == kind).collect();
+        (!here.is_empty()).then(|| CoverClass::new(kind, &here, steps, grid, roles))
+    };
+    kinds.into_iter().filter_map(of_kind).collect()
+}
+
+impl CoverClass {
+    fn new(uses: [bool; 2], groups: &[&CoveredGroup<'_>], steps: &StepChain, grid: &Grid, roles: &AxisRoles) -> Self {
+        let mut class = Self {
+            uses,
+            groups: Vec::new(),
+            roots: Vec::new(),
+            probes: Vec::new(),
+            paths: Vec::new(),
+            levels: Vec::new(),
+            motions: Vec::new(),
+            reach_m: 0.0,
+        };
+        for group in groups {
+            class.add_group(group, steps, roles);
+        }
+        let paths: Vec<&[usize]> = groups.iter().map(|group| group.path.as_slice()).collect();
+        for level in 0..=class.top_level(grid, roles) {
+            let level = BlockLevel::new(level, grid, roles, uses, steps);
+            class.add_motions(steps, &paths, &level.half);
+            class.levels.push(level);
+        }
+        class
+    }
+
+    fn add_group(&mut self, group: &CoveredGroup<'_>, steps: &StepChain, roles: &AxisRoles) {
+        let Some(&last) = group.path.last() else { return };
+        let in_frame = steps.child_in_frame(last);
+        let first = self.groups.len() as u32;
+        let path = self.paths.len() as u32;
+        self.roots.push(first);
+        let below = |at: u32| if at == LEAF { LEAF } else { first + at };
+        for part in ball_tree(&group.cover.outer) {
+            let mut balls = CoverGroup::empty(path);
+            for (lane, (ball, &at)) in part.balls.iter().zip(&part.below).enumerate() {
+                balls.set(lane, single(in_frame.transform_point(ball.centre)), ball.radius as f32, below(at));
+            }
+            self.groups.push(balls);
+        }
+        let mut probes = CoverGroup::empty(path);
+        for (lane, ball) in largest(&group.cover.outer).iter().enumerate() {
+            probes.set(lane, single(in_frame.transform_point(ball.centre)), ball.radius as f32, LEAF);
+        }
+        self.probes.push(self.groups.len() as u32);
+        self.groups.push(probes);
+        let path_step = |&at: &usize| {
+            let step = &steps.steps[at];
+            let axis = roles.others.iter().position(|&axis| axis == step.axis)?;
+            Some(PathStep { step: at as u32, axis, multiplier: step.multiplier as f32, turns: step.turns })
+        };
+        self.paths.push(CoverPath { last: last as u32, steps: group.path.iter().filter_map(path_step).collect() });
+    }
+
+    /// Adds the bounds of the motions in boxes of these half widths.
+    fn add_motions(&mut self, steps: &StepChain, paths: &[&[usize]], half: &[f64; 3]) {
+        let reach = std::cell::Cell::new(self.reach_m);
+        let motion = |path: u32, centre: [f32; 3]| {
+            let path = paths[path as usize];
+            let [x, y, z] = centre.map(f64::from);
+            let levers = steps.lever_arms(path, Vec3::new(x, y, z));
+            reach.set(levers.iter().copied().fold(reach.get(), f64::max));
+            steps.motion(path, &levers, half)
+        };
+        let of_group = |group: &CoverGroup| {
+            let mut bounds = GroupMotion { paths: Row::ZERO, curvatures: Row::ZERO };
+            for lane in 0..group.lanes.count_ones() as usize {
+                let found = motion(group.path, group.centre(lane));
+                bounds.paths.0[lane] = (found.path_m as f32).next_up();
+                bounds.curvatures.0[lane] = (found.curvature_m as f32).next_up();
+            }
+            bounds
+        };
+        let motions = self.groups.iter().map(of_group).collect();
+        self.motions.push(motions);
+        self.reach_m = reach.get();
+    }
+
+    /// The level of the largest boxes.
+    fn top_level(&self, grid: &Grid, roles: &AxisRoles) -> u32 {
+        let counts = roles.other_counts();
+        let widest = |level: u32| {
+            let axes = [0, 1].into_iter().filter(|&k| self.uses[k]).map(|k| roles.others[k]).chain([roles.lanes]);
+            axes.map(|axis| grid.axes()[axis].step() * f64::from(1 << level)).fold(0.0, f64::max)
+        };
+        let blocks = |level: u32| (0..2).filter(|&k| self.uses[k]).map(|k| counts[k] >> level).product::<usize>();
+        let is_enough = |level: &u32| widest(level + 1) > WIDEST_BLOCK && blocks(*level) <= MOST_BLOCKS;
+        (0..MOST_LEVELS).find(is_enough).unwrap_or(MOST_LEVELS)
+    }
+}
+
+impl CoverGroup {
+    pub fn empty(path: u32) -> Self {
+        let (centres, radii) = (PointRow::ZERO, Row::ZERO);
+        Self { centres, radii, below: [LEAF; LANES], lanes: 0, leaves: 0, largest: 0.0, path }
+    }
+
+    pub fn set(&mut self, lane: usize, centre: [f32; 3], radius: f32, below: u32) {
+        for (row, c) in self.centres.0.iter_mut().zip(centre) {
+            row.0[lane] = c;
+        }
+        self.radii.0[lane] = radius;
+        self.below[lane] = below;
+        self.lanes |= 1 << lane;
+        self.leaves |= u32::from(below == LEAF) << lane;
+        self.largest = self.largest.max(radius);
+    }
+
+    pub fn centre(&self, lane: usize) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.centres.0[k].0[lane])
+    }
+}
+
+/// The largest balls, none with its centre in another.
+fn largest(balls: &[Ball]) -> Vec<Ball> {
+    let mut sorted = balls.to_vec();
+    sorted.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let mut found: Vec<Ball> = Vec::new();
+    for ball in sorted {
+        if found.len() < LANES && !found.iter().any(|f| f.contains(ball.centre)) {
+            found.push(ball);
+        }
+    }
+    found
+}

@@ -1,0 +1,83 @@
+//! The core of a rounded obstacle about the origin: distances from it in lanes.
+
+#![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
+
+use elbowroom_validity::lanes::{Fused, V3, splat};
+use fearless_simd::{Select, Simd, f32x16, prelude::*};
+
+/// A solid in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum SolidCore {
+    /// The origin.
+    Point,
+    /// A box about the origin, by its half extents; a segment where two are 0.
+    Box([f32; 3]),
+    /// About z.
+    Cylinder { radius: f32, half_length: f32 },
+    /// All points with z ≤ 0.
+    HalfSpace,
+}
+
+impl SolidCore {
+    /// From the nearest point of the core; a normal of the core where it is not 0.
+    #[inline(always)]
+    pub fn vector_to<S: Simd>(self, simd: S, p: V3<S>) -> V3<S> {
+        let zero = splat(simd, 0.0);
+        match self {
+            Self::Point => p,
+            Self::Box([x, y, z]) => V3(beyond(simd, p.0, x), beyond(simd, p.1, y), beyond(simd, p.2, z)),
+            Self::Cylinder { radius, half_length } => {
+                let across = p.1.fused(p.1, p.0 * p.0).sqrt();
+                let excess = (across - splat(simd, radius)).max(zero);
+                let share = across.simd_gt(zero).select(excess / across, zero);
+                V3(p.0 * share, p.1 * share, beyond(simd, p.2, half_length))
+            }
+            Self::HalfSpace => V3(zero, zero, p.2.max(zero)),
+        }
+    }
+
+    /// Distance of a point from the core; inside, less than 0 and not deeper than the point is.
+    #[inline(always)]
+    pub fn signed_distance<S: Simd>(self, simd: S, p: V3<S>) -> f32x16<S> {
+        let vector = self.vector_to(simd, p);
+        let outside = vector.dot(vector).sqrt();
+        let zero = splat(simd, 0.0);
+        match self {
+            Self::Point => outside,
+            Self::Box([x, y, z]) => {
+                let excess = p.0.abs() - splat(simd, x);
+                let excess = excess.max(p.1.abs() - splat(simd, y)).max(p.2.abs() - splat(simd, z));
+                outside + excess.min(zero)
+            }
+            Self::Cylinder { radius, half_length } => {
+                let across = p.1.fused(p.1, p.0 * p.0).sqrt() - splat(simd, radius);
+                outside + across.max(p.2.abs() - splat(simd, half_length)).min(zero)
+            }
+            Self::HalfSpace => p.2,
+        }
+    }
+
+    /// What is deeper in the core than a distance.
+    pub fn eroded(self, by: f32) -> Option<Self> {
+        let core = match self {
+            Self::Point => return None,
+            Self::Box(half) => Self::Box(half.map(|h| h - by)),
+            Self::Cylinder { radius, half_length } => {
+                Self::Cylinder { radius: radius - by, half_length: half_length - by }
+            }
+            Self::HalfSpace => return Some(self),
+        };
+        let is_empty = match core {
+            Self::Box(half) => half.iter().any(|&h| h < 0.0),
+            Self::Cylinder { radius, half_length } => radius < 0.0 || half_length < 0.0,
+            _ => false,
+        };
+        (!is_empty).then_some(core)
+    }
+}
+
+/// A coordinate less the nearest value of the interval about 0 of a half length.
+#[inline(always)]
+fn beyond<S: Simd>(simd: S, p: f32x16<S>, half: f32) -> f32x16<S> {
+    p - p.max(splat(simd, -half)).min(splat(simd, half))
+}

@@ -1,0 +1,60 @@
+//! A cylinder about a joint's axis: encloses what the joint turns.
+
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::cover::Ball;
+
+/// Points of a circle that are measured; the largest distance lies between two of them.
+const CIRCLE_POINTS: u32 = 64;
+
+/// A cylinder about the z axis of a joint's frame.
+#[derive(Debug, Clone, Copy)]
+pub struct AxisCylinder {
+    /// m.
+    pub radius: f64,
+    low: f64,
+    high: f64,
+}
+
+impl AxisCylinder {
+    /// The cylinder about z that encloses some balls.
+    pub fn around(balls: impl Iterator<Item = Ball>) -> Self {
+        let none = Self { radius: 0.0, low: f64::INFINITY, high: f64::NEG_INFINITY };
+        balls.fold(none, |c, b| Self {
+            radius: c.radius.max(b.centre.x.hypot(b.centre.y) + b.radius),
+            low: c.low.min(b.centre.z - b.radius),
+            high: c.high.max(b.centre.z + b.radius),
+        })
+    }
+
+    /// Around all positions of a slide along the axis.
+    #[must_use]
+    pub fn slid(self, lower: f64, upper: f64) -> Self {
+        Self { low: self.low + lower.min(0.0), high: self.high + upper.max(0.0), ..self }
+    }
+
+    /// A cylinder about another z axis, in whose frame this one's is at a pose.
+    #[must_use]
+    pub fn seen_from(self, pose: &Pose) -> Self {
+        let axis = pose.rotation.z_axis();
+        let ends = [self.low, self.high].map(|z| pose.translation + axis * z);
+        let along = self.radius * (1.0 - axis.z * axis.z).max(0.0).sqrt();
+        let radius = ends.into_iter().map(|end| self.farthest_from_axis(pose, end)).fold(0.0, f64::max);
+        let (low, high) = (ends[0].z.min(ends[1].z) - along, ends[0].z.max(ends[1].z) + along);
+        Self { radius, low, high }
+    }
+
+    /// Largest distance of a circle about this axis from the other axis.
+    fn farthest_from_axis(self, pose: &Pose, centre: Vec3) -> f64 {
+        let (x, y) = (pose.rotation.x_axis() * self.radius, pose.rotation.y_axis() * self.radius);
+        let step = std::f64::consts::TAU / f64::from(CIRCLE_POINTS);
+        let distance = |i: u32| {
+            let (sin, cos) = (f64::from(i) * step).sin_cos();
+            let p = centre + x * cos + y * sin;
+            p.x.hypot(p.y)
+        };
+        // Between two points the circle is nowhere farther from their chord than this.
+        let between = self.radius * (1.0 - (0.5 * step).cos());
+        (0..CIRCLE_POINTS).map(distance).fold(0.0, f64::max) + between
+    }
+}
