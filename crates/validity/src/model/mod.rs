@@ -17,7 +17,7 @@ use elbowroom_spatial::Pose;
 pub(crate) use body::{CoveredLink, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
 pub(crate) use joint_step::single;
-pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
+pub(crate) use pair_table::{BEYOND_RAD, CELLS, LEVELS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
 use self::lever_arms::{Reach, lever_arms};
