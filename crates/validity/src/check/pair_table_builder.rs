@@ -7,7 +7,7 @@ use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, detected_simd_level};
 use crate::model::{BEYOND_RAD, CELLS, CoveredRobot, LEVELS, LinkPair, MAX_PAIRS, PairTable};
-use crate::obstacles::{BoxTree, ObstacleSet};
+use crate::obstacles::{BroadPhase, ObstacleSet};
 
 /// Slides with longer strokes are not covered by a table, m.
 const LONGEST_STROKE_M: f64 = 0.1;
@@ -166,7 +166,7 @@ impl<'r> Prober<'r> {
     fn near_pairs(&mut self, asked: u8, turn_rad: f64) -> [u8; LANES] {
         let mut near = [0_u8; LANES];
         let (robot, work) = (self.robot, &mut self.workspace);
-        let (obstacles, tree) = (ObstacleSet::default(), BoxTree::default());
+        let (obstacles, tree) = (ObstacleSet::default(), BroadPhase::default());
         let model = BlockModel { robot, obstacles: &obstacles, tree: &tree, motion: &self.motion, skipped: &[] };
         for (bit, &p) in self.group.pairs.iter().enumerate().filter(|(bit, _)| asked >> bit & 1 == 1) {
             let margin_m = motion_m(robot, &robot.pairs[p], turn_rad);

@@ -45,6 +45,23 @@ impl PairTable {
     }
 }
 
+impl PairTable {
+    /// The pairs that may touch at a configuration, by the cells of both joints.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn near_at(&self, cells: [usize; 2]) -> u8 {
+        self.levels[0].get(cells[0] * self.row + cells[1]).copied().unwrap_or(u8::MAX)
+    }
+}
+
+/// The cells of angles.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a kernel")]
+pub(crate) fn cells<S: Simd>(simd: S, angles: f32x16<S>, out: &mut [i32; LANES]) {
+    let cells: i32x16<S> = cell(simd, angles).to_int();
+    cells.store_slice(out);
+}
+
 /// The cell of an angle, not rounded down yet.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a kernel")]
