@@ -199,6 +199,12 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 continue;
             }
             let is_leaf = is_leaf(node, at + 1);
+            if self.request.chords
+                && self.pairs.is_none()
+                && self.certainly_touches(from.vector, node.touching_m + obstacle.radius)
+            {
+                break;
+            }
             if is_leaf && self.touches(from.vector, reach) {
                 is_near = true;
             } else if self.request.chords {
@@ -220,6 +226,18 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             at += 1;
         }
         is_near
+    }
+
+    /// Records the lanes at which a leaf below a node touches for certain, found without going there.
+    #[inline(always)]
+    fn certainly_touches(&mut self, vector: V3<S>, length: f32) -> bool {
+        if !(length > 0.0) {
+            return false;
+        }
+        let is_touching = vector.dot(vector).simd_lt(splat(self.simd, length * length));
+        let touching = is_touching.to_bitmask() as u32 & self.request.active;
+        self.result.touching |= touching;
+        touching != 0
     }
 
     /// Records the lanes that touch.

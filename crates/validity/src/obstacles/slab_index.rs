@@ -72,7 +72,7 @@ impl SlabIndex {
 
     /// The slab of a coordinate: never smaller for a larger one.
     fn slab(&self, v: f32, k: usize) -> usize {
-        ((v - self.low[k]) * self.per_metre[k]).max(0.0).min(LAST) as usize
+        ((v - self.low[k]) * self.per_metre[k]).clamp(0.0, LAST) as usize
     }
 
     /// The same of three coordinates.
