@@ -28,6 +28,13 @@ pub(crate) struct SphereNode {
     pub end: u32,
 }
 
+/// A sphere that lies in a body.
+#[derive(Debug, Clone)]
+pub(crate) struct InnerSphere {
+    pub centre: [f32; 3],
+    pub radius: f32,
+}
+
 /// A link (or what is attached to it) with a cover.
 #[derive(Debug, Clone)]
 pub(crate) struct CoveredLink {

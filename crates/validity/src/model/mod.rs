@@ -16,7 +16,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::Pose;
 
-pub(crate) use body::{CoveredLink, SphereNode};
+pub(crate) use body::{CoveredLink, InnerSphere, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
 pub(crate) use joint_step::{JointStep, single};
 pub(crate) use pair_table::{BEYOND_RAD, CELLS, LEVELS, MAX_PAIRS, PairTable, cells};
@@ -68,13 +68,6 @@ pub(crate) struct RelativeJoint {
     pub step: usize,
     /// Its lever arm for the body that it moves, m per rad or m.
     pub lever_m: f32,
-}
-
-/// A sphere that lies in a body.
-#[derive(Debug, Clone)]
-pub(crate) struct InnerSphere {
-    pub centre: [f32; 3],
-    pub radius: f32,
 }
 
 /// A robot with a sphere cover for each link: what a [`ValidityChecker`](crate::ValidityChecker) moves. Constant; any number of

@@ -1,7 +1,6 @@
 //! The sphere trees of links for one configuration at a time: lanes are spheres, sixteen children of a node together.
 
-use super::InnerSphere;
-use super::body::SphereNode;
+use super::body::{InnerSphere, SphereNode};
 use crate::lanes::{LANES, PointRow, Row};
 
 /// Up to sixteen spheres of one link.
