@@ -54,7 +54,6 @@ fn compare(
     for (q, &answer) in q.chunks(chain.dof()).zip(&answers) {
         state.set_q(scene, ROBOT, q).unwrap();
         let contact = exact.collides(&state);
-        assert_eq!(checker.state(q).unwrap(), answer, "alone and in a block");
         match answer {
             Validity::Free => assert!(contact.is_none(), "proven free, but {contact:?} at {q:?}"),
             Validity::Hit => assert!(contact.is_some(), "proven hit, but free at {q:?}"),

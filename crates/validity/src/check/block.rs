@@ -8,7 +8,7 @@ use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, V3, splat};
 use crate::model::{CoveredRobot, LinkPair, SphereNode};
-use crate::obstacles::{Bounds, BoxTree, ObstacleSet, RoundedSolid};
+use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
 
 /// What a block is tested for.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +49,7 @@ pub(crate) enum NearPair {
 pub(crate) struct BlockModel<'m> {
     pub robot: &'m CoveredRobot,
     pub obstacles: &'m ObstacleSet,
-    pub tree: &'m BoxTree,
+    pub tree: &'m BroadPhase,
     pub motion: &'m MotionTable,
     /// Per body and obstacle, true where the pair is not checked; empty where every pair is.
     pub skipped: &'m [bool],
@@ -126,6 +126,12 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         self.pairs.is_none() && (touching == self.request.active || (self.request.chords && touching != 0))
     }
 
+    /// Lanes of which more can be learnt.
+    #[inline(always)]
+    fn open_lanes(&self) -> u32 {
+        if self.pairs.is_some() { self.request.active } else { self.request.active & !self.result.touching }
+    }
+
     #[inline(always)]
     fn obstacles(&mut self) {
         let robot = self.model.robot;
@@ -149,9 +155,8 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         let node = &self.model.robot.nodes[root as usize];
         let (half_chord, _) = self.workspace.body_motion(body);
         let centre = self.workspace.centre(self.simd, self.model.robot, root);
-        let bounds = Bounds::around(centre, node.radius + half_chord);
         let mut found = std::mem::take(&mut self.workspace.found);
-        self.model.tree.overlapping(self.simd, &bounds, &mut self.workspace.open, &mut found);
+        self.model.tree.around(self.simd, centre, node.radius + half_chord, &mut self.workspace.open, &mut found);
         for &obstacle in &found {
             let source = self.model.obstacles.outer_source[obstacle as usize];
             let skipped = self.model.skipped;
@@ -189,11 +194,17 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             let from = obstacle.vector_from_core(simd, centre);
             let reach = Reach { radius: node.radius + obstacle.radius, half_chord, sag };
             let near = within(simd, from.vector, reach.radius + reach.half_chord);
-            if near & self.request.active == 0 {
+            if near & self.open_lanes() == 0 {
                 at = node.end;
                 continue;
             }
             let is_leaf = is_leaf(node, at + 1);
+            if self.request.chords
+                && self.pairs.is_none()
+                && self.certainly_touches(from.vector, node.touching_m + obstacle.radius)
+            {
+                break;
+            }
             if is_leaf && self.touches(from.vector, reach) {
                 is_near = true;
             } else if self.request.chords {
@@ -215,6 +226,18 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             at += 1;
         }
         is_near
+    }
+
+    /// Records the lanes at which a leaf below a node touches for certain, found without going there.
+    #[inline(always)]
+    fn certainly_touches(&mut self, vector: V3<S>, length: f32) -> bool {
+        if !(length > 0.0) {
+            return false;
+        }
+        let is_touching = vector.dot(vector).simd_lt(splat(self.simd, length * length));
+        let touching = is_touching.to_bitmask() as u32 & self.request.active;
+        self.result.touching |= touching;
+        touching != 0
     }
 
     /// Records the lanes that touch.
@@ -306,7 +329,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);
             let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
             let reach = Reach { radius: m.radius + n.radius + margin_m, half_chord, sag };
-            if within(simd, from_b, reach.radius + half_chord) & self.request.active == 0 {
+            if within(simd, from_b, reach.radius + half_chord) & self.open_lanes() == 0 {
                 continue;
             }
             let (is_leaf_a, is_leaf_b) = (is_leaf(m, i + 1), is_leaf(n, j + 1));

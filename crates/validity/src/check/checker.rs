@@ -6,11 +6,13 @@ use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
 use super::motion_table::MotionTable;
 use super::pair_table_builder::pair_tables;
 use super::segment::Stretch;
+use super::single::SingleKernel;
+use super::single_workspace::{LinkMatrix, SingleWorkspace};
 use super::workspace::Workspace;
 use crate::error::ValidityError;
 use crate::lanes::{LANES, detected_simd_level};
 use crate::model::{CoveredLinkId, CoveredRobot};
-use crate::obstacles::{BoxTree, ObstacleSet};
+use crate::obstacles::{BroadPhase, ObstacleSet};
 use crate::validity::Validity;
 
 /// Motion of the robot's fastest point within one block of an edge, m. Longer edges are tested block by block from the start.
@@ -49,12 +51,14 @@ pub enum NotCertain {
 pub struct ValidityChecker<'m> {
     pub(super) robot: &'m CoveredRobot,
     obstacles: &'m ObstacleSet,
-    outer: BoxTree,
-    inner: BoxTree,
+    outer: BroadPhase,
+    inner: BroadPhase,
     /// Per body and obstacle, true where the pair is not checked; empty where all are.
     skipped: Vec<bool>,
     motion: MotionTable,
     pub(super) workspace: Workspace,
+    matrix: LinkMatrix,
+    single: SingleWorkspace,
     pub(super) pairs: Vec<NearPair>,
     simd_level: SimdLevel,
     blocks: u64,
@@ -64,7 +68,8 @@ impl<'m> ValidityChecker<'m> {
     /// A checker of a robot among obstacles.
     pub fn new(robot: &'m CoveredRobot, obstacles: &'m ObstacleSet) -> Self {
         let tree = |solids: &[crate::obstacles::RoundedSolid]| {
-            BoxTree::new(&solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect::<Vec<_>>())
+            let boxes: Vec<_> = solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect();
+            BroadPhase::new(&boxes, robot.reach_m)
         };
         let motion = MotionTable::new(robot);
         robot.tables.get_or_init(|| pair_tables(robot));
@@ -75,6 +80,8 @@ impl<'m> ValidityChecker<'m> {
             inner: tree(&obstacles.inner),
             skipped: Vec::new(),
             workspace: Workspace::new(robot, &motion),
+            matrix: LinkMatrix::new(robot),
+            single: SingleWorkspace::new(robot),
             motion,
             pairs: Vec::new(),
             simd_level: detected_simd_level(),
@@ -109,9 +116,7 @@ impl<'m> ValidityChecker<'m> {
     /// Too few or too many values. Values that are NaN or infinite are uncertain.
     pub fn state(&mut self, q: &[f64]) -> Result<Validity, ValidityError> {
         self.expect_count(q)?;
-        let mut answer = [Validity::Uncertain];
-        self.block_of_states(q, &mut answer);
-        Ok(answer[0])
+        Ok(self.single_state(q))
     }
 
     /// Whether each of several configurations is free; `q` has their values one after the other.
@@ -124,10 +129,7 @@ impl<'m> ValidityChecker<'m> {
             return Err(ValidityError::WrongCount { found: q.len(), expected: dof });
         }
         answers.clear();
-        answers.resize(q.len() / dof, Validity::Uncertain);
-        for (block, out) in q.chunks(LANES * dof).zip(answers.chunks_mut(LANES)) {
-            self.block_of_states(block, out);
-        }
+        answers.extend(q.chunks(dof).map(|q| self.single_state(q)));
         Ok(())
     }
 
@@ -191,39 +193,22 @@ impl<'m> ValidityChecker<'m> {
         if q.len() == expected { Ok(()) } else { Err(ValidityError::WrongCount { found: q.len(), expected }) }
     }
 
-    fn block_of_states(&mut self, q: &[f64], answers: &mut [Validity]) {
-        let dof = self.robot.dof();
-        answers.fill(Validity::Uncertain);
+    fn single_state(&mut self, q: &[f64]) -> Validity {
         if self.obstacles.has_unknown {
-            return;
+            return Validity::Uncertain;
         }
-        let mut active = 0;
-        let mut padding = None;
-        for lane in 0..answers.len() {
-            let values = &q[lane * dof..(lane + 1) * dof];
-            if self.workspace.set_lane(self.robot, lane, values) {
-                active |= 1 << lane;
-                padding.get_or_insert(values);
-            }
-        }
-        let Some(padding) = padding else { return };
-        // Lanes that do not count repeat one that does.
-        for lane in (0..LANES).filter(|lane| active >> lane & 1 == 0) {
-            self.workspace.set_lane(self.robot, lane, padding);
-        }
-        self.workspace.set_no_motion();
-        let mut pairs = std::mem::take(&mut self.pairs);
-        pairs.clear();
-        let result = self.run(BlockRequest { chords: false, active }, Some(&mut pairs));
-        let hits = if result.touching == 0 { 0 } else { self.hits(&pairs, &[]) };
-        self.pairs = pairs;
-        for (lane, answer) in answers.iter_mut().enumerate().filter(|(lane, _)| active >> lane & 1 == 1) {
-            *answer = match (result.touching >> lane & 1, hits >> lane & 1) {
-                (0, _) => Validity::Free,
-                (_, 0) => Validity::Uncertain,
-                _ => Validity::Hit,
-            };
-        }
+        self.blocks += 1;
+        let model = BlockModel {
+            robot: self.robot,
+            obstacles: self.obstacles,
+            tree: &self.outer,
+            motion: &self.motion,
+            skipped: &self.skipped,
+        };
+        let (inner, matrix, workspace) = (&self.inner, &self.matrix, &mut self.single);
+        dispatch!(self.simd_level, simd => {
+            SingleKernel { simd, model, inner, matrix, workspace, is_touching: false }.check(q)
+        })
     }
 
     fn displacement_m(&self, from: &[f64], to: &[f64]) -> f64 {

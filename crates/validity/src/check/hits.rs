@@ -11,7 +11,7 @@ use super::block::{BlockModel, NearPair};
 use super::workspace::Workspace;
 use crate::lanes::{V3, splat};
 use crate::model::{CoveredLink, CoveredRobot, InnerSphere, LinkPair};
-use crate::obstacles::{Bounds, BoxTree};
+use crate::obstacles::BroadPhase;
 
 /// More than the relative rounding error of a sum of lever arms.
 const ROUNDED_UP: f32 = 1.0 + 2e-5;
@@ -23,7 +23,7 @@ impl BlockModel<'_> {
     pub fn hits<S: Simd>(
         &self,
         simd: S,
-        inner: &BoxTree,
+        inner: &BroadPhase,
         workspace: &mut Workspace,
         pairs: &[NearPair],
         half_widths: &[f32],
@@ -66,7 +66,7 @@ impl BlockModel<'_> {
     fn obstacle_hits<S: Simd>(
         &self,
         simd: S,
-        inner: &BoxTree,
+        inner: &BroadPhase,
         workspace: &mut Workspace,
         (body, obstacle): (u32, u32),
         depth_m: f32,
@@ -75,9 +75,8 @@ impl BlockModel<'_> {
         let mut hits = 0;
         for sphere in inner_spheres(self.robot, body) {
             let centre = workspace.frames[body.frame].point(simd, sphere.centre);
-            let bounds = Bounds::around(centre, sphere.radius);
             let mut found = std::mem::take(&mut workspace.found);
-            inner.overlapping(simd, &bounds, &mut workspace.open, &mut found);
+            inner.around(simd, centre, sphere.radius, &mut workspace.open, &mut found);
             for &i in found.iter().filter(|&&i| self.obstacles.inner_source[i as usize] == obstacle) {
                 let solid = &self.obstacles.inner[i as usize];
                 hits |=

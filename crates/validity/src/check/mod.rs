@@ -10,6 +10,10 @@ mod motion_table;
 mod motion_tests;
 mod pair_table_builder;
 mod segment;
+mod single;
+#[cfg(test)]
+mod single_tests;
+mod single_workspace;
 mod workspace;
 
 pub use checker::{NotCertain, ValidityChecker};

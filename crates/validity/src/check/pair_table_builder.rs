@@ -6,18 +6,33 @@ use super::block::{BlockModel, BlockRequest};
 use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, detected_simd_level};
-use crate::model::{BEYOND_RAD, CELL_RAD, CELLS, CoveredRobot, LinkPair, MAX_PAIRS, PairTable};
-use crate::obstacles::{BoxTree, ObstacleSet};
+use crate::model::{BEYOND_RAD, CELLS, CoveredRobot, LEVELS, LinkPair, MAX_PAIRS, PairTable};
+use crate::obstacles::{BroadPhase, ObstacleSet};
 
 /// Slides with longer strokes are not covered by a table, m.
 const LONGEST_STROKE_M: f64 = 0.1;
 /// Rounding of cell borders, rad.
 const ROUNDING_RAD: f64 = 1e-3;
 
+/// Fine cells per coarse cell and joint.
+const REFINEMENT: usize = 4;
+
 /// Pairs with the same turning joints between them, if these are one or two.
 struct Group {
     steps: [usize; 2],
     pairs: Vec<usize>,
+}
+
+impl Group {
+    /// True where one joint alone moves the pairs.
+    fn is_single(&self) -> bool {
+        self.steps[0] == self.steps[1]
+    }
+
+    /// False for cells in which one joint would have two values.
+    fn has(&self, cell: [usize; 2]) -> bool {
+        !self.is_single() || cell[0] == cell[1]
+    }
 }
 
 /// The tables of a robot; pairs that are in none are always checked.
@@ -51,72 +66,136 @@ fn turning_steps(robot: &CoveredRobot, pair: &LinkPair) -> Option<[usize; 2]> {
     }
 }
 
+/// Cells of a grid over the joints of a group, and the pairs of each that may touch, a bit each.
+struct NearCells {
+    /// Cells per turn of each joint.
+    per_turn: usize,
+    /// Cell of each joint, pairs.
+    cells: Vec<([usize; 2], u8)>,
+}
+
 fn table(robot: &CoveredRobot, group: Group) -> PairTable {
-    let mut cells = vec![0_u8; CELLS * CELLS];
-    let is_single = group.steps[0] == group.steps[1];
-    let mut open: Vec<usize> = (0..CELLS * CELLS)
-        .filter(|i| {
-            let (row, column) = (i / CELLS, i % CELLS);
-            (!is_single || row == column)
-                && is_reachable(robot, group.steps[0], row)
-                && is_reachable(robot, group.steps[1], column)
-        })
-        .collect();
-    // What no joint value reaches is always checked.
-    cells.fill(u8::MAX);
-    let motion = MotionTable::new(robot);
-    let mut workspace = Workspace::new(robot, &motion);
-    let (obstacles, tree) = (ObstacleSet::default(), BoxTree::default());
-    let model = BlockModel { robot, obstacles: &obstacles, tree: &tree, motion: &motion, skipped: &[] };
-    open.resize(open.len().next_multiple_of(LANES), open.last().copied().unwrap_or(0));
-    for block in open.chunks(LANES) {
-        place(robot, &group, block, &mut workspace);
-        workspace.set_no_motion();
+    let row = if group.is_single() { 0 } else { CELLS };
+    let index = |cell: [usize; 2]| cell[0] * row + cell[1];
+    let mut prober = Prober::new(robot, &group);
+    let reachable = NearCells::reachable(robot, &group);
+    let fine = reachable.refined(&group);
+    // Coarse cells leave few fine ones to test; each level tests what the one before it left.
+    let mut near = prober.near(&reachable, BEYOND_RAD[LEVELS - 1]).refined(&group);
+    let mut levels: [Vec<u8>; LEVELS] = Default::default();
+    for level in (0..LEVELS).rev() {
+        near = prober.near(&near, BEYOND_RAD[level]);
+        // What no joint value reaches is always checked.
+        let mut cells = vec![u8::MAX; CELLS * row.max(1)];
+        fine.cells.iter().for_each(|&(cell, _)| cells[index(cell)] = 0);
+        near.cells.iter().for_each(|&(cell, pairs)| cells[index(cell)] = pairs);
+        levels[level] = cells;
+    }
+    PairTable { steps: group.steps, pairs: group.pairs, row, levels }
+}
+
+impl NearCells {
+    /// All coarse cells within the limits, with all pairs.
+    fn reachable(robot: &CoveredRobot, group: &Group) -> Self {
+        let per_turn = CELLS / REFINEMENT;
+        let all = (0..per_turn * per_turn).map(|i| [i / per_turn, i % per_turn]);
+        let cells = all
+            .filter(|cell| group.has(*cell) && (0..2).all(|k| is_reachable(robot, group.steps[k], cell[k], per_turn)));
+        Self { per_turn, cells: cells.map(|cell| (cell, u8::MAX)).collect() }
+    }
+
+    /// The same region in fine cells.
+    fn refined(&self, group: &Group) -> Self {
+        let parts = || (0..REFINEMENT * REFINEMENT).map(|k| [k / REFINEMENT, k % REFINEMENT]);
+        let part = |cell: [usize; 2], [i, j]: [usize; 2]| [cell[0] * REFINEMENT + i, cell[1] * REFINEMENT + j];
+        let of_one = |(cell, pairs): ([usize; 2], u8)| parts().map(move |k| (part(cell, k), pairs));
+        let cells = self.cells.iter().copied().flat_map(of_one).filter(|(cell, _)| group.has(*cell)).collect();
+        Self { per_turn: CELLS, cells }
+    }
+}
+
+/// Tests cells of a group.
+struct Prober<'r> {
+    robot: &'r CoveredRobot,
+    group: &'r Group,
+    motion: MotionTable,
+    workspace: Workspace,
+}
+
+impl<'r> Prober<'r> {
+    fn new(robot: &'r CoveredRobot, group: &'r Group) -> Self {
+        let motion = MotionTable::new(robot);
+        let workspace = Workspace::new(robot, &motion);
+        Self { robot, group, motion, workspace }
+    }
+
+    /// The cells in which a pair may touch for a value up to `beyond_rad` outside.
+    fn near(&mut self, among: &NearCells, beyond_rad: f32) -> NearCells {
+        let per_turn = among.per_turn;
+        let width_rad = std::f64::consts::TAU / per_turn as f64;
+        let turn_rad = 0.5 * width_rad + f64::from(beyond_rad) + ROUNDING_RAD;
+        let mut cells = Vec::new();
+        for block in among.cells.chunks(LANES) {
+            self.place(block, per_turn);
+            let asked = block.iter().fold(0, |all, (_, pairs)| all | pairs);
+            let near = self.near_pairs(asked, turn_rad);
+            let tested = block.iter().zip(near).map(|(&(cell, pairs), near)| (cell, pairs & near));
+            cells.extend(tested.filter(|(_, near)| *near != 0));
+        }
+        NearCells { per_turn, cells }
+    }
+
+    /// Sets the lanes to the centres of cells; slides are in the middle of their stroke, all other joints at zero.
+    fn place(&mut self, block: &[([usize; 2], u8)], per_turn: usize) {
+        for (i, step) in self.robot.chain.steps.iter().enumerate() {
+            let middle = if step.is_prismatic { 0.5 * (step.lower + step.upper) } else { 0.0 };
+            self.workspace.values[i] = Row([if middle.is_finite() { middle as f32 } else { 0.0 }; LANES]);
+        }
+        let centre = |cell: usize| ((cell as f64 + 0.5) * std::f64::consts::TAU / per_turn as f64) as f32;
+        for lane in 0..LANES {
+            // Lanes that are left repeat the last.
+            let (cell, _) = block[lane.min(block.len() - 1)];
+            for k in 0..2 {
+                self.workspace.values[self.group.steps[k]].0[lane] = centre(cell[k]);
+            }
+        }
+        self.workspace.set_no_motion();
+    }
+
+    /// Per lane, the pairs that may touch where each turning joint moves by up to `turn_rad`, of those that are asked for.
+    fn near_pairs(&mut self, asked: u8, turn_rad: f64) -> [u8; LANES] {
         let mut near = [0_u8; LANES];
-        for (bit, &p) in group.pairs.iter().enumerate() {
-            let margin_m = motion_within_cell_m(robot, &robot.pairs[p]);
+        let (robot, work) = (self.robot, &mut self.workspace);
+        let (obstacles, tree) = (ObstacleSet::default(), BroadPhase::default());
+        let model = BlockModel { robot, obstacles: &obstacles, tree: &tree, motion: &self.motion, skipped: &[] };
+        for (bit, &p) in self.group.pairs.iter().enumerate().filter(|(bit, _)| asked >> bit & 1 == 1) {
+            let margin_m = motion_m(robot, &robot.pairs[p], turn_rad);
             let request = BlockRequest { chords: false, active: 0xffff };
-            let work = &mut workspace;
             let touching = dispatch!(detected_simd_level(), simd => model.check_pair(simd, work, request, p, margin_m));
             near.iter_mut().enumerate().for_each(|(lane, n)| *n |= ((touching >> lane & 1) as u8) << bit);
         }
-        for (&cell, near) in block.iter().zip(near) {
-            cells[cell] = near;
-        }
+        near
     }
-    PairTable { steps: group.steps, pairs: group.pairs, cells }
 }
 
 /// True where some value within the joint's limits is in the cell or near it.
-fn is_reachable(robot: &CoveredRobot, step: usize, cell: usize) -> bool {
+fn is_reachable(robot: &CoveredRobot, step: usize, cell: usize, per_turn: usize) -> bool {
     let step = &robot.chain.steps[step];
     let width = step.upper - step.lower;
     if !(width < std::f64::consts::TAU) {
         return true;
     }
-    let from_lower = (cell as f64 * CELL_RAD - step.lower).rem_euclid(std::f64::consts::TAU);
-    from_lower <= width || from_lower >= std::f64::consts::TAU - CELL_RAD
+    let cell_rad = std::f64::consts::TAU / per_turn as f64;
+    let from_lower = (cell as f64 * cell_rad - step.lower).rem_euclid(std::f64::consts::TAU);
+    from_lower <= width || from_lower >= std::f64::consts::TAU - cell_rad
 }
 
-/// Sets the lanes to the centres of cells; slides are in the middle of their stroke, all other joints at zero.
-fn place(robot: &CoveredRobot, group: &Group, block: &[usize], workspace: &mut Workspace) {
-    for (i, step) in robot.chain.steps.iter().enumerate() {
-        let middle = if step.is_prismatic { 0.5 * (step.lower + step.upper) } else { 0.0 };
-        workspace.values[i] = Row([if middle.is_finite() { middle as f32 } else { 0.0 }; LANES]);
-    }
-    let centre = |cell: usize| ((cell as f64 + 0.5) * CELL_RAD) as f32;
-    for (lane, &cell) in block.iter().enumerate() {
-        workspace.values[group.steps[0]].0[lane] = centre(cell / CELLS);
-        workspace.values[group.steps[1]].0[lane] = centre(cell % CELLS);
-    }
-}
-
-/// No point of one body moves farther against the other, from the centre of a cell to any value that it stands for.
-fn motion_within_cell_m(robot: &CoveredRobot, pair: &LinkPair) -> f32 {
-    let turn = 0.5 * CELL_RAD + f64::from(BEYOND_RAD) + ROUNDING_RAD;
+/// No point of one body moves farther against the other where each turning joint moves by up to `turn_rad`, and slides from the
+/// middle of their stroke to anywhere.
+fn motion_m(robot: &CoveredRobot, pair: &LinkPair, turn_rad: f64) -> f32 {
     let each = pair.joints.iter().map(|joint| {
         let step = &robot.chain.steps[joint.step];
-        let change = if step.is_prismatic { 0.5 * (step.upper - step.lower) } else { turn };
+        let change = if step.is_prismatic { 0.5 * (step.upper - step.lower) } else { turn_rad };
         change * f64::from(joint.lever_m)
     });
     (each.sum::<f64>() as f32).next_up()

@@ -20,7 +20,7 @@ use super::joint_stretch::{INTERVALS, JointStretch};
 use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{Fused, LANES, Row, splat};
-use crate::model::CoveredRobot;
+use crate::model::{CoveredRobot, JointStep};
 
 /// Rounding of the sums in single precision.
 const ROUNDED_UP: f32 = 1.000_02;
@@ -103,15 +103,24 @@ impl Workspace {
     pub fn set_lane(&mut self, robot: &CoveredRobot, lane: usize, q: &[f64]) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
-            let value = step.multiplier * q[step.index] + step.offset;
-            is_valid &= step.accepts(value);
-            self.values[i].0[lane] = if step.is_prismatic { value as f32 } else { reduced(value) as f32 };
+            let (value, accepted) = joint_value(step, q);
+            is_valid &= accepted;
+            self.values[i].0[lane] = value;
         }
         is_valid
     }
 }
 
+/// The value of a joint in single precision, an angle less whole turns; false where no bounds hold for it.
+#[inline(always)]
+pub(crate) fn joint_value(step: &JointStep, q: &[f64]) -> (f32, bool) {
+    let value = step.multiplier * q[step.index] + step.offset;
+    let single = if step.is_prismatic { value } else { reduced(value) };
+    (single as f32, step.accepts(value))
+}
+
 /// The angle less whole turns.
+#[inline(always)]
 fn reduced(angle: f64) -> f64 {
     angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round_ties_even()
 }

@@ -10,6 +10,9 @@ const FAN_OUT: usize = 4;
 /// The broad phase tests the nodes of a tree at which the radius has fallen to this, m.
 const BROAD_PHASE_RADIUS_M: f64 = 0.15;
 
+/// A node counts as touching only where it does by more than this, m: then a leaf below does, whatever is rounded.
+const TOUCHING_MARGIN_M: f64 = 1e-4;
+
 /// A sphere of a tree; it encloses all spheres below it.
 #[derive(Debug, Clone)]
 pub(crate) struct SphereNode {
@@ -17,10 +20,19 @@ pub(crate) struct SphereNode {
     pub centre: [f32; 3],
     /// m, rounding errors included.
     pub radius: f32,
+    /// What is nearer to the centre touches a leaf below; negative where the centre is in none, m.
+    pub touching_m: f32,
     /// The frame that moves it.
     pub frame: u32,
     /// Index of the node after all that are below this one.
     pub end: u32,
+}
+
+/// A sphere that lies in a body.
+#[derive(Debug, Clone)]
+pub(crate) struct InnerSphere {
+    pub centre: [f32; 3],
+    pub radius: f32,
 }
 
 /// A link (or what is attached to it) with a cover.
@@ -73,7 +85,8 @@ impl TreeBuilder<'_> {
         let index = self.nodes.len();
         // Rounding to single precision never makes it smaller.
         let radius = ((ball.radius + ROUNDING_M) as f32).next_up();
-        self.nodes.push(SphereNode { centre: single(ball.centre), radius, frame: self.frame, end: 0 });
+        let touching_m = touching_m(&ball, balls);
+        self.nodes.push(SphereNode { centre: single(ball.centre), radius, touching_m, frame: self.frame, end: 0 });
         let is_leaf = balls.len() == 1;
         let is_root = !is_below && (is_leaf || ball.radius <= BROAD_PHASE_RADIUS_M);
         if is_root {
@@ -86,6 +99,12 @@ impl TreeBuilder<'_> {
         }
         self.nodes[index].end = self.nodes.len() as u32;
     }
+}
+
+/// Nearer to the centre of a ball than this is what touches one of the balls in it, rounding errors included.
+fn touching_m(ball: &Ball, balls: &[Ball]) -> f32 {
+    let depth = |b: &Ball| b.radius - b.centre.distance(ball.centre);
+    (balls.iter().map(depth).fold(f64::NEG_INFINITY, f64::max) - TOUCHING_MARGIN_M) as f32
 }
 
 /// Splits balls at medians along the longest axis into at most `parts` groups, none empty.

@@ -6,6 +6,8 @@ mod forward;
 mod joint_step;
 mod lever_arms;
 mod pair_table;
+mod single_forward;
+mod sphere_packs;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,10 +18,12 @@ use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::Pose;
 
 pub use axis_cylinder::AxisCylinder;
-pub(crate) use body::{CoveredLink, SphereNode};
+pub(crate) use body::{CoveredLink, InnerSphere, SphereNode};
 pub(crate) use forward::{BatchedChain, FrameLanes};
-pub(crate) use joint_step::single;
-pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
+pub(crate) use joint_step::{JointStep, single};
+pub(crate) use pair_table::{BEYOND_RAD, CELLS, LEVELS, MAX_PAIRS, PairTable, cells};
+pub(crate) use single_forward::{Frame, JointTurns};
+pub(crate) use sphere_packs::{RootSphere, SpherePack, SpherePacks};
 
 use self::body::push_tree;
 use self::lever_arms::{Reach, lever_arms};
@@ -68,13 +72,6 @@ pub(crate) struct RelativeJoint {
     pub lever_m: f32,
 }
 
-/// A sphere that lies in a body.
-#[derive(Debug, Clone)]
-pub(crate) struct InnerSphere {
-    pub centre: [f32; 3],
-    pub radius: f32,
-}
-
 /// A robot with a sphere cover for each link: what a [`ValidityChecker`](crate::ValidityChecker) moves. Constant; any number of
 /// checkers may share one.
 ///
@@ -92,10 +89,14 @@ pub struct CoveredRobot {
     pub(crate) chain: BatchedChain,
     pub(crate) covered_links: Vec<CoveredLink>,
     pub(crate) nodes: Vec<SphereNode>,
+    /// The same trees for one configuration at a time.
+    pub(crate) packs: SpherePacks,
     pub(crate) inner: Vec<InnerSphere>,
     pub(crate) pairs: Vec<LinkPair>,
     /// Built at first use.
     pub(crate) tables: OnceLock<Vec<PairTable>>,
+    /// No point of a link is farther from the origin of the world, m.
+    pub(crate) reach_m: f32,
     dof: usize,
 }
 
@@ -131,9 +132,11 @@ impl CoveredRobot {
             chain,
             covered_links: Vec::new(),
             nodes: Vec::new(),
+            packs: SpherePacks::default(),
             inner: Vec::new(),
             pairs: Vec::new(),
             tables: OnceLock::new(),
+            reach_m: 0.0,
             dof,
         };
         for (link, cover) in link_covers(robot) {
@@ -172,11 +175,14 @@ impl CoveredRobot {
         if !(reach.world_m <= LONGEST_REACH_M) {
             return Err(ValidityError::NotCovered { link: name() });
         }
+        self.reach_m = self.reach_m.max((reach.world_m as f32).next_up());
         let rounding_m = rounding_m(reach);
         let first_inner = self.inner.len() as u32;
         self.inner.extend(cover.inner.iter().filter_map(|ball| inner_sphere(ball, &at.in_frame, rounding_m)));
         let inner = first_inner..self.inner.len() as u32;
         let (nodes, broad_phase) = push_tree(&mut self.nodes, &cover.outer, at, rounding_m);
+        let inner_spheres = &self.inner[first_inner as usize..];
+        self.packs.push_link(&self.nodes, &nodes, &broad_phase, inner_spheres, at.frame);
         let lever_m = levers.iter().map(|&l| (l as f32).next_up()).map(|l| if l > f32::from_bits(1) { l } else { 0.0 });
         let lever_m = lever_m.collect();
         self.covered_links.push(CoveredLink { link, frame: at.frame, nodes, broad_phase, inner, lever_m });

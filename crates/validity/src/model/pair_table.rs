@@ -6,14 +6,12 @@ use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 use crate::lanes::{LANES, Row, splat};
 
 /// Cells per turn of a joint.
-pub(crate) const CELLS: usize = 224;
-/// The same, for lanes.
-#[allow(clippy::cast_possible_wrap, reason = "a small constant")]
-const ROW: i32 = CELLS as i32;
-/// Width of a cell, rad.
-pub(crate) const CELL_RAD: f64 = std::f64::consts::TAU / CELLS as f64;
-/// A cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long at most.
-pub(crate) const BEYOND_RAD: f32 = 0.036;
+pub(crate) const CELLS: usize = 448;
+/// Number of tables for motions of different length.
+pub(crate) const LEVELS: usize = 5;
+/// At each level, a cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long
+/// at most.
+pub(crate) const BEYOND_RAD: [f32; LEVELS] = [0.0, 0.005, 0.010, 0.018, 0.036];
 /// Pairs of one table, a bit each.
 pub(crate) const MAX_PAIRS: usize = 8;
 
@@ -24,25 +22,44 @@ pub(crate) struct PairTable {
     pub steps: [usize; 2],
     /// The pairs, by their numbers.
     pub pairs: Vec<usize>,
-    /// Per cell of the first joint and cell of the second, a bit per pair that may touch.
-    pub cells: Vec<u8>,
+    /// Cells from one cell of the first joint to the next; 0 where both joints are the same.
+    pub row: usize,
+    /// Per level, per cell of the first joint and cell of the second, a bit per pair that may touch.
+    pub levels: [Vec<u8>; LEVELS],
 }
 
 impl PairTable {
     /// The pairs that may touch in a block, or between its lanes; joint values and their changes between lanes in rad.
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    #[allow(clippy::inline_always, clippy::cast_possible_wrap, reason = "part of a kernel; a small number")]
     pub fn near<S: Simd>(&self, simd: S, values: &[Row], deltas: [f32; 2]) -> u8 {
-        if !(deltas[0] <= 2.0 * BEYOND_RAD && deltas[1] <= 2.0 * BEYOND_RAD) {
-            return u8::MAX;
-        }
+        let is_within = |beyond: &f32| deltas[0] <= 2.0 * beyond && deltas[1] <= 2.0 * beyond;
+        let Some(level) = BEYOND_RAD.iter().position(is_within) else { return u8::MAX };
+        let cells = &self.levels[level];
         let row: i32x16<S> = cell(simd, values[self.steps[0]].load(simd)).to_int();
         let column: i32x16<S> = cell(simd, values[self.steps[1]].load(simd)).to_int();
-        let index = row * i32x16::splat(simd, ROW) + column;
+        let index = row * i32x16::splat(simd, self.row as i32) + column;
         let mut at = [0_i32; LANES];
         index.store_slice(&mut at);
-        at.iter().fold(0, |near, &i| near | self.cells.get(i as usize).copied().unwrap_or(u8::MAX))
+        at.iter().fold(0, |near, &i| near | cells.get(i as usize).copied().unwrap_or(u8::MAX))
     }
+}
+
+impl PairTable {
+    /// The pairs that may touch at a configuration, by the cells of both joints.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of a kernel")]
+    pub fn near_at(&self, cells: [usize; 2]) -> u8 {
+        self.levels[0].get(cells[0] * self.row + cells[1]).copied().unwrap_or(u8::MAX)
+    }
+}
+
+/// The cells of angles.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a kernel")]
+pub(crate) fn cells<S: Simd>(simd: S, angles: f32x16<S>, out: &mut [i32; LANES]) {
+    let cells: i32x16<S> = cell(simd, angles).to_int();
+    cells.store_slice(out);
 }
 
 /// The cell of an angle, not rounded down yet.

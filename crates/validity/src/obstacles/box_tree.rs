@@ -24,6 +24,13 @@ impl Bounds {
         Self { min, max }
     }
 
+    /// Around a sphere.
+    #[inline(always)]
+    pub fn of_sphere(centre: [f32; 3], radius: f32) -> Self {
+        let [x, y, z] = centre;
+        Self { min: [x - radius, y - radius, z - radius], max: [x + radius, y + radius, z + radius] }
+    }
+
     fn union(&self, o: &Self) -> Self {
         let mut all = *self;
         for k in 0..3 {

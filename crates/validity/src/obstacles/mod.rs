@@ -1,12 +1,14 @@
 //! Obstacles: what does not move while configurations are tested.
 
 mod box_tree;
+mod broad_phase;
+mod slab_index;
 mod solid;
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 
-pub(crate) use box_tree::{Bounds, BoxTree};
+pub(crate) use broad_phase::BroadPhase;
 pub(crate) use solid::RoundedSolid;
 
 use crate::cover::SphereCover;
