@@ -8,7 +8,7 @@ pub enum BlockedCells {
     /// One bit per cell of three axes.
     Table {
         /// The axes.
-        grid: Grid,
+        grid: Box<Grid>,
         /// The cells.
         table: OccupancyBitmap,
     },

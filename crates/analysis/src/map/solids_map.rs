@@ -17,7 +17,7 @@ pub(super) enum SolidsMap {
     /// On sphere covers of the links: three joints that hang on one of them.
     Covers(Box<CoverMapBuilder>),
     /// With the robot's own solids.
-    Exact(RobotMapBuilder),
+    Exact(Box<RobotMapBuilder>),
 }
 
 impl SolidsMap {
@@ -39,7 +39,7 @@ impl SolidsMap {
                 Err(other) => return Err(other),
             }
         }
-        RobotMapBuilder::new(model, base, axes, joints, others).map(Self::Exact)
+        RobotMapBuilder::new(model, base, axes, joints, others).map(|builder| Self::Exact(Box::new(builder)))
     }
 
     /// The frame of the first axis in the world.
@@ -64,8 +64,10 @@ impl SolidsMap {
                 }
                 let grid = builder.grid().clone();
                 let mut table = OccupancyBitmap::new(grid.shape());
-                layers.iter().for_each(|layer| table.add(layer));
-                Ok((BlockedCells::Table { grid, table }, time))
+                for layer in &layers {
+                    table.add(layer);
+                }
+                Ok((BlockedCells::Table { grid: Box::new(grid), table }, time))
             }
             Self::Exact(builder) => {
                 let begin = Instant::now();
