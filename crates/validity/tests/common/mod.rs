@@ -159,6 +159,17 @@ pub fn data() -> Option<PathBuf> {
     None
 }
 
+/// The robots of the data, a URDF per folder.
+pub fn robots(data: &std::path::Path) -> Vec<PathBuf> {
+    let in_folder =
+        |folder: &std::path::Path| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
+    let mut folders: Vec<PathBuf> = in_folder(&data.join("urdf")).collect();
+    folders.sort();
+    let is_model =
+        |p: &PathBuf| p.extension().is_some_and(|e| e == "urdf") && !p.to_string_lossy().contains(".package.");
+    folders.iter().filter_map(|folder| in_folder(folder).filter(is_model).min()).collect()
+}
+
 /// Joint number `i` of a serial chain, without limits.
 pub fn single_joint(i: usize, kind: JointKind, origin: Pose, axis: Vec3) -> Joint {
     let name = format!("joint {i}");
