@@ -14,7 +14,7 @@ mod obstacles;
 mod validity;
 
 pub use check::{NotCertain, ValidityChecker};
-pub use cover::{Ball, SphereCover};
+pub use cover::{Ball, BuiltCovers, CoverSource, SphereCover, describe_cover};
 pub use error::ValidityError;
 pub use model::{CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;

@@ -21,7 +21,7 @@ pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
 use self::lever_arms::{Reach, lever_arms};
-use crate::cover::{Ball, ROUNDING_M, SphereCover};
+use crate::cover::{Ball, BuiltCovers, CoverSource, ROUNDING_M, SphereCover};
 use crate::error::ValidityError;
 
 /// Largest protrusion of the cover of a link, m.
@@ -123,6 +123,14 @@ impl CoveredRobot {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
+        Self::with_covers(robot, base_in_world, &BuiltCovers)
+    }
+
+    /// As [`without_pairs`](Self::without_pairs), with covers from a source, which several threads ask at once.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_covers(robot: &Robot, base_in_world: Pose, source: &dyn CoverSource) -> Result<Self, ValidityError> {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
         let mut covered = Self {
@@ -134,7 +142,7 @@ impl CoveredRobot {
             tables: OnceLock::new(),
             dof,
         };
-        for (link, cover) in link_covers(robot) {
+        for (link, cover) in link_covers(robot, source) {
             covered.add_cover(&robot.chain, link, cover)?;
         }
         Ok(covered)
@@ -220,12 +228,12 @@ impl CoveredRobot {
 }
 
 /// The covers of all links with colliders, in the order of the chain, on all processors.
-fn link_covers(robot: &Robot) -> Vec<(LinkId, Option<SphereCover>)> {
+fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let next = AtomicUsize::new(0);
     let cover = |link: LinkId| {
         let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
-        SphereCover::new(&shapes, slack_m(&shapes))
+        source.cover(&shapes, slack_m(&shapes))
     };
     let work = || {
         let mut done = Vec::new();
