@@ -16,9 +16,9 @@ use elbowroom_validity::{CoveredRobot, Validity, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
 /// Configurations for each surroundings: of a short run, of a long one.
-const ROUND: [usize; 2] = [500, 2000];
+const ROUND: [usize; 2] = [500, 5000];
 /// One configuration of so many, and one edge, is compared on instruction sets without fused sums, which are slow there.
-const IN_SOFTWARE: usize = 200;
+const IN_SOFTWARE: usize = 500;
 
 #[derive(Default, Debug, Clone, Copy)]
 struct Counts {
@@ -134,7 +134,7 @@ fn other_simd_levels() -> Vec<(SimdLevel, usize)> {
     let mut levels = Vec::new();
     #[cfg(target_arch = "x86_64")]
     {
-        levels.extend(best.as_avx2().map(|avx2| (SimdLevel::Avx2(avx2), 1)));
+        levels.extend(best.as_avx2().map(|avx2| (SimdLevel::Avx2(avx2), 4)));
         levels.extend(best.as_sse4_2().map(|sse| (SimdLevel::Sse4_2(sse), IN_SOFTWARE)));
     }
     let _ = best;

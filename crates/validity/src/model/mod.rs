@@ -1,6 +1,7 @@
 //! A robot prepared for validity checks: a chain for batched forward kinematics, and links covered by spheres.
 
 mod body;
+mod close_pairs;
 mod forward;
 mod joint_step;
 mod lever_arms;
@@ -20,6 +21,7 @@ pub(crate) use joint_step::single;
 pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 
 use self::body::push_tree;
+use self::close_pairs::closer_slacks;
 use self::lever_arms::{Reach, lever_arms};
 use crate::cover::{Ball, BuiltCovers, CoverSource, ROUNDING_M, SphereCover};
 use crate::error::ValidityError;
@@ -227,8 +229,22 @@ impl CoveredRobot {
     }
 }
 
-/// The covers of all links with colliders, in the order of the chain, on all processors.
+/// The covers of all links with colliders, in the order of the chain; closer ones of links that are always near others.
 fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
+    let mut covers = usual_covers(robot, source);
+    for (link, slack) in closer_slacks(robot, &covers) {
+        let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
+        if slack < slack_m(&shapes)
+            && let Some(entry) = covers.iter_mut().find(|(covered, _)| *covered == link)
+        {
+            entry.1 = source.cover(&shapes, slack);
+        }
+    }
+    covers
+}
+
+/// The covers of all links with colliders, in the order of the chain, on all processors.
+fn usual_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let next = AtomicUsize::new(0);
     let cover = |link: LinkId| {
