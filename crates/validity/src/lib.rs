@@ -7,6 +7,7 @@
 
 mod check;
 mod cover;
+mod cover_source;
 mod error;
 mod lanes;
 mod model;
@@ -14,7 +15,8 @@ mod obstacles;
 mod validity;
 
 pub use check::{NotCertain, ValidityChecker};
-pub use cover::{Ball, BuiltCovers, CoverSource, SphereCover, describe_cover};
+pub use cover::{Ball, SphereCover};
+pub use cover_source::{BuiltCovers, CoverSource, describe_cover};
 pub use error::ValidityError;
 pub use model::{CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;

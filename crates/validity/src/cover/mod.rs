@@ -10,7 +10,6 @@ mod inner;
 mod medial_balls;
 mod placement;
 mod selection;
-mod source;
 mod surface_voxels;
 mod triangle_slices;
 mod uncovered;
@@ -23,7 +22,6 @@ use elbowroom_spatial::{Pose, Vec3};
 
 pub use ball::Ball;
 pub(crate) use ball::{ROUNDING_M, enclosing};
-pub use source::{BuiltCovers, CoverSource, describe_cover};
 
 use self::placement::PlacedShapes;
 use self::selection::outer_balls;

@@ -23,7 +23,8 @@ pub(crate) use pair_table::{BEYOND_RAD, CELL_RAD, CELLS, MAX_PAIRS, PairTable};
 use self::body::push_tree;
 use self::close_pairs::closer_slacks;
 use self::lever_arms::{Reach, lever_arms};
-use crate::cover::{Ball, BuiltCovers, CoverSource, ROUNDING_M, SphereCover};
+use crate::cover::{Ball, ROUNDING_M, SphereCover};
+use crate::cover_source::{BuiltCovers, CoverSource};
 use crate::error::ValidityError;
 
 /// Largest protrusion of the cover of a link, m.

@@ -3,7 +3,7 @@
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::SphereCover;
+use crate::cover::SphereCover;
 
 /// Number of this construction of covers. Covers that another one built are complete, too, but not the same.
 const CONSTRUCTION: u64 = 2;
