@@ -61,7 +61,8 @@ impl CoverCache {
     }
 
     fn file(&self, hash: [u8; HASH_BYTES]) -> Option<PathBuf> {
-        let name: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+        let digit = |half: u8| char::from_digit(half.into(), 16).unwrap_or('0');
+        let name: String = hash.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect();
         Some(self.directory.as_ref()?.join(name).with_extension("cover"))
     }
 }
@@ -106,7 +107,7 @@ fn encode(cover: &SphereCover, hash: [u8; HASH_BYTES]) -> Vec<u8> {
     }
     for ball in cover.outer.iter().chain(&cover.inner) {
         let Vec3 { x, y, z } = ball.centre;
-        [x, y, z, ball.radius].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+        bytes.extend([x, y, z, ball.radius].iter().flat_map(|v| v.to_le_bytes()));
     }
     let content = Sha256::digest(&bytes);
     bytes.extend(content);
