@@ -29,7 +29,10 @@
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
 
+mod cover_cache;
 pub mod map;
 pub mod plan;
 pub mod problems;
 pub mod query;
+
+pub use cover_cache::CoverCache;

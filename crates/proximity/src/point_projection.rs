@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::separation::nearest_on_mesh;
+use crate::separation::{nearest_on_mesh, nearest_on_mesh_within};
 use crate::{Capsule, ConvexHull, Cuboid, Cylinder, Shape, TriMesh};
 
 /// The point of a shape's surface nearest to a given point.
@@ -43,6 +43,23 @@ pub fn project_point(shape: &Shape, shape_in_world: &Pose, p: Vec3) -> PointProj
         signed_distance: local.signed_distance,
         on_surface: shape_in_world.transform_point(local.on_surface),
         outward: shape_in_world.transform_vector(local.outward),
+    }
+}
+
+impl TriMesh {
+    /// The point of the surface nearest to a point, both in the local frame; `None` where it is farther away than a limit, m.
+    ///
+    /// ```
+    /// use elbowroom_proximity::TriMesh;
+    /// use elbowroom_spatial::Vec3;
+    /// let triangle = TriMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
+    /// let below = Vec3::new(0.25, 0.25, -1.0);
+    /// assert_eq!(triangle.nearest_point_within(below, f64::INFINITY), Some(Vec3::new(0.25, 0.25, 0.0)));
+    /// assert_eq!(triangle.nearest_point_within(below, 0.9), None);
+    /// # Ok::<(), elbowroom_proximity::MeshError>(())
+    /// ```
+    pub fn nearest_point_within(&self, p: Vec3, limit_m: f64) -> Option<Vec3> {
+        nearest_on_mesh_within(self, p, limit_m).map(|(point, _)| point)
     }
 }
 

@@ -5,9 +5,11 @@ mod common;
 use common::{Random, all_distances, apart, link, scene_of};
 
 use elbowroom_kinematics::LinkId;
-use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_proximity::{HalfSpace, Shape, Sphere};
+use elbowroom_robot::{Collider, GeometryId, ObjectId, RobotId};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use elbowroom_scene::{Checker, CheckerOptions, Level, Scene, SceneState, Selection};
+use elbowroom_scene::{Checker, CheckerOptions, Level, Object, Scene, SceneState, Selection};
 
 fn options() -> Vec<CheckerOptions> {
     let mut all = Vec::new();
@@ -310,5 +312,33 @@ fn nearest_pairs_followed_along_a_path_stay_the_nearest() {
             assert!((d.metres - cold.metres).abs() < 1e-12, "{d:?} {cold:?}");
             assert!((apart(&scene, &state, d.a, d.b) - d.metres).abs() < DOUBT);
         }
+    }
+}
+
+#[test]
+fn links_of_several_shapes_collide_with_a_tilted_half_space() {
+    let mut robot = elbowroom_robot::example::arm().unwrap();
+    let tip = robot.chain.tip();
+    let balls = [0.0, 0.1].map(|x| Collider {
+        name: String::new(),
+        shape: Shape::Sphere(Sphere { radius: 0.02 }),
+        in_link: Pose::from_translation(Vec3::X * x),
+    });
+    robot.colliders[tip.0] = balls.to_vec();
+    let mut builder = Scene::builder();
+    let id = builder.robot("arm", robot, Pose::IDENTITY);
+    // Everything within five metres is below its plane.
+    let rotation = Rotation::from_axis_angle(Vec3::X, 2.0);
+    let in_world = Pose::new(rotation, rotation * (Vec3::Z * 5.0));
+    builder.object(Object { name: "ground".into(), shape: Shape::HalfSpace(HalfSpace), in_world });
+    let scene = builder.build().unwrap();
+    let mut state = SceneState::new(&scene);
+    state.set_q(&scene, id, &vec![0.1; scene.robots()[0].robot.chain.dof()]).unwrap();
+    for options in options() {
+        let mut checker = Checker::new(&scene, options);
+        assert!(checker.collides(&state).is_some() && checker.within(&state, 0.1).is_some(), "{options:?}");
+        let ground = Selection::Object(ObjectId(0));
+        let of_tip = Selection::Link { robot: id, link: tip };
+        assert!(checker.between(of_tip, ground).collides(&state).is_some(), "{options:?}");
     }
 }

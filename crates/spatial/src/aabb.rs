@@ -52,12 +52,16 @@ impl Aabb {
         Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
     }
 
-    /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`.
+    /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`; all of space where this box is
+    /// unbounded.
     #[inline]
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
-        if self.is_empty() || !self.extent().is_finite() {
+        if self.is_empty() {
             return *self;
+        }
+        if !self.extent().is_finite() {
+            return Self { min: Vec3::splat(f64::NEG_INFINITY), max: Vec3::splat(f64::INFINITY) };
         }
         Self::from_center(pose.transform_point(self.center()), pose.rotation.abs_mul(self.extent() * 0.5))
     }

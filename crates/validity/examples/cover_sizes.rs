@@ -7,7 +7,8 @@
 use std::time::Instant;
 
 use elbowroom_formats::robot::{LoadOptions, load};
-use elbowroom_validity::SphereCover;
+use elbowroom_spatial::Pose;
+use elbowroom_validity::{CoveredLinkId, CoveredRobot, ObstacleSet, SphereCover, ValidityChecker};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -30,5 +31,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     println!("{total} outer spheres, {:.0} ms", all.elapsed().as_secs_f64() * 1e3);
+    let begin = Instant::now();
+    let covered = CoveredRobot::new(&robot, Pose::IDENTITY)?;
+    let spheres: usize = (0..covered.covered_links().len()).map(|link| covered.spheres(CoveredLinkId(link))).sum();
+    let built = begin.elapsed().as_secs_f64() * 1e3;
+    let begin = Instant::now();
+    ValidityChecker::new(&covered, &ObstacleSet::default());
+    let tables = begin.elapsed().as_secs_f64() * 1e3;
+    println!("covered robot: {spheres} spheres, {built:.0} ms; tables of pairs {tables:.0} ms");
     Ok(())
 }

@@ -7,6 +7,7 @@
 
 mod check;
 mod cover;
+mod cover_source;
 mod error;
 pub mod lanes;
 mod model;
@@ -15,6 +16,7 @@ mod validity;
 
 pub use check::{NotCertain, ValidityChecker};
 pub use cover::{Ball, SphereCover};
+pub use cover_source::{BuiltCovers, CoverSource, describe_cover};
 pub use error::ValidityError;
 pub use model::{AxisCylinder, CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;

@@ -220,18 +220,30 @@ fn a_mesh_inside_out_has_no_inner_balls_outside() {
     assert!(solid_is_in_union(&block, &cover.outer, Vec3::ZERO, 0.051, 6));
 }
 
+/// `ELBOWROOM_VALIDITY_COVERS=all` proves the covers of all robots of the data, in the release profile best.
 #[test]
 fn links_of_real_robots_are_covered() {
     let Some(data) = common::data() else { return };
-    for name in ["panda/panda.urdf", "ur5e/ur5e.urdf"] {
-        let path = data.join("urdf").join(name);
+    let is_wanted = |path: &std::path::Path| match std::env::var_os("ELBOWROOM_VALIDITY_COVERS") {
+        Some(_) => true,
+        None => ["panda", "ur5e"].iter().any(|name| path.ends_with(format!("{name}.urdf"))),
+    };
+    for path in common::robots(&data).into_iter().filter(|path| is_wanted(path)) {
         let robot = load(&path, &LoadOptions::default()).unwrap().robot;
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
             let cover = SphereCover::new(&shapes, 0.005).unwrap();
-            let label = format!("{name}, {}", robot.chain.links()[link.0]);
+            let label = format!("{}, {}", path.display(), robot.chain.links()[link.0]);
             for (shape, pose) in &shapes {
                 assert_surface_is_covered(&label, &placed_triangles(shape, pose), &cover);
+            }
+            let is_closed = |shape: &Shape| !matches!(shape, Shape::Mesh(mesh) if !mesh.report().closed);
+            if shapes.iter().all(|(shape, _)| is_closed(shape)) {
+                let owned: Vec<(Shape, Pose)> = shapes.iter().map(|(shape, pose)| ((*shape).clone(), *pose)).collect();
+                let protrusion = largest_protrusion(&owned, &cover);
+                // Gaps narrower than a voxel are closed.
+                assert!(protrusion <= 2.0 * 0.005, "{label}: protrudes by {protrusion}");
+                println!("{label}: {} outer spheres, protrusion {:.2} mm", cover.outer.len(), protrusion * 1e3);
             }
         }
     }

@@ -9,6 +9,7 @@
 //   path STATES, then a line for each state: a number per joint
 // SHAPE is `box X Y Z`, `sphere R`, `cylinder R LENGTH`, `capsule R LENGTH` or `mesh CORNERS TRIANGLES` with their numbers.
 // A POSE is three rows of a 3x4 matrix. Printed for each path: `free`, or `hit FRACTION A B`.
+// With 1 for POINTS a path is its first state.
 // Every point counts, but without the word `every` not every pair is asked at every point: where its distance at one is d, it
 // is free at those that follow as long as no point of the two can have moved by d.
 #include <algorithm>
@@ -109,6 +110,7 @@ class Cell {
   std::vector<Collider> bodies;
   std::vector<Pair> pairs;
   std::size_t links = 0;
+  bool only_touching = false;  // distances help only where another point follows
 
   void clear() {
     pairs.clear();
@@ -167,6 +169,7 @@ class Cell {
       if (pair.free > APART) continue;
       collision_.clear();
       if (apart.maxCoeff() <= UNDECIDED && pair.touch(poses_[a], poses_[b], collision_request_, collision_) > 0) return &pair;
+      if (only_touching) continue;
       distance_.clear();
       pair.free = pair.measure(poses_[a], poses_[b], distance_request_, distance_) - UNDECIDED;
     }
@@ -239,6 +242,7 @@ int main(int count, char** words) {
   std::ifstream in(words[1]);
   const std::size_t points = std::stoul(words[2]);
   Cell cell;
+  cell.only_touching = points == 1;
   for (std::string word; in >> word;) {
     if (word == "joint") {
       Joint joint;

@@ -18,6 +18,8 @@ use elbowroom_planner::{
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 
+use crate::cover_cache::CoverCache;
+
 pub use answer::{PathAnswer, TimedPath};
 
 /// A request for a path.
@@ -75,7 +77,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let state = start_state(cell, &scene, id, from).map_err(|e| refused(e.into()))?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     // A link without bounds cannot be covered; the exact scene plans for it.
-    let model = CoverModel::new(&scene, &state, id, clearance_m).ok();
+    let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &CoverCache::of_user()).ok();
     let obstacles = model.as_ref().map(|model| CoverObstacles::new(model, &scene, &state, clearance_m));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
     region_constraint::at_start(cell, id, from, clearance_m, |constraint| {

@@ -9,6 +9,7 @@ use elbowroom_planner::{
 use super::problem_scene::ROBOT;
 use super::rrt_connect::{found, reason, rrt_settings};
 use super::{PlanningEngine, ProblemScene, ProblemSettings, RrtConnectEngine, Solution};
+use crate::cover_cache::CoverCache;
 
 /// [`CoverRrtConnect`], then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths are proven free. The covers of the robot are
 /// built at the first problem and again where its pairs change.
@@ -22,7 +23,8 @@ impl PlanningEngine for CoverRrtConnectEngine {
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
         let (scene, start) = (problem.scene(), problem.start());
         if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, settings.clearance_m)) {
-            self.model = CoverModel::new(scene, start, ROBOT, settings.clearance_m).ok();
+            self.model =
+                CoverModel::with_covers(scene, start, ROBOT, settings.clearance_m, &CoverCache::of_user()).ok();
         }
         let Some(model) = &self.model else { return RrtConnectEngine.solve(problem, settings) };
         let obstacles = CoverObstacles::new(model, scene, start, settings.clearance_m);

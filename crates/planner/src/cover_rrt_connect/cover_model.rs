@@ -5,7 +5,9 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_scene::{PairState, Scene, SceneState};
 use elbowroom_spatial::Pose;
-use elbowroom_validity::{CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError};
+use elbowroom_validity::{
+    BuiltCovers, CoverSource, CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError,
+};
 
 /// One robot of a scene with sphere covers of its links and of what it holds. Built once; serves all scenes with the same robot,
 /// whatever their objects are.
@@ -30,8 +32,25 @@ impl CoverModel {
     /// # Panics
     /// The scene has no such robot.
     pub fn new(scene: &Scene, state: &SceneState, robot: RobotId, clearance_m: f64) -> Result<Self, ValidityError> {
+        Self::with_covers(scene, state, robot, clearance_m, &BuiltCovers)
+    }
+
+    /// As [`new`](Self::new), with the covers of links from a source.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    ///
+    /// # Panics
+    /// The scene has no such robot.
+    pub fn with_covers(
+        scene: &Scene,
+        state: &SceneState,
+        robot: RobotId,
+        clearance_m: f64,
+        source: &dyn CoverSource,
+    ) -> Result<Self, ValidityError> {
         let r = &scene.robots()[robot.0];
-        let mut covered = CoveredRobot::without_pairs(&as_checked(scene, robot), r.base_in_world)?;
+        let mut covered = CoveredRobot::with_covers(&as_checked(scene, robot), r.base_in_world, source)?;
         let link = |link: LinkId| GeometryId::Link { robot, link };
         let mut covered_links: Vec<GeometryId> = covered.covered_links().map(link).collect();
         for i in 0..scene.objects().len() {

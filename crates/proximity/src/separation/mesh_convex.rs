@@ -154,8 +154,13 @@ pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose) -> Gap {
 
 /// The surface point nearest to `p` (local frame) and its triangle.
 pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
-    let mut best = (f64::INFINITY, mesh.corners(0)[0], 0);
-    mesh.bvh.traverse(&BoxDistance::from_point(&mesh.bvh, p), f32::INFINITY, &mut |triangle| {
+    nearest_on_mesh_within(mesh, p, f64::INFINITY).unwrap_or((mesh.corners(0)[0], 0))
+}
+
+/// As [`nearest_on_mesh`]; `None` where it is farther away than a limit.
+pub(crate) fn nearest_on_mesh_within(mesh: &TriMesh, p: Vec3, limit: f64) -> Option<(Vec3, usize)> {
+    let mut best = (limit, Vec3::ZERO, usize::MAX);
+    mesh.bvh.traverse(&BoxDistance::from_point(&mesh.bvh, p), BoxDistance::limit(&mesh.bvh, limit), &mut |triangle| {
         let q = nearest_on_triangle(p, mesh.corners(triangle));
         let distance = (q - p).length();
         // Of equals the smaller index, so that the result does not depend on the order of the tree.
@@ -164,7 +169,7 @@ pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
         }
         BoxDistance::limit(&mesh.bvh, best.0)
     });
-    (best.1, best.2)
+    (best.2 != usize::MAX).then_some((best.1, best.2))
 }
 
 /// The point of a triangle (mesh frame) nearest to a cylinder; where they overlap, one in both.

@@ -22,7 +22,7 @@ mod support_features;
 
 pub(crate) use convex::convex;
 pub(crate) use gap::rounding;
-pub(crate) use mesh_convex::{nearest_on_mesh, nearest_to_cylinder};
+pub(crate) use mesh_convex::{nearest_on_mesh, nearest_on_mesh_within, nearest_to_cylinder};
 pub use query::{collides, separation, separation_within, within};
 pub use result::Separation;
 pub(crate) use separating_axes::best_axis;

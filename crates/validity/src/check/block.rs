@@ -163,8 +163,13 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             if !skipped.is_empty() && skipped[body * self.model.obstacles.len() + source as usize] {
                 continue;
             }
-            if self.tree_against(body, root, &self.model.obstacles.outer[obstacle as usize]) {
+            let open = self.request.active & !self.workspace.settled(body, source);
+            if open == 0 {
+                continue;
+            }
+            if let Some(settled) = self.tree_against(body, root, &self.model.obstacles.outer[obstacle as usize], open) {
                 self.note(NearPair::Obstacle(body as u32, source));
+                self.workspace.settle(body, source, settled);
             }
             if self.is_done() {
                 break;
@@ -180,13 +185,14 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends from a node to the spheres near an obstacle. True where one is not proven apart.
+    /// Descends from a node to the spheres near an obstacle, for some lanes. `None` where all are proven apart; else the lanes
+    /// for which nothing else of this pair matters.
     #[inline(always)]
-    fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid) -> bool {
+    fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid, mut open: u32) -> Option<u32> {
         let (simd, robot) = (self.simd, self.model.robot);
         let (half_chord, sag) = self.workspace.body_motion(body);
         let end = robot.nodes[root as usize].end;
-        let mut is_near = false;
+        let mut settled = None;
         let mut at = root;
         while at < end {
             let node = &robot.nodes[at as usize];
@@ -194,7 +200,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             let from = obstacle.vector_from_core(simd, centre);
             let reach = Reach { radius: node.radius + obstacle.radius, half_chord, sag };
             let near = within(simd, from.vector, reach.radius + reach.half_chord);
-            if near & self.open_lanes() == 0 {
+            if near & open & self.open_lanes() == 0 {
                 at = node.end;
                 continue;
             }
@@ -205,8 +211,9 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             {
                 break;
             }
-            if is_leaf && self.touches(from.vector, reach) {
-                is_near = true;
+            let touching = if is_leaf { self.touching(from.vector, reach) } else { 0 };
+            if touching != 0 {
+                settled = Some(settled.unwrap_or(0) | self.settled_by(touching));
             } else if self.request.chords {
                 let direction = from.vector.plus(from.vector.next_lane());
                 let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
@@ -217,15 +224,18 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 }
                 if is_leaf {
                     self.result.unproven |= unproven;
-                    is_near = true;
+                    settled = Some(settled.unwrap_or(0) | self.settled_by(unproven));
                 }
             }
-            if is_leaf && self.is_done() {
-                break;
+            if is_leaf {
+                open &= !settled.unwrap_or(0);
+                if open == 0 || self.is_done() {
+                    break;
+                }
             }
             at += 1;
         }
-        is_near
+        settled
     }
 
     /// Records the lanes at which a leaf below a node touches for certain, found without going there.
@@ -240,12 +250,23 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         touching != 0
     }
 
-    /// Records the lanes that touch.
+    /// The lanes for which a pair is settled by lanes that are not apart. On a segment all where pairs are listed: this pair is.
+    /// Where only the segment counts none: lanes that touch end it, and others may touch yet.
     #[inline(always)]
-    fn touches(&mut self, vector: V3<S>, reach: Reach) -> bool {
+    fn settled_by(&self, not_apart: u32) -> u32 {
+        match (self.request.chords, self.pairs.is_some()) {
+            (false, _) => not_apart,
+            (true, true) => u32::MAX,
+            (true, false) => 0,
+        }
+    }
+
+    /// The lanes that touch; records them.
+    #[inline(always)]
+    fn touching(&mut self, vector: V3<S>, reach: Reach) -> u32 {
         let touching = within(self.simd, vector, reach.radius) & self.request.active;
         self.result.touching |= touching;
-        touching != 0
+        touching
     }
 
     /// Lanes from which the motion to the next is not proven apart. `height` is the least height of both ends of each motion over
@@ -325,17 +346,20 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         open.clear();
         open.push((a.nodes.start, b.nodes.start));
         let mut is_near = false;
+        let mut lanes = self.request.active;
         while let Some((i, j)) = open.pop() {
             let (m, n) = (&robot.nodes[i as usize], &robot.nodes[j as usize]);
             let from_b = self.workspace.centre(simd, robot, i).minus(self.workspace.centre(simd, robot, j));
             let reach = Reach { radius: m.radius + n.radius + margin_m, half_chord, sag };
-            if within(simd, from_b, reach.radius + half_chord) & self.open_lanes() == 0 {
+            if within(simd, from_b, reach.radius + half_chord) & lanes & self.open_lanes() == 0 {
                 continue;
             }
             let (is_leaf_a, is_leaf_b) = (is_leaf(m, i + 1), is_leaf(n, j + 1));
             let are_leaves = is_leaf_a && is_leaf_b;
-            if are_leaves && self.touches(from_b, reach) {
+            let touching = if are_leaves { self.touching(from_b, reach) } else { 0 };
+            if touching != 0 {
                 is_near = true;
+                lanes &= !self.settled_by(touching);
             } else if self.request.chords {
                 let local = self.workspace.frames[pair.common_frame].local_direction(simd, from_b);
                 let direction = local.plus(local.next_lane());
@@ -347,10 +371,11 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 if are_leaves {
                     self.result.unproven |= unproven;
                     is_near = true;
+                    lanes &= !self.settled_by(unproven);
                 }
             }
             if are_leaves {
-                if self.is_done() {
+                if lanes == 0 || self.is_done() {
                     break;
                 }
             } else if !is_leaf_a && (is_leaf_b || m.radius >= n.radius) {

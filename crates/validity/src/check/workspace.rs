@@ -15,6 +15,8 @@ pub(crate) struct Workspace {
     centres: Vec<PointRow>,
     stamps: Vec<u32>,
     stamp: u32,
+    /// Per obstacle, lanes that are settled for a body, and for which body of which block.
+    settled: Vec<(u32, usize, u32)>,
     /// Per moving joint, its values in a stretch.
     pub stretch: Vec<JointStretch>,
     /// Per body, then per pair of links: half of the longest chord, m.
@@ -46,6 +48,7 @@ impl Workspace {
             centres: vec![PointRow::ZERO; robot.nodes.len()],
             stamps: vec![0; robot.nodes.len()],
             stamp: 0,
+            settled: Vec::new(),
             reach_squares: vec![Row::ZERO; rows],
             stretch: vec![JointStretch::default(); robot.chain.steps.len()],
             half_chord_m: vec![Row::ZERO; rows],
@@ -70,9 +73,27 @@ impl Workspace {
     pub fn begin_block(&mut self) {
         if self.stamp == u32::MAX {
             self.stamps.fill(0);
+            self.settled.clear();
             self.stamp = 0;
         }
         self.stamp += 1;
+    }
+
+    /// Lanes in which nothing else of a body and an obstacle matters in this block.
+    pub fn settled(&self, body: usize, obstacle: u32) -> u32 {
+        match self.settled.get(obstacle as usize) {
+            Some(&(stamp, of_body, lanes)) if (stamp, of_body) == (self.stamp, body) => lanes,
+            _ => 0,
+        }
+    }
+
+    /// Adds lanes to those that are settled.
+    pub fn settle(&mut self, body: usize, obstacle: u32, lanes: u32) {
+        let lanes = lanes | self.settled(body, obstacle);
+        if self.settled.len() <= obstacle as usize {
+            self.settled.resize(obstacle as usize + 1, (0, 0, 0));
+        }
+        self.settled[obstacle as usize] = (self.stamp, body, lanes);
     }
 
     /// Centres of a node in the world.

@@ -2,7 +2,7 @@
 
 use super::ball::{Ball, ROUNDING_M};
 use super::placement::PlacedShapes;
-use super::voxel_grid::{Voxel, VoxelGrid};
+use super::voxel_grid::VoxelGrid;
 
 /// Inner spheres of one cover.
 const MAX_INNER: usize = 24;
@@ -15,13 +15,12 @@ const LEAST_RADIUS_M: f64 = 0.004;
 
 /// Balls in the closed shapes.
 pub(super) fn inner_balls(placed: &PlacedShapes, grid: &VoxelGrid) -> Vec<Ball> {
-    let inside: Vec<usize> = (0..grid.len()).filter(|&i| grid.state(i) == Voxel::Inside).collect();
-    let stride = inside.len().div_ceil(CANDIDATES).max(1);
-    let [nx, ny, _] = grid.counts;
-    let mut balls: Vec<Ball> = inside
+    let stride = grid.inside.len().div_ceil(CANDIDATES).max(1);
+    let mut balls: Vec<Ball> = grid
+        .inside
         .iter()
         .step_by(stride)
-        .map(|&i| grid.centre([i % nx, i / nx % ny, i / (nx * ny)]))
+        .map(|cell| grid.centre(cell))
         .map(|centre| Ball { centre, radius: placed.depth_m(centre) - 2.0 * ROUNDING_M })
         .filter(|b| b.radius > LEAST_RADIUS_M)
         .collect();

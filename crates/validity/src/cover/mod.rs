@@ -7,11 +7,15 @@
 
 mod ball;
 mod inner;
+mod medial_balls;
 mod placement;
 mod selection;
 mod surface_voxels;
 mod triangle_slices;
+mod uncovered;
+mod voxel_bits;
 mod voxel_grid;
+mod voxel_tree;
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -20,7 +24,7 @@ pub use ball::Ball;
 pub(crate) use ball::{ROUNDING_M, enclosing};
 
 use self::placement::PlacedShapes;
-use self::selection::CoverSelection;
+use self::selection::outer_balls;
 use self::voxel_grid::VoxelGrid;
 
 /// Shapes that reach farther from the origin are not covered, m: rounding errors of double precision would exceed
@@ -73,8 +77,8 @@ impl SphereCover {
             }
         }
         let placed = PlacedShapes::new(others);
-        if let Some(grid) = VoxelGrid::new(&placed, slack_m) {
-            cover.outer.extend(CoverSelection::new(&placed, &grid, slack_m).run());
+        if let Some(grid) = VoxelGrid::new(&placed.triangles, slack_m) {
+            cover.outer.extend(outer_balls(&placed, &grid, slack_m)?);
             cover.inner.extend(inner::inner_balls(&placed, &grid));
         }
         Some(cover)

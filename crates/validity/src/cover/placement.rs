@@ -1,4 +1,4 @@
-//! Shapes at their poses in one frame: triangles, distance from the surface, containment.
+//! Shapes at their poses in one frame: triangles, and how deep a point lies in a shape.
 
 use elbowroom_proximity::{Shape, project_point, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
@@ -15,14 +15,6 @@ pub(super) struct PlacedShapes<'s> {
     pub chord_error_m: f64,
 }
 
-/// The point of the surface nearest to a point.
-pub(super) struct NearestSurface {
-    /// Distance, m, not negative.
-    pub distance_m: f64,
-    /// The point.
-    pub point: Vec3,
-}
-
 impl<'s> PlacedShapes<'s> {
     pub fn new(shapes: Vec<(&'s Shape, Pose)>) -> Self {
         let mut triangles = Vec::new();
@@ -36,19 +28,6 @@ impl<'s> PlacedShapes<'s> {
             triangles.extend(indices.iter().map(|&[a, b, c]| [at(a), at(b), at(c)]));
         }
         Self { shapes, triangles, chord_error_m }
-    }
-
-    /// The nearest point of any surface; `None` without shapes.
-    pub fn nearest_surface(&self, p: Vec3) -> Option<NearestSurface> {
-        let mut nearest: Option<NearestSurface> = None;
-        for (shape, pose) in &self.shapes {
-            let found = project_point(shape, pose, p);
-            let distance_m = found.signed_distance.abs();
-            if nearest.as_ref().is_none_or(|n| distance_m < n.distance_m) {
-                nearest = Some(NearestSurface { distance_m, point: found.on_surface });
-            }
-        }
-        nearest
     }
 
     /// Radius of the largest ball about a point that lies in one closed shape, m; 0 outside.

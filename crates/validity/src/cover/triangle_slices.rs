@@ -1,6 +1,6 @@
 //! Triangles clipped to voxels, slab by slab along x, y and z.
 
-use elbowroom_spatial::{Aabb, Vec3};
+use elbowroom_spatial::Vec3;
 
 use super::ball::ROUNDING_M;
 
@@ -56,21 +56,26 @@ impl Lattice {
         index(low - ROUNDING_M)..=index(high + ROUNDING_M)
     }
 
+    /// The corner of a voxel with the least coordinates.
+    pub fn corner(&self, cell: [u32; 3]) -> Vec3 {
+        let [x, y, z] = cell.map(|c| f64::from(c) * self.step_m);
+        self.origin + Vec3::new(x, y, z)
+    }
+
     fn border(&self, axis: usize, index: i32) -> f64 {
         self.origin[axis] + f64::from(index) * self.step_m
     }
 
-    /// Calls `found` with every voxel that a triangle crosses and the bounds of the part of the triangle in it.
-    pub fn slice(&self, triangle: [Vec3; 3], mut found: impl FnMut([i32; 3], Aabb)) {
+    /// Calls `found` with every voxel that a triangle crosses and the corners of the part of the triangle in it.
+    pub fn slice(&self, triangle: [Vec3; 3], mut found: impl FnMut([i32; 3], &[Vec3])) {
         let mut corners = [Vec3::ZERO; 12];
         corners[..3].copy_from_slice(&triangle);
         self.slice_axis(&Polygon { corners, count: 3 }, 0, [0; 3], &mut found);
     }
 
-    fn slice_axis(&self, polygon: &Polygon, axis: usize, voxel: [i32; 3], found: &mut impl FnMut([i32; 3], Aabb)) {
+    fn slice_axis(&self, polygon: &Polygon, axis: usize, voxel: [i32; 3], found: &mut impl FnMut([i32; 3], &[Vec3])) {
         if axis == 3 {
-            let bounds = Aabb::from_points(polygon.corners[..polygon.count].iter().copied());
-            found(voxel, bounds);
+            found(voxel, &polygon.corners[..polygon.count]);
             return;
         }
         let (low, high) = polygon.range(axis);

@@ -2,6 +2,7 @@
 
 mod axis_cylinder;
 mod body;
+mod close_pairs;
 mod forward;
 mod joint_step;
 mod lever_arms;
@@ -26,8 +27,10 @@ pub(crate) use single_forward::{Frame, JointTurns};
 pub(crate) use sphere_packs::{RootSphere, SpherePack, SpherePacks};
 
 use self::body::push_tree;
+use self::close_pairs::closer_slacks;
 use self::lever_arms::{Reach, lever_arms};
 use crate::cover::{Ball, ROUNDING_M, SphereCover};
+use crate::cover_source::{BuiltCovers, CoverSource};
 use crate::error::ValidityError;
 
 /// Largest protrusion of the cover of a link, m.
@@ -126,6 +129,14 @@ impl CoveredRobot {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
+        Self::with_covers(robot, base_in_world, &BuiltCovers)
+    }
+
+    /// As [`without_pairs`](Self::without_pairs), with covers from a source, which several threads ask at once.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_covers(robot: &Robot, base_in_world: Pose, source: &dyn CoverSource) -> Result<Self, ValidityError> {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
         let mut covered = Self {
@@ -139,7 +150,7 @@ impl CoveredRobot {
             reach_m: 0.0,
             dof,
         };
-        for (link, cover) in link_covers(robot) {
+        for (link, cover) in link_covers(robot, source) {
             covered.add_cover(&robot.chain, link, cover)?;
         }
         Ok(covered)
@@ -227,13 +238,27 @@ impl CoveredRobot {
     }
 }
 
+/// The covers of all links with colliders, in the order of the chain; closer ones of links that are always near others.
+fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
+    let mut covers = usual_covers(robot, source);
+    for (link, slack) in closer_slacks(robot, &covers) {
+        let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
+        if slack < slack_m(&shapes)
+            && let Some(entry) = covers.iter_mut().find(|(covered, _)| *covered == link)
+        {
+            entry.1 = source.cover(&shapes, slack);
+        }
+    }
+    covers
+}
+
 /// The covers of all links with colliders, in the order of the chain, on all processors.
-fn link_covers(robot: &Robot) -> Vec<(LinkId, Option<SphereCover>)> {
+fn usual_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let next = AtomicUsize::new(0);
     let cover = |link: LinkId| {
         let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
-        SphereCover::new(&shapes, slack_m(&shapes))
+        source.cover(&shapes, slack_m(&shapes))
     };
     let work = || {
         let mut done = Vec::new();

@@ -1,6 +1,8 @@
 //! Random robots and obstacles.
 #![allow(dead_code, clippy::print_stdout)]
 
+pub mod coal_job;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -128,6 +130,62 @@ pub fn obstacles(random: &mut Random, count: usize, spread: f64) -> Vec<(Shape, 
     list
 }
 
+/// What surrounds a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Spheres, capsules, cylinders and boxes.
+    Primitives,
+    /// Closed and open meshes, and convex hulls.
+    Meshes,
+    /// A cloud of points with a radius.
+    Cloud,
+    /// Shapes of all kinds.
+    Mixed,
+}
+
+/// A floor far below, and solids or points around a robot.
+pub struct Surroundings {
+    solids: Vec<(Shape, Pose)>,
+    points: Vec<Vec3>,
+}
+
+/// Radius of the points of a cloud, m.
+const POINT_RADIUS_M: f64 = 0.01;
+
+impl Surroundings {
+    pub fn new(random: &mut Random, kind: Kind, count: usize, spread: f64) -> Self {
+        let mut solids = obstacles(random, 0, spread);
+        let mut points = Vec::new();
+        while solids.len() + points.len() <= count {
+            if kind == Kind::Cloud {
+                // A patch of a wall, as a camera sees it.
+                let wall = random.pose(spread);
+                let mut on_wall = || Vec3::new(random.between(-0.3, 0.3), random.between(-0.3, 0.3), 0.0);
+                points.extend((0..20).map(|_| wall.transform_point(on_wall())));
+                continue;
+            }
+            let shape = random.shape(0.2);
+            let is_mesh = matches!(shape, Shape::Hull(_) | Shape::Mesh(_));
+            if kind == Kind::Mixed || is_mesh == (kind == Kind::Meshes) {
+                solids.push((shape, random.pose(spread)));
+            }
+        }
+        Self { solids, points }
+    }
+
+    pub fn obstacle_set(&self) -> ObstacleSet {
+        let mut set = obstacle_set(&self.solids);
+        set.add_points(&self.points, POINT_RADIUS_M);
+        set
+    }
+
+    /// All as shapes, points as balls.
+    pub fn as_solids(&self) -> Vec<(Shape, Pose)> {
+        let ball = |p: &Vec3| (Shape::Sphere(Sphere { radius: POINT_RADIUS_M }), Pose::from_translation(*p));
+        self.solids.iter().cloned().chain(self.points.iter().map(ball)).collect()
+    }
+}
+
 /// The exact scene.
 pub fn scene(robot: &Robot, base: Pose, solids: &[(Shape, Pose)]) -> Scene {
     let mut builder = Scene::builder();
@@ -157,6 +215,17 @@ pub fn data() -> Option<PathBuf> {
     }
     println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
     None
+}
+
+/// The robots of the data, a URDF per folder.
+pub fn robots(data: &std::path::Path) -> Vec<PathBuf> {
+    let in_folder =
+        |folder: &std::path::Path| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
+    let mut folders: Vec<PathBuf> = in_folder(&data.join("urdf")).collect();
+    folders.sort();
+    let is_model =
+        |p: &PathBuf| p.extension().is_some_and(|e| e == "urdf") && !p.to_string_lossy().contains(".package.");
+    folders.iter().filter_map(|folder| in_folder(folder).filter(is_model).min()).collect()
 }
 
 /// Joint number `i` of a serial chain, without limits.

@@ -1,0 +1,75 @@
+//! Where covers come from: they are built, or kept from an earlier run.
+
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::cover::SphereCover;
+
+/// Number of this construction of covers. Covers that another one built are complete, too, but not the same.
+const CONSTRUCTION: u64 = 2;
+
+/// Gives the cover of shapes: built, or kept from an earlier run. A source must give what [`SphereCover::new`] would.
+pub trait CoverSource: Sync {
+    /// As [`SphereCover::new`].
+    fn cover(&self, shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<SphereCover>;
+}
+
+/// Builds every cover.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BuiltCovers;
+
+impl CoverSource for BuiltCovers {
+    fn cover(&self, shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<SphereCover> {
+        SphereCover::new(shapes, slack_m)
+    }
+}
+
+/// Passes on all numbers that a cover depends on, for a hash: the construction, the slack, and the shapes with their poses.
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere};
+/// use elbowroom_spatial::Pose;
+/// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+/// let numbers = |slack_m: f64| {
+///     let mut bytes = Vec::new();
+///     elbowroom_validity::describe_cover(&[(&ball, Pose::IDENTITY)], slack_m, &mut |number| bytes.extend(number));
+///     bytes
+/// };
+/// assert_eq!(numbers(0.005), numbers(0.005));
+/// assert_ne!(numbers(0.005), numbers(0.002));
+/// ```
+pub fn describe_cover(shapes: &[(&Shape, Pose)], slack_m: f64, pass: &mut dyn FnMut([u8; 8])) {
+    let mut count = |n: u64| pass(n.to_le_bytes());
+    count(CONSTRUCTION);
+    count(slack_m.to_bits());
+    count(shapes.len() as u64);
+    for (shape, pose) in shapes {
+        pose.to_rows().iter().flatten().for_each(|v| count(v.to_bits()));
+        describe_shape(shape, &mut count);
+    }
+}
+
+/// A number for the kind of shape, then its own.
+fn describe_shape(shape: &Shape, count: &mut dyn FnMut(u64)) {
+    let mut numbers = |kind: u64, lengths: &[f64]| {
+        count(kind);
+        for v in lengths {
+            count(v.to_bits());
+        }
+    };
+    match shape {
+        Shape::Sphere(s) => numbers(0, &[s.radius]),
+        Shape::Capsule(c) => numbers(1, &[c.half_length, c.radius]),
+        Shape::Cylinder(c) => numbers(2, &[c.half_length, c.radius]),
+        Shape::Cuboid(c) => numbers(3, &[c.half_extents.x, c.half_extents.y, c.half_extents.z]),
+        Shape::HalfSpace(_) => numbers(4, &[]),
+        Shape::Hull(h) => describe_triangles(5, h.vertices(), h.triangles(), count),
+        Shape::Mesh(m) => describe_triangles(6, m.vertices(), m.triangles(), count),
+    }
+}
+
+fn describe_triangles(kind: u64, vertices: &[Vec3], triangles: &[[u32; 3]], count: &mut dyn FnMut(u64)) {
+    [kind, vertices.len() as u64, triangles.len() as u64].into_iter().for_each(&mut *count);
+    vertices.iter().flat_map(|v| [v.x, v.y, v.z]).for_each(|v| count(v.to_bits()));
+    triangles.iter().flatten().for_each(|&i| count(i.into()));
+}

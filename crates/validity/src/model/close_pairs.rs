@@ -1,0 +1,74 @@
+//! Links that are always near each other without touching: their covers must be closer to them than the slack.
+
+use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_proximity::separation;
+use elbowroom_robot::{GeometryId, Robot, collision_pairs};
+use elbowroom_spatial::Pose;
+
+use crate::cover::{Ball, SphereCover};
+
+/// Configurations at which the covers of a pair are compared.
+const SAMPLES: usize = 24;
+/// The slack of both covers together stays below twice this share of the gap that a pair usually has.
+const SHARE_OF_GAP: f64 = 0.3;
+/// Covers are not made closer than this, m.
+const LEAST_SLACK_M: f64 = 1e-3;
+
+/// Links whose covers touch another's at every sample though the links do not, each with the slack that keeps them apart, m.
+pub(super) fn closer_slacks(robot: &Robot, covers: &[(LinkId, Option<SphereCover>)]) -> Vec<(LinkId, f64)> {
+    let cover = |wanted: LinkId| covers.iter().find(|(link, _)| *link == wanted).and_then(|(_, cover)| cover.as_ref());
+    let states = samples(robot);
+    let mut slacks = Vec::new();
+    for pair in collision_pairs(&[robot], 0) {
+        let (GeometryId::Link { link: a, .. }, GeometryId::Link { link: b, .. }) = pair else { continue };
+        let (Some(of_a), Some(of_b)) = (cover(a), cover(b)) else { continue };
+        let b_in_a = |state: &ChainState| state.link_in_root(a).inverse() * state.link_in_root(b);
+        if !states.iter().all(|state| overlap(&of_a.outer, &of_b.outer, &b_in_a(state))) {
+            continue;
+        }
+        let mut gaps: Vec<f64> = states.iter().map(|state| gap_m(robot, a, b, &b_in_a(state))).collect();
+        gaps.sort_by(f64::total_cmp);
+        let usual_m = gaps[SAMPLES / 2];
+        if SHARE_OF_GAP * usual_m >= LEAST_SLACK_M {
+            slacks.extend([a, b].map(|link| (link, SHARE_OF_GAP * usual_m)));
+        }
+    }
+    // Of several the smallest.
+    slacks.sort_by(|(a, of_a), (b, of_b)| a.cmp(b).then(of_a.total_cmp(of_b)));
+    slacks.dedup_by_key(|(link, _)| *link);
+    slacks
+}
+
+/// Configurations spread over the limits, always the same.
+fn samples(robot: &Robot) -> Vec<ChainState> {
+    let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
+    let at = |k: usize| {
+        let mut state = ChainState::new(&robot.chain);
+        for (i, q) in state.q.iter_mut().enumerate() {
+            // Multiples of irrational numbers fill the unit interval evenly.
+            let share = ((k + 1) as f64 * (2.0 + i as f64).sqrt() * 0.618_033_988_75).fract();
+            let is_bounded = lower[i].is_finite() && upper[i].is_finite();
+            let (low, high) = if is_bounded { (lower[i], upper[i]) } else { (-3.1, 3.1) };
+            *q = low + share * (high - low);
+        }
+        robot.chain.forward(&mut state);
+        state
+    };
+    (0..SAMPLES).map(at).collect()
+}
+
+/// True where a ball of one cover touches one of the other, which is placed in the frame of the first.
+fn overlap(of_a: &[Ball], of_b: &[Ball], b_in_a: &Pose) -> bool {
+    of_b.iter().any(|ball| {
+        let centre = b_in_a.transform_point(ball.centre);
+        of_a.iter().any(|other| (other.centre - centre).length_squared() < (other.radius + ball.radius).powi(2))
+    })
+}
+
+/// Distance of the shapes of two links, m.
+fn gap_m(robot: &Robot, a: LinkId, b: LinkId, b_in_a: &Pose) -> f64 {
+    let of_b = &robot.colliders[b.0];
+    let pairs = robot.colliders[a.0].iter().flat_map(|x| of_b.iter().map(move |y| (x, y)));
+    let gaps = pairs.map(|(x, y)| separation(&x.shape, &x.in_link, &y.shape, &(*b_in_a * y.in_link)).distance);
+    gaps.fold(f64::INFINITY, f64::min)
+}
