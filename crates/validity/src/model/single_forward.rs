@@ -59,7 +59,8 @@ impl BatchedChain {
 impl JointStep {
     #[inline(always)]
     fn moved<S: Simd>(&self, simd: S, value: f32, sin: f32, cos: f32, parent: &Frame) -> Frame {
-        let columns = parent.columns.map(|c| vector(simd, c));
+        let [x, y, z] = parent.columns;
+        let columns = [vector(simd, x), vector(simd, y), vector(simd, z)];
         let mut origin = vector(simd, parent.origin);
         for k in 0..3 {
             if self.translation[k] != 0.0 {

@@ -94,7 +94,9 @@ impl SlabIndex {
             let mut all = [u64::MAX; WORDS];
             for k in 0..3 {
                 let (begin, end) = (&sets[2 * k * SLABS + begins[k]], &sets[(2 * k + 1) * SLABS + ends[k]]);
-                (0..WORDS).for_each(|w| all[w] &= begin[w] & end[w]);
+                for w in 0..WORDS {
+                    all[w] &= begin[w] & end[w];
+                }
             }
             for (w, mut bits) in all.into_iter().enumerate() {
                 while bits != 0 {
