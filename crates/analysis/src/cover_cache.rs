@@ -23,7 +23,7 @@ const BALL_BYTES: usize = 32;
 /// Covers in files named by the hash of what they depend on. A file that is damaged, foreign or missing is written again, and one
 /// that cannot be written is done without: the covers are the same with and without the cache, and deleting it is safe.
 ///
-/// A file has [`FORMAT`], the hash of the shapes, the numbers of outer and inner spheres, the spheres, and a hash of all before.
+/// A file has the name and version of the format, the hash of the shapes, the numbers of outer and inner spheres, the spheres, and a hash of all before.
 #[derive(Debug, Clone)]
 pub struct CoverCache {
     /// `None`: every cover is built.

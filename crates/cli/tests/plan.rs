@@ -86,10 +86,10 @@ fn no_path_has_exit_status_1_and_a_reason() {
     let args = ["--robot", "arm", "--to", "1,0", "--time-limit", "0.2"];
     let answer = plan(&stiff, &[&args[..], &["--json"]].concat()).expect(1).json();
     assert_eq!((&answer["found"], &answer["waypoints"]), (&false.into(), &Value::Array(vec![])));
-    assert!(answer["reason"].as_str().unwrap().contains("proves nothing"), "{answer}");
+    assert!(answer["reason"].as_str().unwrap().contains("no path exists: `joint_1`"), "{answer}");
     assert!(answer["cost_rad"].is_null() && answer["duration_s"].is_null() && answer["planning_us"].as_u64() > Some(0));
     let text = plan(&stiff, &args).expect(1).stdout;
-    assert!(text.contains("no path found"), "{text}");
+    assert!(text.contains("no path exists"), "{text}");
 }
 
 #[test]
