@@ -131,6 +131,44 @@ fn an_open_row_is_settled_where_another_link_blocks_its_first_cell() {
     }
 }
 
+/// A torso with an arm on either side, each moved by a joint of its own.
+fn two_armed() -> Robot {
+    let joint = |name: &str, parent: usize, child: usize, at: Vec3, axis: Vec3| Joint {
+        name: name.into(),
+        kind: JointKind::Revolute,
+        parent: LinkId(parent),
+        child: LinkId(child),
+        origin: Pose::from_translation(at),
+        axis,
+        limits: Limits::symmetric(1.5),
+        mimic: None,
+    };
+    let joints = vec![
+        joint("torso", 0, 1, Vec3::Z * 0.3, Vec3::Z),
+        joint("left", 1, 2, Vec3::new(0.0, 0.3, 0.4), Vec3::Y),
+        joint("right", 1, 3, Vec3::new(0.0, -0.3, 0.4), Vec3::Y),
+    ];
+    let links = ["base", "torso", "left", "right"].map(String::from).to_vec();
+    let mut robot = Robot::new(Chain::new("two-armed", links, joints).unwrap());
+    for colliders in &mut robot.colliders[2..] {
+        let shape = Shape::Capsule(Capsule { half_length: 0.25, radius: 0.05 });
+        colliders.push(Collider { name: String::new(), shape, in_link: Pose::from_translation(Vec3::X * 0.3) });
+    }
+    robot
+}
+
+#[test]
+fn an_arm_is_tested_where_the_other_blocks_the_first_cell_of_the_row() {
+    // The wall is in reach of both arms, of the left one at its lower limit, too.
+    let mut case = Case::new(vec![cuboid([0.35, 0.0, 0.7], [0.0; 3], [0.1, 1.0, 0.7])]);
+    case.robot = two_armed();
+    case.step = 6.0;
+    for joints in [vec![0, 1, 2], vec![0, 2, 1], vec![2, 0, 1]] {
+        case.joints = joints;
+        check(&case, 20_000);
+    }
+}
+
 #[test]
 fn joints_that_are_no_axes_are_enclosed_or_held() {
     let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.6], [0.3, 0.2, 0.8], [0.2, 0.1, 0.3])]);

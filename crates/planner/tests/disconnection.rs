@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use elbowroom_kinematics::LinkId;
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
 use elbowroom_proximity::{Cuboid, Shape};
-use elbowroom_robot::{RobotId, example};
+use elbowroom_robot::{GeometryId, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::{split_mix, unit};
@@ -56,6 +57,43 @@ fn a_wall_from_which_the_arm_cannot_withdraw_separates_its_sides() {
 fn a_wall_over_which_the_arm_lifts_separates_nothing() {
     let path = plan(&scene(&[WALL]), &[-1.2, 1.6, 0.3], &[1.2, 1.6, 0.3], &RrtConnectSettings::default()).unwrap();
     assert!(path.waypoints.len() > 2);
+}
+
+/// One goal is beyond the walls; the other may be reachable, but covers do not leave it: boxes are a millimetre from the forearm
+/// on four sides. What is proven of the first says nothing about the second.
+#[test]
+fn a_goal_that_cannot_be_left_keeps_the_question_open() {
+    let roof = (Vec3::new(0.0, 0.0, 0.75), Vec3::new(1.5, 1.5, 0.15));
+    let behind = (Vec3::new(-0.45, 0.0, 0.4), Vec3::new(0.3, 0.02, 1.2));
+    let (from, tight, beyond) = ([-0.7, 1.6, 0.3], [-1.7, 1.6, 0.0], [1.2, 1.6, 0.3]);
+    let mut builder = Scene::builder();
+    builder.robot("arm", example::arm().unwrap(), Pose::IDENTITY);
+    for (i, (at, half_extents)) in [WALL, roof, behind].into_iter().enumerate() {
+        let shape = Shape::Cuboid(Cuboid { half_extents });
+        builder.object(Object { name: format!("wall {i}"), shape, in_world: Pose::from_translation(at) });
+    }
+    let alone = builder.clone().build().unwrap();
+    let mut state = SceneState::new(&alone);
+    state.set_q(&alone, ROBOT, &tight).unwrap();
+    let forearm = state.pose(&alone, GeometryId::Link { robot: ROBOT, link: LinkId(3) }).unwrap();
+    for (i, side) in [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].into_iter().enumerate() {
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.02, 0.02, 0.15) });
+        let at = Pose::from_translation(side * 0.071 + Vec3::Z * 0.2);
+        builder.object(Object { name: format!("side {i}"), shape, in_world: forearm * at });
+    }
+    let scene = builder.build().unwrap();
+    let mut start = SceneState::new(&scene);
+    start.set_q(&scene, ROBOT, &from).unwrap();
+    let model = CoverModel::new(&scene, &start, ROBOT, 0.0).unwrap();
+    let obstacles = CoverObstacles::new(&model, &scene, &start, 0.0);
+    let mut planner = CoverRrtConnect::new(RrtConnect::new(&scene, ROBOT).unwrap(), &model, &obstacles);
+    let settings = RrtConnectSettings { time_limit: Duration::from_secs(2), ..RrtConnectSettings::default() };
+    let alone = planner.plan(&start, &beyond, &settings).unwrap_err();
+    assert!(matches!(alone, RrtConnectError::Disconnected { .. }), "{alone}");
+    for goals in [[beyond, tight], [tight, beyond]] {
+        let error = planner.plan_to_any(&start, &goals, &settings).unwrap_err();
+        assert!(matches!(error, RrtConnectError::NotFound { .. }), "{error}");
+    }
 }
 
 /// Where the planner in the exact scene has a path, nothing is proven against it, however little the search on covers may do.

@@ -5,8 +5,9 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::cover::SphereCover;
 
-/// Number of this construction of covers. Covers that another one built are complete, too, but not the same.
-const CONSTRUCTION: u64 = 2;
+/// Number of this construction of covers, the triangles of curved shapes included: to be raised with each change of either, so
+/// that no cover of a former one is taken from a cache.
+const CONSTRUCTION: u64 = 3;
 
 /// Gives the cover of shapes: built, or kept from an earlier run. A source must give what [`SphereCover::new`] would.
 pub trait CoverSource: Sync {

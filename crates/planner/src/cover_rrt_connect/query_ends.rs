@@ -35,6 +35,8 @@ impl QueryEnd {
 pub(super) struct QueryEnds {
     start: QueryEnd,
     goals: Vec<QueryEnd>,
+    /// True where a goal was left out that may be valid: no exit from it was found.
+    misses_goals: bool,
 }
 
 impl QueryEnds {
@@ -63,6 +65,11 @@ impl QueryEnds {
         self.start.exit_length() + self.goals.iter().map(QueryEnd::exit_length).fold(f64::INFINITY, f64::min)
     }
 
+    /// True where there may be other goals: what is proven of these is not proven of all.
+    pub fn misses_goals(&self) -> bool {
+        self.misses_goals
+    }
+
     /// A path between exits with the segments to the ends themselves.
     pub fn completed(&self, path: PlannedPath) -> PlannedPath {
         let reached = path.waypoints.last().and_then(|last| self.goals.iter().find(|goal| goal.exit == *last));
@@ -82,17 +89,24 @@ impl EdgeSearch<'_, '_> {
         random: &mut Random,
     ) -> Result<QueryEnds, RrtConnectError> {
         let (mut ends, mut reason): (Option<QueryEnds>, _) = (None, RrtConnectError::NoGoal);
+        let mut misses_goals = false;
         for (i, goal) in goals.iter().enumerate() {
             match self.pair_of_ends(start, goal.as_ref(), settings, random) {
                 Ok((from, to)) => match &mut ends {
                     Some(ends) => ends.goals.push(to),
-                    None => ends = Some(QueryEnds { start: from, goals: vec![to] }),
+                    None => ends = Some(QueryEnds { start: from, goals: vec![to], misses_goals }),
                 },
-                Err(e) if i == 0 => reason = e,
-                Err(_) => {}
+                Err(e) => {
+                    let is_open = matches!(e, RrtConnectError::NotFound { .. });
+                    misses_goals |= is_open;
+                    // Of a goal that may be valid nothing is known; what is wrong with others helps.
+                    if i == 0 || is_open {
+                        reason = e;
+                    }
+                }
             }
         }
-        ends.ok_or(reason)
+        ends.map(|ends| QueryEnds { misses_goals, ..ends }).ok_or(reason)
     }
 
     fn pair_of_ends(

@@ -10,7 +10,7 @@ const ROUNDED_UP: f64 = 1.0 + 1e-6;
 
 impl ValidityChecker<'_> {
     /// Whether *every* configuration of a box in joint space is proven in collision, for several boxes of the same size: those
-    /// within `half_widths` (rad, m for prismatic joints; infinite where a joint may be anywhere) of a centre. `centres` has the
+    /// within `half_widths` (rad, m for prismatic joints, within their limits; infinite where a joint may be anywhere) of a centre. `centres` has the
     /// values of all centres one after the other. False proves nothing.
     ///
     /// Proven by depth: at the centre an inner sphere of a link overlaps an obstacle or another link deeper than either moves

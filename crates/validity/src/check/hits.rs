@@ -55,8 +55,8 @@ impl BlockModel<'_> {
             }
             NearPair::Links(a, b) => {
                 let is_pair = |p: &&LinkPair| (p.a.0, p.b.0) == (a as usize, b as usize);
-                let joints = self.robot.pairs.iter().find(is_pair).map_or(&[][..], |p| &p.joints);
-                joints.iter().map(|j| half_widths.get(j.step).map_or(0.0, |half| j.lever_m * half)).sum()
+                let Some(pair) = self.robot.pairs.iter().find(is_pair) else { return f32::INFINITY };
+                pair.joints.iter().map(|j| half_widths.get(j.step).map_or(0.0, |half| j.lever_m * half)).sum()
             }
         };
         sum * ROUNDED_UP

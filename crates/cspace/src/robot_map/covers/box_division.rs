@@ -172,8 +172,9 @@ impl<'a> BoxDivision<'a> {
         let mut live = if count >= LANES { 0xffff } else { (1 << count) - 1 };
         live &= self.pairs[from..].iter().fold(0, |all, pair| all | pair.boxes);
         let covers = &self.classes[class];
-        if boxes.level == 0 {
-            // What links of fewer axes block needs no test; these were filled before.
+        // What links of fewer axes block needs no test; these were filled before. A cell of a class that leaves out the first axis
+        // stands for all its values, and others may have blocked only some of them.
+        if boxes.level == 0 && covers.uses != [false, true] {
             live &= !self.bits.sixteen(boxes.others, boxes.group);
         }
         let half = &covers.levels[boxes.level].half;
