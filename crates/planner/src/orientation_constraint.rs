@@ -31,7 +31,7 @@ const DAMPING: f64 = 1e-3;
 /// // The arm is upright at zero.
 /// assert!((upright.distance_m(&[0.5, 0.0, 0.0], 0.0) - 0.2).abs() < 1e-12);
 /// assert!((upright.distance_m(&[0.5, 0.3, 0.0], 0.0) + 0.1).abs() < 1e-12);
-/// // It cannot be projected there without the elbow turning back.
+/// // A projection turns shoulder and elbow until it is upright again.
 /// let mut q = [0.5, 0.8, 0.0];
 /// assert!(upright.project(&mut q) && upright.distance_m(&q, 0.0) > 0.0);
 /// ```

@@ -87,7 +87,7 @@ fn a_goal_that_cannot_be_left_keeps_the_question_open() {
     let model = CoverModel::new(&scene, &start, ROBOT, 0.0).unwrap();
     let obstacles = CoverObstacles::new(&model, &scene, &start, 0.0);
     let mut planner = CoverRrtConnect::new(RrtConnect::new(&scene, ROBOT).unwrap(), &model, &obstacles);
-    let settings = RrtConnectSettings { time_limit: Duration::from_secs(2), ..RrtConnectSettings::default() };
+    let settings = RrtConnectSettings { time_limit: Duration::from_secs(4), ..RrtConnectSettings::default() };
     let alone = planner.plan(&start, &beyond, &settings).unwrap_err();
     assert!(matches!(alone, RrtConnectError::Disconnected { .. }), "{alone}");
     for goals in [[beyond, tight], [tight, beyond]] {

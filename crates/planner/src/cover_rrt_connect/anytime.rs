@@ -28,7 +28,7 @@ pub struct AnytimePath {
 
 impl CoverRrtConnect<'_> {
     /// As [`plan_to_any`](Self::plan_to_any), then searches for shorter paths, each proven free, until the time limit (or the
-    /// limit of configurations) is reached: the lengths converge to the shortest (AORRTC).
+    /// limit of configurations) is reached (AORRTC).
     ///
     /// # Errors
     /// As [`plan_to_any`](Self::plan_to_any).

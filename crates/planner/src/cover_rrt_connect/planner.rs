@@ -18,6 +18,8 @@ use crate::rrt_connect::{PlannedPath, Random, RrtConnect, RrtConnectError, RrtCo
 const COVER_SHARE: f64 = 0.5;
 /// Share of its time after which a search on covers is interrupted: there may be a proof that no path exists.
 const FIRST_SHARE: f64 = 0.02;
+/// Share of its time that such proofs may take: there is more often a path than none.
+const PROOF_SHARE: f64 = 0.3;
 
 /// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`] gives, far sooner.
 ///
@@ -167,7 +169,8 @@ impl<'m> CoverRrtConnect<'m> {
         let mut trees = TreeSearch::new(&mut search, ends.from(), ends.goals());
         let mut found = trees.run(&mut sampler);
         if found.is_none() {
-            trees.validator.expect_connected(ends)?;
+            let proof_deadline = Instant::now() + settings.time_limit.mul_f64(PROOF_SHARE);
+            trees.validator.expect_connected(ends, proof_deadline.min(last_deadline))?;
             trees.validator.covers.extend_deadline(last_deadline);
             found = trees.run(&mut sampler);
         }
@@ -178,9 +181,9 @@ impl<'m> CoverRrtConnect<'m> {
 
 impl EdgeSearch<'_, '_> {
     /// An error where it is proven that no path leads from the start to any goal.
-    fn expect_connected(&mut self, ends: &QueryEnds) -> Result<(), RrtConnectError> {
+    fn expect_connected(&mut self, ends: &QueryEnds, deadline: Instant) -> Result<(), RrtConnectError> {
         let bounds = &self.exact.bounds;
-        let (ranges, deadline) = (bounds.ranges(), self.exact.validator.deadline);
+        let ranges = bounds.ranges();
         if ends.misses_goals() {
             return Ok(());
         }

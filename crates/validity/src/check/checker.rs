@@ -64,6 +64,19 @@ pub struct ValidityChecker<'m> {
     blocks: u64,
 }
 
+/// What kernels read of a checker: a macro, so that its workspaces can be written at the same time.
+macro_rules! block_model {
+    ($checker:ident) => {
+        BlockModel {
+            robot: $checker.robot,
+            obstacles: $checker.obstacles,
+            tree: &$checker.outer,
+            motion: &$checker.motion,
+            skipped: &$checker.skipped,
+        }
+    };
+}
+
 impl<'m> ValidityChecker<'m> {
     /// A checker of a robot among obstacles.
     pub fn new(robot: &'m CoveredRobot, obstacles: &'m ObstacleSet) -> Self {
@@ -198,14 +211,8 @@ impl<'m> ValidityChecker<'m> {
             return Validity::Uncertain;
         }
         self.blocks += 1;
-        let model = BlockModel {
-            robot: self.robot,
-            obstacles: self.obstacles,
-            tree: &self.outer,
-            motion: &self.motion,
-            skipped: &self.skipped,
-        };
         let (inner, matrix, workspace) = (&self.inner, &self.matrix, &mut self.single);
+        let model = block_model!(self);
         dispatch!(self.simd_level, simd => {
             SingleKernel { simd, model, inner, matrix, workspace, is_touching: false }.check(q)
         })
@@ -242,25 +249,13 @@ impl<'m> ValidityChecker<'m> {
 
     pub(super) fn run(&mut self, request: BlockRequest, pairs: Option<&mut Vec<NearPair>>) -> BlockResult {
         self.blocks += 1;
-        let model = BlockModel {
-            robot: self.robot,
-            obstacles: self.obstacles,
-            tree: &self.outer,
-            motion: &self.motion,
-            skipped: &self.skipped,
-        };
+        let model = block_model!(self);
         let workspace = &mut self.workspace;
         dispatch!(self.simd_level, simd => model.check(simd, workspace, request, pairs))
     }
 
     pub(super) fn hits(&mut self, pairs: &[NearPair], half_widths: &[f32]) -> u32 {
-        let model = BlockModel {
-            robot: self.robot,
-            obstacles: self.obstacles,
-            tree: &self.outer,
-            motion: &self.motion,
-            skipped: &self.skipped,
-        };
+        let model = block_model!(self);
         let (inner, workspace) = (&self.inner, &mut self.workspace);
         dispatch!(self.simd_level, simd => model.hits(simd, inner, workspace, pairs, half_widths))
     }
