@@ -26,6 +26,7 @@ mod local_detour;
 mod nearest_free_cell;
 mod orientation_constraint;
 mod path;
+mod prioritized_planner;
 mod replan;
 mod rrt_connect;
 mod task_space_region;
@@ -37,6 +38,7 @@ pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use orientation_constraint::OrientationConstraint;
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
+pub use prioritized_planner::{PrioritizedMotion, PrioritizedPlanner, RobotGoal};
 pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
     JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting,

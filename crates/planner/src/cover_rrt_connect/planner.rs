@@ -10,6 +10,7 @@ use super::edge_search::EdgeSearch;
 use super::edge_validator::{CoverValidator, EdgeValidator};
 use super::query_ends::QueryEnds;
 use super::region_sampler::RegionSampler;
+use super::separating_value::SeparatingValue;
 use super::shortcutting::Shortcutting;
 use super::tree_search::TreeSearch;
 use crate::rrt_connect::{PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, length, path_length};
@@ -20,6 +21,8 @@ const COVER_SHARE: f64 = 0.5;
 const FIRST_SHARE: f64 = 0.02;
 /// Share of its time that such proofs may take: there is more often a path than none.
 const PROOF_SHARE: f64 = 0.3;
+/// Share of that for values of one joint that no path crosses.
+const VALUE_SHARE: f64 = 0.3;
 
 /// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`] gives, far sooner.
 ///
@@ -187,12 +190,21 @@ impl EdgeSearch<'_, '_> {
         if ends.misses_goals() {
             return Ok(());
         }
+        let (scene, state) = self.exact.validator.scene_state();
+        let mut separating = SeparatingValue::new(scene, state, self.exact.robot(), ranges.clone());
         let mut proof = None;
         for to in ends.goals() {
-            let mut all = projections(bounds.dof()).into_iter();
             let from = ends.from();
-            match all.find(|some| self.covers.are_disconnected(&ranges, [from, to], some, deadline)) {
-                Some(projection) => proof = proof.or(Some((projection.joints, to))),
+            let value_deadline =
+                Instant::now() + deadline.saturating_duration_since(Instant::now()).mul_f64(VALUE_SHARE);
+            let of_value = separating.joint_between(from, to, value_deadline).map(|joint| vec![joint]);
+            let mut all = projections(bounds.dof()).into_iter();
+            let joints = of_value.or_else(|| {
+                let found = all.find(|some| self.covers.are_disconnected(&ranges, [from, to], some, deadline));
+                found.map(|projection| projection.joints)
+            });
+            match joints {
+                Some(joints) => proof = proof.or(Some((joints, to))),
                 None => return Ok(()),
             }
         }

@@ -68,6 +68,11 @@ impl<'s> MotionValidator<'s> {
         &self.scene.robots()[self.robot.0]
     }
 
+    /// The scene, and its state: all but the robot is as it was set.
+    pub fn scene_state(&self) -> (&'s Scene, &SceneState) {
+        (self.scene, &self.state)
+    }
+
     pub fn name(&self, geometry: GeometryId) -> String {
         self.scene.name(geometry)
     }

@@ -1,0 +1,273 @@
+//! Several robots planned one after the other, by priority, which then move at the same time as far as that is proven.
+//!
+//! Each robot's path is planned while those before it rest at their goals and those after it at their starts (Erdmann,
+//! Lozano-Pérez: *On multiple moving objects*, 1987). Run one after the other the motions are free. Then each begins as early as a
+//! sweep of both robots proves it free beside every motion of higher priority: paths stay, times change (Kant, Zucker: *Toward
+//! efficient trajectory planning: the path-velocity decomposition*, 1986). If one priority leaves a robot without a path,
+//! others are tried.
+
+use std::time::Instant;
+
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, SweepMove, SweepOptions};
+use elbowroom_validity::{BuiltCovers, CoverSource};
+
+use crate::{
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
+    RrtConnectSettings, TimedMotion,
+};
+
+/// All priorities of so many robots are tried; of more robots, each as the first.
+const ALL_ORDERS: usize = 4;
+/// Delays are tried in steps of this, s.
+const DELAY_STEP_S: f64 = 0.05;
+
+/// Where one of several robots goes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotGoal {
+    /// The robot.
+    pub robot: RobotId,
+    /// Its goal configuration, rad (m for prismatic joints).
+    pub q: Vec<f64>,
+    /// Limits of its motion.
+    pub limits: KinematicLimits,
+}
+
+/// The motion of one of several robots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrioritizedMotion {
+    /// The robot.
+    pub robot: RobotId,
+    /// Its path.
+    pub path: PlannedPath,
+    /// Its motion along the path; times count from its own start.
+    pub motion: TimedMotion,
+    /// When it starts, s.
+    pub start_s: f64,
+    /// Period of its rows, s.
+    period_s: f64,
+}
+
+impl PrioritizedMotion {
+    /// When it ends, s.
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.last_row() as f64 * self.period_s
+    }
+
+    /// Its configuration at a multiple of the period: before its start the first, after its end the last.
+    pub fn at_tick(&self, tick: usize) -> &[f64] {
+        &self.motion.rows[tick.saturating_sub(self.start_tick()).min(self.last_row())].1
+    }
+
+    fn start_tick(&self) -> usize {
+        (self.start_s / self.period_s).round() as usize
+    }
+
+    fn last_row(&self) -> usize {
+        self.motion.rows.len() - 1
+    }
+
+    fn end_tick(&self) -> usize {
+        self.start_tick() + self.last_row()
+    }
+}
+
+/// Plans for several robots of a scene by priority.
+///
+/// ```
+/// use elbowroom_planner::{KinematicLimits, PrioritizedPlanner, RobotGoal, RrtConnectSettings};
+/// use elbowroom_robot::RobotId;
+/// use elbowroom_scene::{SceneState, example};
+/// let scene = example::two_arms();
+/// let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![100.0; 3] };
+/// let goal = |robot: usize, waist: f64| RobotGoal { robot: RobotId(robot), q: vec![waist, 0.4, 0.4], limits: limits.clone() };
+/// let goals = [goal(0, 0.8), goal(1, -0.8)];
+/// let planner = PrioritizedPlanner::new(&scene);
+/// let motions = planner.plan(&SceneState::new(&scene), &goals, 0.01, &RrtConnectSettings::default())?;
+/// assert!(motions.iter().all(|motion| motion.end_s() > 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct PrioritizedPlanner<'s> {
+    scene: &'s Scene,
+    covers: &'s dyn CoverSource,
+}
+
+impl std::fmt::Debug for PrioritizedPlanner<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PrioritizedPlanner").field("robots", &self.scene.robots().len()).finish_non_exhaustive()
+    }
+}
+
+impl<'s> PrioritizedPlanner<'s> {
+    /// For robots of a scene.
+    pub fn new(scene: &'s Scene) -> Self {
+        Self { scene, covers: &BuiltCovers }
+    }
+
+    /// With the covers of links from a source.
+    #[must_use]
+    pub fn with_covers(self, covers: &'s dyn CoverSource) -> Self {
+        Self { covers, ..self }
+    }
+
+    /// Motions from the configurations in `start` to the goals, with a row every `period_s`; in the order of the goals. The first
+    /// goals have the highest priority if that leaves a path for all. Between rows all robots move straight in joint space; the
+    /// motion of all of them together is proven free, and each keeps its path.
+    ///
+    /// # Errors
+    /// As [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority; [`RrtConnectError::NoGoal`]
+    /// without goals.
+    pub fn plan(
+        &self,
+        start: &SceneState,
+        goals: &[RobotGoal],
+        period_s: f64,
+        settings: &RrtConnectSettings,
+    ) -> Result<Vec<PrioritizedMotion>, RrtConnectError> {
+        let deadline = Instant::now() + settings.time_limit;
+        let mut first_error = None;
+        for order in orders(goals.len()) {
+            let planned = self.plan_in_order(start, goals, &order, period_s, settings);
+            match planned {
+                Ok(mut motions) => {
+                    motions.sort_by_key(|motion| goals.iter().position(|goal| goal.robot == motion.robot));
+                    return Ok(motions);
+                }
+                Err(error) => first_error = first_error.or(Some(error)),
+            }
+            if Instant::now() >= deadline {
+                break;
+            }
+        }
+        Err(first_error.unwrap_or(RrtConnectError::NoGoal))
+    }
+
+    fn plan_in_order(
+        &self,
+        start: &SceneState,
+        goals: &[RobotGoal],
+        order: &[usize],
+        period_s: f64,
+        settings: &RrtConnectSettings,
+    ) -> Result<Vec<PrioritizedMotion>, RrtConnectError> {
+        let share = u32::try_from(goals.len()).unwrap_or(u32::MAX);
+        let settings = RrtConnectSettings { time_limit: settings.time_limit / share, ..*settings };
+        let mut state = start.clone();
+        let mut motions: Vec<PrioritizedMotion> = Vec::new();
+        for goal in order.iter().map(|&index| &goals[index]) {
+            let (path, motion) = self.plan_one(&state, goal, period_s, &settings)?;
+            let next = PrioritizedMotion { robot: goal.robot, path, motion, start_s: 0.0, period_s };
+            motions.push(self.as_early_as_possible(start, &motions, next, settings.clearance_m)?);
+            state.set_q(self.scene, goal.robot, &goal.q)?;
+        }
+        Ok(motions)
+    }
+
+    fn plan_one(
+        &self,
+        state: &SceneState,
+        goal: &RobotGoal,
+        period_s: f64,
+        settings: &RrtConnectSettings,
+    ) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+        let exact = RrtConnect::new(self.scene, goal.robot)?;
+        let clearance_m = settings.clearance_m;
+        let Ok(model) = CoverModel::with_covers(self.scene, state, goal.robot, clearance_m, self.covers) else {
+            let mut exact = exact;
+            let path = exact.plan(state, &goal.q, settings)?;
+            let trajectory = exact.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
+            let motion = TimedMotion::of(&trajectory, period_s)?;
+            return Ok((path, motion));
+        };
+        let obstacles = CoverObstacles::new(&model, self.scene, state, clearance_m);
+        let mut planner = CoverRrtConnect::new(exact, &model, &obstacles);
+        let path = planner.plan(state, &goal.q, settings)?;
+        let motion = planner.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
+        Ok((path, motion))
+    }
+
+    /// A motion with the first start at which it is free beside all of higher priority: at the latest, when they have ended.
+    fn as_early_as_possible(
+        &self,
+        start: &SceneState,
+        before: &[PrioritizedMotion],
+        mut next: PrioritizedMotion,
+        clearance_m: f64,
+    ) -> Result<PrioritizedMotion, RrtConnectError> {
+        let last = before.iter().map(PrioritizedMotion::end_tick).max().unwrap_or(0);
+        let step = ((DELAY_STEP_S / next.period_s).round() as usize).max(1);
+        let mut checker = Checker::new(self.scene, CheckerOptions::default());
+        let sweep = SweepOptions { clearance_m, ..SweepOptions::default() };
+        for tick in (0..last).step_by(step) {
+            next.start_s = tick as f64 * next.period_s;
+            let mut are_free = true;
+            for other in before {
+                are_free = are_free && self.are_free_together(&mut checker, start, other, &next, &sweep)?;
+            }
+            if are_free {
+                return Ok(next);
+            }
+        }
+        next.start_s = last as f64 * next.period_s;
+        Ok(next)
+    }
+
+    /// True where two motions are proven free while the second one moves and the first one has not ended: the second path is
+    /// free beside the end of the first, and the first beside the start of the second.
+    fn are_free_together(
+        &self,
+        checker: &mut Checker<'s>,
+        start: &SceneState,
+        first: &PrioritizedMotion,
+        second: &PrioritizedMotion,
+        sweep: &SweepOptions,
+    ) -> Result<bool, RrtConnectError> {
+        let mut state = start.clone();
+        for tick in second.start_tick()..second.end_tick().min(first.end_tick()) {
+            for motion in [first, second] {
+                state.set_q(self.scene, motion.robot, motion.at_tick(tick))?;
+            }
+            let moves =
+                [first, second].map(|motion| SweepMove::Robot { robot: motion.robot, to: motion.at_tick(tick + 1) });
+            let mut pair = checker.between(Selection::Robot(first.robot), Selection::Robot(second.robot));
+            if pair.sweep(&state, &moves, sweep)?.is_some() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Orders of so many robots: all of a few, each as the first of many; the given order first.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    let given: Vec<usize> = (0..count).collect();
+    if count > ALL_ORDERS {
+        return (0..count).map(|by| given.iter().map(|i| (i + by) % count).collect()).collect();
+    }
+    let mut orders: Vec<Vec<usize>> = given.iter().map(|&first| vec![first]).collect();
+    for _ in 1..count {
+        let mut longer = Vec::new();
+        for order in &orders {
+            let others = given.iter().filter(|i| !order.contains(i));
+            longer.extend(others.map(|&next| [&order[..], &[next]].concat()));
+        }
+        orders = longer;
+    }
+    orders
+}
+
+#[cfg(test)]
+mod tests {
+    use super::orders;
+
+    #[test]
+    fn the_given_order_is_first_and_none_is_repeated() {
+        assert_eq!(orders(0), Vec::<Vec<usize>>::new());
+        let three = orders(3);
+        assert_eq!((three.len(), &three[0][..]), (6, &[0, 1, 2][..]));
+        assert!((1..6).all(|i| !three[..i].contains(&three[i])));
+        let six = orders(6);
+        assert!(six.len() == 6 && six[0] == [0, 1, 2, 3, 4, 5] && six[5] == [5, 0, 1, 2, 3, 4]);
+    }
+}
