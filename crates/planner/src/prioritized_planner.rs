@@ -134,7 +134,7 @@ impl<'s> PrioritizedPlanner<'s> {
                     motions.sort_by_key(|motion| goals.iter().position(|goal| goal.robot == motion.robot));
                     return Ok(motions);
                 }
-                Err(error) => first_error = first_error.or(Some(error)),
+                Err(error) => first_error = first_error.or_else(|| Some(of_one_order(error, goals.len()))),
             }
             if Instant::now() >= deadline {
                 break;
@@ -236,6 +236,16 @@ impl<'s> PrioritizedPlanner<'s> {
             }
         }
         Ok(true)
+    }
+}
+
+/// What is proven of one robot while the others rest somewhere is not proven of all together.
+fn of_one_order(error: RrtConnectError, robots: usize) -> RrtConnectError {
+    match error {
+        RrtConnectError::Disconnected { nearer, .. } if robots > 1 => {
+            RrtConnectError::NotFound { seconds: 0.0, states_checked: 0, nodes: 0, nearer }
+        }
+        other => other,
     }
 }
 

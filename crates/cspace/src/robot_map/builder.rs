@@ -65,7 +65,7 @@ impl RobotMapBuilder {
         if axes.len() != joints.len() {
             return Err(RobotMapError::Count(axes.len()));
         }
-        let chain = DrivenChain::new(&robot.chain, base_in_world, joints, remaining)?;
+        let chain = DrivenChain::new(&robot.chain, base_in_world, axes, joints, remaining)?;
         let pieces = RobotPieces::new(robot, &chain)?;
         Ok(Self { chain, pieces, axes: axes.to_vec(), settings: RobotMapSettings::default() })
     }

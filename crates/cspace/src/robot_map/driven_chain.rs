@@ -5,6 +5,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::error::RobotMapError;
 use super::settings::MAX_JOINTS;
+use crate::GridAxis;
 
 /// Values of the joints that are not axes of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +61,8 @@ pub(super) struct DrivenChain {
     pub base_in_world: Pose,
     /// Index of each axis among the joint values.
     pub joints: Vec<usize>,
+    /// First and last border of each axis, rad or m.
+    pub ranges: Vec<[f64; 2]>,
     /// Values of the remaining joints.
     pub fixed_values: Vec<f64>,
     pub links: Vec<LinkJoints>,
@@ -69,6 +72,7 @@ impl DrivenChain {
     pub fn new(
         chain: &Chain,
         base_in_world: Pose,
+        axes: &[GridAxis],
         joints: &[usize],
         remaining: RemainingJoints<'_>,
     ) -> Result<Self, RobotMapError> {
@@ -89,7 +93,8 @@ impl DrivenChain {
         }
         let sweeps = remaining == RemainingJoints::Swept;
         let links = (0..chain.links().len()).map(|link| link_joints(chain, LinkId(link), joints, sweeps)).collect();
-        Ok(Self { chain: chain.clone(), base_in_world, joints: joints.to_vec(), fixed_values, links })
+        let ranges = axes.iter().map(|axis| [axis.border(0), axis.border(axis.count())]).collect();
+        Ok(Self { chain: chain.clone(), base_in_world, joints: joints.to_vec(), ranges, fixed_values, links })
     }
 
     /// A state for [`DrivenChain::set_axes`].

@@ -154,14 +154,17 @@ fn lever_arms(chain: &DrivenChain, link: LinkId, reach: f64, joints: &[DrivingJo
     far.is_finite().then_some(out)
 }
 
-/// Largest absolute value of a prismatic joint, metres.
+/// Largest absolute value of a prismatic joint, metres: within its limits, and on its axis of the map.
 fn max_slide(chain: &DrivenChain, id: JointId) -> f64 {
     let mimic = chain.chain.mimic_source(id);
     let source = mimic.map_or(id, |m| m.joint);
     let limits = chain.chain.joints()[source.0].limits;
-    let ends = match chain.chain.q_index(source) {
-        Some(value) if !chain.joints.contains(&value) => [chain.fixed_values[value]; 2],
-        _ => [limits.lower, limits.upper],
+    let value = chain.chain.q_index(source);
+    let axis = value.and_then(|value| chain.joints.iter().position(|&joint| joint == value));
+    let ends = match (axis, value) {
+        (Some(axis), _) => chain.ranges[axis],
+        (None, Some(value)) => [chain.fixed_values[value]; 2],
+        (None, None) => [limits.lower, limits.upper],
     };
     let (multiplier, offset) = mimic.map_or((1.0, 0.0), |m| (m.multiplier, m.offset));
     ends.map(|value| (multiplier * value + offset).abs()).into_iter().fold(0.0, f64::max)

@@ -65,7 +65,7 @@ impl CoverRrtConnect<'_> {
 
     /// True where a path is hardly longer than the segment to the nearest goal.
     fn is_straight(ends: &QueryEnds, path: &PlannedPath) -> bool {
-        path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
+        !ends.misses_goals() && path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
     }
 
     /// A path that is shorter than another by at least the least gain.

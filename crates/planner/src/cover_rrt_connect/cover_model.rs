@@ -3,11 +3,14 @@
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
-use elbowroom_scene::{PairState, Scene, SceneState};
+use elbowroom_scene::{PairState, Reason, Scene, SceneState};
 use elbowroom_spatial::Pose;
 use elbowroom_validity::{
     BuiltCovers, CoverSource, CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError,
 };
+
+/// Pairs that are proven to stay farther apart than the clearance by no more than this are tested all the same, m.
+const REACH_TOLERANCE_M: f64 = 1e-3;
 
 /// One robot of a scene with sphere covers of its links and of what it holds. Built once; serves all scenes with the same robot,
 /// whatever their objects are.
@@ -19,6 +22,7 @@ pub struct CoverModel {
     /// Covered links that the scene tests, and their margins.
     pairs: Vec<(usize, usize, f64)>,
     index: RobotId,
+    base_in_world: Pose,
     clearance_m: f64,
 }
 
@@ -60,21 +64,24 @@ impl CoverModel {
             covered.add_covered_link(&r.robot.chain, held.link, &shapes)?;
             covered_links.push(GeometryId::Object(id));
         }
-        let pairs = tested_pairs(scene, state, &covered_links);
+        let pairs = tested_pairs(scene, state, &covered_links, clearance_m);
         for &(a, b, margin_m) in &pairs {
             covered.add_pair(CoveredLinkId(a), CoveredLinkId(b), margin_m + clearance_m);
         }
-        Ok(Self { robot: covered, covered_links, pairs, index: robot, clearance_m })
+        let base_in_world = r.base_in_world;
+        Ok(Self { robot: covered, covered_links, pairs, index: robot, base_in_world, clearance_m })
     }
 
-    /// True where the model was made for the same pairs and clearance (m), and nothing is held: then it serves another scene with the same robot.
+    /// True where the model was made for the same pairs, base and clearance (m), and nothing is held: then it serves another
+    /// scene with the same robot.
     pub fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
         let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
         !holds
             && !held
             && self.clearance_m == clearance_m
-            && self.pairs == tested_pairs(scene, state, &self.covered_links)
+            && scene.robots().get(self.index.0).is_some_and(|r| r.base_in_world == self.base_in_world)
+            && self.pairs == tested_pairs(scene, state, &self.covered_links, clearance_m)
     }
 }
 
@@ -91,13 +98,17 @@ fn as_checked(scene: &Scene, robot: RobotId) -> Robot {
 }
 
 /// Pairs of links that the scene tests, each with its margin in metres.
-fn tested_pairs(scene: &Scene, state: &SceneState, covered_links: &[GeometryId]) -> Vec<(usize, usize, f64)> {
+fn tested_pairs(
+    scene: &Scene,
+    state: &SceneState,
+    covered_links: &[GeometryId],
+    clearance_m: f64,
+) -> Vec<(usize, usize, f64)> {
     let mut pairs = Vec::new();
     for i in 0..covered_links.len() {
         for j in i + 1..covered_links.len() {
-            pairs.extend(
-                tested_margin(scene, state, covered_links[i], covered_links[j]).map(|margin_m| (i, j, margin_m)),
-            );
+            let margin_m = tested_margin(scene, state, covered_links[i], covered_links[j], clearance_m);
+            pairs.extend(margin_m.map(|margin_m| (i, j, margin_m)));
         }
     }
     pairs
@@ -147,7 +158,8 @@ impl CoverObstacles {
         shapes: &[(&Shape, Pose)],
         clearance_m: f64,
     ) {
-        let margins: Vec<_> = model.covered_links.iter().map(|&body| tested_margin(scene, state, body, id)).collect();
+        let margin = |&link: &GeometryId| tested_margin(scene, state, link, id, clearance_m);
+        let margins: Vec<_> = model.covered_links.iter().map(margin).collect();
         let Some(largest) = margins.iter().flatten().copied().reduce(f64::max) else { return };
         for (shape, in_world) in shapes {
             let number = self.set.add_shape(shape, in_world, largest + clearance_m);
@@ -175,13 +187,16 @@ impl CoverObstacles {
     }
 }
 
-/// The margin of a pair in metres; `None` where the scene does not test it.
-fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId) -> Option<f64> {
-    let (pair_state, _) = state.pair(scene, a, b)?;
-    if pair_state != PairState::Tested {
-        return None;
-    }
+/// The margin of a pair in metres; `None` where the scene does not test it with a clearance (m).
+fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId, clearance_m: f64) -> Option<f64> {
+    let (pair_state, reason) = state.pair(scene, a, b)?;
     let entry = scene.allowed_collision_matrix().get(a, b);
     // Pairs of held objects have no entry.
-    Some(entry.map_or_else(|| scene.padding_m(a) + scene.padding_m(b), |e| e.margin_m))
+    let margin_m = entry.map_or_else(|| scene.padding_m(a) + scene.padding_m(b), |e| e.margin_m);
+    match (pair_state, reason) {
+        (PairState::Tested, _) => Some(margin_m),
+        // Out of reach of contact, but not of every clearance.
+        (_, Reason::OutOfReach { least_m }) if least_m <= margin_m + clearance_m + REACH_TOLERANCE_M => Some(margin_m),
+        _ => None,
+    }
 }

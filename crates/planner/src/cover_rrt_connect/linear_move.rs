@@ -57,7 +57,9 @@ impl CoverRrtConnect<'_> {
             let before = &waypoints[waypoints.len() - 1];
             let percent = 100.0 * follower.share;
             let ended = |end: LinearMoveEnd| RrtConnectError::LinearMove { percent, end };
-            let next = follower.next(before).ok_or_else(|| ended(LinearMoveEnd::Unreachable))?;
+            let bounds = &self.exact.bounds;
+            let next = follower.next(before).filter(|next| bounds.contains(next));
+            let next = next.ok_or_else(|| ended(LinearMoveEnd::Unreachable))?;
             if !self.is_proven(before, &next) {
                 return Err(ended(LinearMoveEnd::NotFree));
             }

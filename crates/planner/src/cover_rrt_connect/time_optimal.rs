@@ -33,8 +33,8 @@ impl TimedMotion {
 }
 
 impl CoverRrtConnect<'_> {
-    /// The fastest motion along a path within limits of speed, acceleration and jerk, with a row every `period` (s). The
-    /// polyline through the rows is proven free. Corners are rounded, so that the motion rests at none, unless the path turns
+    /// The fastest motion along a path within limits of speed, acceleration and jerk, with a row every `period` (s). The path is
+    /// one that was planned from `start`: its segments are proven. The polyline through the rows is proven free, too. Corners are rounded, so that the motion rests at none, unless the path turns
     /// back or what is left of a corner cannot be proven.
     ///
     /// # Errors

@@ -15,8 +15,8 @@ const MAX_HALVINGS: i32 = 5;
 const INSET_PERIODS: f64 = 1e-6;
 
 impl RrtConnect<'_> {
-    /// Time parametrization of a path within limits: straight along its segments, corners blended where that is proven free,
-    /// else with a stop. The proof is of the polyline through the positions at every `period` (s), which
+    /// Time parametrization of a path that was planned from `start`, within limits: straight along its segments, which are
+    /// proven, corners blended where that is proven free, else with a stop. The proof is of the polyline through the positions at every `period` (s), which
     /// [`Trajectory::samples`] returns and a controller with linear interpolation follows. The trajectory rests at multiples
     /// of the period only.
     ///

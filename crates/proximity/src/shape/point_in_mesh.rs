@@ -17,19 +17,27 @@ const RAYS: [Vec3; 6] = [
     Vec3::new(0.893_189_2, -0.261_497_2, -0.365_873_1),
 ];
 
+#[derive(Default)]
 struct Crossings {
-    count: usize,
-    /// Leaving minus entering, by the orientation of the triangles.
+    /// Of components whose triangles are not oriented alike.
+    unoriented: usize,
+    /// Of the others: leaving minus entering.
     signed: i64,
     uncertain: bool,
+}
+
+impl Crossings {
+    fn is_inside(&self) -> bool {
+        self.unoriented % 2 == 1 || self.signed != 0
+    }
 }
 
 impl TriMesh {
     /// True where the point (local frame) is inside a closed component of the surface; always false for an open mesh. Hairline
     /// seams count as closed ([`MeshReport::welded`](super::MeshReport::welded)).
     ///
-    /// An odd number of crossings or a winding number other than zero counts as inside: components that overlap stay solid,
-    /// a cavity of the opposite orientation is free, and for inconsistently oriented triangles the parity decides.
+    /// A winding number other than zero counts as inside: components that overlap stay solid, a cavity of the opposite
+    /// orientation is free. Of components whose triangles are not oriented alike the parity of the crossings decides.
     ///
     /// ```
     /// # use elbowroom_proximity::TriMesh;
@@ -42,27 +50,30 @@ impl TriMesh {
         if !self.has_interior() || !self.aabb().contains(p) {
             return false;
         }
+        let mut crossings = Crossings::default();
         for direction in RAYS {
-            let crossings = self.cast(p, direction);
+            crossings = self.cast(p, direction);
             if !crossings.uncertain {
-                return crossings.count % 2 == 1 || crossings.signed != 0;
+                return crossings.is_inside();
             }
         }
-        self.winding_number(p).abs() > 0.5
+        // Of what is not oriented alike there is nothing better than the last ray.
+        crossings.unoriented % 2 == 1 || self.winding_number(p).abs() > 0.5
     }
 
     fn cast(&self, p: Vec3, direction: Vec3) -> Crossings {
-        let mut found = Crossings { count: 0, signed: 0, uncertain: false };
+        let mut found = Crossings::default();
         self.bvh.traverse(&Ray::new(&self.bvh, p, direction), 0.0, &mut |triangle| {
             if self.in_closed_component[triangle] {
-                cross(self.closed_corners(triangle), p, direction, &mut found);
+                let is_oriented = self.in_oriented_component[triangle];
+                cross(self.closed_corners(triangle), p, direction, is_oriented, &mut found);
             }
             if found.uncertain { f32::NEG_INFINITY } else { 0.0 }
         });
         found
     }
 
-    /// Sum of the solid angles of all closed components over 4π (Van Oosterom and Strackee, 1983).
+    /// Sum of the solid angles of all closed components that are oriented alike over 4π (Van Oosterom and Strackee, 1983).
     fn winding_number(&self, p: Vec3) -> f64 {
         let angle = |[a, b, c]: [Vec3; 3]| {
             let (a, b, c) = (a - p, b - p, c - p);
@@ -70,13 +81,14 @@ impl TriMesh {
             let across = a.dot(b.cross(c));
             2.0 * across.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
         };
-        let closed = (0..self.triangles().len()).filter(|&t| self.in_closed_component[t]);
+        let closed =
+            (0..self.triangles().len()).filter(|&t| self.in_closed_component[t] && self.in_oriented_component[t]);
         closed.map(|t| angle(self.closed_corners(t))).sum::<f64>() / (4.0 * std::f64::consts::PI)
     }
 }
 
 /// Ray–triangle intersection after Möller and Trumbore (1997), with a band of uncertainty around the border.
-fn cross(t: [Vec3; 3], p: Vec3, direction: Vec3, found: &mut Crossings) {
+fn cross(t: [Vec3; 3], p: Vec3, direction: Vec3, is_oriented: bool, found: &mut Crossings) {
     const BAND: f64 = 1e-9;
     let (e1, e2) = (t[1] - t[0], t[2] - t[0]);
     let q = direction.cross(e2);
@@ -95,6 +107,51 @@ fn cross(t: [Vec3; 3], p: Vec3, direction: Vec3, found: &mut Crossings) {
         return;
     }
     found.uncertain |= border < BAND;
-    found.count += 1;
-    found.signed += if det > 0.0 { 1 } else { -1 };
+    if is_oriented {
+        found.signed += if det > 0.0 { 1 } else { -1 };
+    } else {
+        found.unoriented += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_testkit::random::{split_mix, unit};
+
+    use crate::tessellate::tessellate;
+    use crate::{Cuboid, Shape, TriMesh};
+    use elbowroom_spatial::Vec3;
+
+    /// A cube with a cubic cavity, of which some triangles are turned round.
+    fn hollow(flipped: &[usize]) -> TriMesh {
+        let cube = |half: f64| tessellate(&Shape::Cuboid(Cuboid { half_extents: Vec3::splat(half) }), 1e-3);
+        let ((mut vertices, mut triangles), (inner, faces)) = (cube(0.5), cube(0.4));
+        let first = vertices.len() as u32;
+        vertices.extend(inner);
+        triangles.extend(faces.iter().map(|&[a, b, c]| [first + a, first + c, first + b]));
+        for &t in flipped {
+            triangles[t].swap(1, 2);
+        }
+        TriMesh::new(vertices, triangles).unwrap()
+    }
+
+    /// Wherever a ray goes, it gives the same answer for all points of a region without a surface in it.
+    #[test]
+    fn turned_triangles_divide_no_region() {
+        let mut seed = 3;
+        for flipped in [&[][..], &[14], &[20], &[13, 19], &[2], &[2, 14], &[5, 7, 22]] {
+            let mesh = hollow(flipped);
+            let in_cavity = mesh.contains(Vec3::ZERO);
+            assert!(!flipped.is_empty() || !in_cavity);
+            for _ in 0..3000 {
+                let mut within = || 2.0 * unit(split_mix(&mut seed)) - 1.0;
+                let p = Vec3::new(within(), within(), within());
+                let size = p.abs().max_element();
+                if (size - 0.4).abs() > 1e-6 && (size - 0.5).abs() > 1e-6 {
+                    let expected = if size < 0.4 { in_cavity } else { size < 0.5 };
+                    assert_eq!(mesh.contains(p), expected, "{flipped:?} {p:?}");
+                }
+            }
+        }
+    }
 }

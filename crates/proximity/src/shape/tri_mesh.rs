@@ -33,6 +33,7 @@ pub struct TriMesh {
     component_vertices: Vec<Vec3>,
     /// Triangles that belong to a closed component, by index.
     pub(crate) in_closed_component: Vec<bool>,
+    pub(crate) in_oriented_component: Vec<bool>,
     /// The representative of each vertex, where seams had to be closed by a tolerance.
     welded_vertices: Option<Vec<u32>>,
     hull: OnceLock<Option<ConvexHull>>,
@@ -83,6 +84,7 @@ impl TriMesh {
             report: topology.report,
             component_vertices: topology.component_vertices,
             in_closed_component: topology.in_closed_component,
+            in_oriented_component: topology.in_oriented_component,
             welded_vertices: topology.welded_vertices,
             hull: OnceLock::new(),
             vertices,

@@ -211,6 +211,8 @@ impl CoveredRobot {
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
+        // Of a margin that is no number nothing is known: no pair keeps it.
+        let margin_m = if margin_m.is_nan() { f64::INFINITY } else { margin_m };
         let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
         self.pairs.push(LinkPair { a, b, margin_m, common_frame, joints });
     }

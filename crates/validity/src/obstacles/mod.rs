@@ -94,7 +94,7 @@ impl ObstacleSet {
         let id = self.next();
         for p in points {
             let size_m = p.length() + radius_m.abs() + 1.0;
-            if !(size_m <= LARGEST_M) {
+            if !(size_m <= LARGEST_M && radius_m >= 0.0) {
                 self.has_unknown = true;
                 continue;
             }

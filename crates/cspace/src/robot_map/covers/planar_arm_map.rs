@@ -11,7 +11,7 @@ use super::super::rigid_groups::RigidGroup;
 use super::obstacle::box_of;
 use crate::{ConvexObstacle, Grid, GridAxis, Layer, PlanarArm, PlanarMapBuilder};
 
-/// Largest cosine between axes that count as perpendicular, and distance of points from the plane that count as none, m.
+/// Largest cosine between axes that count as perpendicular, sine between those that count as parallel, and distance of points from the plane that count as none, m.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 const PLANE_TOLERANCE_M: f64 = 1e-6;
 /// Points of a circle that are measured.
@@ -48,7 +48,7 @@ impl PlanarArmMap {
         let frame = |joint: &DrivingJoint| chain.link_in_world(&state, joint.child);
         let along = [0, 1, 2].map(|i: usize| frame(&joints[i]).transform_vector(joints[i].along));
         let is_planar =
-            along[0].dot(along[1]).abs() < ANGLE_TOLERANCE && along[1].dot(along[2]).abs() > 1.0 - ANGLE_TOLERANCE;
+            along[0].dot(along[1]).abs() < ANGLE_TOLERANCE && along[1].cross(along[2]).length() < ANGLE_TOLERANCE;
         let rotation = Rotation::from_columns(along[1].cross(along[0]), along[1], along[0]).filter(|_| is_planar)?;
         let base = Pose::new(rotation, frame(&joints[0]).translation);
         let mut links: [Vec<PlacedSolid>; 2] = Default::default();

@@ -24,6 +24,8 @@ pub(super) struct Topology {
     pub component_vertices: Vec<Vec3>,
     /// Triangles that belong to a closed component, by index.
     pub in_closed_component: Vec<bool>,
+    /// Triangles of components in which neighbours are oriented alike, by index.
+    pub in_oriented_component: Vec<bool>,
     /// The representative of each vertex, where seams had to be closed by a tolerance.
     pub welded_vertices: Option<Vec<u32>>,
 }
@@ -41,6 +43,7 @@ pub(super) fn examine(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
     let Surface { faces, component_of, edges } = surface;
     let in_closed_component: Vec<bool> =
         faces.iter().map(|f| !edges.open[component_of[f[0] as usize] as usize]).collect();
+    let in_oriented_component = faces.iter().map(|f| !edges.unoriented[component_of[f[0] as usize] as usize]).collect();
     let encloses = in_closed_component.iter().all(|&c| c);
     let signed = if encloses { enclosed_volume(vertices, &faces) } else { 0.0 };
     let report = MeshReport {
@@ -56,7 +59,7 @@ pub(super) fn examine(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
     };
     let component_vertices = representatives(vertices, &faces, &component_of);
     let welded_vertices = seams.map(|s| s.welded_vertices);
-    Topology { report, component_vertices, in_closed_component, welded_vertices }
+    Topology { report, component_vertices, in_closed_component, in_oriented_component, welded_vertices }
 }
 
 /// Faces by representative vertices, their components and edges.
@@ -78,6 +81,8 @@ struct EdgeReport {
     /// Per component: true where some edge is used by an odd number of triangles, or where no triangle has three different
     /// corners. A component whose edges are used two or four times still has an interior.
     open: Vec<bool>,
+    /// Per component: true where some edge is not used in both directions equally often.
+    unoriented: Vec<bool>,
     /// Edges used by an odd number of triangles.
     odd: usize,
     /// Every edge has two uses.
@@ -87,20 +92,35 @@ struct EdgeReport {
 }
 
 fn examine_edges(vertices: usize, faces: &[[u32; 3]], component_of: &[u32]) -> EdgeReport {
-    let mut report = EdgeReport { open: vec![true; vertices], odd: 0, all_twice: true, duplicates: 0 };
+    let mut report = EdgeReport {
+        open: vec![true; vertices],
+        unoriented: vec![false; vertices],
+        odd: 0,
+        all_twice: true,
+        duplicates: 0,
+    };
     for f in faces.iter().filter(|f| is_proper(f)) {
         report.open[component_of[f[0] as usize] as usize] = false;
     }
-    // With the third corner as the label, equal uses are the same triangle.
-    let edges = Edges::new(vertices, faces, |triangle, corner| faces[triangle][(corner + 2) % 3]);
+    // The third corner, and the direction of the edge: uses with the same corner are the same triangle.
+    let label = |triangle: usize, corner: usize| {
+        let [a, b, third] = [0, 1, 2].map(|k| faces[triangle][(corner + k) % 3]);
+        third << 1 | u32::from(a > b)
+    };
+    let third = |label: u64| label as u32 >> 1;
+    let edges = Edges::new(vertices, faces, label);
     edges.for_each(|low, high, uses| {
         report.all_twice &= uses.len() == 2;
+        let reversed = uses.iter().filter(|&&label| label & 1 == 1).count();
+        if 2 * reversed != uses.len() {
+            report.unoriented[component_of[low as usize] as usize] = true;
+        }
         if uses.len() % 2 == 1 {
             report.odd += 1;
             report.open[component_of[low as usize] as usize] = true;
         }
         // Counted at one of its three edges, that between its two smaller corners.
-        let same = uses.windows(2).filter(|u| u[0] == u[1] && u[0] as u32 > high);
+        let same = uses.windows(2).filter(|u| third(u[0]) == third(u[1]) && third(u[0]) > high);
         report.duplicates += same.count();
     });
     report
