@@ -131,3 +131,59 @@ fn separating_direction<S: Simd>(
 fn clamped<S: Simd>(x: W16<S>, limit: W16<S>) -> W16<S> {
     x.min(limit).max(-limit)
 }
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::{Pose, Rotation};
+    use elbowroom_testkit::random::{split_mix, unit};
+    use fearless_simd::dispatch;
+
+    use super::*;
+    use crate::lanes::{detected_simd_level, narrow};
+    use crate::{Capsule, separation};
+
+    /// Lanes that are left out are apart by the exact distance; few that are apart by a millimetre are kept.
+    #[test]
+    fn capsules_that_are_left_out_are_apart() {
+        let mut seed = 8;
+        let mut random = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+        let error = 1e-5;
+        let (mut apart, mut kept) = (0, 0);
+        for _ in 0..3000 {
+            let mut draw = || {
+                let axis = Vec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0));
+                // Some are parallel to an axis, some are balls.
+                let axis = if random(0.0, 1.0) < 0.3 { Vec3::X } else { axis.try_normalize().unwrap_or(Vec3::Y) };
+                let half_length = if random(0.0, 1.0) < 0.2 { 0.0 } else { random(0.0, 0.5) };
+                let middle = Vec3::new(random(-0.5, 0.5), random(-0.5, 0.5), random(-0.5, 0.5));
+                BoundingCapsule { middle, axis, half_length, radius: random(0.01, 0.2), reach: 1.0 }
+            };
+            let all: Vec<_> = (0..13).map(|_| draw()).collect();
+            let (row, mut placed) = (CapsuleRow::new(&all), PlacedRow::EMPTY);
+            for (lane, c) in all.iter().enumerate() {
+                for k in 0..3 {
+                    placed.middle[k][lane] = narrow(c.middle)[k];
+                    placed.axis[k][lane] = narrow(c.axis)[k];
+                }
+            }
+            let one = row.capsule(&placed, 0);
+            let near = dispatch!(detected_simd_level(), simd => row.near_capsules(simd, &placed, &one, error));
+            let spheres = dispatch!(detected_simd_level(), simd => row.near_spheres(simd, &placed, &one, error));
+            assert_eq!((near | spheres) >> all.len(), 0, "lanes not in use");
+            for (lane, c) in all.iter().enumerate() {
+                let solid = |c: &BoundingCapsule| {
+                    let capsule = Capsule { half_length: c.half_length, radius: c.radius };
+                    (Shape::Capsule(capsule), Pose::new(Rotation::from_z(c.axis), c.middle))
+                };
+                let ((a, at), (b, there)) = (solid(&all[0]), solid(c));
+                let metres = separation(&a, &at, &b, &there).distance;
+                let is_kept = near >> lane & 1 == 1;
+                assert!(is_kept || metres > 0.0, "{:?} {c:?}", all[0]);
+                assert!(spheres >> lane & 1 == 1 || metres > 0.0, "{:?} {c:?}", all[0]);
+                apart += usize::from(metres > 1e-3);
+                kept += usize::from(metres > 1e-3 && is_kept);
+            }
+        }
+        assert!(kept * 50 < apart, "{kept} of {apart}");
+    }
+}

@@ -82,3 +82,44 @@ fn grown(mesh: &TriMesh, mut best: Sphere) -> Sphere {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tessellate::tessellate;
+    use crate::{Capsule, Cuboid, Shape};
+
+    /// No point of any triangle, in steps of a twentieth of its sides, is in one of the spheres; all centres are inside.
+    #[test]
+    fn spheres_are_inside() {
+        let shapes = [
+            Shape::Capsule(Capsule { half_length: 0.2, radius: 0.05 }),
+            Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.3, 0.02, 0.1) }),
+        ];
+        for shape in shapes {
+            let (vertices, triangles) = tessellate(&shape, 1e-3);
+            let mesh = TriMesh::new(vertices, triangles).unwrap();
+            let spheres = interior_spheres(&mesh, 16);
+            assert_eq!(spheres.len(), 16);
+            let on_surface: Vec<Vec3> = (0..mesh.triangles().len())
+                .flat_map(|t| {
+                    let [a, b, c] = mesh.corners(t);
+                    (0..=20).flat_map(move |i| {
+                        let from = a + (b - a) * (f64::from(i) / 20.0);
+                        (0..=20 - i).map(move |j| from + (c - a) * (f64::from(j) / 20.0))
+                    })
+                })
+                .collect();
+            for (centre, radius) in &spheres {
+                assert!(mesh.contains(*centre) && *radius > 0.0);
+                assert!(on_surface.iter().all(|p| p.distance(*centre) >= *radius));
+            }
+            // The largest is nearly as large as one can be.
+            let largest = spheres.iter().fold(0.0, |r: f64, s| r.max(s.1));
+            let expected = if matches!(shape, Shape::Capsule(_)) { 0.05 } else { 0.02 };
+            assert!((largest - expected).abs() < 3e-3, "{largest}");
+        }
+        let open = TriMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).unwrap();
+        assert!(interior_spheres(&open, 16).is_empty());
+    }
+}
