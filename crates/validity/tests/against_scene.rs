@@ -29,20 +29,22 @@ struct Extent {
     swept: usize,
     /// Configurations of a proven edge, beside its start, that the exact scene is asked about.
     points: usize,
+    /// Configurations in which overlapping links are counted: those that nearly always do are no collision pair.
+    samples: usize,
+    /// Surroundings drawn at most, until a robot has configurations that are not proven to collide.
+    draws: usize,
 }
 
 /// Of every build.
-const SHORT: Extent = Extent { states: 500, swept: 2, points: 4 };
+const SHORT: Extent = Extent { states: 500, swept: 3, points: 4, samples: 0, draws: 1 };
 /// Of `ELBOWROOM_VALIDITY_STATES`.
-const LONG: Extent = Extent { states: 5000, swept: 20, points: 12 };
+const LONG: Extent = Extent { states: 5000, swept: 20, points: 12, samples: 60, draws: 11 };
 /// Robots that are compared at the same time in a long run.
 const THREADS: usize = 2;
 /// One configuration of so many, and one edge, is compared on instruction sets without fused sums, which are slow there.
 const IN_SOFTWARE: usize = 500;
 /// Links of a robot that overlap in this share of its configurations are no collision pair.
 const NEARLY_ALWAYS: f64 = 0.95;
-/// Configurations in which the overlapping links are counted.
-const SAMPLES: usize = 60;
 
 #[derive(Default, Debug, Clone, Copy)]
 struct Counts {
@@ -278,12 +280,15 @@ fn load(path: &Path) -> Robot {
 }
 
 /// Disables the pairs of links that nearly always overlap: where they are checked, nothing else is.
-fn disable_overlapping(robot: &mut Robot, random: &mut Random) {
+fn disable_overlapping(robot: &mut Robot, random: &mut Random, samples: usize) {
+    if samples == 0 {
+        return;
+    }
     let scene = scene(robot, Pose::IDENTITY, &[]);
     let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut state = SceneState::new(&scene);
     let mut overlaps = std::collections::BTreeMap::<(LinkId, LinkId), usize>::new();
-    for _ in 0..SAMPLES {
+    for _ in 0..samples {
         state.set_q(&scene, ROBOT, &random.q(&robot.chain)).unwrap();
         exact.contacts(&state, |contact| {
             if let (GeometryId::Link { link: a, .. }, GeometryId::Link { link: b, .. }) = (contact.a, contact.b) {
@@ -291,7 +296,7 @@ fn disable_overlapping(robot: &mut Robot, random: &mut Random) {
             }
         });
     }
-    let often = overlaps.into_iter().filter(|(_, count)| *count as f64 >= NEARLY_ALWAYS * SAMPLES as f64);
+    let often = overlaps.into_iter().filter(|(_, count)| *count as f64 >= NEARLY_ALWAYS * samples as f64);
     robot.disabled_pairs.extend(often.map(|((a, b), _)| (a, b, "Default".to_owned())));
 }
 
@@ -306,30 +311,30 @@ fn reach_m(robot: &Robot) -> f64 {
 }
 
 /// Surroundings among which a robot has configurations that are not proven to collide, if such are soon found.
-fn surroundings(robot: &Robot, covered: &CoveredRobot, random: &mut Random, kind: Kind) -> Surroundings {
+fn surroundings(robot: &Robot, covered: &CoveredRobot, random: &mut Random, kind: Kind, draws: usize) -> Surroundings {
     let count = if kind == Kind::Cloud { 400 } else { 14 };
-    let mut draw = || {
-        let among = Surroundings::new(random, kind, count, (0.5 * reach_m(robot)).max(1.0));
-        let set = among.obstacle_set();
-        let mut checker = ValidityChecker::new(covered, set);
-        let mut is_hit = || checker.state(&random.q(&robot.chain)).unwrap() == Validity::Hit;
-        let is_open = (0..20).filter(|_| !is_hit()).count() > 2;
-        (among, is_open)
-    };
+    let mut draw = || Surroundings::new(random, kind, count, (0.5 * reach_m(robot)).max(1.0));
     let mut drawn = draw();
-    for _ in 0..10 {
-        if drawn.1 {
+    for i in 1..draws {
+        if is_open(robot, covered, &drawn, &mut Random(i as u64)) {
             break;
         }
         drawn = draw();
     }
-    drawn.0
+    drawn
+}
+
+/// True where of twenty configurations more than two are not proven to collide.
+fn is_open(robot: &Robot, covered: &CoveredRobot, among: &Surroundings, random: &mut Random) -> bool {
+    let mut checker = ValidityChecker::new(covered, among.obstacle_set());
+    let mut is_hit = || checker.state(&random.q(&robot.chain)).unwrap() == Validity::Hit;
+    (0..20).filter(|_| !is_hit()).count() > 2
 }
 
 /// One robot among surroundings of three kinds, new ones every round.
 fn compare(path: &Path, random: &mut Random, (states, extent): (usize, Extent)) -> Counts {
     let mut robot = load(path);
-    disable_overlapping(&mut robot, random);
+    disable_overlapping(&mut robot, random, extent.samples);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
     let folder = std::env::var_os("ELBOWROOM_VALIDITY_JOBS").map(PathBuf::from);
@@ -339,7 +344,7 @@ fn compare(path: &Path, random: &mut Random, (states, extent): (usize, Extent)) 
     let rounds = states.div_ceil(extent.states).next_multiple_of(3);
     for round in 0..rounds {
         let kind = [Kind::Primitives, Kind::Meshes, Kind::Cloud][round % 3];
-        let among = surroundings(&robot, &covered, random, kind);
+        let among = surroundings(&robot, &covered, random, kind, extent.draws);
         let comparison =
             Comparison { robot: &robot, base: Pose::IDENTITY, covered: &covered, surroundings: &among, extent };
         let states = states.div_ceil(rounds);
