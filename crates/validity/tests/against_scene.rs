@@ -7,6 +7,8 @@
 //! The scene is asked what the covers answer: whether a configuration collides that is proven free or hit, and whether any of
 //! some configurations of an edge does that is proven free. Some of the edges, proven or not, are swept as well.
 
+#![allow(clippy::print_stdout, reason = "a comparison prints what it finds")]
+
 mod common;
 
 use std::path::{Path, PathBuf};
@@ -383,7 +385,9 @@ fn real_robots_among_random_obstacles() {
     let mut all = Counts::default();
     std::thread::scope(|scope| {
         let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().for_each(|thread| all.add(&thread.join().unwrap()));
+        for thread in threads {
+            all.add(&thread.join().unwrap());
+        }
     });
     println!("{}", all.row("all"));
     println!("{all:?}");
