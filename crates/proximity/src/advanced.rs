@@ -12,8 +12,10 @@
 //! | get an upper bound of the distance first | [`distance_upper_bound`] |
 //! | choose which of many pairs of meshes to measure first | [`Landmarks`] |
 //! | bound the distance by the boxes of the BVH only | [`bvh_lower_bound`], [`bvh_lower_bound_to_shape`] |
+//! | ask whether any of several meshes touches any of others, such as two arms | [`MeshGroup`] |
 //! | count the nodes and triangles visited | [`Workspace::stats`](crate::Workspace::stats) |
 
+pub use crate::mesh_group::{GroupWorkspace, MeshGroup};
 pub use crate::mesh_mesh::{
     BvhBound, Landmarks, MeshFeatures, PlacedLandmarks, bvh_lower_bound, bvh_lower_bound_to_shape, colliding_triangles,
     distance_upper_bound, for_each_contact, is_farther_than, mesh_separation, mesh_separation_with, triangles_within,

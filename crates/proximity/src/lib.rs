@@ -61,6 +61,7 @@ pub mod ccd;
 pub mod contact;
 pub mod fit;
 mod lanes;
+mod mesh_group;
 mod mesh_mesh;
 pub mod motion_culling;
 mod penetration;

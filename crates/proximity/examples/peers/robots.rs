@@ -1,7 +1,9 @@
 //! Queries on two arms: broad phase by boxes and capsules, narrow phase by meshes.
 
+use std::sync::Arc;
+
 use elbowroom_proximity::advanced::{
-    Landmarks, PlacedLandmarks, colliding_triangles, distance_upper_bound, is_farther_than, mesh_separation_with,
+    GroupWorkspace, Landmarks, MeshGroup, PlacedLandmarks, distance_upper_bound, is_farther_than, mesh_separation_with,
 };
 use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace, fit, separation_within};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
@@ -11,7 +13,10 @@ const FIRST_PAIRS: usize = 2;
 
 /// The links' meshes; both arms have the same.
 pub struct Arms {
-    links: Vec<TriMesh>,
+    links: Vec<Arc<TriMesh>>,
+    /// The same, for collisions.
+    group: MeshGroup,
+    group_workspace: GroupWorkspace,
     /// Centre and radius of the bounding sphere of each link, metres.
     balls: Vec<(Vec3, f64)>,
     landmarks: Vec<Landmarks>,
@@ -28,12 +33,15 @@ pub struct Arms {
 
 impl Arms {
     pub fn new(links: Vec<TriMesh>) -> Self {
-        let ball = |link: &TriMesh| (link.aabb().center(), 0.5 * link.aabb().extent().length());
+        let links: Vec<_> = links.into_iter().map(Arc::new).collect();
+        let ball = |link: &Arc<TriMesh>| (link.aabb().center(), 0.5 * link.aabb().extent().length());
         let balls = links.iter().map(ball).collect();
-        let landmarks = links.iter().map(Landmarks::of).collect();
-        let around = |link: &TriMesh| fit::capsule(link.vertices()).map(|fit| (fit.shape, fit.in_frame));
+        let landmarks = links.iter().map(|link| Landmarks::of(link)).collect();
+        let around = |link: &Arc<TriMesh>| fit::capsule(link.vertices()).map(|fit| (fit.shape, fit.in_frame));
         let capsules = links.iter().map(around).collect();
         Self {
+            group: MeshGroup::new(links.clone()),
+            group_workspace: GroupWorkspace::new(),
             links,
             balls,
             landmarks,
@@ -52,9 +60,8 @@ impl Arms {
 
     /// True where a link of one arm touches one of the other.
     pub fn collides(&mut self, poses: &[Pose]) -> bool {
-        self.any(poses, 0.0, |links, a, b, poses, workspace| {
-            colliding_triangles(&links[a], &poses[a], &links[b], &poses[links.len() + b], workspace).is_some()
-        })
+        let (one, other) = poses.split_at(self.links.len());
+        self.group.collides(one, &self.group, other, &mut self.group_workspace)
     }
 
     /// True where two links are within `tolerance` metres.
@@ -68,7 +75,7 @@ impl Arms {
         &mut self,
         poses: &[Pose],
         margin: f64,
-        mut close: impl FnMut(&[TriMesh], usize, usize, &[Pose], &mut Workspace) -> bool,
+        mut close: impl FnMut(&[Arc<TriMesh>], usize, usize, &[Pose], &mut Workspace) -> bool,
     ) -> bool {
         // The box around each arm, from the spheres around its links, excludes most states at once.
         let links = self.links.len();

@@ -112,11 +112,16 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         if !skipped.is_empty() && skipped[root.body as usize * obstacles.len() + source as usize] {
             return false;
         }
-        if !self.touches(root.pack, &obstacles.outer[solid]) {
+        // An obstacle may have thousands of solids; that a link touches another of them changes nothing.
+        if self.workspace.unproven.contains(&(root.body, source)) || !self.touches(root.pack, &obstacles.outer[solid]) {
             return false;
         }
         self.is_touching = true;
-        self.is_proven_hit(root.body as usize, source)
+        let is_hit = self.is_proven_hit(root.body as usize, source);
+        if !is_hit {
+            self.workspace.unproven.push((root.body, source));
+        }
+        is_hit
     }
 
     /// True where a leaf below touches a solid.

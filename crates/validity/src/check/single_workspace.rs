@@ -100,6 +100,8 @@ pub(crate) struct SingleWorkspace {
     pub open: Vec<(u32, u32)>,
     pub found: Vec<u32>,
     pub found_inner: Vec<u32>,
+    /// Links and obstacles whose collision could not be proven: they touch, and no test of them can say more.
+    pub unproven: Vec<(u32, u32)>,
     /// Packs of spheres still to visit.
     pub open_packs: Vec<u32>,
     pub open_pairs: Vec<(WorldSphere, u32)>,
@@ -126,6 +128,7 @@ impl SingleWorkspace {
             open: Vec::new(),
             found: Vec::new(),
             found_inner: Vec::new(),
+            unproven: Vec::new(),
             open_packs: Vec::new(),
             open_pairs: Vec::new(),
         }
@@ -139,6 +142,7 @@ impl SingleWorkspace {
             self.stamp = 0;
         }
         self.stamp += 1;
+        self.unproven.clear();
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
             let (value, accepted) = joint_value(step, q);

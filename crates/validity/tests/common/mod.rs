@@ -147,6 +147,7 @@ pub enum Kind {
 pub struct Surroundings {
     solids: Vec<(Shape, Pose)>,
     points: Vec<Vec3>,
+    set: ObstacleSet,
 }
 
 /// Radius of the points of a cloud, m.
@@ -170,13 +171,14 @@ impl Surroundings {
                 solids.push((shape, random.pose(spread)));
             }
         }
-        Self { solids, points }
+        let mut set = obstacle_set(&solids);
+        set.add_points(&points, POINT_RADIUS_M);
+        Self { solids, points, set }
     }
 
-    pub fn obstacle_set(&self) -> ObstacleSet {
-        let mut set = obstacle_set(&self.solids);
-        set.add_points(&self.points, POINT_RADIUS_M);
-        set
+    /// With covers of the meshes, which take long.
+    pub fn obstacle_set(&self) -> &ObstacleSet {
+        &self.set
     }
 
     /// All as shapes, points as balls.
