@@ -15,6 +15,7 @@ use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mim
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere};
 use elbowroom_robot::{Collider, Robot, example};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_validity::{CoverSource, SphereCover};
 
 use occupancy::{compare, needless_share, occupancy};
 use robots::{Case, Random, axes, box_mesh, cuboid, six_joints};
@@ -288,7 +289,11 @@ fn with_followers(random: &mut Random) -> Robot {
     longer.colliders[..4].clone_from_slice(&robot.colliders);
     for link in [4, 5] {
         let shape = Shape::Capsule(Capsule { half_length: 0.12, radius: random.between(0.03, 0.08) });
-        longer.colliders[link].push(Collider { name: String::new(), shape, in_link: Pose::from_translation(Vec3::X * 0.1) });
+        longer.colliders[link].push(Collider {
+            name: String::new(),
+            shape,
+            in_link: Pose::from_translation(Vec3::X * 0.1),
+        });
     }
     longer
 }
@@ -363,6 +368,31 @@ fn an_axis_of_more_than_a_turn_repeats() {
     case.robot.colliders = colliders;
     case.step = 10.0;
     check(&case, 20_000);
+}
+
+/// Counts the covers that it builds.
+#[derive(Default)]
+struct CountedCovers(std::sync::atomic::AtomicUsize);
+
+impl CoverSource for CountedCovers {
+    fn cover(&self, shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<SphereCover> {
+        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        SphereCover::new(shapes, slack_m)
+    }
+}
+
+#[test]
+fn covers_come_from_the_source() {
+    let case = Case::new(vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.2, 0.1, 0.3])]);
+    let (grid, settings, source) = (grid(&case), CoverMapSettings::default(), CountedCovers::default());
+    let built = builder(&case, &grid, settings);
+    let remaining = RemainingJoints::Swept;
+    let given =
+        CoverMapBuilder::with_covers(&case.robot, case.base, &grid, [0, 1, 2], remaining, settings, &source).unwrap();
+    assert!(source.0.into_inner() >= 3, "a cover per link");
+    let (shape, at) = &case.obstacles[0];
+    let layer = |builder: &CoverMapBuilder| builder.layer(&builder.obstacle(shape).unwrap(), at).unwrap();
+    assert_eq!(layer(&built).spans(), layer(&given).spans());
 }
 
 #[test]

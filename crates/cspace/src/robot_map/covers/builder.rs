@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::Pose;
-use elbowroom_validity::SphereCover;
+use elbowroom_validity::{BuiltCovers, CoverSource, SphereCover};
 
 use super::super::builder::RobotMapBuilder;
 use super::super::driven_chain::RemainingJoints;
@@ -81,6 +81,22 @@ impl CoverMapBuilder {
         remaining: RemainingJoints<'_>,
         settings: CoverMapSettings,
     ) -> Result<Self, RobotMapError> {
+        Self::with_covers(robot, base_in_world, grid, joints, remaining, settings, &BuiltCovers)
+    }
+
+    /// As [`new`](Self::new), with the covers of the links from a source, such as a cache.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_covers(
+        robot: &Robot,
+        base_in_world: Pose,
+        grid: &Grid,
+        joints: [usize; 3],
+        remaining: RemainingJoints<'_>,
+        settings: CoverMapSettings,
+        source: &dyn CoverSource,
+    ) -> Result<Self, RobotMapError> {
         let exact = RobotMapBuilder::new(robot, base_in_world, grid.axes(), &joints, remaining)?;
         let groups = RigidGroups::new(robot, &exact.chain)?.groups;
         let roles = AxisRoles::new(grid, &groups).ok_or(RobotMapError::NoCommonJoint)?;
@@ -92,7 +108,7 @@ impl CoverMapBuilder {
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
         let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
         let mut steps = StepChain::default();
-        let covers = covers(&groups, slack_m)?;
+        let covers = covers(&groups, slack_m, source)?;
         let covered: Vec<CoveredGroup<'_>> = groups
             .iter()
             .zip(covers)
@@ -159,7 +175,7 @@ impl CoverMapBuilder {
 }
 
 /// The covers of groups of links, on as many threads as the machine runs at once.
-fn covers(groups: &[RigidGroup], slack_m: f64) -> Result<Vec<SphereCover>, RobotMapError> {
+fn covers(groups: &[RigidGroup], slack_m: f64, source: &dyn CoverSource) -> Result<Vec<SphereCover>, RobotMapError> {
     let threads = std::thread::available_parallelism().map_or(1, Into::into).min(groups.len());
     let next = AtomicUsize::new(0);
     let work = || {
@@ -167,7 +183,7 @@ fn covers(groups: &[RigidGroup], slack_m: f64) -> Result<Vec<SphereCover>, Robot
         while let Some((at, group)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, groups.get(at)?)))
         {
-            done.push((at, cover(group, slack_m)));
+            done.push((at, cover(group, slack_m, source)));
         }
         done
     };

@@ -93,11 +93,8 @@ impl BoxTest<'_> {
             let place = places.place(simd, self.class, at, self.frames, self.half);
             let paths = self.class.motions[self.level][at as usize].paths.load(simd);
             let zero = splat(simd, 0.0);
-            let stays = if self.level == 1 {
-                zero
-            } else {
-                zero - self.class.motions[lasts_for][at as usize].paths.load(simd)
-            };
+            let stays =
+                if self.level == 1 { zero } else { zero - self.class.motions[lasts_for][at as usize].paths.load(simd) };
             let (mut near, mut rest) = (0, self.live);
             while rest != 0 {
                 let lane = rest.trailing_zeros();
