@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
 use super::cover_class::CoverClass;
-use super::kernel::{GroupPlace, HalfWidths, Planes, Target, at_most, gaps, near_balls};
+use super::kernel::{GroupPlace, HalfWidths, Target, at_most, gaps, near_balls};
 use super::obstacle::Element;
 use super::obstacle_lanes::{CellPose, ObstacleLanes};
 use super::place_memo::PlaceMemo;
@@ -165,27 +165,13 @@ impl BoxTest<'_> {
         let place = places.place(simd, class, pair.group, self.frames, self.half);
         let reach = element.radius + self.obstacle.rounding;
         let target = Target { core: element.core, centre: element.centre, reach };
-        let (mut boxes_of, mut in_question) = ([0; LANES], [pair.balls; LANES]);
+        let mut boxes_of = [0; LANES];
         let (mut any, mut rest) = (0, boxes);
-        if self.half.lanes_turn && boxes & (boxes - 1) != 0 {
-            // The planes that suit one box prove most of the others.
-            let chosen = middle(boxes);
-            let planes = Planes::new(simd, group, place, motion, &self.poses[chosen], &target);
-            let turns = &self.obstacle.turns[self.level];
-            while rest != 0 {
-                let lane = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                let near = planes.near(simd, turns[lane + LANES - 1 - chosen], self.half.lanes);
-                in_question[lane] &= near & group.lanes;
-                any |= u32::from(in_question[lane] != 0) << lane;
-            }
-            (any, rest) = (0, any);
-        }
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
             let pose = &self.poses[lane];
-            let near = near_balls(simd, group, place, motion, pose, &target, self.half) & in_question[lane];
+            let near = near_balls(simd, group, place, motion, pose, &target, self.half) & pair.balls;
             if near == 0 {
                 continue;
             }
@@ -247,14 +233,6 @@ impl BoxTest<'_> {
             left.push(NearGroup { boxes: boxes(kept), balls: kept, ..pair });
         }
     }
-}
-
-/// The number of the middle one of the bits that are set.
-fn middle(mut bits: u32) -> usize {
-    for _ in 1..bits.count_ones().div_ceil(2) {
-        bits &= bits - 1;
-    }
-    bits.trailing_zeros() as usize
 }
 
 /// Adds the same balls with the elements below.

@@ -6,7 +6,7 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
-use elbowroom_validity::lanes::{Fused, PointRow, V3, splat};
+use elbowroom_validity::lanes::{PointRow, V3, splat};
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
@@ -100,64 +100,6 @@ pub(super) fn near_balls<S: Simd>(
     needed += u.dot(place.along[0].load(simd)).abs();
     needed += u.dot(place.along[1].load(simd)).abs();
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
-}
-
-/// Planes in the obstacle's frame, one per ball, that are tested in several boxes whose value of the axis in lanes differs, where
-/// this turns: what changes with the value is a sum of its cosine and sine.
-pub(super) struct Planes<S: Simd> {
-    /// Distance of the ball from its plane in front of the obstacle, times the length of the normal, as `constant + cos + sin`.
-    distance: [f32x16<S>; 3],
-    /// The same for the displacements by half the box along the two axes that are not in lanes.
-    along: [[f32x16<S>; 3]; 2],
-    /// What the distance has to be more than, but for displacements.
-    needed: f32x16<S>,
-}
-
-impl<S: Simd> Planes<S> {
-    /// The planes across the shortest ways from a solid at the centre of a box.
-    #[inline(always)]
-    pub fn new(
-        simd: S,
-        group: &CoverGroup,
-        place: &GroupPlace,
-        motion: &GroupMotion,
-        pose: &CellPose,
-        target: &Target,
-    ) -> Self {
-        let arm = place.centres.load(simd);
-        let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, target.centre);
-        let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, origin)));
-        let vector = target.core.vector_to(simd, p);
-        let squared = vector.dot(vector);
-        let u = V3(x.dot(vector), y.dot(vector), z.dot(vector));
-        let within = group.radii.load(simd) + splat(simd, target.reach) + motion.curvatures.load(simd);
-        let [first, second] = [place.along[0].load(simd), place.along[1].load(simd)];
-        let cos = u.0 * arm.0 + u.1 * arm.1;
-        Self {
-            distance: [squared - cos, cos, u.1 * arm.0 - u.0 * arm.1],
-            along: [
-                [u.2 * first.2, u.0 * first.0 + u.1 * first.1, u.1 * first.0 - u.0 * first.1],
-                [u.2 * second.2, u.0 * second.0 + u.1 * second.1, u.1 * second.0 - u.0 * second.1],
-            ],
-            needed: squared.sqrt() * within,
-        }
-    }
-
-    /// Balls that the planes do not prove apart from the solid in a box that is turned by an angle from that of the planes, given
-    /// by its cosine and sine; one bit each.
-    #[inline(always)]
-    pub fn near(&self, simd: S, [cos, sin]: [f32; 2], half_lanes: f32) -> u32 {
-        let (cos, sin) = (splat(simd, cos), splat(simd, sin));
-        let [constant, along_cos, along_sin] = self.distance;
-        let distance = along_sin.fused(sin, along_cos.fused(cos, constant));
-        let turned = (along_sin * cos - along_cos * sin).abs();
-        let mut needed = turned.fused(splat(simd, half_lanes), self.needed);
-        let [constant, along_cos, along_sin] = self.along[0];
-        needed += along_sin.fused(sin, along_cos.fused(cos, constant)).abs();
-        let [constant, along_cos, along_sin] = self.along[1];
-        needed += along_sin.fused(sin, along_cos.fused(cos, constant)).abs();
-        !(distance.simd_gt(needed).to_bitmask() as u32)
-    }
 }
 
 /// Distances of a group's balls from a solid at the centre of the box, less the sums of the radii: at most 0 where they touch.

@@ -1,7 +1,6 @@
 //! An obstacle at its place, seen from sixteen values of the axis in lanes.
 
 use elbowroom_spatial::Pose;
-use elbowroom_validity::lanes::LANES;
 
 use super::axis_roles::AxisRoles;
 use super::block_level::single;
@@ -13,9 +12,6 @@ use crate::Grid;
 /// Rounding errors of coordinates and distances in single precision, per metre that coordinates reach: six rotations and
 /// translations, each rounded (3·10⁻⁷), and the products and sums of three of them.
 const ROUNDING_SHARE: f64 = 5e-6;
-
-/// Numbers of turns between sixteen boxes.
-const TURNS: usize = 2 * LANES - 1;
 
 /// Pose of the first joint's frame in that of the obstacle.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +26,6 @@ pub(super) struct ObstacleLanes<'a> {
     pub elements: &'a [Element],
     /// Per level and box of the first axis.
     pub poses: Vec<Vec<CellPose>>,
-    /// Per level, cosine and sine of the turns between boxes of the first axis; that by `k` boxes is number `k + 15`.
-    pub turns: Vec<[[f32; 2]; TURNS]>,
     /// Rounding errors of a distance, m.
     pub rounding: f32,
 }
@@ -58,19 +52,7 @@ impl<'a> ObstacleLanes<'a> {
             let pose = |at: usize| at_zero * first.moved(value(at) * first.multiplier);
             (0..boxes).map(|at| CellPose::new(&pose(at))).collect()
         };
-        let turns = |level: usize| {
-            let turn = f64::from(1u32 << level) * axis.step() * first.multiplier;
-            std::array::from_fn(|k| {
-                let (sin, cos) = ((k as f64 - (LANES - 1) as f64) * turn).sin_cos();
-                [cos as f32, sin as f32]
-            })
-        };
-        Self {
-            elements: &obstacle.elements,
-            poses: (0..levels).map(poses).collect(),
-            turns: (0..levels).map(turns).collect(),
-            rounding: rounding as f32,
-        }
+        Self { elements: &obstacle.elements, poses: (0..levels).map(poses).collect(), rounding: rounding as f32 }
     }
 }
 
