@@ -31,37 +31,37 @@ fn maps_on_covers_miss_nothing() {
     let samples: usize = std::env::var("SAMPLES").map_or(1_000_000, |s| s.parse().unwrap());
     let only = std::env::var("ROBOT").ok();
     println!(
-        "{:<14} {:<7} {:<7} {:>8} {:>8} {:>9} {:>9} {:>9}",
-        "robot", "others", "mode", "built ms", "all ms", "one moved", "blocked", "needless"
+        "{:<14} {:<7} {:>8} {:>8} {:>9} {:>9} {:>9}",
+        "robot", "others", "built ms", "all ms", "one moved", "blocked", "needless"
     );
     for name in ROBOTS.into_iter().filter(|name| only.as_ref().is_none_or(|o| o == name)) {
         let file = data.join("urdf").join(name).join(format!("{name}.urdf"));
         let robot = load(&file, &LoadOptions::default()).unwrap().robot;
-        for (others, exact) in [("start", false), ("start", true), ("any", false)] {
-            if std::env::var("MODE").is_ok_and(|m| m != format!("{others}-{exact}")) {
+        for others in ["start", "any"] {
+            if std::env::var("MODE").is_ok_and(|m| m != others) {
                 continue;
             }
             let mut case = Case::new(obstacles(reach(&robot)));
             case.fixed = (others == "start").then(|| vec![0.1; robot.chain.dof()]);
             case.robot = robot.clone();
             case.step = 2.0;
-            measure(name, others, exact, &case, samples);
+            measure(name, others, &case, samples);
         }
     }
 }
 
-fn measure(name: &str, others: &str, exact: bool, case: &Case, samples: usize) {
+fn measure(name: &str, others: &str, case: &Case, samples: usize) {
     let grid = Grid::new(axes(&case.robot, &case.joints, case.step).try_into().unwrap()).unwrap();
     let remaining = case.fixed.as_deref().map_or(RemainingJoints::Swept, RemainingJoints::Fixed);
     let slack_m = std::env::var("SLACK").ok().map(|s| s.parse().unwrap());
-    let settings = CoverMapSettings { exact, slack_m };
+    let settings = CoverMapSettings { slack_m };
     let begin = processor_ms();
     let builder = CoverMapBuilder::new(&case.robot, case.base, &grid, [0, 1, 2], remaining, settings).unwrap();
     let build_ms = processor_ms() - begin;
     let prepared: Vec<CoverObstacle> = case.obstacles.iter().map(|(s, _)| builder.obstacle(s).unwrap()).collect();
     let placed: Vec<(&CoverObstacle, Pose)> =
         prepared.iter().zip(&case.obstacles).map(|(o, (_, at))| (o, *at)).collect();
-    let repetitions = std::env::var("REPS").map_or(if exact { 2 } else { REPETITIONS }, |s| s.parse().unwrap());
+    let repetitions = std::env::var("REPS").map_or(REPETITIONS, |s| s.parse().unwrap());
     let shortest = |places: &[(&CoverObstacle, Pose)]| {
         let mut shortest = f64::INFINITY;
         for _ in 0..repetitions {
@@ -80,11 +80,10 @@ fn measure(name: &str, others: &str, exact: bool, case: &Case, samples: usize) {
     let map = occupancy(&grid, &layers);
     let hits = if samples == 0 { 1 } else { compare(case, &grid, &map, samples) };
     assert!(hits > 0, "no sample is in collision: the test is void");
-    let mode = if exact { "exact" } else { "covers" };
     let needless =
         if others == "any" || samples == 0 { f64::NAN } else { 100.0 * needless_share(case, &grid, &map, 1000) };
     println!(
-        "{name:<14} {others:<7} {mode:<7} {build_ms:>8.0} {all_ms:>8.2} {one_ms:>9.2} {:>9} {needless:>7.2} %",
+        "{name:<14} {others:<7} {build_ms:>8.0} {all_ms:>8.2} {one_ms:>9.2} {:>9} {needless:>7.2} %",
         map.blocked()
     );
 }

@@ -11,6 +11,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
 use super::BlockedCells;
+use crate::cover_cache::CoverCache;
 
 /// Computes the cells that solids block.
 pub(super) enum SolidsMap {
@@ -33,7 +34,9 @@ impl SolidsMap {
         if let Some((axes, joints)) = three.filter(|_| !exact)
             && let Ok(grid) = Grid::new(axes)
         {
-            match CoverMapBuilder::new(model, base, &grid, joints, others, CoverMapSettings::default()) {
+            let settings = CoverMapSettings::default();
+            let covers = CoverCache::of_user();
+            match CoverMapBuilder::with_covers(model, base, &grid, joints, others, settings, &covers) {
                 Ok(builder) => return Ok(Self::Covers(Box::new(builder))),
                 Err(RobotMapError::NoCommonJoint | RobotMapError::Memory { .. }) => {}
                 Err(other) => return Err(other),

@@ -39,16 +39,6 @@ impl AxisRoles {
     pub fn other_counts(&self) -> [usize; 2] {
         self.others.map(|axis| self.counts[axis])
     }
-
-    /// A cell by its number on each axis of the map.
-    pub fn cell(&self, lane: usize, others: [usize; 2]) -> [u16; 3] {
-        let mut cell = [0; 3];
-        cell[self.lanes] = lane as u16;
-        for (&axis, &at) in self.others.iter().zip(&others) {
-            cell[axis] = at as u16;
-        }
-        cell
-    }
 }
 
 /// Cells of each axis that differ: those of one turn where the axis has more, and all its joints turn whole turns.

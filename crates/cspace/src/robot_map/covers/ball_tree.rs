@@ -3,6 +3,9 @@
 use elbowroom_validity::Ball;
 use elbowroom_validity::lanes::LANES;
 
+/// Nodes of more balls than this have sixteen children.
+const FULL_NODE: usize = 64;
+
 /// No group below.
 pub(super) const LEAF: u32 = u32::MAX;
 
@@ -30,9 +33,8 @@ fn push(groups: &mut Vec<BallGroup>, balls: &mut [Ball]) -> u32 {
         groups[number] = BallGroup { balls: balls.to_vec(), below: vec![LEAF; balls.len()] };
         return number as u32;
     }
-    // As few parts as leave full groups at the bottom.
-    let below = LANES.pow((balls.len() - 1).ilog(LANES));
-    let parts = balls.len().div_ceil(below);
+    // All parts of a large node, as large boxes are tested against the root alone; else as few as leave full groups at the bottom.
+    let parts = if balls.len() > FULL_NODE { LANES } else { balls.len().div_ceil(LANES) };
     for part in split(balls, parts) {
         let ball = Ball::enclosing(part);
         let below = if part.len() == 1 { LEAF } else { push(groups, part) };

@@ -24,16 +24,6 @@ struct Boxes {
     probes: u32,
 }
 
-/// Cells that are not proven free, nor blocked.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct OpenCells {
-    /// Number of the class of covers.
-    pub class: usize,
-    pub others: [usize; 2],
-    pub group: usize,
-    pub lanes: u32,
-}
-
 /// Fills the map of one obstacle.
 pub(super) struct BoxDivision<'a> {
     obstacle: &'a ObstacleLanes<'a>,
@@ -50,7 +40,6 @@ pub(super) struct BoxDivision<'a> {
     places: PlaceMemo,
     witnesses: Vec<Witnesses>,
     pub bits: CellBits,
-    pub uncertain: Vec<OpenCells>,
 }
 
 impl<'a> BoxDivision<'a> {
@@ -67,7 +56,6 @@ impl<'a> BoxDivision<'a> {
             places: PlaceMemo::default(),
             witnesses: Vec::new(),
             bits: CellBits::new(roles),
-            uncertain: Vec::new(),
         }
     }
 
@@ -98,13 +86,8 @@ impl<'a> BoxDivision<'a> {
             self.block(class, boxes, known.contact);
         }
         let open = known.near & !known.contact;
-        if open != 0 {
-            if boxes.level == 0 {
-                let Boxes { others, group, .. } = boxes;
-                self.uncertain.push(OpenCells { class, others, group, lanes: open });
-            } else {
-                self.divide_parts(class, boxes, open, left);
-            }
+        if open != 0 && boxes.level > 0 {
+            self.divide_parts(class, boxes, open, left);
         }
         self.left.truncate(left);
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::Pose;
-use elbowroom_validity::SphereCover;
+use elbowroom_validity::{BuiltCovers, CoverSource, SphereCover};
 
 use super::super::builder::RobotMapBuilder;
 use super::super::driven_chain::RemainingJoints;
@@ -13,15 +13,12 @@ use super::super::error::RobotMapError;
 use super::super::placed_obstacle::PlacedObstacle;
 use super::super::rigid_groups::{RigidGroup, RigidGroups};
 use super::axis_roles::AxisRoles;
-use super::box_division::{BoxDivision, OpenCells};
-use super::cell_bits::{CellBits, CellBox};
+use super::box_division::BoxDivision;
 use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
 use super::planar_arm_map::PlanarArmMap;
-use super::settlement::Settlement;
 use super::step_chain::StepChain;
-use crate::bits::ones;
 use crate::{Grid, Layer, RowSpan};
 
 /// Slack of covers as a share of the robot's reach, and its limits, m.
@@ -38,8 +35,6 @@ const MOST_ROWS: usize = 1 << 20;
 pub struct CoverMapSettings {
     /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 4.5 mm.
     pub slack_m: Option<f64>,
-    /// True: cells that the covers leave open are settled by exact queries. False: they are blocked.
-    pub exact: bool,
 }
 
 /// Builds maps of one robot on sphere covers of its links, in milliseconds: a [`Layer`] per obstacle, over three axes.
@@ -71,7 +66,6 @@ pub struct CoverMapBuilder {
     classes: Vec<CoverClass>,
     planar: Option<PlanarArmMap>,
     slack_m: f64,
-    is_exact: bool,
 }
 
 impl CoverMapBuilder {
@@ -87,6 +81,22 @@ impl CoverMapBuilder {
         remaining: RemainingJoints<'_>,
         settings: CoverMapSettings,
     ) -> Result<Self, RobotMapError> {
+        Self::with_covers(robot, base_in_world, grid, joints, remaining, settings, &BuiltCovers)
+    }
+
+    /// As [`new`](Self::new), with the covers of the links from a source, such as a cache.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_covers(
+        robot: &Robot,
+        base_in_world: Pose,
+        grid: &Grid,
+        joints: [usize; 3],
+        remaining: RemainingJoints<'_>,
+        settings: CoverMapSettings,
+        source: &dyn CoverSource,
+    ) -> Result<Self, RobotMapError> {
         let exact = RobotMapBuilder::new(robot, base_in_world, grid.axes(), &joints, remaining)?;
         let groups = RigidGroups::new(robot, &exact.chain)?.groups;
         let roles = AxisRoles::new(grid, &groups).ok_or(RobotMapError::NoCommonJoint)?;
@@ -98,7 +108,7 @@ impl CoverMapBuilder {
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
         let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
         let mut steps = StepChain::default();
-        let covers = covers(&groups, slack_m)?;
+        let covers = covers(&groups, slack_m, source)?;
         let covered: Vec<CoveredGroup<'_>> = groups
             .iter()
             .zip(covers)
@@ -109,7 +119,7 @@ impl CoverMapBuilder {
             })
             .collect();
         let classes = classes(&covered, &steps, grid, &roles);
-        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slack_m, is_exact: settings.exact, exact })
+        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slack_m, exact })
     }
 
     /// The grid.
@@ -157,47 +167,15 @@ impl CoverMapBuilder {
             return Ok(layer);
         }
         let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
-        let slack_m = self.is_exact.then_some(self.slack_m);
-        let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles, slack_m);
+        let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles);
         let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
         division.run();
-        let BoxDivision { mut bits, uncertain, .. } = division;
-        if self.is_exact {
-            self.settle(&[PlacedObstacle::new(&obstacle.shape, in_world)?], &uncertain, &mut bits);
-        }
-        Ok(bits.to_layer(self.grid.shape()))
-    }
-
-    /// Settles the open cells by exact queries.
-    fn settle(&self, placed: &[PlacedObstacle], uncertain: &[OpenCells], bits: &mut CellBits) {
-        let candidates = self.exact.containment_candidates(placed);
-        let used = AtomicUsize::new(0);
-        let mut settlement = Settlement::new(self.exact.task(placed, &candidates, &used));
-        for open in uncertain {
-            let uses = self.classes[open.class].uses;
-            let mut axes = [true; 3];
-            for (axis, is_used) in self.roles.others.into_iter().zip(uses) {
-                axes[axis] = is_used;
-            }
-            // An open cell of a link that fewer axes move stands for all values of the others: it is settled where some of
-            // these are blocked already, too.
-            let is_single = uses == [true, true];
-            let known = if is_single { bits.sixteen(open.others, open.group) } else { 0 };
-            for lane in ones(u64::from(open.lanes & !known)) {
-                let lane = 16 * open.group + lane;
-                if settlement.may_touch(self.roles.cell(lane, open.others), axes) {
-                    let range = |k: usize| {
-                        if uses[k] { [open.others[k], open.others[k] + 1] } else { [0, usize::MAX] }
-                    };
-                    bits.set(&CellBox { lanes: [lane, lane + 1], others: [range(0), range(1)] });
-                }
-            }
-        }
+        Ok(division.bits.to_layer(self.grid.shape()))
     }
 }
 
 /// The covers of groups of links, on as many threads as the machine runs at once.
-fn covers(groups: &[RigidGroup], slack_m: f64) -> Result<Vec<SphereCover>, RobotMapError> {
+fn covers(groups: &[RigidGroup], slack_m: f64, source: &dyn CoverSource) -> Result<Vec<SphereCover>, RobotMapError> {
     let threads = std::thread::available_parallelism().map_or(1, Into::into).min(groups.len());
     let next = AtomicUsize::new(0);
     let work = || {
@@ -205,7 +183,7 @@ fn covers(groups: &[RigidGroup], slack_m: f64) -> Result<Vec<SphereCover>, Robot
         while let Some((at, group)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, groups.get(at)?)))
         {
-            done.push((at, cover(group, slack_m)));
+            done.push((at, cover(group, slack_m, source)));
         }
         done
     };

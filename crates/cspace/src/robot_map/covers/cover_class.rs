@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::Vec3;
 use elbowroom_validity::lanes::{LANES, PointRow, Row};
-use elbowroom_validity::{Ball, SphereCover};
+use elbowroom_validity::{Ball, CoverSource, SphereCover};
 
 use super::super::error::RobotMapError;
 use super::super::rigid_groups::RigidGroup;
@@ -92,10 +92,10 @@ pub(super) struct CoveredGroup<'a> {
 }
 
 /// The cover of a group's solids.
-pub(super) fn cover(group: &RigidGroup, slack_m: f64) -> Result<SphereCover, RobotMapError> {
+pub(super) fn cover(group: &RigidGroup, slack_m: f64, source: &dyn CoverSource) -> Result<SphereCover, RobotMapError> {
     let solids: Vec<_> = group.solids.iter().map(|(shape, pose)| (shape, *pose)).collect();
     let invalid = || RobotMapError::InvalidPlacement("a link of the robot".into());
-    SphereCover::new(&solids, slack_m).ok_or_else(invalid)
+    source.cover(&solids, slack_m).ok_or_else(invalid)
 }
 
 /// The classes of some groups, those that few axes move first.

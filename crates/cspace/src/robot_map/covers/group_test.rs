@@ -5,7 +5,7 @@ use fearless_simd::Simd;
 
 use super::ball_tree::LEAF;
 use super::block_level::Frame;
-use super::cover_class::{CoverClass, CoverGroup};
+use super::cover_class::CoverClass;
 use super::kernel::{GroupPlace, HalfWidths, Target, at_most, gaps, near_balls};
 use super::obstacle::Element;
 use super::obstacle_lanes::{CellPose, ObstacleLanes};
@@ -56,9 +56,11 @@ impl BoxTest<'_> {
         open: &mut Vec<NearGroup>,
         left: &mut Vec<NearGroup>,
     ) {
-        self.probe(simd, places);
+        if self.level > 0 {
+            self.probe(simd, places);
+        }
         open.clear();
-        if self.level == 0 && !self.obstacle.is_exact {
+        if self.level <= 1 {
             self.recall(simd, witnesses);
         }
         for &pair in pairs {
@@ -73,9 +75,16 @@ impl BoxTest<'_> {
     }
 
     /// Finds boxes in contact with the largest balls.
+    ///
+    /// A cell is blocked if any configuration in it is in contact. The centre of a box of two cells along every axis is a corner
+    /// of all its cells, so that a contact there blocks them; one that lasts from the centre of a box of four cells to those of
+    /// its halves blocks all of that, too.
     #[inline(always)]
     fn probe<S: Simd>(&mut self, simd: S, places: &mut PlaceMemo) {
-        let ([element], [Some(contact)]) = (self.obstacle.elements, self.obstacle.contacts.as_slice()) else { return };
+        let [element] = self.obstacle.elements else { return };
+        let reach = element.radius - self.obstacle.rounding;
+        let target = Target { core: element.core, centre: element.centre, reach };
+        let lasts_for = if self.level == 2 { 1 } else { self.level };
         for (number, &at) in self.class.probes.iter().take(32).enumerate() {
             if self.probes >> number & 1 == 0 {
                 continue;
@@ -84,13 +93,13 @@ impl BoxTest<'_> {
             let place = places.place(simd, self.class, at, self.frames, self.half);
             let paths = self.class.motions[self.level][at as usize].paths.load(simd);
             let zero = splat(simd, 0.0);
-            let stays = if self.level == 0 { zero } else { zero - paths };
+            let stays =
+                if self.level == 1 { zero } else { zero - self.class.motions[lasts_for][at as usize].paths.load(simd) };
             let (mut near, mut rest) = (0, self.live);
             while rest != 0 {
                 let lane = rest.trailing_zeros();
                 rest &= rest - 1;
-                let pose = &self.poses[lane as usize];
-                let gaps = gaps(simd, group, place, pose, element.centre, *contact, self.obstacle.rounding);
+                let gaps = gaps(simd, group, place, &self.poses[lane as usize], &target);
                 if at_most(gaps, stays) & group.lanes != 0 {
                     self.contact |= 1 << lane;
                     self.live &= !(1 << lane);
@@ -101,7 +110,8 @@ impl BoxTest<'_> {
         }
     }
 
-    /// Finds cells that are blocked by balls that blocked others.
+    /// Finds cells that are blocked by balls that blocked others, or boxes of two cells along every axis that these touch at the
+    /// centre, which is a corner of all their cells.
     #[inline(always)]
     fn recall<S: Simd>(&mut self, simd: S, witnesses: &[Witnesses]) {
         for witnesses in witnesses {
@@ -113,14 +123,19 @@ impl BoxTest<'_> {
             let mut place = GroupPlace::ZERO;
             place.compute(simd, group, path, self.frames, self.half);
             let element = &self.obstacle.elements[witnesses.element as usize];
-            let reach = element.radius + self.obstacle.rounding;
-            let target = Target { core: element.core, centre: element.centre, reach };
+            let rounding = if self.level == 0 { self.obstacle.rounding } else { -self.obstacle.rounding };
+            let target = Target { core: element.core, centre: element.centre, reach: element.radius + rounding };
             let mut rest = self.live;
             while rest != 0 {
                 let lane = rest.trailing_zeros();
                 rest &= rest - 1;
                 let pose = &self.poses[lane as usize];
-                if near_balls(simd, group, &place, &witnesses.motion, pose, &target, self.half) != 0 {
+                let touching = if self.level == 0 {
+                    near_balls(simd, group, &place, &witnesses.motion, pose, &target, self.half)
+                } else {
+                    at_most(gaps(simd, group, &place, pose, &target), splat(simd, 0.0)) & group.lanes
+                };
+                if touching != 0 {
                     self.contact |= 1 << lane;
                     self.live &= !(1 << lane);
                 }
@@ -161,14 +176,11 @@ impl BoxTest<'_> {
                 continue;
             }
             if self.level == 0 && element.is_leaf && near & group.leaves != 0 {
-                if self.is_blocked(simd, group, place, pose, pair.element, near & group.leaves) {
-                    self.contact |= 1 << lane;
-                    self.live &= !(1 << lane);
-                    let ball = (near & group.leaves).trailing_zeros();
-                    witnesses[group.path as usize].add(class, pair.group, ball, pair.element);
-                    continue;
-                }
-                self.near |= 1 << lane;
+                self.contact |= 1 << lane;
+                self.live &= !(1 << lane);
+                let ball = (near & group.leaves).trailing_zeros();
+                witnesses[group.path as usize].add(class, pair.group, ball, pair.element);
+                continue;
             }
             any |= near;
             let mut balls = near;
@@ -179,30 +191,6 @@ impl BoxTest<'_> {
         }
         if any != 0 {
             self.divide(pair, any, &boxes_of, open, left);
-        }
-    }
-
-    /// True where a cell is blocked by leaves that are near.
-    #[inline(always)]
-    fn is_blocked<S: Simd>(
-        &self,
-        simd: S,
-        group: &CoverGroup,
-        place: &GroupPlace,
-        pose: &CellPose,
-        element: u32,
-        near: u32,
-    ) -> bool {
-        if !self.obstacle.is_exact {
-            return true;
-        }
-        let centre = self.obstacle.elements[element as usize].centre;
-        match self.obstacle.contacts[element as usize] {
-            Some(contact) => {
-                let gaps = gaps(simd, group, place, pose, centre, contact, self.obstacle.rounding);
-                at_most(gaps, splat(simd, 0.0)) & near != 0
-            }
-            None => false,
         }
     }
 

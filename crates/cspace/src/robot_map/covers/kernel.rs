@@ -11,7 +11,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
 use super::cover_class::{CoverGroup, CoverPath, GroupMotion};
-use super::obstacle_lanes::{CellPose, ContactCore};
+use super::obstacle_lanes::CellPose;
 use super::solid_core::SolidCore;
 
 /// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
@@ -66,7 +66,7 @@ impl GroupPlace {
 pub(super) struct Target {
     pub core: SolidCore,
     pub centre: [f32; 3],
-    /// Its radius, and rounding errors, m.
+    /// Its radius, with an allowance for rounding errors, m.
     pub reach: f32,
 }
 
@@ -102,23 +102,21 @@ pub(super) fn near_balls<S: Simd>(
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
 }
 
-/// Distances of a group's balls from what proves a contact with the obstacle at the centre of the box, less the sums of the
-/// radii: at most 0 where they touch.
+/// Distances of a group's balls from a solid at the centre of the box, less the sums of the radii: at most 0 where they touch.
+/// `reach` of the target is its radius less rounding errors.
 #[inline(always)]
 pub(super) fn gaps<S: Simd>(
     simd: S,
     group: &CoverGroup,
     place: &GroupPlace,
     pose: &CellPose,
-    centre: [f32; 3],
-    contact: ContactCore,
-    rounding: f32,
+    target: &Target,
 ) -> f32x16<S> {
     let arm = place.centres.load(simd);
-    let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, centre);
+    let PoseSplat { x, y, z, origin } = PoseSplat::new(simd, pose, target.centre);
     let p = z.times_plus(arm.2, y.times_plus(arm.1, x.times_plus(arm.0, origin)));
-    let reach = group.radii.load(simd) + splat(simd, contact.radius - rounding);
-    contact.core.signed_distance(simd, p) - reach
+    let reach = group.radii.load(simd) + splat(simd, target.reach);
+    target.core.signed_distance(simd, p) - reach
 }
 
 /// Lanes that are at most a limit, one bit each; NaN is not.

@@ -17,7 +17,6 @@
 //! | `box_division.rs`, `group_test.rs`, `witnesses.rs` | boxes halved; one box; balls that blocked others |
 //! | `kernel.rs`, `place_memo.rs` | sixteen balls at a time; places that are known |
 //! | `planar_arm_map.rs` | arms in a plane with round links, which have a faster way |
-//! | `settlement.rs` | cells that the covers leave open, by exact queries |
 //! | `cell_bits.rs` | blocked cells as bits |
 
 mod axis_roles;
@@ -33,7 +32,6 @@ mod obstacle;
 mod obstacle_lanes;
 mod place_memo;
 mod planar_arm_map;
-mod settlement;
 mod solid_core;
 mod step_chain;
 mod witnesses;

@@ -35,8 +35,6 @@ pub struct CoverObstacle {
     pub(super) elements: Vec<Element>,
     /// Frame of the elements in that of the shape.
     pub(super) frame: Pose,
-    /// True where the elements are the obstacle, and not only around it.
-    pub(super) is_exact: bool,
     /// No point is farther from the origin of the elements' frame, m; 0 for a half space.
     pub(super) reach_m: f64,
     pub(super) shape: Shape,
@@ -62,11 +60,7 @@ impl CoverObstacle {
             Shape::Cuboid(c) => Ok(solid(box_core(c.half_extents), 0.0)),
             Shape::HalfSpace(_) => Ok(solid(SolidCore::HalfSpace, 0.0)),
             Shape::Mesh(mesh) => match box_of(mesh) {
-                Some((half, pose)) => {
-                    let volume = 8.0 * half.x * half.y * half.z;
-                    let is_exact = mesh.has_interior() && (shape.volume() - volume).abs() <= 1e-6 * volume;
-                    Ok(Self { is_exact, ..Self::solid(shape, box_core(half), 0.0, pose) })
-                }
+                Some((half, pose)) => Ok(Self::solid(shape, box_core(half), 0.0, pose)),
                 None => Self::covered(shape, slack_m),
             },
             Shape::Hull(_) => Self::covered(shape, slack_m),
@@ -88,7 +82,7 @@ impl CoverObstacle {
             _ => shape.aabb(&frame.inverse()).max_distance(Vec3::ZERO),
         };
         let element = Element { centre: [0.0; 3], core, radius: radius as f32, end: 1, is_leaf: true };
-        Self { elements: vec![element], frame, is_exact: true, reach_m, shape: shape.clone() }
+        Self { elements: vec![element], frame, reach_m, shape: shape.clone() }
     }
 
     fn covered(shape: &Shape, slack_m: f64) -> Result<Self, RobotMapError> {
@@ -98,7 +92,7 @@ impl CoverObstacle {
         let reach_m = cover.outer.iter().map(reach).fold(0.0, f64::max);
         let mut elements = Vec::new();
         push_balls(&mut elements, &mut cover.outer.clone());
-        Ok(Self { elements, frame: Pose::IDENTITY, is_exact: false, reach_m, shape: shape.clone() })
+        Ok(Self { elements, frame: Pose::IDENTITY, reach_m, shape: shape.clone() })
     }
 }
 

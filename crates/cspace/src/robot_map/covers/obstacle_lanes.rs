@@ -6,7 +6,6 @@ use super::axis_roles::AxisRoles;
 use super::block_level::single;
 use super::cover_class::CoverClass;
 use super::obstacle::{CoverObstacle, Element};
-use super::solid_core::SolidCore;
 use super::step_chain::Step;
 use crate::Grid;
 
@@ -21,31 +20,18 @@ pub(super) struct CellPose {
     pub origin: [f32; 3],
 }
 
-/// What proves a contact: every point of a cover's sphere is within its slack of the link.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ContactCore {
-    pub core: SolidCore,
-    /// m.
-    pub radius: f32,
-}
-
 /// An obstacle at its place.
 #[derive(Debug)]
 pub(super) struct ObstacleLanes<'a> {
     pub elements: &'a [Element],
-    /// Per element, what proves a contact with a sphere of a cover; none for inner nodes.
-    pub contacts: Vec<Option<ContactCore>>,
     /// Per level and box of the first axis.
     pub poses: Vec<Vec<CellPose>>,
     /// Rounding errors of a distance, m.
     pub rounding: f32,
-    /// Counted contacts are those of the solids; otherwise those of the covers.
-    pub is_exact: bool,
 }
 
 impl<'a> ObstacleLanes<'a> {
-    /// `first` is the joint of the axis in lanes. `slack_m` is that of the covers, in an exact map; `None` where contacts of
-    /// the covers count.
+    /// `first` is the joint of the axis in lanes.
     pub fn new(
         obstacle: &'a CoverObstacle,
         in_world: &Pose,
@@ -53,7 +39,6 @@ impl<'a> ObstacleLanes<'a> {
         classes: &[CoverClass],
         grid: &Grid,
         roles: &AxisRoles,
-        slack_m: Option<f64>,
     ) -> Self {
         let at_zero = (*in_world * obstacle.frame).inverse() * first.at_zero;
         let reach = classes.iter().map(|class| class.reach_m).fold(0.0, f64::max);
@@ -67,13 +52,7 @@ impl<'a> ObstacleLanes<'a> {
             let pose = |at: usize| at_zero * first.moved(value(at) * first.multiplier);
             (0..boxes).map(|at| CellPose::new(&pose(at))).collect()
         };
-        Self {
-            elements: &obstacle.elements,
-            contacts: obstacle.elements.iter().map(|element| contact(element, obstacle, slack_m)).collect(),
-            poses: (0..levels).map(poses).collect(),
-            rounding: rounding as f32,
-            is_exact: slack_m.is_some(),
-        }
+        Self { elements: &obstacle.elements, poses: (0..levels).map(poses).collect(), rounding: rounding as f32 }
     }
 }
 
@@ -85,23 +64,4 @@ impl CellPose {
             origin: single(pose.translation),
         }
     }
-}
-
-fn contact(element: &Element, obstacle: &CoverObstacle, slack_m: Option<f64>) -> Option<ContactCore> {
-    if !element.is_leaf {
-        return None;
-    }
-    let Some(slack_m) = slack_m else {
-        return Some(ContactCore { core: element.core, radius: element.radius });
-    };
-    if !obstacle.is_exact {
-        return None;
-    }
-    let slack = slack_m as f32;
-    if element.radius >= slack {
-        return Some(ContactCore { core: element.core, radius: element.radius - slack });
-    }
-    let core = element.core.eroded(slack - element.radius)?;
-    let radius = if core == SolidCore::HalfSpace { element.radius - slack } else { 0.0 };
-    Some(ContactCore { core, radius })
 }

@@ -56,24 +56,6 @@ impl SolidCore {
             Self::HalfSpace => p.2,
         }
     }
-
-    /// What is deeper in the core than a distance.
-    pub fn eroded(self, by: f32) -> Option<Self> {
-        let core = match self {
-            Self::Point => return None,
-            Self::Box(half) => Self::Box(half.map(|h| h - by)),
-            Self::Cylinder { radius, half_length } => {
-                Self::Cylinder { radius: radius - by, half_length: half_length - by }
-            }
-            Self::HalfSpace => return Some(self),
-        };
-        let is_empty = match core {
-            Self::Box(half) => half.iter().any(|&h| h < 0.0),
-            Self::Cylinder { radius, half_length } => radius < 0.0 || half_length < 0.0,
-            _ => false,
-        };
-        (!is_empty).then_some(core)
-    }
 }
 
 /// A coordinate less the nearest value of the interval about 0 of a half length.
