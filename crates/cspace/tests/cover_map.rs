@@ -408,4 +408,10 @@ fn invalid_input_is_rejected() {
     assert!(matches!(builder.layer(&ball, &nowhere), Err(RobotMapError::InvalidPlacement(_))));
     let new = |joints| CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, joints, RemainingJoints::Swept, settings);
     assert!(new([0, 1, 1]).is_err() && new([0, 1, 7]).is_err());
+    for slack_m in [0.0, -0.001, f64::NAN, f64::INFINITY] {
+        let settings = CoverMapSettings { slack_m: Some(slack_m) };
+        let remaining = RemainingJoints::Swept;
+        let refused = CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], remaining, settings);
+        assert!(matches!(refused, Err(RobotMapError::Slack(_))), "{slack_m}");
+    }
 }

@@ -34,6 +34,9 @@ pub enum RobotMapError {
     /// The links of the map do not hang on one joint, or its axis moves another joint, too.
     #[error("the links do not all hang on one joint of the map that moves alone: use RobotMapBuilder")]
     NoCommonJoint,
+    /// A slack of covers that is no length.
+    #[error("the slack of covers is {0} m: give a finite length above 0, such as 0.004")]
+    Slack(f64),
     /// The map would exceed the memory limit.
     #[error("the map needs more than {mib} MiB: make the steps larger, or allow more memory")]
     Memory {

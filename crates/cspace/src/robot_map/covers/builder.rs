@@ -104,6 +104,9 @@ impl CoverMapBuilder {
         if first * second > MOST_ROWS || grid.cells() > MOST_CELLS {
             return Err(RobotMapError::Memory { mib: MOST_CELLS >> 23 });
         }
+        if let Some(slack_m) = settings.slack_m.filter(|slack_m| !(*slack_m > 0.0 && slack_m.is_finite())) {
+            return Err(RobotMapError::Slack(slack_m));
+        }
         let reach = reach_m(robot);
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
         let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
