@@ -53,7 +53,8 @@ pub struct SphereCover {
 
 impl SphereCover {
     /// Covers the union of shapes, each with its pose in the frame of the cover. No outer sphere protrudes from the solid by
-    /// more than `slack_m`; gaps in open surfaces count as solid where the surface encloses them.
+    /// more than `slack_m`, but for gaps narrower than two voxels, cavities that the surface encloses, and solids of more
+    /// voxels than fit.
     ///
     /// `None` where a shape is unbounded, has NaN or infinite numbers or reaches beyond 10 km: no spheres enclose it. No shapes: an empty cover.
     pub fn new(shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<Self> {
