@@ -127,6 +127,8 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask distance --states q.csv           a row per state, as CSV
   elbowroom query --urdf arm.urdf --srdf arm.srdf --ask tolerance=0.02 --states q.csv --json
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
+  elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
+  elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
 
 Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (see docs/query.md).
 Exit status: 1 if --ask collision finds a collision.")]
@@ -154,6 +156,15 @@ pub(crate) struct QueryArgs {
     /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
+    /// Only these pairs: robots, links as robot/link, objects or regions; with --urdf links, or `robot` for all of them
+    #[arg(long, value_name = "A,B;C,D…")]
+    pub(crate) between: Option<String>,
+    /// Leave out pairs within one robot
+    #[arg(long)]
+    pub(crate) no_self: bool,
+    /// A row for each pair no farther apart than this (metres), the nearest first, instead of one row per state
+    #[arg(long, value_name = "METRES", value_parser = margin, allow_negative_numbers = true)]
+    pub(crate) all_pairs: Option<f64>,
     /// Print one JSON document instead of CSV
     #[arg(long)]
     pub(crate) json: bool,
@@ -371,6 +382,12 @@ impl std::str::FromStr for Numbers {
         };
         text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(Self)
     }
+}
+
+/// A distance in metres.
+fn margin(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
+    value.ok_or_else(|| "write a number of metres, 0 or more, as 0.1".into())
 }
 
 /// A duration in seconds.
