@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Rules(RulesArgs),
     /// Build a region for the cell file from taught points
     Teach(TeachArgs),
+    /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
+    Watch(WatchArgs),
     /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
@@ -439,6 +441,31 @@ pub(crate) enum TaughtShape {
     Plane,
     Box,
     Box3,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom watch cell.toml                                    pictures and joint values that the cell file names
+  elbowroom watch cell.toml --frames pictures --joints q.csv   others
+  elbowroom watch cell.toml --frames pictures --json | jq -c '{t_s, obstacles}'
+
+DIR has pictures (*.png, *.pgm, *.ppm, in the order of their names) and times.csv with the columns file,t_s.
+The first pictures show the empty cell. [camera.NAME] of the cell file has lens, pose and templates (docs/vision.md).")]
+pub(crate) struct WatchArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The camera; optional if there is only one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) camera: Option<String>,
+    /// The folder of pictures; default: `frames` of the camera
+    #[arg(long, value_name = "DIR")]
+    pub(crate) frames: Option<PathBuf>,
+    /// Joint values over time (`t_s` and a column per joint); default: `joints` of the camera, or the robots' start
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) joints: Option<PathBuf>,
+    /// Print one JSON document per picture, a line each
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -12,7 +12,7 @@ use crate::error::PerceptionError;
 use crate::map_updater::{Changed, MapUpdater, PrismMap, PrismSettings};
 use crate::mapped_arm::append_parts;
 use crate::observation::observe;
-use crate::obstacle_update::ObstacleUpdate;
+use crate::obstacle_update::{ObstacleUpdate, Prism};
 use crate::pipeline::PerceptionSettings;
 use crate::prism_boxes::prism_boxes;
 
@@ -93,6 +93,11 @@ impl ObstacleWatcher {
     /// The joint-space map.
     pub fn map(&self) -> &LayerMap {
         &self.map.map
+    }
+
+    /// The obstacles in the map.
+    pub fn prisms(&self) -> &[Prism] {
+        self.map_updater.prisms()
     }
 
     /// A lock-free reader of the published map, for this or another thread.
