@@ -41,7 +41,8 @@ pub(crate) enum Command {
     /// Build a region for the cell file from taught points
     Teach(TeachArgs),
     /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
-    Watch(WatchArgs),
+    #[command(name = "watch")]
+    WatchCamera(WatchArgs),
     /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
