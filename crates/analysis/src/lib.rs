@@ -2,7 +2,7 @@
 //!
 //! [`query`] evaluates collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
 //! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state. [`problems`]
-//! solves the planning problems of a file.
+//! solves the planning problems of a file; [`watch`] says what a camera sees.
 //!
 //! ```
 //! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};
@@ -34,5 +34,6 @@ pub mod map;
 pub mod plan;
 pub mod problems;
 pub mod query;
+pub mod watch;
 
 pub use cover_cache::CoverCache;

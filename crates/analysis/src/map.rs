@@ -153,7 +153,7 @@ impl CellMap {
 }
 
 /// The requested robot, the only one with a map, or the only one.
-fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
+pub(crate) fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
     let robot = match (name, &cell.maps[..]) {
         (None, [only]) => only.robot,
         _ => select_robot(cell, name)?.0,
@@ -164,7 +164,7 @@ fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, 
 }
 
 /// The joint axes. Continuous joints have a range of one turn.
-fn axes(
+pub(crate) fn axes(
     cell: &Cell,
     robot: &CellRobot,
     spec: &MapSpec,

@@ -41,8 +41,8 @@ pub mod suggest;
 pub mod trajectory;
 
 pub use cell::{
-    AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
-    Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
+    AvoidanceSpec, Cell, CellCamera, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec,
+    MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
 pub use file::CellFile;
 pub use frames::Frames;

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_robot::{GeometryId, Robot};
-use elbowroom_scene::{Object, Scene};
+use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_robot::{GeometryId, ObjectId, Robot};
+use elbowroom_scene::{Attachment, Object, Scene, SceneState};
 use elbowroom_spatial::Pose;
 
-use crate::{Cell, rest_pose_contacts};
+use crate::{Cell, Follow, Frames, rest_pose_contacts};
 
 /// Robots and objects with their default states.
 #[derive(Debug, Clone)]
@@ -18,6 +19,8 @@ pub struct QueryModel {
     pub robots: Vec<QueryRobot>,
     /// Objects.
     pub objects: Vec<Object>,
+    /// Objects that a link carries: regions that follow a robot.
+    pub carried: Vec<(ObjectId, Attachment)>,
     /// True for a single robot: its links are named without prefix, and its states must have all joints.
     pub is_single_robot: bool,
 }
@@ -58,6 +61,7 @@ impl QueryModel {
             file: cell.file.clone(),
             robots: cell.robots.iter().map(robot).collect(),
             objects: cell.objects.clone(),
+            carried: Vec::new(),
             is_single_robot: false,
         }
     }
@@ -67,7 +71,13 @@ impl QueryModel {
         let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
         let start = lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
         let only = QueryRobot { name: String::new(), robot, base_in_world: Pose::IDENTITY, start };
-        Self { file: file.to_owned(), robots: vec![only], objects: Vec::new(), is_single_robot: true }
+        Self {
+            file: file.to_owned(),
+            robots: vec![only],
+            objects: Vec::new(),
+            carried: Vec::new(),
+            is_single_robot: true,
+        }
     }
 
     /// A single robot of a cell, at its pose; its states may name it.
@@ -78,7 +88,50 @@ impl QueryModel {
             base_in_world: robot.base_in_world,
             start: robot.start.clone(),
         };
-        Self { file: cell.file.clone(), robots: vec![only], objects: Vec::new(), is_single_robot: true }
+        Self {
+            file: cell.file.clone(),
+            robots: vec![only],
+            objects: Vec::new(),
+            carried: Vec::new(),
+            is_single_robot: true,
+        }
+    }
+
+    /// Adds a region of the cell as an object, where it is at the start; one that follows a robot is carried by it. False where
+    /// the cell has no such region.
+    pub fn add_region(&mut self, cell: &Cell, name: &str) -> bool {
+        let Some(region) = cell.regions.iter().find(|r| r.region.name == name) else { return false };
+        let state = |r: &crate::CellRobot| {
+            let mut state = ChainState::new(&r.robot.chain);
+            state.q.copy_from_slice(&r.start);
+            r.robot.chain.forward_motion(&mut state);
+            state
+        };
+        let states: Vec<_> = cell.robots.iter().map(state).collect();
+        let in_source = region.region.anchor * region.region.shape_in_anchor;
+        let source = region.follow.map(|follow| Frames::new(cell).source(&follow, &states, 0.0).pose);
+        let id = ObjectId(self.objects.len());
+        let in_world = source.map_or(in_source, |source| source * in_source);
+        self.objects.push(Object { name: name.to_owned(), shape: region.region.shape.clone(), in_world });
+        if let Some(Follow::Robot { robot, link, in_link }) = region.follow {
+            let touch_links = (0..cell.robots[robot.0].robot.chain.links().len()).map(LinkId).collect();
+            self.carried.push((id, Attachment { robot, link, in_link: in_link * in_source, touch_links }));
+        }
+        true
+    }
+
+    /// The state in which queries begin: what a link carries is attached to it.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the scene is one of another model.
+    pub fn start_state(&self, scene: &Scene) -> Result<SceneState, FormatError> {
+        let mut state = SceneState::new(scene);
+        for (object, attachment) in &self.carried {
+            state
+                .attach_at(scene, *object, attachment.clone())
+                .map_err(|e| FormatError::new(&self.file, None, e.to_string()))?;
+        }
+        Ok(state)
     }
 
     /// Builds the scene.

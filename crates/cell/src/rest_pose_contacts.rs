@@ -9,7 +9,8 @@ use elbowroom_robot::rest_pose_contacts;
 pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl Iterator<Item = (String, String)> {
     let links = robot.chain.links().to_vec();
     let of_robot = name.map_or_else(String::new, |n| format!("robot \"{n}\": "));
-    let (whose, file) = if name.is_some() { ("at its `start`", "srdf = \"FILE\"") } else { ("at rest", "--srdf FILE") };
+    let in_cell = name.is_some();
+    let whose = if in_cell { "at its `start`" } else { "at rest" };
     rest_pose_contacts(robot, rest).into_iter().map(move |found| {
         let (a, b) = (&links[found.a.0], &links[found.b.0]);
         let often = if found.always() {
@@ -21,8 +22,14 @@ pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl 
             "{of_robot}links `{a}` and `{b}` touch {whose}, and {often}, with no link with collision geometry between them: every such state \
              counts as a collision (in `run` once they have been apart)"
         );
-        (what, srdf_entry(a, b, file))
+        let hint = if in_cell { ignore_entry(a, b) } else { srdf_entry(a, b, "--srdf FILE") };
+        (what, hint)
     })
+}
+
+/// The key of a robot in a cell file that leaves a pair of links out.
+fn ignore_entry(a: &str, b: &str) -> String {
+    format!("ignore = [[\"{a}\", \"{b}\"]] in its table, if they are built so (or a line of an SRDF)")
 }
 
 /// The SRDF entry that disables a pair of links.

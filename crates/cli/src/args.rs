@@ -40,6 +40,9 @@ pub(crate) enum Command {
     Rules(RulesArgs),
     /// Build a region for the cell file from taught points
     Teach(TeachArgs),
+    /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
+    #[command(name = "watch")]
+    WatchCamera(WatchArgs),
     /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
@@ -127,6 +130,8 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask distance --states q.csv           a row per state, as CSV
   elbowroom query --urdf arm.urdf --srdf arm.srdf --ask tolerance=0.02 --states q.csv --json
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
+  elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
+  elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
 
 Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (see docs/query.md).
 Exit status: 1 if --ask collision finds a collision.")]
@@ -154,6 +159,15 @@ pub(crate) struct QueryArgs {
     /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
+    /// Only these pairs: robots, links as robot/link, objects or regions; with --urdf links, or `robot` for all of them
+    #[arg(long, value_name = "A,B;C,D…")]
+    pub(crate) between: Option<String>,
+    /// Leave out pairs within one robot
+    #[arg(long)]
+    pub(crate) no_self: bool,
+    /// A row for each pair no farther apart than this (metres), the nearest first, instead of one row per state
+    #[arg(long, value_name = "METRES", value_parser = margin, allow_negative_numbers = true)]
+    pub(crate) all_pairs: Option<f64>,
     /// Print one JSON document instead of CSV
     #[arg(long)]
     pub(crate) json: bool,
@@ -373,6 +387,12 @@ impl std::str::FromStr for Numbers {
     }
 }
 
+/// A distance in metres.
+fn margin(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
+    value.ok_or_else(|| "write a number of metres, 0 or more, as 0.1".into())
+}
+
 /// A duration in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
@@ -422,6 +442,31 @@ pub(crate) enum TaughtShape {
     Plane,
     Box,
     Box3,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom watch cell.toml                                    pictures and joint values that the cell file names
+  elbowroom watch cell.toml --frames pictures --joints q.csv   others
+  elbowroom watch cell.toml --frames pictures --json | jq -c '{t_s, obstacles}'
+
+DIR has pictures (*.png, *.pgm, *.ppm, in the order of their names) and times.csv with the columns file,t_s.
+The first pictures show the empty cell. [camera.NAME] of the cell file has lens, pose and templates (docs/vision.md).")]
+pub(crate) struct WatchArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The camera; optional if there is only one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) camera: Option<String>,
+    /// The folder of pictures; default: `frames` of the camera
+    #[arg(long, value_name = "DIR")]
+    pub(crate) frames: Option<PathBuf>,
+    /// Joint values over time (`t_s` and a column per joint); default: `joints` of the camera, or the robots' start
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) joints: Option<PathBuf>,
+    /// Print one JSON document per picture, a line each
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

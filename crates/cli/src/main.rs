@@ -17,6 +17,7 @@ mod region;
 mod rules;
 mod run;
 mod teach;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
+        Some(Command::WatchCamera(args)) => watch::watch(&args),
         Some(Command::Region(command)) => region::region(&command),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Completions { shell }) => completions(shell),

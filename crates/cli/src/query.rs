@@ -4,9 +4,12 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use elbowroom::analysis::query::{QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
+use elbowroom::analysis::query::{
+    Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_query,
+};
 use elbowroom::cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
+use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -17,7 +20,11 @@ use crate::output::{ExitStatus, Failure, note, print};
 const MANY: usize = 1000;
 
 pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
-    let model = query_model(args)?;
+    if args.all_pairs.is_some() && args.ask != QueryKind::Distance {
+        return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
+    }
+    let (mut model, cell) = query_model(args)?;
+    let pairs = query_pairs(args, &mut model, cell.as_ref())?;
     let states = match &args.states {
         Some(path) => QueryStates::read(path, &model)?,
         None => QueryStates::start(&model),
@@ -25,13 +32,15 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let proofs = if states.len() >= MANY { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
     let scene = model.scene(proofs)?;
-    if scene.allowed_collision_matrix().tested() == 0 {
+    let start = model.start_state(&scene)?;
+    if has_no_pair(&scene, &start, &pairs) {
         note(format_args!("warning: {}: there is no pair that could meet", model.file.display()));
     }
     let mut writer = Writer::new(args, &model, states.len());
     writer.begin()?;
     let mut outcome = Ok(());
-    evaluate(&scene, &states, args.ask, args.level, &mut |rows| {
+    let query = Query { kind: args.ask, level: args.level, pairs: &pairs, all_pairs_m: args.all_pairs, start: &start };
+    evaluate_query(&scene, &states, &query, &mut |rows| {
         outcome = writer.rows(rows);
         outcome.is_ok()
     })?;
@@ -44,7 +53,22 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     })
 }
 
-fn query_model(args: &QueryArgs) -> Result<QueryModel, Failure> {
+fn query_pairs(args: &QueryArgs, model: &mut QueryModel, cell: Option<&Cell>) -> Result<QueryPairs, Failure> {
+    let Some(text) = &args.between else {
+        return Ok(if args.no_self { QueryPairs::without_self(model) } else { QueryPairs::all() });
+    };
+    let wrong = |e: QueryPairsError| Failure::Wrong(format!("--between: {e}"));
+    let pairs = QueryPairs::between(text, model, cell).map_err(wrong)?;
+    if args.no_self { pairs.expect_without_self(model).map_err(wrong) } else { Ok(pairs) }
+}
+
+fn has_no_pair(scene: &Scene, start: &SceneState, pairs: &QueryPairs) -> bool {
+    let mut checker = Checker::new(scene, CheckerOptions::default());
+    pairs.sides().iter().all(|&[a, b]| checker.between(a, b).is_empty(start))
+}
+
+/// The model, and the cell where it is one.
+fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> {
     if let Some(urdf) = &args.urdf {
         let unit = args.unit.map(LengthUnit::from);
         let options = LoadOptions {
@@ -58,7 +82,7 @@ fn query_model(args: &QueryArgs) -> Result<QueryModel, Failure> {
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         let model = QueryModel::of_robot(urdf, loaded.robot);
         model.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
-        return Ok(model);
+        return Ok((model, None));
     }
     // clap requires one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
@@ -74,7 +98,7 @@ fn query_model(args: &QueryArgs) -> Result<QueryModel, Failure> {
     }
     let cell = Cell::load(path)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    Ok(QueryModel::of_cell(&cell))
+    Ok((QueryModel::of_cell(&cell), Some(cell)))
 }
 
 /// Prints rows in order, and the progress on a terminal.
@@ -82,7 +106,9 @@ struct Writer<'a> {
     args: &'a QueryArgs,
     model: &'a QueryModel,
     states: usize,
+    /// States that have been answered.
     done: usize,
+    is_first: bool,
     colliding: usize,
     begin: Instant,
     bar: ProgressBar,
@@ -94,7 +120,7 @@ impl<'a> Writer<'a> {
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
             bar.set_style(style);
         }
-        Self { args, model, states, done: 0, colliding: 0, begin: Instant::now(), bar }
+        Self { args, model, states, done: 0, is_first: true, colliding: 0, begin: Instant::now(), bar }
     }
 
     fn begin(&self) -> Result<(), Failure> {
@@ -120,13 +146,14 @@ impl<'a> Writer<'a> {
         for row in rows {
             let written = QueryRecord::of(row, self.model);
             if self.args.json {
-                text.push_str(if self.done == 0 { "" } else { ",\n" });
+                text.push_str(if self.is_first { "" } else { ",\n" });
+                self.is_first = false;
                 text.push_str(&json(&written)?);
             } else {
                 text.push_str(&written.csv());
                 text.push('\n');
             }
-            self.done += 1;
+            self.done = row.index + 1;
             self.colliding += usize::from(row.collides);
         }
         self.show_progress();

@@ -103,13 +103,34 @@ fn a_run_warns_of_contacts_at_the_start_and_reports_new_contacts() {
     };
     let wrist = run(cell("ball.urdf", "", "[1, 1, 1]")).expect(0);
     assert!(wrist.stderr.contains("robot \"r\": links `forearm` and `hand` touch at its `start`"), "{}", wrist.stderr);
-    assert!(wrist.stderr.contains("<disable_collisions link1=\"forearm\" link2=\"hand\""), "{}", wrist.stderr);
+    assert!(wrist.stderr.contains("ignore = [[\"forearm\", \"hand\"]]"), "{}", wrist.stderr);
     assert_eq!(wrist.json()["robots"][0]["collisions"].as_array().map(Vec::len), Some(0));
     let fingers = run(cell("grip.urdf", "", "[0, -0.05, -0.05]")).expect(1);
     let collisions = &fingers.json()["robots"][0]["collisions"];
     assert_eq!((&collisions[0]["a"], &collisions[0]["b"]), (&"r/f1".into(), &"r/f2".into()), "{collisions}");
     let disabled = run(cell("grip.urdf", "srdf = \"grip.srdf\"\n", "[0, -0.05, -0.05]")).expect(0);
     assert!(!disabled.stderr.contains("touch"), "{}", disabled.stderr);
+}
+
+#[test]
+fn pairs_that_the_cell_file_ignores_are_never_tested() {
+    let dir = folder();
+    let run = |more: &str| {
+        std::fs::write(dir.path().join("cell.toml"), cell("grip.urdf", more, "[0, -0.05, -0.05]")).unwrap();
+        elbowroom(dir.path(), &["run", "cell.toml", "--json"])
+    };
+    run("").expect(1);
+    let ignored = run("ignore = [[\"f2\", \"f1\"]]\n").expect(0);
+    assert_eq!(ignored.json()["robots"][0]["collisions"].as_array().map(Vec::len), Some(0));
+    for (key, expected) in [
+        ("ignore = [[\"f1\"]]\n", "names 1 links, not two"),
+        ("ignore = [[\"f1\", \"f3\"]]\n", "names the link \"f3\""),
+        ("ignore = [[\"f1\", \"f1\"]]\n", "one link twice"),
+        ("ignore = [\"f1\", \"f2\"]\n", "must be a list"),
+    ] {
+        let answer = run(key).expect(2);
+        assert!(answer.stderr.contains(expected) && answer.stderr.contains("cell.toml:5"), "{key}: {}", answer.stderr);
+    }
 }
 
 #[test]

@@ -41,6 +41,7 @@ mod csv;
 mod cycles;
 pub mod dae;
 mod error;
+pub mod frame_files;
 pub mod gltf;
 pub mod image;
 mod input;

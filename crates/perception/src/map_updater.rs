@@ -1,8 +1,9 @@
 //! Updates the obstacles of the joint-space map from the reports of the camera tracker.
 
+use std::ops::AddAssign;
 use std::sync::Arc;
 
-use elbowroom_cspace::{ConvexObstacle, JointMap};
+use elbowroom_cspace::{CellChanges, ConvexObstacle, JointMap};
 use elbowroom_proximity::{ConvexHull, HullError};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polygon};
@@ -10,10 +11,58 @@ use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polyg
 use crate::error::PerceptionError;
 use crate::obstacle_update::{ObstacleUpdate, Prism};
 
+/// A joint-space map in which observed obstacles are layers.
+pub(super) trait PrismMap {
+    /// Blocks the cells of an upright prism in place of those of the obstacle's former one.
+    ///
+    /// # Errors
+    /// A prism without a volume, or too far away; the map is unchanged.
+    fn set(&mut self, id: ObstacleId, footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<Changed, PerceptionError>;
+    /// Frees the cells of an obstacle; `None` where it has none.
+    fn remove(&mut self, id: ObstacleId) -> Option<Changed>;
+}
+
+/// Numbers of cells that changed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Changed {
+    pub blocked: usize,
+    pub freed: usize,
+}
+
+impl Changed {
+    pub fn of(changes: &CellChanges) -> Self {
+        Self { blocked: changes.blocked(), freed: changes.freed() }
+    }
+}
+
+impl AddAssign for Changed {
+    fn add_assign(&mut self, other: Self) {
+        self.blocked += other.blocked;
+        self.freed += other.freed;
+    }
+}
+
+/// The map of an arm in a plane.
+pub(super) struct PlanarPrisms<'m> {
+    pub map: &'m mut JointMap,
+    pub world_in_base: Pose,
+}
+
+impl PrismMap for PlanarPrisms<'_> {
+    fn set(&mut self, id: ObstacleId, footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<Changed, PerceptionError> {
+        let hull = prism_hull(footprint_m, heights_m)?;
+        let obstacle = ConvexObstacle::hull(self.world_in_base, Arc::new(hull))?;
+        Ok(Changed::of(self.map.set_obstacle(&id.to_string(), &obstacle)))
+    }
+
+    fn remove(&mut self, id: ObstacleId) -> Option<Changed> {
+        self.map.remove_obstacle(&id.to_string()).map(Changed::of)
+    }
+}
+
 /// Settings of the conversion of a reported obstacle to a prism.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PrismSettings {
-    pub world_in_base: Pose,
     /// Prediction horizon: an obstacle also blocks its predicted positions until this time after the frame, seconds.
     pub prediction_s: f64,
     /// Smaller changes are ignored, metres.
@@ -40,7 +89,7 @@ impl MapUpdater {
         &mut self,
         reported: &[vision::Obstacle],
         settings: &PrismSettings,
-        map: &mut JointMap,
+        map: &mut impl PrismMap,
         update: &mut ObstacleUpdate,
     ) -> Result<(), PerceptionError> {
         let mut result = Ok(());
@@ -56,11 +105,11 @@ impl MapUpdater {
         result
     }
 
-    fn remove(&mut self, id: ObstacleId, map: &mut JointMap, update: &mut ObstacleUpdate) {
+    fn remove(&mut self, id: ObstacleId, map: &mut impl PrismMap, update: &mut ObstacleUpdate) {
         self.prisms.retain(|p| p.id != id);
         update.left.push(id);
-        if let Some(changes) = map.remove_obstacle(&name_of(id)) {
-            update.freed += changes.freed();
+        if let Some(changed) = map.remove(id) {
+            update.freed += changed.freed;
         }
     }
 
@@ -68,7 +117,7 @@ impl MapUpdater {
         &mut self,
         observed: &vision::Obstacle,
         settings: &PrismSettings,
-        map: &mut JointMap,
+        map: &mut impl PrismMap,
         update: &mut ObstacleUpdate,
     ) -> Result<(), PerceptionError> {
         let index = self.prisms.iter().position(|p| p.id == observed.id);
@@ -86,11 +135,9 @@ impl MapUpdater {
                 return Ok(());
             }
         }
-        let hull = prism_hull(&prism.swept_m, [prism.z_from_m, prism.z_to_m])?;
-        let changes =
-            map.set_obstacle(&name_of(observed.id), &ConvexObstacle::hull(settings.world_in_base, Arc::new(hull))?);
-        update.blocked += changes.blocked();
-        update.freed += changes.freed();
+        let changed = map.set(observed.id, &prism.swept_m, [prism.z_from_m, prism.z_to_m])?;
+        update.blocked += changed.blocked;
+        update.freed += changed.freed;
         match index {
             Some(i) => self.prisms[i] = prism,
             None => self.prisms.push(prism),
@@ -102,10 +149,6 @@ impl MapUpdater {
 /// The tracker reports an obstacle as unchanged relative to its last report, which may never have reached the map.
 fn is_same_solid(a: &Prism, b: &Prism) -> bool {
     a.footprint_m == b.footprint_m && [a.z_from_m, a.z_to_m] == [b.z_from_m, b.z_to_m]
-}
-
-fn name_of(id: ObstacleId) -> String {
-    id.to_string()
 }
 
 fn prism(observed: &vision::Obstacle, prediction_s: f64) -> Prism {
@@ -141,7 +184,7 @@ mod tests {
     use super::*;
     use crate::times::PerceptionTimes;
 
-    const SETTINGS: PrismSettings = PrismSettings { world_in_base: Pose::IDENTITY, prediction_s: 0.5, slack_m: 0.02 };
+    const SETTINGS: PrismSettings = PrismSettings { prediction_s: 0.5, slack_m: 0.02 };
 
     fn map() -> JointMap {
         let axis = |min: f64, max: f64| GridAxis::new("joint", min, max, 0.1).unwrap();
@@ -175,7 +218,8 @@ mod tests {
             freed: 0,
             times: PerceptionTimes::default(),
         };
-        updater.update(reported, &SETTINGS, map, &mut update)
+        let mut prisms = PlanarPrisms { map, world_in_base: Pose::IDENTITY };
+        updater.update(reported, &SETTINGS, &mut prisms, &mut update)
     }
 
     /// A map with exactly these obstacles.

@@ -64,12 +64,23 @@ impl MappedArm {
     /// The colliders of all links that joints move, in the world, for the mask of the arm.
     pub fn parts_in_world(&self, state: &mut ChainState, q: &[f64], parts: &mut Vec<ArmPart>) {
         parts.clear();
-        let known = q.len().min(state.q.len());
-        state.q[..known].copy_from_slice(&q[..known]);
-        self.robot.chain.forward(state);
-        for (link, colliders) in self.robot.colliders.iter().enumerate().filter(|(link, _)| *link != 0) {
-            let link_in_world = self.base_in_world * state.link_in_root(LinkId(link));
-            parts.extend(colliders.iter().filter_map(|c| ArmPart::from_shape(&c.shape, &(link_in_world * c.in_link))));
-        }
+        append_parts(&self.robot, self.base_in_world, state, q, parts);
+    }
+}
+
+/// Appends the colliders of all links of a robot but its root link, in the world.
+pub(super) fn append_parts(
+    robot: &Robot,
+    base_in_world: Pose,
+    state: &mut ChainState,
+    q: &[f64],
+    parts: &mut Vec<ArmPart>,
+) {
+    let known = q.len().min(state.q.len());
+    state.q[..known].copy_from_slice(&q[..known]);
+    robot.chain.forward(state);
+    for (link, colliders) in robot.colliders.iter().enumerate().filter(|(link, _)| *link != 0) {
+        let link_in_world = base_in_world * state.link_in_root(LinkId(link));
+        parts.extend(colliders.iter().filter_map(|c| ArmPart::from_shape(&c.shape, &(link_in_world * c.in_link))));
     }
 }

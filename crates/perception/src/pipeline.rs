@@ -11,10 +11,10 @@ use elbowroom_vision::{
 };
 
 use crate::error::PerceptionError;
-use crate::map_updater::{MapUpdater, PrismSettings};
+use crate::map_updater::{MapUpdater, PlanarPrisms, PrismSettings};
 use crate::mapped_arm::MappedArm;
+use crate::observation::observe;
 use crate::obstacle_update::ObstacleUpdate;
-use crate::times::PerceptionTimes;
 
 /// Settings of a [`PerceptionPipeline`], beside the [`CameraTrackerSettings`] of the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,17 @@ pub struct PerceptionSettings {
     pub mask_margin_m: f64,
     /// Layout of raw frames, for cameras that send them.
     pub raw: Option<RawLayout>,
+}
+
+impl PerceptionSettings {
+    /// An error for a setting that is negative or not finite.
+    pub(super) fn validate(&self) -> Result<(), PerceptionError> {
+        let all = [("prediction_s", self.prediction_s), ("mask_margin_m", self.mask_margin_m)];
+        match all.into_iter().find(|(_, value)| !(value.is_finite() && *value >= 0.0)) {
+            Some((name, value)) => Err(PerceptionError::Setting { name, value }),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Default for PerceptionSettings {
@@ -62,11 +73,7 @@ impl PerceptionPipeline {
         tracker_settings: CameraTrackerSettings,
         settings: PerceptionSettings,
     ) -> Result<Self, PerceptionError> {
-        for (name, value) in [("prediction_s", settings.prediction_s), ("mask_margin_m", settings.mask_margin_m)] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(PerceptionError::Setting { name, value });
-            }
-        }
+        settings.validate()?;
         camera.camera()?;
         let (width, height) = camera.size()?;
         Ok(Self {
@@ -156,29 +163,16 @@ impl PerceptionPipeline {
         self.arm.parts_in_world(&mut self.chain, q, &mut self.parts);
         self.mask.clear();
         self.mask.mask_arm(self.tracker.calibration(), &self.parts, self.settings.mask_margin_m)?;
-        let mut times = PerceptionTimes { mask: stopwatch.lap(), ..PerceptionTimes::default() };
-        let report = self.tracker.process(frame, Some(&self.mask))?;
-        let t = &report.timings;
-        times.tracks = t.label + t.project + t.track + t.prisms;
-        times.background = t.total().saturating_sub(times.tracks);
+        let mut update = observe(&mut self.tracker, frame, &self.mask, stopwatch.lap())?;
         stopwatch.lap();
-        let mut update = ObstacleUpdate {
-            stamp_s: report.stamp_s,
-            status: report.status,
-            prisms: Vec::new(),
-            entered: Vec::new(),
-            left: Vec::new(),
-            blocked: 0,
-            freed: 0,
-            times,
-        };
         if update.status == FrameStatus::Accepted {
             let settings = PrismSettings {
-                world_in_base: self.arm.base_in_world.inverse(),
                 prediction_s: self.settings.prediction_s,
                 slack_m: self.tracker.settings().hysteresis_m,
             };
-            self.map_updater.update(&self.tracker.report().obstacles, &settings, &mut self.map, &mut update)?;
+            let world_in_base = self.arm.base_in_world.inverse();
+            let mut prisms = PlanarPrisms { map: &mut self.map, world_in_base };
+            self.map_updater.update(&self.tracker.report().obstacles, &settings, &mut prisms, &mut update)?;
             update.times.map = stopwatch.lap();
             self.map.publish();
             update.times.publish = stopwatch.lap();

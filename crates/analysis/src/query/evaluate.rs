@@ -6,10 +6,12 @@ use std::sync::mpsc;
 
 use elbowroom_formats::FormatError;
 use elbowroom_robot::RobotId;
-use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, Level, PairContact, Scene, SceneError, SceneState};
+use elbowroom_scene::{
+    Checker, CheckerOptions, CheckerStats, Level, PairContact, PairDistance, Scene, SceneError, SceneState, Selection,
+};
 use elbowroom_spatial::Vec3;
 
-use super::{QueryKind, QueryRow, QueryStates};
+use super::{QueryKind, QueryPairs, QueryRow, QueryStates};
 
 /// States per checker: its learned weights must not depend on the number of threads.
 pub const BLOCK: usize = 256;
@@ -17,16 +19,45 @@ pub const BLOCK: usize = 256;
 /// Largest number of finished blocks per thread that wait for an earlier one.
 const WAITING: usize = 8;
 
-/// Evaluates a query for every state. `take` is called with the rows, in order and block by block; it returns whether
-/// to continue. Returns the counters of the work for the rows taken.
+/// What is queried of every state.
+#[derive(Debug, Clone, Copy)]
+pub struct Query<'q> {
+    /// Collision, distance or tolerance.
+    pub kind: QueryKind,
+    /// The resolution level.
+    pub level: Level,
+    /// The pairs that are tested.
+    pub pairs: &'q QueryPairs,
+    /// A row for each pair no farther apart than this, m, the nearest first; `None`: a row for each state.
+    pub all_pairs_m: Option<f64>,
+    /// The state before joint values are set: what links carry.
+    pub start: &'q SceneState,
+}
+
+/// [`evaluate_query`] of all pairs.
 ///
 /// # Errors
-/// [`FormatError`] where a state does not fit the scene; states that were read for its model do.
+/// As there.
 pub fn evaluate(
     scene: &Scene,
     states: &QueryStates,
     kind: QueryKind,
     level: Level,
+    take: &mut dyn FnMut(&[QueryRow]) -> bool,
+) -> Result<CheckerStats, FormatError> {
+    let (pairs, start) = (QueryPairs::all(), SceneState::new(scene));
+    evaluate_query(scene, states, &Query { kind, level, pairs: &pairs, all_pairs_m: None, start: &start }, take)
+}
+
+/// Evaluates a query for every state. `take` is called with the rows, in order and block by block; it returns whether
+/// to continue. Returns the counters of the work for the rows taken.
+///
+/// # Errors
+/// [`FormatError`] where a state does not fit the scene; states that were read for its model do.
+pub fn evaluate_query(
+    scene: &Scene,
+    states: &QueryStates,
+    query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
 ) -> Result<CheckerStats, FormatError> {
     let blocks = states.len().div_ceil(BLOCK);
@@ -35,7 +66,7 @@ pub fn evaluate(
     let mut done = CheckerStats::default();
     if cores <= 1 {
         for block in 0..blocks {
-            let (rows, counts) = rows_of_block(scene, states, kind, level, block).map_err(wrong)?;
+            let (rows, counts) = rows_of_block(scene, states, query, block).map_err(wrong)?;
             done += counts;
             if !take(&rows) {
                 break;
@@ -52,8 +83,7 @@ pub fn evaluate(
             threads.spawn(move || {
                 while !stop.load(Ordering::Relaxed) {
                     let block = next.fetch_add(1, Ordering::Relaxed);
-                    if block >= blocks || send.send((block, rows_of_block(scene, states, kind, level, block))).is_err()
-                    {
+                    if block >= blocks || send.send((block, rows_of_block(scene, states, query, block))).is_err() {
                         return;
                     }
                 }
@@ -90,52 +120,115 @@ pub fn evaluate(
 fn rows_of_block(
     scene: &Scene,
     states: &QueryStates,
-    kind: QueryKind,
-    level: Level,
+    query: &Query<'_>,
     block: usize,
 ) -> Result<(Vec<QueryRow>, CheckerStats), SceneError> {
-    let mut checker = Checker::new(scene, CheckerOptions { level, ..CheckerOptions::default() });
-    let mut state = SceneState::new(scene);
-    let rows = block * BLOCK..states.len().min((block + 1) * BLOCK);
-    let rows = rows.map(|index| {
+    let options = CheckerOptions { level: query.level, ..CheckerOptions::default() };
+    let mut pairs = CheckedPairs { checker: Checker::new(scene, options), sides: query.pairs.sides() };
+    let mut state = query.start.clone();
+    let mut rows = Vec::with_capacity(BLOCK);
+    for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
         for (robot, q) in states.of(index) {
             state.set_q(scene, RobotId(robot), q)?;
         }
-        Ok(QueryRow { index, ..row_of_state(&mut checker, &state, kind) })
-    });
-    Ok((rows.collect::<Result<_, SceneError>>()?, checker.stats()))
+        match query.all_pairs_m {
+            None => rows.push(QueryRow { index, ..pairs.row(&state, query.kind) }),
+            Some(margin_m) => rows.extend(pairs.rows_within(&state, margin_m).map(|row| QueryRow { index, ..row })),
+        }
+    }
+    Ok((rows, pairs.checker.stats()))
 }
 
-/// The row of one state; its index is 0.
-fn row_of_state(checker: &mut Checker<'_>, state: &SceneState, kind: QueryKind) -> QueryRow {
-    let nothing = |level| QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, level };
-    match kind {
-        QueryKind::Collision => {
-            let Some(contact) = checker.collides(state) else { return nothing(checker.last_level()) };
-            QueryRow {
-                collides: true,
-                distance_m: Some(0.0),
-                pair: Some((contact.a, contact.b)),
-                witness: witness_of_contact(checker, state, contact),
-                ..nothing(contact.level)
+/// The pairs between some sides, as one.
+struct CheckedPairs<'c, 's> {
+    checker: Checker<'s>,
+    sides: &'c [[Selection; 2]],
+}
+
+impl CheckedPairs<'_, '_> {
+    fn within(&mut self, state: &SceneState, metres: f64) -> Option<PairContact> {
+        self.sides.iter().find_map(|&[a, b]| self.checker.between(a, b).within(state, metres))
+    }
+
+    fn nearest(&mut self, state: &SceneState) -> Option<PairDistance> {
+        let each = self.sides.iter().filter_map(|&[a, b]| self.checker.between(a, b).distance(state));
+        // A NaN distance counts as contact.
+        let order = |d: &PairDistance| if d.metres.is_nan() { f64::NEG_INFINITY } else { d.metres };
+        each.min_by(|a, b| order(a).total_cmp(&order(b)))
+    }
+
+    /// The row of one state; its index is 0.
+    fn row(&mut self, state: &SceneState, kind: QueryKind) -> QueryRow {
+        match kind {
+            QueryKind::Collision => {
+                let Some(contact) = self.within(state, 0.0) else { return self.nothing() };
+                QueryRow {
+                    collides: true,
+                    distance_m: Some(0.0),
+                    pair: Some((contact.a, contact.b)),
+                    witness: self.witness_of_contact(state, contact),
+                    index: 0,
+                    level: contact.level,
+                }
+            }
+            QueryKind::Distance => self.distance(state).unwrap_or_else(|| self.nothing()),
+            QueryKind::Tolerance(t) => {
+                if self.within(state, t).is_none() {
+                    return self.nothing();
+                }
+                let nothing = self.nothing();
+                let row = self.distance(state).unwrap_or(nothing);
+                QueryRow { collides: true, ..row }
             }
         }
-        QueryKind::Distance => distance(checker, state).unwrap_or_else(|| nothing(checker.last_level())),
-        QueryKind::Tolerance(t) => {
-            if checker.within(state, t).is_none() {
-                return nothing(checker.last_level());
-            }
-            let level = checker.last_level();
-            let row = distance(checker, state).unwrap_or_else(|| nothing(level));
-            QueryRow { collides: true, ..row }
+    }
+
+    /// The row without a pair.
+    fn nothing(&self) -> QueryRow {
+        let level = self.checker.last_level();
+        QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, level }
+    }
+
+    /// The row of a distance query; `None` without pairs.
+    fn distance(&mut self, state: &SceneState) -> Option<QueryRow> {
+        let d = self.nearest(state)?;
+        let row = row_of(&d);
+        if row.collides || d.lower_bound > 0.0 {
+            return Some(row);
         }
+        // Below the accuracy of the distance the collision test decides, so that all kinds of queries agree.
+        let Some(contact) = self.within(state, 0.0) else { return Some(row) };
+        let pair = Some((contact.a, contact.b));
+        let witness = if row.pair == pair { row.witness } else { self.witness_of_contact(state, contact) };
+        Some(QueryRow { collides: true, distance_m: Some(0.0), pair, witness, ..row })
+    }
+
+    /// A row for each pair no farther apart than a distance, the nearest first.
+    fn rows_within(&mut self, state: &SceneState, margin_m: f64) -> impl Iterator<Item = QueryRow> {
+        let mut rows: Vec<QueryRow> = Vec::new();
+        for &[a, b] in self.sides {
+            let push = |d: PairDistance| {
+                // Sides may overlap.
+                if !rows.iter().any(|row| row.pair == Some((d.a, d.b))) {
+                    rows.push(row_of(&d));
+                }
+            };
+            self.checker.between(a, b).distances_within(state, margin_m, push);
+        }
+        rows.sort_by(|a, b| a.distance_m.unwrap_or(0.0).total_cmp(&b.distance_m.unwrap_or(0.0)));
+        rows.into_iter()
+    }
+
+    /// Witness points of two geometries in contact.
+    fn witness_of_contact(&mut self, state: &SceneState, contact: PairContact) -> Option<(Vec3, Vec3)> {
+        let found = self.checker.between(contact.a.into(), contact.b.into()).distance(state);
+        found.map(|d| (d.on_a, d.on_b))
     }
 }
 
-/// The row of a distance query; `None` without pairs.
-fn distance(checker: &mut Checker<'_>, state: &SceneState) -> Option<QueryRow> {
-    let d = checker.distance(state)?;
-    let row = QueryRow {
+/// The row of a distance; its index is 0.
+fn row_of(d: &PairDistance) -> QueryRow {
+    QueryRow {
         index: 0,
         // A NaN distance counts as contact.
         collides: !(d.metres > 0.0),
@@ -143,19 +236,5 @@ fn distance(checker: &mut Checker<'_>, state: &SceneState) -> Option<QueryRow> {
         pair: Some((d.a, d.b)),
         witness: Some((d.on_a, d.on_b)),
         level: d.level,
-    };
-    if row.collides || d.lower_bound > 0.0 {
-        return Some(row);
     }
-    // Below the accuracy of the distance the collision test decides, so that all kinds of queries agree.
-    let Some(contact) = checker.collides(state) else { return Some(row) };
-    let pair = Some((contact.a, contact.b));
-    let witness = if row.pair == pair { row.witness } else { witness_of_contact(checker, state, contact) };
-    Some(QueryRow { collides: true, distance_m: Some(0.0), pair, witness, ..row })
-}
-
-/// Witness points of two geometries in contact.
-fn witness_of_contact(checker: &mut Checker<'_>, state: &SceneState, contact: PairContact) -> Option<(Vec3, Vec3)> {
-    let found = checker.between(contact.a.into(), contact.b.into()).distance(state);
-    found.map(|d| (d.on_a, d.on_b))
 }

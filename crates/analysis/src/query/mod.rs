@@ -32,11 +32,13 @@
 
 mod evaluate;
 mod kind;
+mod pairs;
 mod row;
 mod states;
 
 pub use elbowroom_scene::Level;
-pub use evaluate::{BLOCK, evaluate};
+pub use evaluate::{BLOCK, Query, evaluate, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
+pub use pairs::{QueryPairs, QueryPairsError};
 pub use row::{QueryRecord, QueryRow};
 pub use states::QueryStates;

@@ -1,6 +1,7 @@
 //! The cell file: TOML to [`Cell`](crate::Cell). `docs/cell-file.md` describes every key.
 
 mod avoidance;
+mod camera;
 mod definitions;
 mod document;
 mod follow;
@@ -42,6 +43,7 @@ const KEYS: &[&str] = &[
     "object",
     "region",
     "encoder",
+    "camera",
     "monitor",
     "map",
     "avoidance",
@@ -77,6 +79,7 @@ impl CellFile {
             laws: laws(&root, &mut warnings)?,
             programs: Vec::new(),
             avoidance: Vec::new(),
+            cameras: Vec::new(),
             maps: Vec::new(),
             checksum: String::new(),
             seal: None,
@@ -93,6 +96,7 @@ impl CellFile {
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
+        cell.cameras = camera::read(&root, &cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
         if self.on_disk {

@@ -17,6 +17,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 const KEYS: &[&str] = &[
     "model",
     "srdf",
+    "ignore",
     "joints",
     "unit",
     "dh",
@@ -63,6 +64,9 @@ impl JointLimits {
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
     t.only(KEYS)?;
     let mut robot = model(t, units, warnings)?;
+    if let Some(v) = t.get("ignore") {
+        ignore(&v, &mut robot)?;
+    }
     let flange = flange(t, &robot.chain)?;
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
@@ -91,6 +95,30 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
         limits,
         robot,
     })
+}
+
+/// Adds pairs of links that are never tested.
+fn ignore(v: &Value<'_>, robot: &mut Robot) -> Result<()> {
+    const EXAMPLE: &str = "ignore = [[\"link_4\", \"link_6\"]]";
+    for pair in v.list(EXAMPLE)? {
+        let names = pair.list(EXAMPLE)?;
+        let [a, b] = &names[..] else {
+            return Err(pair.error(format!("names {} links, not two", names.len())).hint(EXAMPLE));
+        };
+        let link = |v: &Value<'_>| {
+            let name = v.text()?;
+            robot.chain.link(name).ok_or_else(|| {
+                v.error(format!("names the link \"{name}\", which the robot does not have"))
+                    .hint(suggest::hint(name, robot.chain.links().iter().map(String::as_str)))
+            })
+        };
+        let (one, other) = (link(a)?, link(b)?);
+        if one == other {
+            return Err(pair.error("names one link twice").hint(EXAMPLE));
+        }
+        robot.disabled_pairs.push((one, other, "ignored in the cell file".into()));
+    }
+    Ok(())
 }
 
 fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Robot> {

@@ -1,0 +1,172 @@
+//! The pairs that a query tests.
+
+use elbowroom_cell::{Cell, QueryModel, suggest};
+use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_scene::Selection;
+
+/// The pairs that a query tests: all of the scene, or those between named sides.
+///
+/// ```
+/// use elbowroom_analysis::query::QueryPairs;
+/// use elbowroom_cell::{Cell, QueryModel};
+/// let cell = Cell::parse("c.toml", r#"
+/// version = 1
+/// units = { length = "m", angle = "rad" }
+/// [robot.arm]
+/// dh = [{ a = 1, min = -3, max = 3, speed = 1 }]
+/// links = [{ sphere = { at = [0, 0, 0], radius = 0.1 } }]
+/// [region.corner]
+/// shape = "sphere"
+/// centre = [2, 0, 0]
+/// radius = 0.5
+/// warning = 0.1
+/// "#)?;
+/// let mut model = QueryModel::of_cell(&cell);
+/// assert_eq!(QueryPairs::between("arm,corner", &mut model, Some(&cell))?.sides().len(), 1);
+/// assert_eq!(model.objects[0].name, "corner"); // the region is a solid of the query
+/// let error = QueryPairs::between("arm,corn", &mut model, Some(&cell)).unwrap_err();
+/// assert!(error.to_string().contains("corner"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct QueryPairs {
+    sides: Vec<[Selection; 2]>,
+}
+
+/// A text that names no pairs.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum QueryPairsError {
+    /// Not two names.
+    #[error(
+        "`{0}` is no pair: write two names with a comma, and pairs with semicolons, as arm,table;arm/link_3,conveyor"
+    )]
+    NotTwo(String),
+    /// A name that the model does not have.
+    #[error("\"{name}\" is no robot, link, object or region\n  write: {hint}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// What to write instead.
+        hint: String,
+    },
+    /// A robot with itself, although such pairs are left out.
+    #[error("`{0}` is a pair within one robot, and --no-self leaves these out\n  write: one of the two")]
+    WithinRobot(String),
+}
+
+impl QueryPairs {
+    /// All pairs of the scene.
+    pub fn all() -> Self {
+        Self { sides: vec![[Selection::All; 2]] }
+    }
+
+    /// All but those within one robot.
+    pub fn without_self(model: &QueryModel) -> Self {
+        let robots = model.robots.len();
+        let of_robots =
+            (0..robots).flat_map(|a| (a + 1..robots).map(move |b| [a, b].map(|r| Selection::Robot(RobotId(r)))));
+        Self { sides: of_robots.chain([[Selection::Robots, Selection::Objects]]).collect() }
+    }
+
+    /// The pairs of a text: `A,B;C,D`. Each side is a robot (with tool and load), a link (`robot/link`; for a single robot its
+    /// name alone), an object or a region of the cell. Regions become objects of the model, where they are at the start; one that
+    /// follows a robot moves with it.
+    ///
+    /// # Errors
+    /// Names that are not there, and what to write instead.
+    pub fn between(text: &str, model: &mut QueryModel, cell: Option<&Cell>) -> Result<Self, QueryPairsError> {
+        let mut sides = Vec::new();
+        for pair in text.split(';').filter(|pair| !pair.trim().is_empty()) {
+            let names: Vec<&str> = pair.split(',').map(str::trim).collect();
+            let &[a, b] = &names[..] else { return Err(QueryPairsError::NotTwo(pair.trim().to_owned())) };
+            sides.push([side(a, model, cell)?, side(b, model, cell)?]);
+        }
+        if sides.is_empty() {
+            return Err(QueryPairsError::NotTwo(text.to_owned()));
+        }
+        Ok(Self { sides })
+    }
+
+    /// The same, of which none is within one robot.
+    ///
+    /// # Errors
+    /// A pair of which both sides are parts of one robot.
+    pub fn expect_without_self(self, model: &QueryModel) -> Result<Self, QueryPairsError> {
+        let robot = |side: Selection| match side {
+            Selection::Robot(robot) | Selection::Link { robot, .. } => Some(robot),
+            _ => None,
+        };
+        match self.sides.iter().find(|[a, b]| robot(*a).is_some() && robot(*a) == robot(*b)) {
+            Some(pair) => Err(QueryPairsError::WithinRobot(pair.map(|side| name_of(side, model)).join(","))),
+            None => Ok(self),
+        }
+    }
+
+    /// Both sides of each.
+    pub fn sides(&self) -> &[[Selection; 2]] {
+        &self.sides
+    }
+}
+
+impl Default for QueryPairs {
+    fn default() -> Self {
+        Self::all()
+    }
+}
+
+fn side(name: &str, model: &mut QueryModel, cell: Option<&Cell>) -> Result<Selection, QueryPairsError> {
+    if let Some(known) = robot_or_link(name, model).or_else(|| object(name, model)) {
+        return Ok(known);
+    }
+    if cell.is_some_and(|cell| model.add_region(cell, name)) {
+        return Ok(Selection::Object(ObjectId(model.objects.len() - 1)));
+    }
+    let known = names(model, cell);
+    let hint = suggest::hint(name, known.iter().map(String::as_str));
+    Err(QueryPairsError::Unknown { name: name.to_owned(), hint })
+}
+
+/// A robot of a cell, the single robot by the word `robot`, or a link.
+fn robot_or_link(name: &str, model: &QueryModel) -> Option<Selection> {
+    let link = |robot: usize, link: &str| {
+        let link: LinkId = model.robots[robot].robot.chain.link(link)?;
+        Some(Selection::Link { robot: RobotId(robot), link })
+    };
+    if model.is_single_robot {
+        return link(0, name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))));
+    }
+    if let Some((robot, of_robot)) = name.split_once('/') {
+        return link(model.robots.iter().position(|r| r.name == robot)?, of_robot);
+    }
+    model.robots.iter().position(|r| r.name == name).map(|r| Selection::Robot(RobotId(r)))
+}
+
+fn object(name: &str, model: &QueryModel) -> Option<Selection> {
+    model.objects.iter().position(|o| o.name == name).map(|o| Selection::Object(ObjectId(o)))
+}
+
+/// All names: robots, objects, regions, links.
+fn names(model: &QueryModel, cell: Option<&Cell>) -> Vec<String> {
+    let robots = model.robots.iter().map(|r| if model.is_single_robot { "robot".to_owned() } else { r.name.clone() });
+    let objects = model.objects.iter().map(|o| o.name.clone());
+    let regions = cell.into_iter().flat_map(|cell| cell.regions.iter().map(|r| r.region.name.clone()));
+    let links = model.robots.iter().flat_map(|r| {
+        let prefix = if model.is_single_robot { String::new() } else { format!("{}/", r.name) };
+        r.robot.chain.links().iter().map(move |link| format!("{prefix}{link}"))
+    });
+    let mut all: Vec<String> = robots.chain(objects).chain(regions).chain(links).collect();
+    let mut seen = std::collections::HashSet::new();
+    all.retain(|name| seen.insert(name.clone()));
+    all
+}
+
+fn name_of(side: Selection, model: &QueryModel) -> String {
+    match side {
+        Selection::Robot(_) if model.is_single_robot => "robot".into(),
+        Selection::Robot(robot) => model.robots[robot.0].name.clone(),
+        Selection::Link { robot, link } => model.geometry_name(GeometryId::Link { robot, link }),
+        Selection::Object(object) => model.geometry_name(GeometryId::Object(object)),
+        Selection::All | Selection::Robots | Selection::Objects => format!("{side:?}"),
+    }
+}

@@ -1,0 +1,132 @@
+//! One picture's result, as JSON.
+
+use std::path::Path;
+
+use elbowroom_perception::{ObstacleUpdate, ObstacleWatcher, Prism};
+use elbowroom_vision::{FrameStatus, RejectReason};
+use serde::Serialize;
+
+/// Whether the obstacles of a picture can be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WatchStatus {
+    /// The empty cell is being learnt; nothing is known yet.
+    Learning,
+    /// It was evaluated.
+    Accepted,
+    /// It was not evaluated: obstacles and map are those of the last accepted one. Unknown is not free.
+    Rejected,
+}
+
+/// An obstacle that the camera sees.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WatchedObstacle {
+    /// Its identity, the same as long as it is seen.
+    pub id: u64,
+    /// The template that it matches; null for none.
+    pub kind: Option<String>,
+    /// Corners of its footprint, with the uncertainty, world x and y, m.
+    pub outline_m: Vec<[f64; 2]>,
+    /// Height of its upper end above its lower one, m.
+    pub height_m: f64,
+    /// Its estimated centre, world x and y, m.
+    pub centre_m: [f64; 2],
+    /// Velocity of the centre, m/s.
+    pub velocity_m_s: [f64; 2],
+    /// False where it was hidden in this picture and is kept at its last position.
+    pub seen: bool,
+}
+
+/// What one picture shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WatchRecord {
+    /// When it was taken, s.
+    pub t_s: f64,
+    /// The name of its file.
+    pub frame: String,
+    /// Whether it was evaluated.
+    pub status: WatchStatus,
+    /// Why it was rejected; null otherwise.
+    pub reason: Option<String>,
+    /// All obstacles.
+    pub obstacles: Vec<WatchedObstacle>,
+    /// Obstacles that entered.
+    pub entered: Vec<u64>,
+    /// Obstacles that left.
+    pub left: Vec<u64>,
+    /// Cells of the map that obstacles block.
+    pub blocked: u64,
+    /// Time from the picture in memory to the published map, µs.
+    pub time_us: u64,
+}
+
+impl WatchRecord {
+    pub(super) fn of(path: &Path, t_s: f64, result: Result<ObstacleUpdate, String>, watcher: &ObstacleWatcher) -> Self {
+        let frame = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let blocked = watcher.map().occupancy().blocked() as u64;
+        match result {
+            Ok(update) => {
+                let (status, reason) = status(&update.status);
+                Self {
+                    t_s,
+                    frame,
+                    status,
+                    reason,
+                    obstacles: update.prisms.iter().map(WatchedObstacle::of).collect(),
+                    entered: update.entered.iter().map(|id| id.0).collect(),
+                    left: update.left.iter().map(|id| id.0).collect(),
+                    blocked,
+                    time_us: u64::try_from(update.times.total().as_micros()).unwrap_or(u64::MAX),
+                }
+            }
+            Err(reason) => Self {
+                t_s,
+                frame,
+                status: WatchStatus::Rejected,
+                reason: Some(reason),
+                obstacles: watcher.prisms().iter().map(WatchedObstacle::of).collect(),
+                entered: Vec::new(),
+                left: Vec::new(),
+                blocked,
+                time_us: 0,
+            },
+        }
+    }
+}
+
+impl WatchedObstacle {
+    fn of(prism: &Prism) -> Self {
+        Self {
+            id: prism.id.0,
+            kind: prism.kind.clone(),
+            outline_m: prism.footprint_m.iter().map(|p| [p.x, p.y]).collect(),
+            height_m: prism.z_to_m - prism.z_from_m,
+            centre_m: [prism.centre_m.x, prism.centre_m.y],
+            velocity_m_s: [prism.velocity_mps.x, prism.velocity_mps.y],
+            seen: !prism.is_unobserved,
+        }
+    }
+}
+
+fn status(status: &FrameStatus) -> (WatchStatus, Option<String>) {
+    match status {
+        FrameStatus::Learning { .. } => (WatchStatus::Learning, None),
+        FrameStatus::Accepted => (WatchStatus::Accepted, None),
+        FrameStatus::Rejected(reason) => (WatchStatus::Rejected, Some(why(reason))),
+    }
+}
+
+fn why(reason: &RejectReason) -> String {
+    match reason {
+        RejectReason::Illumination(_) => {
+            "the picture is much darker or brighter than while the empty cell was learnt".into()
+        }
+        RejectReason::Unrecognized { inlier_ratio } => format!(
+            "only {:.0} % of the floor look as while the empty cell was learnt: a lamp, a covered lens, or a moved camera",
+            100.0 * inlier_ratio
+        ),
+        RejectReason::TooMuchForeground { foreground_ratio } => {
+            format!("{:.0} % of the picture differ from the empty cell", 100.0 * foreground_ratio)
+        }
+    }
+}
