@@ -62,15 +62,15 @@ fn assert_row(args: &[&str], metres: f64, a: &str, b: &str) {
 
 #[test]
 fn only_the_named_pairs_are_tested() {
-    // From link_3, at (400, 300) to (200, 300) mm, to the ball; from the tip of the right arm, at 1100 mm, to link_1.
-    assert_row(&["--between", "left,ball"], (200.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
+    // From link_3, at (300, 300) to (100, 300) mm, to the ball; from the tip of the right arm, at 1100 mm, to link_1.
+    assert_row(&["--between", "left,ball"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
     assert_row(&["--between", "left/link_1,right"], 0.62, "left/link_1", "right/link_1");
     assert_row(&["--between", "ball,post"], 1.8, "ball", "post");
-    assert_row(&["--between", "left,ball;left,right"], (200.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
+    assert_row(&["--between", "left,ball;left,right"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
     // One arm within itself is nearer than all others.
     assert_row(&[], 0.22, "left/link_1", "left/link_3");
     assert_row(&["--between", "left,left"], 0.22, "left/link_1", "left/link_3");
-    assert_row(&["--no-self"], (200.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
+    assert_row(&["--no-self"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
 }
 
 #[test]
