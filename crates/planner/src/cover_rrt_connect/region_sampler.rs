@@ -28,7 +28,7 @@ const WIDENING_ROUNDS: f64 = 40.0;
 impl ConfigurationSampler for RegionSampler<'_> {
     fn sample(&mut self, root: &[f64], out: &mut [f64]) {
         if self.random.unit() < LOCAL_SHARE {
-            self.region.around(root, LOCAL_DISTANCE, self.random, out);
+            self.region.clamped_around(root, LOCAL_DISTANCE, self.random, out);
             return;
         }
         let share = (NEAR_SHARE + f64::from(self.round) / WIDENING_ROUNDS).min(1.0);
