@@ -13,7 +13,7 @@ use crate::{Scene, SceneError};
 /// The poses of the robots and objects of a [`Scene`], and what is attached to what.
 ///
 /// [`SceneState::new`] allocates all memory. States are independent of each other and of the checkers that read them.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct SceneState {
     pub(crate) chains: Vec<ChainState>,
     /// Per model.
@@ -30,6 +30,33 @@ pub struct SceneState {
     pub(crate) all_proofs_hold: bool,
     /// Identifies the set of attachments: states of equal number have equal pairs. 0: nothing is attached.
     pub(crate) arrangement: u64,
+}
+
+impl Clone for SceneState {
+    fn clone(&self) -> Self {
+        Self {
+            chains: self.chains.clone(),
+            in_world: self.in_world.clone(),
+            boxes: self.boxes.clone(),
+            attached: self.attached.clone(),
+            displaced: self.displaced.clone(),
+            beyond_limits: self.beyond_limits.clone(),
+            all_proofs_hold: self.all_proofs_hold,
+            arrangement: self.arrangement,
+        }
+    }
+
+    /// Keeps the memory of `self`.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { chains, in_world, boxes, attached, displaced, beyond_limits, all_proofs_hold, arrangement } = source;
+        self.chains.clone_from(chains);
+        self.in_world.clone_from(in_world);
+        self.boxes.clone_from(boxes);
+        self.attached.clone_from(attached);
+        self.displaced.clone_from(displaced);
+        self.beyond_limits.clone_from(beyond_limits);
+        (self.all_proofs_hold, self.arrangement) = (*all_proofs_hold, *arrangement);
+    }
 }
 
 /// Numbers of arrangements; only their equality matters.
@@ -71,9 +98,12 @@ impl SceneState {
         Ok(())
     }
 
-    /// The errors of [`SceneState::set_q`].
+    /// Whether [`set_q`](Self::set_q) takes joint values.
+    ///
+    /// # Errors
+    /// As [`set_q`](Self::set_q).
     #[allow(clippy::unused_self)]
-    pub(crate) fn check_q(&self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
+    pub fn check_q(&self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
         let count = scene.robots.len();
         let r = scene.robots.get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?;
         let chain = &r.robot.chain;

@@ -78,7 +78,7 @@ impl CoverRrtConnect<'_> {
         let mut sampler = InformedSampler::new(ends.from().to_vec(), goals.clone(), region, random);
         let mut waypoints = CostBoundedSearch::new(&mut search, ends.from(), &goals, bound).run(&mut sampler)?;
         let raw_length_rad = path_length(&waypoints);
-        Shortcutting { validator: &mut search }.run(&mut waypoints);
+        Shortcutting::new(&mut search).run(&mut waypoints);
         let path = PlannedPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,

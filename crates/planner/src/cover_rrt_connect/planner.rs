@@ -130,7 +130,10 @@ impl<'m> CoverRrtConnect<'m> {
         let planning_time = begin.elapsed();
         let raw_length_rad = path_length(&waypoints);
         let mut search = self.edges();
-        Shortcutting { validator: &mut search }.run(&mut waypoints);
+        if waypoints.len() > 2 {
+            // The straight segment was tested first.
+            Shortcutting::of_rejected_ends(&mut search, &waypoints).run(&mut waypoints);
+        }
         let path = PlannedPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,

@@ -3,7 +3,7 @@
 use super::tree_search::ConfigurationSampler;
 use crate::rrt_connect::{Random, SamplingRegion};
 
-/// Draws from the region around the ends first, later from all of it, and now and then near the ends again.
+/// Draws around the root of the tree that grows, and from the region: that around the ends first, later all of it.
 pub(super) struct RegionSampler<'r> {
     region: SamplingRegion,
     random: &'r mut Random,
@@ -16,18 +16,23 @@ impl<'r> RegionSampler<'r> {
     }
 }
 
-/// One in so many samples stays near the ends.
-const NEAR_ROUNDS: u32 = 4;
-/// Share of the region about the ends that is sampled first, and in those rounds.
+/// Share of the samples that are drawn around the root: most searches fail to leave a narrow place around an end.
+const LOCAL_SHARE: f64 = 0.6;
+/// How far from the root they are at most, in each value, rad (and m).
+const LOCAL_DISTANCE: f64 = 2.0;
+/// Share of the region about the ends that is sampled first.
 const NEAR_SHARE: f64 = 0.3;
 /// Samples after which the whole region is sampled.
 const WIDENING_ROUNDS: f64 = 40.0;
 
 impl ConfigurationSampler for RegionSampler<'_> {
-    fn sample(&mut self, out: &mut [f64]) {
-        let is_near = self.round % NEAR_ROUNDS == NEAR_ROUNDS - 1;
-        let wide = (NEAR_SHARE + f64::from(self.round) / WIDENING_ROUNDS).min(1.0);
-        self.region.sample(if is_near { NEAR_SHARE } else { wide }, self.random, out);
+    fn sample(&mut self, root: &[f64], out: &mut [f64]) {
+        if self.random.unit() < LOCAL_SHARE {
+            self.region.clamped_around(root, LOCAL_DISTANCE, self.random, out);
+            return;
+        }
+        let share = (NEAR_SHARE + f64::from(self.round) / WIDENING_ROUNDS).min(1.0);
+        self.region.sample(share, self.random, out);
         self.round = self.round.saturating_add(1);
     }
 }

@@ -10,14 +10,26 @@ const MIN_GAIN: f64 = 0.01;
 /// How far from a corner it is cut, as shares of the shorter of its edges. What is left of both edges is proven already.
 const CUTS: [f64; 2] = [0.75, 0.35];
 /// A cut that gains a smaller share of both edges than this is not worth an edge.
-const MIN_CUT_GAIN: f64 = 0.004;
+const MIN_CUT_GAIN: f64 = 0.008;
 
 /// Shortens a path.
 pub(super) struct Shortcutting<'v, V> {
-    pub validator: &'v mut V,
+    validator: &'v mut V,
+    /// Keys of the edges that were not proven.
+    rejected: Vec<u64>,
 }
 
-impl<V: EdgeValidator> Shortcutting<'_, V> {
+impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
+    pub fn new(validator: &'v mut V) -> Self {
+        Self { validator, rejected: Vec::new() }
+    }
+
+    /// Of a path whose ends no proven edge joins.
+    pub fn of_rejected_ends(validator: &'v mut V, path: &[Vec<f64>]) -> Self {
+        let ends = path.first().zip(path.last());
+        Self { validator, rejected: ends.map(|(from, to)| edge_key(from, to)).into_iter().collect() }
+    }
+
     pub fn run(&mut self, path: &mut Vec<Vec<f64>>) {
         self.skip_waypoints(path);
         for _ in 0..ROUNDS {
@@ -40,7 +52,7 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
             let (mut reached, mut step) = (from + 1, path.len() - 1 - from);
             while step > 0 && reached + 1 < path.len() {
                 let to = (reached + step).min(path.len() - 1);
-                if to > reached && self.validator.edge_is_free(&path[from], &path[to]) {
+                if to > reached && self.is_joined(&path[from], &path[to]) {
                     reached = to;
                 } else {
                     step /= 2;
@@ -49,6 +61,19 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
             path.drain(from + 1..reached);
             from += 1;
         }
+    }
+
+    /// True where an edge is proven free. What was rejected once is not tested again: rounds repeat most of their questions.
+    fn is_joined(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let key = edge_key(from, to);
+        if self.rejected.contains(&key) {
+            return false;
+        }
+        let is_free = self.validator.edge_is_free(from, to);
+        if !is_free {
+            self.rejected.push(key);
+        }
+        is_free
     }
 
     /// Replaces corners by an edge between points before and after them.
@@ -78,10 +103,16 @@ impl<V: EdgeValidator> Shortcutting<'_, V> {
             if !(gain > MIN_CUT_GAIN * (edges[0] + edges[1])) {
                 return None;
             }
-            if self.validator.edge_is_free(&ends[0], &ends[1]) {
+            if self.is_joined(&ends[0], &ends[1]) {
                 return Some(ends);
             }
         }
         None
     }
+}
+
+/// A number for an edge. Two edges hardly ever have the same; where they do, one is taken for rejected, never for free.
+fn edge_key(from: &[f64], to: &[f64]) -> u64 {
+    let mix = |key: u64, value: &f64| (key ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    from.iter().chain(to).fold(0, mix)
 }

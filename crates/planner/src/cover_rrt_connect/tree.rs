@@ -10,6 +10,8 @@ pub(super) struct Tree {
     /// The configurations, one after the other.
     q: Vec<f64>,
     packs: NodePacks,
+    /// Number of roots: they are the first nodes.
+    roots: usize,
     /// A root is its own parent.
     parents: Vec<u32>,
     /// Length of the branch from the root, rad (and m).
@@ -22,15 +24,21 @@ impl Tree {
     /// A tree with one root or several, all of the same number of values.
     pub fn new<'q>(dof: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let (q, parents, costs, radii) = Default::default();
-        let mut tree = Self { dof, q, packs: NodePacks::new(dof), parents, costs, radii };
+        let mut tree = Self { dof, q, packs: NodePacks::new(dof), roots: 0, parents, costs, radii };
         for root in roots {
             tree.push(tree.len(), 0.0, root);
         }
+        tree.roots = tree.len();
         tree
     }
 
     pub fn len(&self) -> usize {
         self.parents.len()
+    }
+
+    /// Number of roots, which are the first nodes.
+    pub fn roots(&self) -> usize {
+        self.roots
     }
 
     pub fn q(&self, node: usize) -> &[f64] {

@@ -14,7 +14,8 @@ pub(super) const LEAST_PROGRESS: f64 = 0.05;
 
 /// Draws configurations.
 pub(super) trait ConfigurationSampler {
-    fn sample(&mut self, out: &mut [f64]);
+    /// A configuration for a tree to grow towards; one of its roots is `root`.
+    fn sample(&mut self, root: &[f64], out: &mut [f64]);
 }
 
 /// Two trees that grow towards each other.
@@ -40,12 +41,14 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
     /// Waypoints of a path; `None` where a limit is reached.
     pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
+        let mut round = 0;
         while !self.validator.is_exhausted() {
             if self.trees[0].len() > self.trees[1].len() {
                 self.trees.swap(0, 1);
                 self.is_swapped = !self.is_swapped;
             }
-            sampler.sample(&mut sample);
+            sampler.sample(self.trees[0].q(round % self.trees[0].roots()), &mut sample);
+            round += 1;
             let (near, distance) = self.trees[0].nearest(&sample);
             if distance == 0.0 || f64::from(self.trees[0].radii[near]) < distance {
                 continue;

@@ -167,6 +167,13 @@ impl SamplingRegion {
         q.iter().zip(&self.each).all(|(value, [least, _, _, most])| value >= least && value <= most)
     }
 
+    /// As [`around`](Self::around), with what is beyond the limits moved to them.
+    pub fn clamped_around(&self, q: &[f64], distance: f64, random: &mut Random, out: &mut [f64]) {
+        for ((value, &at), [least, _, _, most]) in out.iter_mut().zip(q).zip(&self.each) {
+            *value = random.between(at - distance, at + distance).clamp(*least, *most);
+        }
+    }
+
     /// A sample within a distance of a configuration in each value.
     pub fn around(&self, q: &[f64], distance: f64, random: &mut Random, out: &mut [f64]) {
         for ((value, &at), [least, _, _, most]) in out.iter_mut().zip(q).zip(&self.each) {

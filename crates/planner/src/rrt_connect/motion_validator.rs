@@ -57,8 +57,8 @@ impl<'s> MotionValidator<'s> {
 
     /// Sets the state of the scene; fails where the scene rejects the goal.
     pub fn set_start(&mut self, state: &SceneState, goal: &[f64]) -> Result<(), SceneError> {
+        state.check_q(self.scene, self.robot, goal)?;
         self.state.clone_from(state);
-        self.state.set_q(self.scene, self.robot, goal)?;
         self.states_checked = 0;
         Ok(())
     }

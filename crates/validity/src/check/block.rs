@@ -5,7 +5,7 @@
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::motion_table::MotionTable;
-use super::workspace::Workspace;
+use super::workspace::{NodeObstacle, Workspace};
 use crate::lanes::{LANES, V3, splat};
 use crate::model::{CoveredRobot, LinkPair, SphereNode};
 use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
@@ -81,7 +81,11 @@ impl BlockModel<'_> {
         }
         self.robot.chain.forward(simd, &workspace.values, &mut workspace.frames);
         let mut kernel = Kernel { simd, model: *self, workspace, request, result: BlockResult::default(), pairs };
-        kernel.obstacles();
+        if kernel.request.chords && kernel.pairs.is_none() {
+            kernel.obstacles_by_level();
+        } else {
+            kernel.obstacles();
+        }
         if !kernel.is_done() {
             kernel.self_collision();
         }
@@ -149,6 +153,113 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
+    /// As [`obstacles`](Self::obstacles) where only the segment counts: what touches ends it, and large nodes, which tell soonest,
+    /// come before all that is below them.
+    #[inline(always)]
+    fn obstacles_by_level(&mut self) {
+        let mut open = std::mem::take(&mut self.workspace.node_obstacles);
+        open.clear();
+        if !self.any_root_touches(&mut open) {
+            let mut next = 0;
+            while next < open.len() && !self.any_child_touches(open[next], &mut open) {
+                next += 1;
+            }
+        }
+        self.workspace.node_obstacles = open;
+    }
+
+    /// The roots of all links. True where a sphere touches.
+    #[inline(always)]
+    fn any_root_touches(&mut self, open: &mut Vec<NodeObstacle>) -> bool {
+        let robot = self.model.robot;
+        // What is farthest from the base moves most and hits first.
+        for (index, body) in robot.covered_links.iter().enumerate().rev() {
+            if body.frame == 0 {
+                continue;
+            }
+            for &root in &body.broad_phase {
+                if self.root_touches(index, root, open) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The children of a node. True where a sphere touches.
+    #[inline(always)]
+    fn any_child_touches(&mut self, parent: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
+        let robot = self.model.robot;
+        let end = robot.nodes[parent.node as usize].end;
+        let mut child = parent.node + 1;
+        while child < end {
+            if self.node_touches(NodeObstacle { node: child, ..parent }, open) {
+                return true;
+            }
+            child = robot.nodes[child as usize].end;
+        }
+        false
+    }
+
+    /// The broad phase of a node, and the node against what is found. True where a sphere touches.
+    #[inline(always)]
+    fn root_touches(&mut self, body: usize, root: u32, open: &mut Vec<NodeObstacle>) -> bool {
+        let node = &self.model.robot.nodes[root as usize];
+        let (half_chord, _) = self.workspace.body_motion(body);
+        let centre = self.workspace.centre(self.simd, self.model.robot, root);
+        let mut found = std::mem::take(&mut self.workspace.found);
+        self.model.tree.around(self.simd, centre, node.radius + half_chord, &mut self.workspace.open, &mut found);
+        let mut is_touching = false;
+        for &obstacle in &found {
+            let source = self.model.obstacles.outer_source[obstacle as usize];
+            let skipped = self.model.skipped;
+            if !skipped.is_empty() && skipped[body * self.model.obstacles.len() + source as usize] {
+                continue;
+            }
+            if self.node_touches(NodeObstacle { body: body as u32, node: root, obstacle }, open) {
+                is_touching = true;
+                break;
+            }
+        }
+        self.workspace.found = found;
+        is_touching
+    }
+
+    /// A node against an obstacle. True where a sphere touches; the node is listed in `open` where its children decide.
+    #[inline(always)]
+    fn node_touches(&mut self, pair: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
+        let (simd, robot) = (self.simd, self.model.robot);
+        let solid = &self.model.obstacles.outer[pair.obstacle as usize];
+        let (half_chord, sag) = self.workspace.body_motion(pair.body as usize);
+        let node = &robot.nodes[pair.node as usize];
+        let centre = self.workspace.centre(simd, robot, pair.node);
+        let from = solid.vector_from_core(simd, centre);
+        let reach = Reach { radius: node.radius + solid.radius, half_chord, sag };
+        let near = within(simd, from.vector, reach.radius + reach.half_chord);
+        if near & self.request.active == 0 {
+            return false;
+        }
+        if self.certainly_touches(from.vector, node.touching_m + solid.radius) {
+            return true;
+        }
+        let is_leaf = is_leaf(node, pair.node + 1);
+        if is_leaf && self.touching(from.vector, reach) != 0 {
+            return true;
+        }
+        let direction = from.vector.plus(from.vector.next_lane());
+        let (a, b) = (direction.dot(from.point), direction.dot(from.point.next_lane()));
+        let unproven = self.not_apart(direction, a.min(b) - solid.support(simd, direction), reach);
+        if unproven == 0 {
+            return false;
+        }
+        if is_leaf {
+            self.result.unproven |= unproven;
+        } else {
+            open.push(pair);
+        }
+        false
+    }
+
     /// The broad phase of a node, and what is below it against the obstacles that are found.
     #[inline(always)]
     fn obstacles_near(&mut self, body: usize, root: u32) {
@@ -205,12 +316,6 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 continue;
             }
             let is_leaf = is_leaf(node, at + 1);
-            if self.request.chords
-                && self.pairs.is_none()
-                && self.certainly_touches(from.vector, node.touching_m + obstacle.radius)
-            {
-                break;
-            }
             let touching = if is_leaf { self.touching(from.vector, reach) } else { 0 };
             if touching != 0 {
                 settled = Some(settled.unwrap_or(0) | self.settled_by(touching));

@@ -5,6 +5,14 @@ use super::motion_table::MotionTable;
 use crate::lanes::{LANES, PointRow, Row};
 use crate::model::{CoveredRobot, FrameLanes};
 
+/// A node of a body and an obstacle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodeObstacle {
+    pub body: u32,
+    pub node: u32,
+    pub obstacle: u32,
+}
+
 /// What a check of sixteen configurations writes.
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
@@ -35,6 +43,8 @@ pub(crate) struct Workspace {
     pub open: Vec<(u32, u32)>,
     /// Obstacles found by the broad phase.
     pub found: Vec<u32>,
+    /// Nodes whose children are still to visit, each with an obstacle.
+    pub node_obstacles: Vec<NodeObstacle>,
     /// Pairs of nodes still to visit.
     pub node_pairs: Vec<(u32, u32)>,
 }
@@ -58,6 +68,7 @@ impl Workspace {
             turned: vec![0.0; robot.chain.steps.len() + 1],
             open: Vec::new(),
             found: Vec::new(),
+            node_obstacles: Vec::new(),
             node_pairs: Vec::new(),
         }
     }
