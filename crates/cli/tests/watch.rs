@@ -121,8 +121,8 @@ fn score(records: &[Value]) -> Score {
         let centre = |o: &Value| Point2::new(o["centre_m"][0].as_f64().unwrap(), o["centre_m"][1].as_f64().unwrap());
         let near = obstacles.iter().find(|o| (centre(o) - truth).length() < 0.5);
         score.false_alarms += obstacles.len() - usize::from(near.is_some());
-        // Wholly within the watched area.
-        if truth.y.abs() > 2.6 || i == DAMAGED {
+        // Wholly within the picture, which shows 4.8 m of the floor.
+        if truth.y.abs() > 2.0 || i == DAMAGED {
             continue;
         }
         score.due += 1;
@@ -153,7 +153,7 @@ fn a_crate_is_tracked_from_files_alone() {
     assert_eq!(records.len(), FRAMES);
     assert!(records[..LEARNING].iter().all(|r| r["status"] == "learning" && r["blocked"] == 0));
     let score = score(&records);
-    assert!(score.due > 90 && score.seen == score.due && score.contained == score.due, "{score:?}");
+    assert!(score.due > 70 && score.seen == score.due && score.contained == score.due, "{score:?}");
     assert!(score.false_alarms == 0 && score.worst_centre_m < 0.15, "{score:?}");
     // One crate enters once, and blocks cells while it is within reach.
     let entered: usize = records.iter().map(|r| r["entered"].as_array().unwrap().len()).sum();

@@ -91,7 +91,7 @@ impl MeshGroup {
         Self { meshes, rows: capsules.chunks(LANES).map(CapsuleRow::new).collect(), middles, reach }
     }
 
-    /// True where a mesh of this group touches one of another, as [`colliding_triangles`](super::colliding_triangles) of each
+    /// True where a mesh of this group touches one of another, as [`colliding_triangles`] of each
     /// pair says. `poses` has one for each mesh of this group, `other_poses` for each of the other; where one is missing the
     /// answer is true.
     pub fn collides(&self, poses: &[Pose], other: &Self, other_poses: &[Pose], workspace: &mut GroupWorkspace) -> bool {
