@@ -7,7 +7,7 @@ use elbowroom_analysis::plan::{PathRequest, plan};
 use elbowroom_planner::RrtConnectSettings;
 
 fn request(from: [f64; 2], to: [f64; 2]) -> PathRequest {
-    PathRequest { from: Some(from.to_vec()), to: to.to_vec(), ..PathRequest::default() }
+    PathRequest { from: Some(from.to_vec()), to: to.to_vec().into(), ..PathRequest::default() }
 }
 
 /// Smallest distance of the ball to the wall, m, at many points of the rows.

@@ -133,6 +133,8 @@ pub struct CellRobot {
     pub start: Vec<f64>,
     /// True where the file gives `start`.
     pub start_given: bool,
+    /// Named configurations, rad or m, in file order.
+    pub states: Vec<(String, Vec<f64>)>,
     /// How links become guarded volumes.
     pub volumes: VolumeModel,
     /// Per value of `q`.
@@ -262,6 +264,13 @@ pub enum StepAction {
         /// TCP speed, m/s.
         speed: f64,
     },
+    /// Planned move: a path around everything that is where it is at the start of the run.
+    Planned {
+        /// Target.
+        to: MoveTarget,
+        /// Share of each joint's speed, 0..1.
+        speed: f64,
+    },
     /// Switches a temporary region.
     Switch {
         /// The region.
@@ -319,6 +328,17 @@ impl CellRobot {
     pub(crate) fn slides(&self, joint: usize) -> bool {
         let chain = &self.robot.chain;
         chain.joints()[chain.active_joints()[joint].0].kind == elbowroom_kinematics::JointKind::Prismatic
+    }
+
+    /// The configuration of a name, rad or m.
+    pub fn state(&self, name: &str) -> Option<&[f64]> {
+        self.states.iter().find(|(known, _)| known == name).map(|(_, q)| &q[..])
+    }
+
+    /// Joint values (rad or m) from numbers in the units of a cell file; as many as are given.
+    pub fn joint_values_from_units(&self, values: &[f64], units: Units) -> Vec<f64> {
+        let slides = |joint: usize| joint < self.robot.chain.dof() && self.slides(joint);
+        values.iter().enumerate().map(|(joint, &v)| units.joint(slides(joint), v)).collect()
     }
 
     /// Names of the joints in the order of `q`.

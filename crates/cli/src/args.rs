@@ -322,6 +322,7 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0     from the robot's start
   elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
+  elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0   millimetres and degrees, as in the cell
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
   elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
   elbowroom plan --urdf arm.urdf --problems problems.json --only shelf --limit 10 --paths paths
@@ -339,13 +340,19 @@ pub(crate) struct PlanArgs {
     /// Name of the robot; optional if there is only one
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints);
-    /// default: the robot's `start`
-    #[arg(long, value_name = "q,…", allow_hyphen_values = true)]
-    pub(crate) from: Option<Numbers>,
+    /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints), or the name
+    /// of one of the robot's `states`; default: its `start`
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
+    pub(crate) from: Option<Configuration>,
     /// Goal configuration, likewise
-    #[arg(long, value_name = "q,…", allow_hyphen_values = true, required_unless_present = "urdf")]
-    pub(crate) to: Option<Numbers>,
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
+    pub(crate) to: Option<Configuration>,
+    /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
+    #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
+    pub(crate) to_pose: Option<Numbers>,
+    /// --from and --to are in the cell file's units, as in a program
+    #[arg(long, conflicts_with = "urdf")]
+    pub(crate) cell_units: bool,
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
@@ -371,7 +378,7 @@ pub(crate) struct PlanArgs {
     pub(crate) json: bool,
 }
 
-/// Comma-separated numbers.
+/// Numbers with commas or spaces between them.
 #[derive(Debug, Clone)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
@@ -383,7 +390,28 @@ impl std::str::FromStr for Numbers {
             let value = word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
             value.ok_or_else(|| format!("value {} is \"{}\", no finite number: write 0.5,-1.2,0", i + 1, word.trim()))
         };
-        text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(Self)
+        let has_commas = text.contains(',');
+        let words: Vec<&str> = if has_commas { text.split(',').collect() } else { text.split_whitespace().collect() };
+        words.into_iter().enumerate().map(number).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// A configuration: joint values, or the name of a state.
+#[derive(Debug, Clone)]
+pub(crate) enum Configuration {
+    Values(Vec<f64>),
+    Named(String),
+}
+
+impl std::str::FromStr for Configuration {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_word = |text: &str| text.parse::<f64>().is_err() && !text.contains([',', ' ']);
+        if is_word(text.trim()) {
+            return Ok(Self::Named(text.trim().to_owned()));
+        }
+        text.parse().map(|Numbers(values)| Self::Values(values))
     }
 }
 

@@ -6,11 +6,12 @@ use std::io::BufWriter;
 use std::path::Path;
 use std::time::Duration;
 
-use elbowroom::analysis::plan::{self, PathAnswer, PathRequest, TimedPath};
-use elbowroom::cell::Cell;
+use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
+use elbowroom::cell::{Cell, suggest};
 use elbowroom::planner::RrtConnectSettings;
+use elbowroom::spatial::{Pose, Rotation, Vec3};
 
-use crate::args::PlanArgs;
+use crate::args::{Configuration, Numbers, PlanArgs};
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 use crate::plan_problems;
 
@@ -23,8 +24,9 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let request = PathRequest {
         robot: args.robot.clone(),
-        from: args.from.as_ref().map(|q| q.0.clone()),
-        to: args.to.as_ref().map(|q| q.0.clone()).unwrap_or_default(),
+        from: args.from.as_ref().map(|from| configuration(args, &cell, from)).transpose()?,
+        to: goal(args, &cell)?,
+        speed: 1.0,
         options: RrtConnectSettings {
             time_limit: Duration::from_secs_f64(args.time_limit),
             clearance_m: args.clearance,
@@ -48,6 +50,53 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         }
     }
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
+}
+
+fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
+    if let Some(Numbers(numbers)) = &args.to_pose {
+        return pose(cell, numbers).map(PathGoal::Tcp);
+    }
+    // clap requires a goal.
+    let none = Configuration::Values(Vec::new());
+    configuration(args, cell, args.to.as_ref().unwrap_or(&none)).map(PathGoal::Joints)
+}
+
+/// The values of a configuration, rad or m.
+fn configuration(args: &PlanArgs, cell: &Cell, given: &Configuration) -> Result<Vec<f64>, Failure> {
+    let (_, robot) = plan::select_robot(cell, args.robot.as_deref())?;
+    match given {
+        Configuration::Values(q) if args.cell_units => Ok(robot.joint_values_from_units(q, cell.units)),
+        Configuration::Values(q) => Ok(q.clone()),
+        Configuration::Named(name) => robot.state(name).map(<[f64]>::to_vec).ok_or_else(|| {
+            let known = robot.states.iter().map(|(name, _)| name.as_str());
+            let hint = suggest::hint(name, known);
+            Failure::Wrong(format!(
+                "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
+                robot.name, robot.name
+            ))
+        }),
+    }
+}
+
+/// x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
+fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
+    let wrong =
+        |what: &str| Failure::Wrong(format!("--to-pose: {what}\n  write: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw"));
+    let (Some(&[x, y, z]), turn) = (numbers.first_chunk::<3>(), &numbers[numbers.len().min(3)..]) else {
+        return Err(wrong("fewer than six numbers"));
+    };
+    let at = Vec3::new(x, y, z) * cell.units.length.to_metres(1.0);
+    let rotation = match *turn {
+        [roll, pitch, yaw] => {
+            let [roll, pitch, yaw] = [roll, pitch, yaw].map(|angle| cell.units.angle.to_radians(angle));
+            Rotation::from_rpy(roll, pitch, yaw)
+        }
+        [qx, qy, qz, qw] => {
+            Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).ok_or_else(|| wrong("a quaternion of length 0"))?
+        }
+        _ => return Err(wrong(&format!("{} numbers", numbers.len()))),
+    };
+    Ok(Pose::new(rotation, at))
 }
 
 /// The table for the terminal. Writing to a String cannot fail.

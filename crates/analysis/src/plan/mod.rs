@@ -11,32 +11,65 @@ use std::time::Instant;
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
 use elbowroom_formats::FormatError;
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
-    RrtConnectSettings, TimedMotion,
+    RrtConnectSettings, TaskSpaceRegion, TimedMotion,
 };
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
+use elbowroom_spatial::Pose;
 
 use crate::cover_cache::CoverCache;
 
 pub use answer::{PathAnswer, TimedPath};
+pub use request_validation::select_robot;
+
+/// Where a path ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PathGoal {
+    /// Values of all joints in the order of the chain, rad or m.
+    Joints(Vec<f64>),
+    /// The TCP in the world, in any posture: whichever is reached first.
+    Tcp(Pose),
+}
+
+impl Default for PathGoal {
+    fn default() -> Self {
+        Self::Joints(Vec::new())
+    }
+}
+
+impl<Q: Into<Vec<f64>>> From<Q> for PathGoal {
+    fn from(q: Q) -> Self {
+        Self::Joints(q.into())
+    }
+}
 
 /// A request for a path.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PathRequest {
     /// Name of the robot; optional where there is only one.
     pub robot: Option<String>,
     /// Values of all joints in the order of the chain, rad or m; `None`: the robot's `start`.
     pub from: Option<Vec<f64>>,
-    /// The goal, likewise.
-    pub to: Vec<f64>,
+    /// The goal.
+    pub to: PathGoal,
+    /// Share of the joints' speeds that the motion uses, above 0 and at most 1.
+    pub speed: f64,
     /// Time limit, clearance and seed.
     pub options: RrtConnectSettings,
     /// Period of the samples, s; `None`: the cell's tick.
     pub period_s: Option<f64>,
     /// Goes on until the time limit, with shorter and shorter paths.
     pub optimize: bool,
+}
+
+impl Default for PathRequest {
+    fn default() -> Self {
+        let options = RrtConnectSettings::default();
+        Self { robot: None, from: None, to: PathGoal::default(), speed: 1.0, options, period_s: None, optimize: false }
+    }
 }
 
 /// Plans a collision-free path and times it.
@@ -55,7 +88,7 @@ pub struct PathRequest {
 /// at = [600, 0, 0]
 /// radius = 100
 /// "#)?;
-/// let request = PathRequest { from: Some(vec![-1.0, 0.0]), to: vec![1.0, 0.0], ..PathRequest::default() };
+/// let request = PathRequest { from: Some(vec![-1.0, 0.0]), to: vec![1.0, 0.0].into(), ..PathRequest::default() };
 /// let answer = plan(&cell, &request)?;
 /// let motion = answer.motion.expect("the elbow can bend");
 /// assert!(motion.waypoints.len() > 2 && motion.rows.last().unwrap().1 == [1.0, 0.0]);
@@ -67,14 +100,14 @@ pub struct PathRequest {
 /// number of values; a goal in a region; a start in a region that no straight path leaves.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
-    let limits = request_validation::kinematic_limits(cell, robot)?;
+    let mut limits = request_validation::kinematic_limits(cell, robot)?;
+    limits.velocity.iter_mut().for_each(|v| *v *= request.speed);
     let from = request.from.as_ref().unwrap_or(&robot.start);
-    for (end, q) in [("start", from), ("goal", &request.to)] {
-        request_validation::check_joint_values(cell, robot, end, q)?;
-    }
+    request_validation::check_joint_values(cell, robot, "start", from)?;
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, id, from).map_err(|e| refused(e.into()))?;
+    let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     // A link without bounds cannot be covered; the exact scene plans for it.
     let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &CoverCache::of_user()).ok();
@@ -86,8 +119,8 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         if let Some(constraint) = constraint {
             exact = exact.with_constraint(constraint);
         }
-        let (goal, settings, optimize) = (&request.to[..], &request.options, request.optimize);
-        let query = Query { state: &state, goal, settings, limits: &limits, period_s, optimize };
+        let (settings, optimize) = (&request.options, request.optimize);
+        let query = Query { state: &state, goals: &goals, settings, limits: &limits, period_s, optimize };
         let begin = Instant::now();
         let found = match (&model, &obstacles) {
             (Some(model), Some(obstacles)) => query.on_covers(CoverRrtConnect::new(exact, model, obstacles)),
@@ -107,7 +140,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
 /// What a planner is asked.
 struct Query<'q> {
     state: &'q SceneState,
-    goal: &'q [f64],
+    goals: &'q [Vec<f64>],
     settings: &'q RrtConnectSettings,
     limits: &'q KinematicLimits,
     period_s: f64,
@@ -117,19 +150,52 @@ struct Query<'q> {
 impl Query<'_> {
     fn on_covers(&self, mut planner: CoverRrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
         let path = if self.optimize {
-            planner.plan_anytime(self.state, &[self.goal], self.settings)?.path
+            planner.plan_anytime(self.state, self.goals, self.settings)?.path
         } else {
-            planner.plan(self.state, self.goal, self.settings)?
+            planner.plan_to_any(self.state, self.goals, self.settings)?
         };
         let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
         Ok((path, motion))
     }
 
     fn exactly(&self, mut planner: RrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        let path = planner.plan(self.state, self.goal, self.settings)?;
+        let mut path = Err(RrtConnectError::NoGoal);
+        for goal in self.goals {
+            path = path.or_else(|_| planner.plan(self.state, goal, self.settings));
+        }
+        let path = path?;
         let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
         Ok((path, TimedMotion::of(&motion, self.period_s)?))
     }
+}
+
+/// The configurations at which a path may end.
+fn goals(
+    cell: &Cell,
+    scene: &Scene,
+    state: &SceneState,
+    id: RobotId,
+    to: &PathGoal,
+    seed: u64,
+) -> Result<Vec<Vec<f64>>, FormatError> {
+    let robot = &cell.robots[id.0];
+    let tcp_in_world = match to {
+        PathGoal::Joints(q) => {
+            request_validation::check_joint_values(cell, robot, "goal", q)?;
+            return Ok(vec![q.clone()]);
+        }
+        PathGoal::Tcp(in_world) => in_world,
+    };
+    let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, *tcp_in_world);
+    let found = region.configurations(scene, state, id, 0, seed);
+    if found.is_empty() {
+        let mut solver = IkSolver::new(&robot.robot.chain, robot.flange, robot.tcp_in_flange, IkOptions::default());
+        let why = solver.solve(&robot.base_in_world.inverse_mul(tcp_in_world), state.q(id)).err();
+        let why = why.map_or_else(|| "no posture within the limits was found".to_owned(), |e| e.to_string());
+        let what = format!("the goal of robot \"{}\": {why}", robot.name);
+        return Err(FormatError::new(&cell.file, robot.line, what).hint("a pose within reach, or joint values"));
+    }
+    Ok(found)
 }
 
 /// The state with all robots at their start, except one.

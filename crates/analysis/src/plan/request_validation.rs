@@ -7,7 +7,10 @@ use elbowroom_planner::{KinematicLimits, PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;
 
 /// The robot of this name; the only one where none is named.
-pub(crate) fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), FormatError> {
+///
+/// # Errors
+/// No such robot, or several and no name.
+pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), FormatError> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
     let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
     match (name, &cell.robots[..]) {

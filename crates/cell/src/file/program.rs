@@ -67,21 +67,26 @@ fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) 
     Ok(ProgramStep { line: t.line, action })
 }
 
+/// Kinds of moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Movement {
+    Joint,
+    Linear,
+    Planned,
+}
+
 fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction> {
     t.only(&["move", "to", "speed"])?;
-    let linear = t.need("move", "move = \"joint\"")?.word(&[("joint", false), ("linear", true)])?;
-    let example =
-        if linear { "to = { at = [900, 600, 700], rpy = [180, 0, 0] }" } else { "to = [0, -20, 90, 0, 40, 0]" };
-    let to = t.need("to", example)?;
-    let to = if to.is_table() {
-        MoveTarget::Tcp(units.pose(&to)?)
-    } else if to.is_list() {
-        MoveTarget::Joints(joint_values(&to, &robot.robot.chain, units)?)
+    let kinds = [("joint", Movement::Joint), ("linear", Movement::Linear), ("planned", Movement::Planned)];
+    let kind = t.need("move", "move = \"joint\"")?.word(&kinds)?;
+    let example = if kind == Movement::Linear {
+        "to = { at = [900, 600, 700], rpy = [180, 0, 0] }"
     } else {
-        return Err(to.error("is neither joint values nor a pose").hint(example));
+        "to = [0, -20, 90, 0, 40, 0]"
     };
+    let to = target(&t.need("to", example)?, example, units, robot)?;
     let speed = t.get("speed");
-    if linear {
+    if kind == Movement::Linear {
         let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
         return Ok(StepAction::Linear { to, speed });
     }
@@ -89,7 +94,25 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
         v.positive()?;
         v.percent()
     })?;
-    Ok(StepAction::Joint { to, speed })
+    Ok(if kind == Movement::Planned { StepAction::Planned { to, speed } } else { StepAction::Joint { to, speed } })
+}
+
+/// A pose, joint values, or the name of a state of the robot.
+fn target(to: &Value<'_>, example: &str, units: Units, robot: &CellRobot) -> Result<MoveTarget> {
+    if to.is_table() {
+        return units.pose(to).map(MoveTarget::Tcp);
+    }
+    if to.is_list() {
+        return joint_values(to, &robot.robot.chain, units).map(MoveTarget::Joints);
+    }
+    let Ok(name) = to.text() else {
+        return Err(to.error("is neither joint values, a pose, nor the name of a state").hint(example));
+    };
+    robot.state(name).map(|q| MoveTarget::Joints(q.to_vec())).ok_or_else(|| {
+        let known = robot.states.iter().map(|(name, _)| name.as_str());
+        to.error(format!("names the state \"{name}\", which robot \"{}\" does not have", robot.name))
+            .hint(suggest::hint(name, known))
+    })
 }
 
 fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {

@@ -26,6 +26,7 @@ const KEYS: &[&str] = &[
     "base",
     "flange",
     "start",
+    "states",
     "tool",
     "load",
     "volumes",
@@ -91,6 +92,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
         load,
         start,
         start_given: t.get("start").is_some(),
+        states: t.get("states").map_or(Ok(Vec::new()), |v| states(&v, &robot.chain, units))?,
         volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
         limits,
         robot,
@@ -279,6 +281,12 @@ fn flange(t: &Table<'_>, chain: &Chain) -> Result<LinkId> {
 pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> FormatError {
     let hint = suggest::hint(name, chain.links().iter().map(String::as_str));
     v.error(format!("names the link \"{name}\", which robot \"{}\" does not have", chain.name())).hint(hint)
+}
+
+/// Named configurations: `home = [0, -20, 90, 0, 40, 0]`.
+fn states(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<(String, Vec<f64>)>> {
+    let t = v.table("states = { home = [0, -20, 90, 0, 40, 0] }")?;
+    t.each().map(|(name, v)| Ok((name.to_owned(), joint_values(&v, chain, units)?))).collect()
 }
 
 fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {

@@ -45,7 +45,7 @@ impl Units {
     }
 
     /// A joint value from the file's unit.
-    pub(super) fn joint(self, prismatic: bool, v: f64) -> f64 {
+    pub(crate) fn joint(self, prismatic: bool, v: f64) -> f64 {
         if prismatic { self.length.to_metres(v) } else { self.angle.to_radians(v) }
     }
 

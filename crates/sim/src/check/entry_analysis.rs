@@ -1,6 +1,6 @@
 //! Decides whether a robot is kept out of a region, by which law, and what is missing where it is not.
 
-use elbowroom_cell::{Cell, CellRegion, CellRegionId, CellRobot};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, CellRobot, StepAction};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::JointKind;
 use elbowroom_monitor::{Life, RegionKind};
@@ -251,7 +251,7 @@ impl EntryAnalysis<'_> {
 
 fn is_one_move(program: &elbowroom_cell::Program) -> bool {
     let moves = |s: &&elbowroom_cell::ProgramStep| {
-        matches!(s.action, elbowroom_cell::StepAction::Joint { .. } | elbowroom_cell::StepAction::Linear { .. })
+        matches!(s.action, StepAction::Joint { .. } | StepAction::Linear { .. } | StepAction::Planned { .. })
     };
     let once = program.repeat <= 1;
     matches!(&program.body, elbowroom_cell::ProgramBody::Steps(steps) if once && steps.iter().filter(moves).count() <= 1)

@@ -2,8 +2,11 @@
 
 use std::rc::Rc;
 
+use elbowroom_analysis::plan::{PathGoal, PathRequest};
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings};
-use elbowroom_cell::{Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction};
+use elbowroom_cell::{
+    Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
+};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
@@ -55,7 +58,14 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
-    let mut planner = ProgramPlanner { cell, robot: at, q: at.start.clone(), notes, planned_moves: Vec::new() };
+    let mut planner = ProgramPlanner {
+        cell,
+        robot: at,
+        q: at.start.clone(),
+        notes,
+        planned_moves: Vec::new(),
+        planned_paths: Vec::new(),
+    };
     match &program.body {
         ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
         ProgramBody::Trajectory(rows) => {
@@ -73,6 +83,8 @@ struct ProgramPlanner<'a> {
     notes: &'a mut Vec<Warning>,
     /// Moves of earlier passes.
     planned_moves: Vec<(usize, Vec<f64>, Rc<Segment>)>,
+    /// Paths of earlier passes.
+    planned_paths: Vec<(usize, Vec<f64>, Rc<Playback>)>,
 }
 
 impl ProgramPlanner<'_> {
@@ -88,6 +100,7 @@ impl ProgramPlanner<'_> {
                     StepAction::Wait(s) => PlanStep::Wait(*s),
                     StepAction::Override(o) => PlanStep::Override(*o),
                     StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
+                    StepAction::Planned { to, speed } => PlanStep::Play(self.planned(i, step, to, *speed)?),
                 });
             }
         }
@@ -105,6 +118,43 @@ impl ProgramPlanner<'_> {
         };
         self.q = segment.end();
         Ok(segment)
+    }
+
+    /// A path around everything that is where it is at the start of the run.
+    fn planned(
+        &mut self,
+        index: usize,
+        step: &ProgramStep,
+        to: &MoveTarget,
+        speed: f64,
+    ) -> Result<Rc<Playback>, FormatError> {
+        let known = self.planned_paths.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let play = if let Some(play) = known {
+            play
+        } else {
+            let request = PathRequest {
+                robot: Some(self.robot.name.clone()),
+                from: Some(self.q.clone()),
+                to: match to {
+                    MoveTarget::Joints(q) => PathGoal::Joints(q.clone()),
+                    MoveTarget::Tcp(in_world) => PathGoal::Tcp(*in_world),
+                },
+                speed,
+                ..PathRequest::default()
+            };
+            let answer = elbowroom_analysis::plan::plan(self.cell, &request)
+                .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
+            let Some(motion) = answer.motion else {
+                let why = answer.reason.unwrap_or_default();
+                return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
+            };
+            let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+            let play = Rc::new(Playback::new(rows, &motion_bounds(self.robot)));
+            self.planned_paths.push((index, self.q.clone(), play.clone()));
+            play
+        };
+        self.q = play.q(play.duration());
+        Ok(play)
     }
 
     fn error(&self, index: usize, step: &ProgramStep, what: &str) -> FormatError {

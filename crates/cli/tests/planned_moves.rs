@@ -1,0 +1,116 @@
+//! Goals as people write them: poses in the cell's units, named states, and planned moves as steps of a program.
+
+mod common;
+
+use common::{Answer, elbowroom, with_cell};
+
+/// An arm of two links and a wrist, and a post between its ends.
+const CELL: &str = r#"version = 1
+units = { length = "mm", angle = "deg" }
+[robot.arm]
+dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }, { a = 100, min = -170, max = 170, speed = 180 }]
+links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }, []]
+start = [-60, 0, 0]
+states = { left = [60, 0, 0], right = [-60, 0, 0] }
+[object.post]
+shape = "cylinder"
+at = [650, 0, 0]
+radius = 60
+height = 400
+"#;
+
+fn plan(args: &[&str]) -> Answer {
+    let dir = with_cell(CELL);
+    elbowroom(dir.path(), &[&["plan", "cell.toml"], args].concat())
+}
+
+fn last(answer: &Answer) -> Vec<f64> {
+    let json = answer.json();
+    let waypoints = json["waypoints"].as_array().unwrap();
+    waypoints.last().unwrap().as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn goals_are_states_values_in_cell_units_or_poses() {
+    let sixty = 60.0_f64.to_radians();
+    for args in [
+        &["--to", "left", "--json"][..],
+        &["--to", "60,0,0", "--cell-units", "--json"],
+        &["--to", "60 0 0", "--cell-units", "--from", "right", "--json"],
+        &["--to", "1.0471975511965976,0,0", "--json"],
+    ] {
+        let answer = plan(args).expect(0);
+        let q = last(&answer);
+        assert!((q[0] - sixty).abs() < 1e-9 && q[1..] == [0.0, 0.0], "{args:?}: {q:?}");
+        assert!(answer.json()["waypoints"].as_array().unwrap().len() > 2, "around the post");
+    }
+    // The tip is 800 mm from the base at the left state: 400, 692.8 mm, turned by 60 degrees.
+    for pose in ["400,692.8203230275509,0,0,0,60", "400 692.8203230275509 0 0 0 0.5 0.8660254037844386"] {
+        let q = last(&plan(&["--to-pose", pose, "--json"]).expect(0));
+        let (x, y) = (0..3).fold((0.0, 0.0), |(x, y), i| {
+            let (sum, length) = (q[..=i].iter().sum::<f64>(), [0.4, 0.3, 0.1][i]);
+            (x + length * sum.cos(), y + length * sum.sin())
+        });
+        assert!((x - 0.4).abs() < 1e-6 && (y - 0.692_820_323).abs() < 1e-6, "{pose}: {q:?}");
+    }
+}
+
+#[test]
+fn wrong_goals_are_refused_with_what_to_write() {
+    for (args, expected) in [
+        (&["--to", "lefft"][..], "left"),
+        (&["--to-pose", "1,2,3"][..], "x,y,z,roll,pitch,yaw"),
+        (&["--to-pose", "1,2"][..], "x,y,z,roll,pitch,yaw"),
+        (&["--to-pose", "1,2,3,0,0,0,0"][..], "length 0"),
+        (&["--to-pose", "5000,0,0,0,0,0"][..], "the goal of robot \"arm\""),
+        (&["--to-pose", "1,2,x,0,0,0"][..], "no finite number"),
+        (&["--to", "60,0", "--cell-units"][..], "2 values for 3 joints"),
+        (&["--to", "left", "--to-pose", "1,2,3,0,0,0"][..], "cannot be used with"),
+        (&[][..], "--to"),
+    ] {
+        let answer = plan(args).expect(2);
+        assert!(answer.stderr.contains(expected), "{args:?}: {}", answer.stderr);
+    }
+}
+
+fn run(steps: &str) -> Answer {
+    let dir = with_cell(&format!("{CELL}[program.arm]\nsteps = [{steps}]\n"));
+    elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"])
+}
+
+#[test]
+fn a_planned_step_goes_around_what_a_joint_move_hits() {
+    let hits = run("{ move = \"joint\", to = \"left\" }").expect(1).json();
+    assert!(!hits["robots"][0]["collisions"].as_array().unwrap().is_empty());
+    let around = run("{ move = \"planned\", to = \"left\" }, { wait = 0.1 }, { move = \"planned\", to = \"right\" }")
+        .expect(0)
+        .json();
+    let robot = &around["robots"][0];
+    assert!(robot["outcome"] == "finished" && robot["collisions"].as_array().unwrap().is_empty(), "{robot}");
+    // To a pose, at half speed: longer.
+    let pose = "{ at = [400, 692.8203230275509, 0], rpy = [0, 0, 60] }";
+    let fast = run(&format!("{{ move = \"planned\", to = {pose} }}")).expect(0).json();
+    let slow = run(&format!("{{ move = \"planned\", to = {pose}, speed = 50 }}")).expect(0).json();
+    assert!(slow["duration_s"].as_f64().unwrap() > 1.4 * fast["duration_s"].as_f64().unwrap());
+}
+
+#[test]
+fn a_planned_step_without_a_path_names_its_line() {
+    for (steps, expected) in [
+        ("{ move = \"planned\", to = \"lefft\" }", "names the state \"lefft\""),
+        ("{ move = \"planned\", to = [0, 0, 0] }", "in collision"),
+        ("{ move = \"planned\", to = { at = [5000, 0, 0] } }", "step 1"),
+        ("{ move = \"planed\", to = \"left\" }", "planned"),
+        ("{ move = \"planned\", to = true }", "nor the name of a state"),
+    ] {
+        let answer = run(steps).expect(2);
+        assert!(
+            answer.stderr.contains(expected) && answer.stderr.contains("cell.toml:1"),
+            "{steps}: {}",
+            answer.stderr
+        );
+    }
+    let dir = with_cell(&CELL.replace("left = [60, 0, 0]", "left = [60, 0]"));
+    let answer = elbowroom(dir.path(), &["check", "cell.toml"]).expect(2);
+    assert!(answer.stderr.contains("cell.toml:7"), "{}", answer.stderr);
+}
