@@ -47,16 +47,16 @@ fn cell() -> String {
     head + &CAMERA.replace("FOCAL", &format!("[{:?}, {:?}]", lens().fx, lens().fy))
 }
 
-/// The arm swings to and fro over the floor while that is learnt, and waits at the side afterwards.
+/// The arm swings to and fro over the floor while that is learnt, and waits on the other side afterwards.
 fn joints_at(t_s: f64) -> Vec<f64> {
-    let swing = if t_s < LEARNING as f64 * PERIOD_S { (t_s * 5.0).cos() } else { 1.0 };
-    [60.0 * swing, -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians).to_vec()
+    let waist = if t_s < LEARNING as f64 * PERIOD_S { 60.0 * (t_s * 5.0).cos() } else { 150.0 };
+    [waist, -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians).to_vec()
 }
 
 /// Where the crate is, from the time at which it enters.
 fn crate_at(t_s: f64) -> Option<Point2> {
     let y = -3.6 + 1.2 * (t_s - LEARNING as f64 * PERIOD_S);
-    (t_s >= LEARNING as f64 * PERIOD_S).then_some(Point2::new(3.2, y))
+    (t_s >= LEARNING as f64 * PERIOD_S).then_some(Point2::new(2.2, y))
 }
 
 /// Pictures, their times and the joint values, as files.
@@ -174,7 +174,7 @@ fn a_crate_is_tracked_from_files_alone() {
     assert!(kinds.filter(|o| o["kind"] == "crate").count() > 50, "the template is found");
     let text = watch(dir.path(), &[]).expect(0).stdout;
     assert!(
-        text.contains("entered at 3.") && text.contains("rejected:") && text.contains("30 pictures learnt"),
+        text.contains("entered at 2.") && text.contains("rejected:") && text.contains("30 pictures learnt"),
         "{text}"
     );
 }
