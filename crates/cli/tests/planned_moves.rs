@@ -147,7 +147,7 @@ fn recordings_of_controllers_play_as_they_are() {
         let answer = run(trajectory).expect(2);
         assert!(answer.stderr.contains(expected), "{trajectory}: {}", answer.stderr);
     }
-    // A plain file whose names differ in capitals is told so.
+    // The message about a plain file says which name differs in capitals.
     std::fs::write(dir.path().join("plain.csv"), "t_s,Joint_1,joint_2,joint_3\n0,0,0,0\n").unwrap();
     assert!(run("\"plain.csv\"").expect(2).stderr.contains("`Joint_1` differs in capitals"));
 }
