@@ -261,6 +261,7 @@ pub(crate) struct MapArgs {
 #[command(after_help = "Examples:
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
   elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
+  elbowroom inspect arm.urdf --write-srdf arm.srdf   the pairs that need not be tested
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {
@@ -292,6 +293,9 @@ pub(crate) struct InspectArgs {
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
+    /// Write an SRDF for the robot to this file: pairs of links that need not be tested, each with its reason
+    #[arg(long, value_name = "FILE.srdf", conflicts_with_all = ["states", "brief"])]
+    pub(crate) write_srdf: Option<PathBuf>,
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub(crate) json: bool,

@@ -37,6 +37,16 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     if let Some(dir) = &args.models {
         models(&inspection, dir)?;
     }
+    if let Some(path) = &args.write_srdf {
+        let what = || {
+            Failure::Wrong(format!(
+                "{}: has no pairs of links\n  write: a robot with collision geometry",
+                args.model.display()
+            ))
+        };
+        std::fs::write(path, inspection.srdf().ok_or_else(what)?).map_err(cannot_write(path))?;
+        note(format_args!("wrote {}", path.display()));
+    }
     if args.json {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         print_json(&inspection)?;

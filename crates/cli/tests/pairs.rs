@@ -113,6 +113,44 @@ fn a_run_warns_of_contacts_at_the_start_and_reports_new_contacts() {
 }
 
 #[test]
+fn the_tcp_is_on_no_finger() {
+    let dir = folder();
+    let check = |text: String| {
+        std::fs::write(dir.path().join("cell.toml"), text).unwrap();
+        elbowroom(dir.path(), &["run", "cell.toml", "--json"])
+    };
+    let grip = check(cell("grip.urdf", "srdf = \"grip.srdf\"\n", "[0.1, 0, 0]")).expect(0);
+    assert!(grip.stderr.contains("its TCP is on `palm`, which carries f1 and f2"), "{}", grip.stderr);
+    assert!(grip.stderr.contains("flange = \"palm\""), "{}", grip.stderr);
+    let named = check(cell("grip.urdf", "srdf = \"grip.srdf\"\nflange = \"f1\"\n", "[0.1, 0, 0]")).expect(0);
+    assert!(!named.stderr.contains("TCP"), "{}", named.stderr);
+    let tool0 = GRIP.replace("\"palm\"", "\"tool0\"");
+    std::fs::write(dir.path().join("tool0.urdf"), tool0).unwrap();
+    let tool0 = check(cell("tool0.urdf", "srdf = \"grip.srdf\"\n", "[0.1, 0, 0]")).expect(0);
+    assert!(!tool0.stderr.contains("TCP"), "{}", tool0.stderr);
+    // One leaf alone is no finger.
+    assert!(!check(cell("ball.urdf", "", "[0.1, 0, 0]")).expect(0).stderr.contains("TCP"));
+}
+
+#[test]
+fn an_srdf_is_written_and_silences_what_always_touches() {
+    let dir = folder();
+    let written = elbowroom(dir.path(), &["inspect", "ball.urdf", "--write-srdf", "new.srdf"]).expect(0);
+    assert!(written.stderr.contains("wrote new.srdf"), "{}", written.stderr);
+    let text = std::fs::read_to_string(dir.path().join("new.srdf")).unwrap();
+    let line = "<disable_collisions link1=\"forearm\" link2=\"hand\" reason=\"Default\"/>";
+    assert!(text.contains(line) && text.contains("reason=\"Adjacent\""), "{text}");
+    let query = ["query", "--urdf", "ball.urdf", "--srdf", "new.srdf", "--ask", "collision"];
+    assert_eq!(elbowroom(dir.path(), &query).expect(0).stderr, "");
+    // What it says of the present SRDF remains.
+    let again = ["inspect", "grip.urdf", "--srdf", "grip.srdf", "--write-srdf", "again.srdf"];
+    elbowroom(dir.path(), &again).expect(0);
+    let text = std::fs::read_to_string(dir.path().join("again.srdf")).unwrap();
+    assert!(text.contains("link1=\"f1\" link2=\"f2\" reason=\"User\""), "{text}");
+    elbowroom(dir.path(), &["inspect", "ball.urdf", "--brief", "--write-srdf", "x.srdf"]).expect(2);
+}
+
+#[test]
 fn pairs_that_the_cell_file_ignores_are_never_tested() {
     let dir = folder();
     let run = |more: &str| {

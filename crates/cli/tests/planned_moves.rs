@@ -114,3 +114,40 @@ fn a_planned_step_without_a_path_names_its_line() {
     let answer = elbowroom(dir.path(), &["check", "cell.toml"]).expect(2);
     assert!(answer.stderr.contains("cell.toml:7"), "{}", answer.stderr);
 }
+
+#[test]
+fn recordings_of_controllers_play_as_they_are() {
+    let dir = with_cell("");
+    let log = "Joint_1;joint_2;A3\n-60,0;0;0\n-59,5;0,5;0\n-59;1;0,25\n";
+    std::fs::write(dir.path().join("log.csv"), log).unwrap();
+    let run = |trajectory: &str| {
+        let cell = CELL.replace("start = [-60, 0, 0]\n", "") + &format!("[program.arm]\ntrajectory = {trajectory}\n");
+        std::fs::write(dir.path().join("cell.toml"), cell).unwrap();
+        elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"])
+    };
+    let good = "{ file = \"log.csv\", angle = \"deg\", period_ms = 100, columns = { joint_3 = \"A3\" }, offset = 0.5 }";
+    let answer = run(good).expect(0).json();
+    assert!((answer["duration_s"].as_f64().unwrap() - 0.7).abs() < 0.05, "{answer}");
+    let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+    let q = |line: &str| line.split(',').skip(2).take(3).map(|v| v.parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let (first, last) = (q(trace.lines().nth(1).unwrap()), q(trace.lines().last().unwrap()));
+    assert!((first[0] + 60.0_f64.to_radians()).abs() < 1e-9, "{first:?}");
+    assert!(
+        (last[0] + 59.0_f64.to_radians()).abs() < 1e-3 && (last[2] - 0.25_f64.to_radians()).abs() < 1e-3,
+        "{last:?}"
+    );
+    for (trajectory, expected) in [
+        ("{ angle = \"deg\" }", "needs the key `file`"),
+        ("{ file = \"log.csv\", angle = \"grad\" }", "\"deg\""),
+        ("{ file = \"log.csv\", time = \"t\", period_ms = 4 }", "one of the two"),
+        ("{ file = \"log.csv\", period_ms = 4, columns = { joint_9 = \"A3\" } }", "joint_9"),
+        ("{ file = \"log.csv\", columns = { joint_3 = \"A3\" } }", "no column `t_s`"),
+        ("{ file = \"log.csv\", period_ms = 100 }", "joint_3"),
+    ] {
+        let answer = run(trajectory).expect(2);
+        assert!(answer.stderr.contains(expected), "{trajectory}: {}", answer.stderr);
+    }
+    // The message about a plain file says which name differs in capitals.
+    std::fs::write(dir.path().join("plain.csv"), "t_s,Joint_1,joint_2,joint_3\n0,0,0,0\n").unwrap();
+    assert!(run("\"plain.csv\"").expect(2).stderr.contains("`Joint_1` differs in capitals"));
+}

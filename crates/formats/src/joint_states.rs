@@ -383,7 +383,11 @@ impl Header {
                 None => missing[joint.robot].push(joints.shown(joint)),
             }
         }
-        let no_column = |of: &str| wrong(format!("has no column `{of}`; its columns are {}", names.join(", ")));
+        let no_column = |of: &str| {
+            let similar = names.iter().find(|name| name.eq_ignore_ascii_case(of.split('`').next().unwrap_or(of)));
+            let similar = similar.map_or_else(String::new, |name| format!("; `{name}` differs in capitals"));
+            wrong(format!("has no column `{of}`; its columns are {}{similar}", names.join(", ")))
+        };
         for (robot, missing) in joints.options.robots.iter().zip(&missing) {
             if missing.len() == robot.chain.dof() && robot.default_q.is_some() {
                 let what = format!("has no column for robot `{}`, which stays at its start", robot.name);

@@ -60,6 +60,7 @@ pub mod png;
 pub mod pnm;
 mod polygon;
 pub mod problem_set;
+pub mod recording;
 mod resolve;
 pub mod robot;
 pub mod srdf;

@@ -80,3 +80,26 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
     let disabled = disabled.into_iter().map(|(node, pair)| DisabledPair { line: line(node), ..pair }).collect();
     Ok(Srdf { robot: root.attribute("name").map(str::to_owned), disabled, warnings: warnings.finish(file) })
 }
+
+/// The text of an SRDF that disables pairs of links, each with its reason; comments follow.
+///
+/// ```
+/// use elbowroom_formats::srdf;
+/// let text = srdf::text("arm", [["a", "b", "Adjacent"]], &["c and d are still tested".to_owned()]);
+/// assert_eq!(srdf::parse(text.as_bytes(), "arm.srdf".as_ref())?.disabled[0].link2, "b");
+/// assert!(text.contains("<!-- c and d are still tested -->"));
+/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// ```
+pub fn text<'p>(robot: &str, pairs: impl IntoIterator<Item = [&'p str; 3]>, comments: &[String]) -> String {
+    let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", xml::escaped(robot));
+    for [link1, link2, reason] in pairs {
+        let [link1, link2, reason] = [link1, link2, reason].map(xml::escaped);
+        out.push_str(&format!("  <disable_collisions link1=\"{link1}\" link2=\"{link2}\" reason=\"{reason}\"/>\n"));
+    }
+    for comment in comments {
+        // Two hyphens would end the comment.
+        out.push_str(&format!("  <!-- {} -->\n", comment.replace("--", "- -")));
+    }
+    out.push_str("</robot>\n");
+    out
+}

@@ -85,3 +85,8 @@ pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
         (Some(first), Some(second)) => [first, second].into_iter().chain(pieces).collect::<Vec<_>>().join(" ").into(),
     }
 }
+
+/// A text as the value of an attribute.
+pub(crate) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

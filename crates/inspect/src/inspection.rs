@@ -243,6 +243,12 @@ impl Inspection {
         }
     }
 
+    /// The text of an SRDF for the robot: what need not be tested, with reasons; `None` for a mesh, and without
+    /// [`pairs`](Self::pairs).
+    pub fn srdf(&self) -> Option<String> {
+        (self.robot.is_some() && !self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs))
+    }
+
     /// The robot, where the model is one.
     pub fn robot(&self) -> Option<&Robot> {
         self.robot.as_ref()

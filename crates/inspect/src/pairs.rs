@@ -102,6 +102,26 @@ impl From<&Reason> for ReasonKind {
     }
 }
 
+/// The SRDF that a robot should have, as MoveIt's Setup Assistant writes it: pairs that are adjacent, proven to be out of reach of
+/// each other, or in contact in all samples are disabled, and those of the present SRDF. Pairs that touch at rest, or in no
+/// sample, are comments: whether to disable them is for a person to decide.
+pub(super) fn srdf(robot: &str, pairs: &[PairRow]) -> String {
+    let reason = |row: &PairRow| match (row.kind, row.always) {
+        (ReasonKind::Adjacent | ReasonKind::NoJointBetween, _) => Some("Adjacent"),
+        (ReasonKind::OutOfReach, _) => Some("Never"),
+        (ReasonKind::Srdf, _) => Some("User"),
+        (ReasonKind::NotExcluded | ReasonKind::TouchesAtRest, true) => Some("Default"),
+        _ => None,
+    };
+    let disabled = pairs.iter().filter_map(|row| Some([&row.a[..], &row.b, reason(row)?]));
+    let open = pairs.iter().filter(|row| reason(row).is_none());
+    let comment = |row: &PairRow| {
+        let suggestion = row.suggestion.as_ref()?;
+        Some(format!("{} and {}: {suggestion}; tested", row.a, row.b))
+    };
+    elbowroom_formats::srdf::text(robot, disabled, &open.filter_map(comment).collect::<Vec<_>>())
+}
+
 /// Number of sampled states.
 const SAMPLES: u64 = 1000;
 

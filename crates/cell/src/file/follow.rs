@@ -8,9 +8,9 @@ use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Pose;
 
 use super::definitions::{Definitions, encoder_index, robot_id};
+use super::flange::unknown_link;
 use super::poses;
 use super::read::{Table, Value};
-use super::robot::unknown_link;
 use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;

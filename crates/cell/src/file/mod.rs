@@ -4,6 +4,7 @@ mod avoidance;
 mod camera;
 mod definitions;
 mod document;
+mod flange;
 mod follow;
 mod guarding;
 mod models;

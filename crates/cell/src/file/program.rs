@@ -1,7 +1,9 @@
 //! `[program.NAME]`: steps or a recorded trajectory.
 
+use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
 use elbowroom_monitor::Life;
+use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::models;
 use super::read::{Table, Value};
@@ -137,10 +139,53 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
 }
 
 fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {
-    let options = JointStateOptions::trajectory(&robot.name, &robot.robot.chain);
-    let states = JointStates::read(&models::path(v)?, &options)?;
+    let chain = &robot.robot.chain;
+    let (states, offset_s) = if v.is_table() {
+        let t = v.table(RECORDING)?;
+        t.only(&["file", "angle", "length", "time", "time_unit", "period_ms", "columns", "offset"])?;
+        let layout = recording_layout(&t, robot)?;
+        let offset_s = t.get("offset").map_or(Ok(0.0), |v| v.not_negative())?;
+        (recording::read(&models::path(&t.need("file", RECORDING)?)?, &robot.name, chain, &layout)?, offset_s)
+    } else {
+        (JointStates::read(&models::path(v)?, &JointStateOptions::trajectory(&robot.name, chain))?, 0.0)
+    };
+    let first_s = states.times_s().first().copied().unwrap_or(0.0);
     let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, 0).to_vec() };
-    let rows = states.times_s().iter().enumerate().map(row).collect();
+    let mut rows: Vec<TrajectoryRow> = states.times_s().iter().enumerate().map(row).collect();
+    if offset_s > 0.0 {
+        // It rests at its first row for that long.
+        rows.insert(0, TrajectoryRow { t_s: first_s - offset_s, q: states.q(0, 0).to_vec() });
+    }
     warnings.extend(states.warnings);
     Ok(rows)
+}
+
+const RECORDING: &str = "trajectory = { file = \"log.csv\", angle = \"deg\", period_ms = 4 }";
+
+/// How the file of a recording is written.
+fn recording_layout(t: &Table<'_>, robot: &CellRobot) -> Result<RecordingLayout> {
+    let angle = t
+        .get("angle")
+        .map_or(Ok(AngleUnit::Radian), |v| v.word(&[("rad", AngleUnit::Radian), ("deg", AngleUnit::Degree)]))?;
+    let (time, period) = (t.get("time"), t.get("period_ms"));
+    if let (Some(_), Some(period)) = (&time, &period) {
+        return Err(period.error("contradicts `time`").hint("one of the two: time = \"COLUMN\" or period_ms = 4"));
+    }
+    let time_unit_s = t.get("time_unit").map(|v| v.word(&[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])).transpose()?;
+    Ok(RecordingLayout {
+        angle,
+        length: t.get("length").map_or(Ok(LengthUnit::Metre), |v| models::mesh_unit(&v))?,
+        time: time.map(|v| v.text().map(str::to_owned)).transpose()?,
+        time_unit_s,
+        period_s: period.map(|v| v.positive().map(|ms| ms / 1000.0)).transpose()?,
+        columns: t.get("columns").map_or(Ok(Vec::new()), |v| columns(&v, robot))?,
+    })
+}
+
+/// Joints and their columns: `columns = { joint_1 = "A1" }`.
+fn columns(v: &Value<'_>, robot: &CellRobot) -> Result<Vec<(String, String)>> {
+    let names = robot.joint_names();
+    let t = v.table("columns = { joint_1 = \"A1\" }")?;
+    t.only(&names.iter().map(String::as_str).collect::<Vec<_>>())?;
+    t.each().map(|(joint, column)| Ok((joint.to_owned(), column.text()?.to_owned()))).collect()
 }

@@ -2,14 +2,14 @@
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+use elbowroom_kinematics::{Chain, Joint, JointKind, Limits};
 use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
-use super::models;
 use super::read::{Table, Value};
+use super::{flange, models};
 use crate::{CellRobot, JointLimits, Units, rest_pose_contacts, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -68,7 +68,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
-    let flange = flange(t, &robot.chain)?;
+    let flange = flange::read(name, t, &robot.chain, warnings)?;
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
     let load = t.get("load").map(|v| solid(&v, units, "load")).transpose()?;
@@ -269,18 +269,6 @@ fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
         (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, &t, units)?))),
         (None, None) => Ok((tcp, None)),
     }
-}
-
-fn flange(t: &Table<'_>, chain: &Chain) -> Result<LinkId> {
-    let Some(v) = t.get("flange") else { return Ok(chain.tip()) };
-    let name = v.text()?;
-    chain.link(name).ok_or_else(|| unknown_link(&v, name, chain))
-}
-
-/// The error for an unknown link, with the links of the chain.
-pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> FormatError {
-    let hint = suggest::hint(name, chain.links().iter().map(String::as_str));
-    v.error(format!("names the link \"{name}\", which robot \"{}\" does not have", chain.name())).hint(hint)
 }
 
 /// Named configurations: `home = [0, -20, 90, 0, 40, 0]`.

@@ -9,6 +9,7 @@ use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::mesh_data::MeshData;
+use crate::xml::escaped;
 use crate::{FormatError, stl};
 
 /// Replaces the limit of an unlimited prismatic joint (m), which a URDF requires.
@@ -242,21 +243,6 @@ fn srdf(robot: &Robot, name: &str) -> Option<String> {
         return None;
     }
     let links = robot.chain.links();
-    let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name));
-    for (a, b, reason) in &robot.disabled_pairs {
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            out,
-            "  <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"{}\"/>",
-            escaped(&links[a.0]),
-            escaped(&links[b.0]),
-            escaped(reason)
-        );
-    }
-    out.push_str("</robot>\n");
-    Some(out)
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let pairs = robot.disabled_pairs.iter().map(|(a, b, reason)| [&links[a.0][..], &links[b.0], reason]);
+    Some(crate::srdf::text(name, pairs, &[]))
 }
