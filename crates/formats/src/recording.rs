@@ -2,6 +2,7 @@
 //! [`read`] makes the joint states of this project of them.
 
 use std::borrow::Cow;
+use std::fmt::Write;
 use std::path::Path;
 
 use elbowroom_kinematics::{Chain, JointKind};
@@ -152,8 +153,13 @@ impl<'t> Translation<'t> {
                 continue;
             }
             if let Some(period_s) = self.period_s {
-                out.push_str(&if is_header { "t_s,".to_owned() } else { format!("{:?},", f64::from(row) * period_s) });
-                row += u32::from(!is_header);
+                if is_header {
+                    out.push_str("t_s,");
+                } else {
+                    // Writing to a String cannot fail.
+                    let _ = write!(out, "{:?},", f64::from(row) * period_s);
+                    row += 1;
+                }
             }
             if is_header {
                 out.push_str(&self.names.join(","));

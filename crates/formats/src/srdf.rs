@@ -1,5 +1,6 @@
 //! SRDF: the link pairs that are not tested. Groups, states and end effectors are ignored.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use roxmltree::Node;
@@ -94,11 +95,12 @@ pub fn text<'p>(robot: &str, pairs: impl IntoIterator<Item = [&'p str; 3]>, comm
     let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", xml::escaped(robot));
     for [link1, link2, reason] in pairs {
         let [link1, link2, reason] = [link1, link2, reason].map(xml::escaped);
-        out.push_str(&format!("  <disable_collisions link1=\"{link1}\" link2=\"{link2}\" reason=\"{reason}\"/>\n"));
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "  <disable_collisions link1=\"{link1}\" link2=\"{link2}\" reason=\"{reason}\"/>");
     }
     for comment in comments {
         // Two hyphens would end the comment.
-        out.push_str(&format!("  <!-- {} -->\n", comment.replace("--", "- -")));
+        let _ = writeln!(out, "  <!-- {} -->", comment.replace("--", "- -"));
     }
     out.push_str("</robot>\n");
     out
