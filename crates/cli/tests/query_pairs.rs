@@ -135,3 +135,33 @@ fn wrong_names_and_contradictions_are_refused_with_what_to_write() {
     let answer = query(&["--ask", "collision", "--all-pairs", "1"]).expect(2);
     assert!(answer.stderr.contains("--ask distance"), "{}", answer.stderr);
 }
+
+#[test]
+fn quaternions_stand_wherever_rpy_does() {
+    let turned = |by: &str| {
+        let cell = CELL
+            .replace(
+                "shape = \"sphere\"\nat = [0, 1000, 0]\nradius = 100\n",
+                &format!("shape = \"box\"\nat = [0, 1000, 0]\nsize = [100, 600, 100]\n{by}\n"),
+            )
+            .replace(
+                "rpy = [0, 0, 180]",
+                if by.starts_with('q') { "quaternion = [0, 0, 1, 0]" } else { "rpy = [0, 0, 180]" },
+            );
+        let dir = with_cell(&cell);
+        elbowroom(dir.path(), &["query", "cell.toml", "--ask", "distance", "--between", "left,ball;right,ball"])
+    };
+    let (angles, quaternion) = (
+        rows(&turned("rpy = [0, 0, 90]").expect(0)),
+        rows(&turned("quaternion = [0, 0, 0.70710678, 0.70710678]").expect(0)),
+    );
+    assert!((angles[0].0 - quaternion[0].0).abs() < 1e-9 && angles[0].0 > 0.5, "{angles:?} {quaternion:?}");
+    for (by, expected) in [
+        ("quaternion = [0, 0, 1]", "needs 4 numbers, not 3"),
+        ("quaternion = [0, 0, 1, 1]", "has the length 1.4"),
+        ("quaternion = [0, 0, 0, 1]\nrpy = [0, 0, 0]", "contradicts `rpy`"),
+    ] {
+        let message = turned(by).expect(2).stderr;
+        assert!(message.contains(expected) && message.contains("cell.toml:"), "{by}: {message}");
+    }
+}

@@ -11,7 +11,7 @@ use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-const COMMON: &[&str] = &["shape", "at", "rpy", "follow", "motion"];
+const COMMON: &[&str] = &["shape", "at", "rpy", "quaternion", "follow", "motion"];
 const MOTION: &str = "motion = { via = [[2000, 1000, 100]], speed = 500 }";
 /// Corners closer than this (m) are one point.
 const ONE_POINT_M: f64 = 1e-9;

@@ -17,6 +17,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 const COMMON: &[&str] = &[
     "shape",
     "rpy",
+    "quaternion",
     "kind",
     "life",
     "warning",
@@ -118,7 +119,7 @@ fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     let words: Vec<_> = SHAPES.iter().map(|s| (s.0, *s)).collect();
     let (shape, own_keys) = shape.word(&words)?;
     t.only(&[COMMON, own_keys].concat())?;
-    let rotation = units.rotation(t.get("rpy"))?;
+    let rotation = units.rotation(t)?;
     let point = |key: &str| units.point(&t.need(key, &format!("{key} = [900, 0, 0]"))?);
     let radius = || units.positive_length(&t.need("radius", "radius = 150")?);
     let height = || units.positive_length(&t.need("height", "height = 1200")?);
@@ -157,7 +158,7 @@ fn hull(t: &Table<'_>, solid: &Shape) -> Result<Shape> {
 }
 
 fn cuboid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
-    let rotation = units.rotation(t.get("rpy"))?;
+    let rotation = units.rotation(t)?;
     if t.get("base").is_some() || t.get("size").is_some() {
         if let Some(v) = t.get("from").or_else(|| t.get("to")) {
             return Err(v.error("contradicts `base` and `size`").hint("either from and to, or base and size"));

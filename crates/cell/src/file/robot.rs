@@ -245,18 +245,22 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
     }
     let t = inner.table("{ at = [0, 0, 0], … }")?;
     match kind {
-        "box" => t.only(&["at", "rpy", "size"]).and_then(|()| units.cuboid(&t)),
-        "sphere" => t.only(&["at", "rpy", "radius"]).and_then(|()| units.sphere(&t)),
-        "cylinder" => t.only(&["at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t)),
-        "capsule" => t.only(&["at", "rpy", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t)),
-        _ => t.only(&["at", "rpy", "file", "mesh_unit"]).and_then(|()| units.mesh(&t, "file")),
+        "box" => t.only(&["at", "rpy", "quaternion", "size"]).and_then(|()| units.cuboid(&t)),
+        "sphere" => t.only(&["at", "rpy", "quaternion", "radius"]).and_then(|()| units.sphere(&t)),
+        "cylinder" => {
+            t.only(&["at", "rpy", "quaternion", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t))
+        }
+        "capsule" => {
+            t.only(&["at", "rpy", "quaternion", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t))
+        }
+        _ => t.only(&["at", "rpy", "quaternion", "file", "mesh_unit"]).and_then(|()| units.mesh(&t, "file")),
     }
 }
 
 fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
-    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy"])?;
-    if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "mesh_unit"].iter().find_map(|k| t.get(k))) {
+    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "quaternion"])?;
+    if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "quaternion", "mesh_unit"].iter().find_map(|k| t.get(k))) {
         return Err(v
             .error("places the tool's mesh, but there is none")
             .hint("box = { at = [0, 0, 125], size = [80, 80, 250] }"));

@@ -75,23 +75,41 @@ impl Units {
         Err(v.error("must be three lengths above 0").hint("size = [600, 400, 700]"))
     }
 
-    pub(super) fn rotation(self, v: Option<Value<'_>>) -> Result<Rotation> {
-        let Some(v) = v else { return Ok(Rotation::IDENTITY) };
-        let a = v.three()?;
-        let rad = |x| self.angle.to_radians(x);
-        Ok(Rotation::from_rpy(rad(a.x), rad(a.y), rad(a.z)))
+    /// From `rpy`, or from the quaternion x, y, z, w of `quaternion`; no rotation where both are missing.
+    pub(super) fn rotation(self, t: &Table<'_>) -> Result<Rotation> {
+        const EXAMPLE: &str = "quaternion = [0, 0, 0, 1]   (x, y, z, w)";
+        match (t.get("rpy"), t.get("quaternion")) {
+            (None, None) => Ok(Rotation::IDENTITY),
+            (Some(v), None) => {
+                let angles = v.three()?;
+                let rad = |x| self.angle.to_radians(x);
+                Ok(Rotation::from_rpy(rad(angles.x), rad(angles.y), rad(angles.z)))
+            }
+            (None, Some(v)) => {
+                let numbers = v.numbers(EXAMPLE)?;
+                let four = <[f64; 4]>::try_from(&numbers[..]);
+                let four =
+                    four.map_err(|_| v.error(format!("needs 4 numbers, not {}", numbers.len())).hint(EXAMPLE))?;
+                let length = four.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if (length - 1.0).abs() > QUATERNION_TOLERANCE {
+                    return Err(v.error(format!("has the length {length}, and a rotation has 1")).hint(EXAMPLE));
+                }
+                Rotation::from_quaternion_xyzw(four).ok_or_else(|| v.error("is no rotation").hint(EXAMPLE))
+            }
+            (Some(_), Some(v)) => Err(v.error("contradicts `rpy`").hint("one of the two: rpy or quaternion")),
+        }
     }
 
-    /// From the keys `at` and `rpy`, zero where missing.
+    /// From the keys `at` and `rpy` (or `quaternion`), zero where missing.
     pub(super) fn place(self, t: &Table<'_>) -> Result<Pose> {
         let at = t.get("at").map_or(Ok(Vec3::ZERO), |v| self.point(&v))?;
-        Ok(Pose::new(self.rotation(t.get("rpy"))?, at))
+        Ok(Pose::new(self.rotation(t)?, at))
     }
 
     /// `{ at = […], rpy = […] }`.
     pub(super) fn pose(self, v: &Value<'_>) -> Result<Pose> {
         let t = v.table("{ at = [0, 0, 0], rpy = [0, 0, 0] }")?;
-        t.only(&["at", "rpy"])?;
+        t.only(&["at", "rpy", "quaternion"])?;
         self.place(&t)
     }
 
@@ -104,7 +122,7 @@ impl Units {
         }
         let from = self.point(&t.need("from", "from = [0, 0, 0]")?)?;
         let to = self.point(&t.need("to", "to = [0, 0, 400]")?)?;
-        if let Some(extra) = ["at", "rpy", "height"].iter().find_map(|k| t.get(k)) {
+        if let Some(extra) = ["at", "rpy", "quaternion", "height"].iter().find_map(|k| t.get(k)) {
             return Err(extra.error("contradicts `from` and `to`").hint("either from and to, or at, rpy and height"));
         }
         let axis = to - from;
@@ -148,6 +166,9 @@ impl Units {
         self.positive_length(&t.need("radius", "radius = 150")?)
     }
 }
+
+/// Quaternions in files have few decimals.
+const QUATERNION_TOLERANCE: f64 = 1e-3;
 
 /// Up to six decimals, without trailing zeros.
 fn trim(v: f64) -> String {
