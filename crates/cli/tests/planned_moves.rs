@@ -151,3 +151,13 @@ fn recordings_of_controllers_play_as_they_are() {
     std::fs::write(dir.path().join("plain.csv"), "t_s,Joint_1,joint_2,joint_3\n0,0,0,0\n").unwrap();
     assert!(run("\"plain.csv\"").expect(2).stderr.contains("`Joint_1` differs in capitals"));
 }
+
+#[test]
+fn a_start_in_which_own_links_touch_shows_the_key_that_ignores_them() {
+    let cell = CELL
+        .replace("links = [[], ", "links = [{ sphere = { at = [0, 0, 0], radius = 120 } }, ")
+        .replace("radius = 40 } }, []]", "radius = 40 } }, { sphere = { at = [-100, 0, 0], radius = 230 } }]");
+    let dir = with_cell(&cell);
+    let refused = elbowroom(dir.path(), &["plan", "cell.toml", "--to", "left"]).expect(2);
+    assert!(refused.stderr.contains("ignore = [[\"link_1\", \"link_3\"]] in [robot.arm]"), "{}", refused.stderr);
+}

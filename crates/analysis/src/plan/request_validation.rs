@@ -99,9 +99,20 @@ pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError)
             } else {
                 "are in collision".into()
             };
-            error(format!("{}: `{a}` and `{b}` {near}", of(end))).hint(format!(
+            let apart = format!(
                 "joint values at which they are apart (`elbowroom query` computes the distance): another {end}"
-            ))
+            );
+            let own = |name: &str| name.strip_prefix(&robot.name)?.strip_prefix('/').map(str::to_owned);
+            let hint = match (own(a), own(b)) {
+                (Some(a), Some(b)) => {
+                    format!(
+                        "{apart}; or, if they always touch: ignore = [[\"{a}\", \"{b}\"]] in [robot.{}]",
+                        robot.name
+                    )
+                }
+                _ => apart,
+            };
+            error(format!("{}: `{a}` and `{b}` {near}", of(end))).hint(hint)
         }
         RrtConnectError::ConstraintViolated { end, what, .. } => {
             let no_exit = if *end == PathEnd::Start { ", and no straight path out of it was found" } else { "" };
