@@ -145,7 +145,7 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
     let kr125 = std::fs::read_to_string(dir.path().join("kr125.srdf")).unwrap();
     assert!(kr125.contains("reason=\"Adjacent\""), "{kr125}");
     let query = ["query", "--urdf", "ball.urdf", "--srdf", "new.srdf", "--ask", "collision"];
-    assert_eq!(elbowroom(dir.path(), &query).expect(0).stderr, "");
+    assert!(!elbowroom(dir.path(), &query).expect(0).stderr.contains("touch"));
     // What it says of the present SRDF remains.
     let again = ["inspect", "grip.urdf", "--srdf", "grip.srdf", "--write-srdf", "again.srdf"];
     elbowroom(dir.path(), &again).expect(0);

@@ -138,7 +138,7 @@ fn recordings_of_controllers_play_as_they_are() {
     );
     for (trajectory, expected) in [
         ("{ angle = \"deg\" }", "needs the key `file`"),
-        ("{ file = \"log.csv\", angle = \"grad\" }", "\"deg\""),
+        ("{ file = \"log.csv\", angle = \"grad\" }", "known are: rad, deg"),
         ("{ file = \"log.csv\", time = \"t\", period_ms = 4 }", "one of the two"),
         ("{ file = \"log.csv\", period_ms = 4, columns = { joint_9 = \"A3\" } }", "joint_9"),
         ("{ file = \"log.csv\", columns = { joint_3 = \"A3\" } }", "no column `t_s`"),
