@@ -161,3 +161,20 @@ fn a_start_in_which_own_links_touch_shows_the_key_that_ignores_them() {
     let refused = elbowroom(dir.path(), &["plan", "cell.toml", "--to", "left"]).expect(2);
     assert!(refused.stderr.contains("ignore = [[\"link_1\", \"link_3\"]] in [robot.arm]"), "{}", refused.stderr);
 }
+
+#[test]
+fn states_of_an_srdf_are_states_of_the_robot() {
+    let dir = with_cell(&CELL.replace("states = {", "srdf = \"arm.srdf\"\nstates = {"));
+    let srdf = r#"<robot name="arm">
+<group_state name="folded" group="wrist"><joint name="joint_3" value="2.0"/></group_state>
+<group_state name="folded" group="arm"><joint name="joint_1" value="-1.0"/><joint name="joint_2" value="0.5"/></group_state>
+<group_state name="left" group="arm"><joint name="joint_1" value="0"/></group_state>
+<group_state name="open" group="hand"><joint name="finger" value="1"/></group_state></robot>"#;
+    std::fs::write(dir.path().join("arm.srdf"), srdf).unwrap();
+    let to = |name: &str| elbowroom(dir.path(), &["plan", "cell.toml", "--to", name, "--json"]);
+    assert_eq!(last(&to("folded").expect(0)), [-1.0, 0.5, 0.0], "the state with more joints, others at the start");
+    assert!((last(&to("left").expect(0))[0] - 60.0_f64.to_radians()).abs() < 1e-9, "the cell's own state counts");
+    assert!(to("open").expect(2).stderr.contains("no state"));
+    std::fs::write(dir.path().join("arm.srdf"), srdf.replace(" value=\"2.0\"", "")).unwrap();
+    assert!(to("folded").expect(0).stderr.contains("<joint> has no value: ignored"));
+}

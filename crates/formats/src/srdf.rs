@@ -1,4 +1,4 @@
-//! SRDF: the link pairs that are not tested. Groups, states and end effectors are ignored.
+//! SRDF: the link pairs that are not tested, and named states. Groups and end effectors are ignored.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -16,8 +16,21 @@ pub struct Srdf {
     pub robot: Option<String>,
     /// In the file's order.
     pub disabled: Vec<DisabledPair>,
+    /// Named states of groups, in the file's order.
+    pub states: Vec<GroupState>,
     /// What the user should know.
     pub warnings: Vec<Warning>,
+}
+
+/// One `<group_state>`: values of the joints of a group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupState {
+    /// Its name. States of several groups may share one.
+    pub name: String,
+    /// The group.
+    pub group: String,
+    /// Joints and their values, rad or m.
+    pub values: Vec<(String, f64)>,
 }
 
 /// One `<disable_collisions>`.
@@ -76,10 +89,33 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
         let reason = node.attribute("reason").unwrap_or_default().to_owned();
         disabled.push((node, DisabledPair { link1: link("link1")?, link2: link("link2")?, reason, line: 0 }));
     }
+    let states = xml::children(root, "group_state").filter_map(|node| group_state(node, file, &mut warnings)).collect();
     let lines = LineIndex::new(&text);
     let line = |node: Node<'_, '_>| lines.line_at(node.range().start);
     let disabled = disabled.into_iter().map(|(node, pair)| DisabledPair { line: line(node), ..pair }).collect();
-    Ok(Srdf { robot: root.attribute("name").map(str::to_owned), disabled, warnings: warnings.finish(file) })
+    Ok(Srdf { robot: root.attribute("name").map(str::to_owned), disabled, states, warnings: warnings.finish(file) })
+}
+
+/// A named state; what of it is incomplete is left out, with a warning.
+fn group_state(node: Node<'_, '_>, file: &Path, warnings: &mut WarningList) -> Option<GroupState> {
+    const EXAMPLE: &str =
+        "<group_state name=\"home\" group=\"arm\"><joint name=\"joint_1\" value=\"0\"/></group_state>";
+    let mut attribute = |node: Node<'_, '_>, name: &str| {
+        let found = node.attribute(name).map(|text| text.trim().to_owned());
+        if found.is_none() {
+            let what = || format!("<{}> has no {name}: ignored", node.tag_name().name());
+            warnings.push_with(|| Warning::new(file, xml::line(node), what()).hint(EXAMPLE));
+        }
+        found
+    };
+    let name = attribute(node, "name")?;
+    let mut values = Vec::new();
+    for joint in xml::children(node, "joint") {
+        let (Some(joint_name), Some(text)) = (attribute(joint, "name"), attribute(joint, "value")) else { continue };
+        // Joints of several values, such as planar ones, are none of a chain.
+        values.extend(text.parse::<f64>().ok().filter(|v| v.is_finite()).map(|value| (joint_name, value)));
+    }
+    Some(GroupState { name, group: node.attribute("group").unwrap_or_default().to_owned(), values })
 }
 
 /// The text of an SRDF that disables pairs of links, each with its reason; comments follow.

@@ -2,14 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
+use elbowroom_formats::srdf::{self as srdf_file, GroupState};
 use elbowroom_formats::{
-    FormatError, LoadOptions, MeshData, NumberTable, Warning, mesh as mesh_file, robot as robot_file,
+    FormatError, LoadOptions, MeshData, NumberTable, Warning, mesh as mesh_file, read_file, robot as robot_file,
 };
+use elbowroom_kinematics::Chain;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::units::LengthUnit;
 
 use super::read::{Table, Value};
+
+/// Largest SRDF, bytes.
+const MAX_SRDF_BYTES: u64 = 64 << 20;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -56,6 +61,30 @@ pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -
 pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Warning>) -> Result<()> {
     warnings.extend(robot_file::apply_srdf(robot, &path(v)?)?);
     Ok(())
+}
+
+/// The named states of the file of `srdf`; joints that a state does not mention are where the robot starts. Of states of one name
+/// the one with the most joints counts.
+pub(super) fn srdf_states(v: &Value<'_>, chain: &Chain, start: &[f64]) -> Result<Vec<(String, Vec<f64>)>> {
+    let file = path(v)?;
+    let parsed = srdf_file::parse(&read_file(&file, MAX_SRDF_BYTES, "an SRDF of one robot")?, &file)?;
+    let index = |joint: &str| chain.q_index(chain.joint(joint)?);
+    let known = |state: &GroupState| state.values.iter().filter(|(joint, _)| index(joint).is_some()).count();
+    let mut states: Vec<(String, usize, Vec<f64>)> = Vec::new();
+    for state in parsed.states.iter().filter(|state| known(state) > 0) {
+        let mut q = start.to_vec();
+        for (joint, value) in &state.values {
+            if let Some(i) = index(joint) {
+                q[i] = *value;
+            }
+        }
+        match states.iter_mut().find(|(name, ..)| *name == state.name) {
+            Some(other) if other.1 < known(state) => *other = (state.name.clone(), known(state), q),
+            Some(_) => {}
+            None => states.push((state.name.clone(), known(state), q)),
+        }
+    }
+    Ok(states.into_iter().map(|(name, _, q)| (name, q)).collect())
 }
 
 pub(super) fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {

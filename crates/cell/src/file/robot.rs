@@ -75,6 +75,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     robot.colliders[flange.0].extend(tool.iter().chain(&load).cloned());
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
+    let states = states(t, &robot.chain, &start, units)?;
     warnings.extend(
         rest_pose_contacts::warnings(&robot, &start, Some(name))
             .map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
@@ -92,7 +93,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
         load,
         start,
         start_given: t.get("start").is_some(),
-        states: t.get("states").map_or(Ok(Vec::new()), |v| states(&v, &robot.chain, units))?,
+        states,
         volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
         limits,
         robot,
@@ -275,10 +276,23 @@ fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     }
 }
 
-/// Named configurations: `home = [0, -20, 90, 0, 40, 0]`.
-fn states(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<(String, Vec<f64>)>> {
-    let t = v.table("states = { home = [0, -20, 90, 0, 40, 0] }")?;
-    t.each().map(|(name, v)| Ok((name.to_owned(), joint_values(&v, chain, units)?))).collect()
+/// Named configurations: `home = [0, -20, 90, 0, 40, 0]`, and those of the SRDF that have other names.
+fn states(t: &Table<'_>, chain: &Chain, start: &[f64], units: Units) -> Result<Vec<(String, Vec<f64>)>> {
+    let mut states: Vec<(String, Vec<f64>)> = Vec::new();
+    if let Some(v) = t.get("states") {
+        let named = v.table("states = { home = [0, -20, 90, 0, 40, 0] }")?;
+        for (name, v) in named.each() {
+            states.push((name.to_owned(), joint_values(&v, chain, units)?));
+        }
+    }
+    if let Some(v) = t.get("srdf") {
+        for (name, q) in models::srdf_states(&v, chain, start)? {
+            if !states.iter().any(|(known, _)| *known == name) {
+                states.push((name, q));
+            }
+        }
+    }
+    Ok(states)
 }
 
 fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
