@@ -1,5 +1,7 @@
 //! The times at which geometry begins to touch during a simulation.
 
+mod carried_objects;
+
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::motion_bound::motion_bound;
 use elbowroom_proximity::ccd::RigidMotion;
@@ -8,6 +10,7 @@ use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::Object;
+use carried_objects::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
 ///
@@ -30,6 +33,8 @@ pub struct FirstContacts<'a> {
     /// Joint values at the last call; empty before the first.
     last: Vec<Vec<f64>>,
     pairs: Vec<TrackedPair>,
+    /// Per object, how a robot carries it.
+    held: Vec<Option<HeldObject>>,
 }
 
 /// A pair that touches for the first time.
@@ -70,8 +75,10 @@ struct TrackedPair {
     touched: bool,
     /// No collider lies between the two: they may be designed to overlap.
     joined: bool,
-    /// In contact since the first call.
+    /// In contact since the first call, or since an object of the pair was attached or detached.
     resting: bool,
+    /// For a resting pair with a carried object: from which penetration depth on its contact counts, m.
+    allowed_depth: Option<f64>,
 }
 
 #[derive(Debug)]
@@ -101,10 +108,11 @@ impl<'a> FirstContacts<'a> {
         let boxes =
             robots.iter().map(|(r, _)| r.colliders.iter().map(|l| l.iter().map(local).collect()).collect()).collect();
         let list = collision_pairs(&robots.iter().map(|r| r.0).collect::<Vec<_>>(), objects.len());
-        let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, a, b)).collect();
+        let held = vec![None; objects.len()];
+        let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, &held, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&Pose::IDENTITY)).collect();
         let placed = objects.iter().map(|o| (o.in_world, o.shape.aabb(&o.in_world))).collect();
-        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs }
+        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs, held }
     }
 
     /// Declares which objects move by themselves: stationary links can meet those too.
@@ -114,7 +122,7 @@ impl<'a> FirstContacts<'a> {
             for (r, (robot, _)) in self.robots.iter().enumerate() {
                 for link in robot.links_with_colliders().filter(|l| !robot.chain.is_movable(*l)) {
                     let link = GeometryId::Link { robot: RobotId(r), link };
-                    self.pairs.push(TrackedPair::new(&self.robots, link, GeometryId::Object(o)));
+                    self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, GeometryId::Object(o)));
                 }
             }
             let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.max_distance(Vec3::ZERO));
@@ -148,9 +156,10 @@ impl<'a> FirstContacts<'a> {
             let pose = s.path.pose(1.0);
             self.placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
-        let Self { robots, objects, boxes, object_boxes, placed, last, pairs } = self;
+        self.place_held(states);
+        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
-        let interval = Interval { now: &now, object_boxes, last, moved_objects };
+        let interval = Interval { now: &now, object_boxes, last, moved_objects, held };
         for pair in pairs.iter_mut().filter(|p| !p.touched) {
             let object = pair
                 .moving_object
@@ -164,6 +173,11 @@ impl<'a> FirstContacts<'a> {
                 continue;
             }
             let gap = now.gap(pair.a, pair.b);
+            if gap.is_none() && pair.resting && pair.is_too_deep(&now) {
+                pair.touched = true;
+                found(FirstContact { a: pair.a, b: pair.b, fraction: 1.0 });
+                continue;
+            }
             if pair.resting || (last.is_empty() && pair.joined) {
                 pair.resting = gap.is_none();
                 pair.measured(states, gap);
@@ -175,6 +189,9 @@ impl<'a> FirstContacts<'a> {
                 interval.first_contact(pair, travel, gap)
             };
             pair.measured(states, gap);
+            if first.is_some() && gap.is_none() && pair.is_set_down(held, &now) {
+                continue;
+            }
             if let Some(fraction) = first {
                 pair.touched = true;
                 found(FirstContact { a: pair.a, b: pair.b, fraction });
@@ -188,17 +205,15 @@ impl<'a> FirstContacts<'a> {
 }
 
 impl TrackedPair {
-    fn new(robots: &[(&Robot, Pose)], a: GeometryId, b: GeometryId) -> Self {
+    fn new(robots: &[(&Robot, Pose)], held: &[Option<HeldObject>], a: GeometryId, b: GeometryId) -> Self {
         let side = |id: GeometryId, other: GeometryId| -> Vec<PairJoint> {
-            let GeometryId::Link { robot, link } = id else { return Vec::new() };
+            let Some(Carrier { robot, link, radius }) = Carrier::of(id, robots, held) else { return Vec::new() };
             let model = robots[robot.0].0;
-            let joints = match other {
-                GeometryId::Link { robot: same, link: other } if same == robot => {
-                    model.chain.joints_between(link, other)
-                }
+            let joints = match Carrier::of(other, robots, held) {
+                Some(other) if other.robot == robot => model.chain.joints_between(link, other.link),
                 _ => model.chain.path(link),
             };
-            let bounds = motion_bound(&model.chain, link, model.link_radius(link), &joints);
+            let bounds = motion_bound(&model.chain, link, radius, &joints);
             let joint = |(index, motion_bound)| PairJoint { robot, index, motion_bound, measured_at: 0.0 };
             bounds.into_iter().map(joint).collect()
         };
@@ -211,7 +226,9 @@ impl TrackedPair {
             _ => false,
         };
         let (travel, clear) = (0.0, -1.0);
-        Self { a, b, joints, moving_object: None, travel, clear, touched: false, joined, resting: false }
+        let moving_object = None;
+        let (touched, resting, allowed_depth) = (false, false, None);
+        Self { a, b, joints, moving_object, travel, clear, touched, joined, resting, allowed_depth }
     }
 
     /// Upper bound (m) on the displacement by joints since the last measurement.
@@ -232,6 +249,7 @@ struct Interval<'w, 'a> {
     object_boxes: &'w [Aabb],
     last: &'w [Vec<f64>],
     moved_objects: &'w [MovedObject<'w>],
+    held: &'w [Option<HeldObject>],
 }
 
 /// An instant of an interval at which a pair is apart.
@@ -300,6 +318,11 @@ impl Interval<'_, '_> {
             placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         let states: Vec<&ChainState> = states.iter().collect();
+        for (o, held) in self.held.iter().enumerate() {
+            let Some(held) = held else { continue };
+            let pose = held.in_world(self.now.robots, &states);
+            placed[o] = (pose, self.object_boxes[o].transformed(&pose));
+        }
         PlacedGeometry { states: &states, placed: &placed, ..*self.now }.gap(pair.a, pair.b)
     }
 }

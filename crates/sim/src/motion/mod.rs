@@ -11,9 +11,10 @@ mod clock;
 mod geometry;
 mod line;
 mod plan;
+mod planned_parts;
 mod segment;
 
-pub use clock::{ProgramClock, RegionSwitch};
+pub use clock::{GripAction, ProgramClock, RegionSwitch};
 pub use geometry::Geometry;
 pub use line::TcpLine;
 pub use plan::{PlanStep, ProgramPlan, plan};
