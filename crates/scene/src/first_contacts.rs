@@ -1,16 +1,17 @@
 //! The times at which geometry begins to touch during a simulation.
 
 mod carried_objects;
+mod held_object;
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::motion_bound::motion_bound;
 use elbowroom_proximity::ccd::RigidMotion;
-use elbowroom_proximity::{Shape, collides, separation_within};
+use elbowroom_proximity::{Shape, collides, penetration, separation_within};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::Object;
-use carried_objects::{Carrier, HeldObject};
+use held_object::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
 ///
@@ -98,6 +99,8 @@ const NEAR: f64 = 0.05;
 const MIN_DEPTH: f64 = 1e-5;
 /// and those that do not last longer than this share of the time, so that it ends at any speed.
 const MIN_DURATION: f64 = 1e-3;
+/// A contact that is permitted while a part is lifted off or set down counts from this penetration depth on, m.
+const SET_DOWN_DEPTH: f64 = 1e-3;
 /// Factor on measured distances, for the rounding of sums of motion bounds.
 const ROUNDING: f64 = 0.999;
 
@@ -142,6 +145,14 @@ impl<'a> FirstContacts<'a> {
     /// True where there is no pair.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
+    }
+
+    fn place_held(&mut self, states: &[&ChainState]) {
+        for (o, held) in self.held.iter().enumerate() {
+            let Some(held) = held else { continue };
+            let pose = held.in_world(&self.robots, states);
+            self.placed[o] = (pose, self.object_boxes[o].transformed(&pose));
+        }
     }
 
     /// Calls `found` for each pair that touched since the last call (or, at the first call, touches) and never did before.
@@ -229,6 +240,21 @@ impl TrackedPair {
         let moving_object = None;
         let (touched, resting, allowed_depth) = (false, false, None);
         Self { a, b, joints, moving_object, travel, clear, touched, joined, resting, allowed_depth }
+    }
+
+    /// True where a resting pair is deeper in contact than is permitted.
+    fn is_too_deep(&self, now: &PlacedGeometry<'_, '_>) -> bool {
+        self.allowed_depth.is_some_and(|allowed| !(now.depth(self.a, self.b) <= allowed))
+    }
+
+    /// True where the contact is that of a part with what it is set down on; the pair rests from then on.
+    fn is_set_down(&mut self, held: &[Option<HeldObject>], now: &PlacedGeometry<'_, '_>) -> bool {
+        let (GeometryId::Object(a), GeometryId::Object(b)) = (self.a, self.b) else { return false };
+        let is_set_down = [a, b].iter().any(|o| held[o.0].as_ref().is_some_and(|h| h.set_down));
+        if is_set_down && now.depth(self.a, self.b) <= SET_DOWN_DEPTH {
+            (self.resting, self.allowed_depth) = (true, Some(SET_DOWN_DEPTH));
+        }
+        self.resting
     }
 
     /// Upper bound (m) on the displacement by joints since the last measurement.
@@ -355,6 +381,18 @@ impl<'a> PlacedGeometry<'_, 'a> {
                 (&collider.shape, pose, self.boxes[robot.0][link.0][i].transformed(&pose))
             }
         }
+    }
+
+    /// The largest penetration depth of two geometries in contact, m; of meshes, that of their hulls.
+    fn depth(&self, a: GeometryId, b: GeometryId) -> f64 {
+        let solids = |id| (0..self.shape_count(id)).map(move |i| (id, i));
+        let pairs = solids(a).flat_map(|a| solids(b).map(move |b| (a, b)));
+        let depth = |((a, i), (b, k))| {
+            let ((a, pose_a, _), (b, pose_b, _)): ((&Shape, Pose, _), (&Shape, Pose, _)) =
+                (self.shape(a, i), self.shape(b, k));
+            penetration(a, &pose_a, b, &pose_b).map_or(0.0, |p| p.depth)
+        };
+        pairs.map(depth).fold(0.0, f64::max)
     }
 
     /// A proven lower bound on the distance; `None` on contact.

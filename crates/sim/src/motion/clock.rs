@@ -4,7 +4,7 @@ use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{CellRegionId, JointLimits};
 use elbowroom_robot::ObjectId;
 
-use super::{Geometry, PlanStep, ProgramPlan};
+use super::{Geometry, GripAction, PlanStep, ProgramPlan};
 
 /// Smallest share of the acceleration that remains for speeding up along a curve.
 const RESERVE: f64 = 0.1;
@@ -20,17 +20,6 @@ pub struct RegionSwitch {
     pub region: CellRegionId,
     /// On or off.
     pub active: bool,
-}
-
-/// A program grips or releases an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct GripAction {
-    /// The object.
-    pub object: ObjectId,
-    /// True: grips. False: releases.
-    pub grips: bool,
-    /// Line of the step in the cell file.
-    pub line: usize,
 }
 
 /// Position of a robot in its program.
