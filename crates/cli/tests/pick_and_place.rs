@@ -167,6 +167,21 @@ fn wrong_steps_name_their_line_and_what_to_write() {
 }
 
 #[test]
+fn a_program_that_repeats_grips_the_part_where_it_put_it() {
+    let (down, up, away) = (joint([0.0, 0.0, -270.0]), joint([0.0, 0.0, -100.0]), joint([60.0, 0.0, -100.0]));
+    let repeat = |steps: String| {
+        let dir = with_cell(&format!("{CELL}[program.arm]\nrepeat = 2\nsteps = [\n{steps}\n]\n"));
+        elbowroom(dir.path(), &["run", "cell.toml", "--json"])
+    };
+    let same_place = format!("{down},\n{GRIP}\n{up},\n{away},\n{up},\n{down},\n{RELEASE}\n{up},\n");
+    assert_near(place(&repeat(same_place).expect(0), "part"), [0.7, 0.0, 0.25, 0.0]);
+    let elsewhere = transfer(GRIP, &away, RELEASE).replace("}\n", "},\n");
+    assert!(repeat(elsewhere).expect(2).stderr.contains("639.8 mm"));
+    let kept = format!("{down},\n{GRIP}\n{up},\n");
+    assert!(repeat(kept).expect(2).stderr.contains("which it has gripped already"));
+}
+
+#[test]
 fn what_moves_is_gripped_at_rest_only() {
     let belt = |start: f64| {
         let motion = format!("motion = {{ via = [[700, 5, 250]], speed = 1, start = {start} }}\n");

@@ -73,7 +73,8 @@ pub(crate) fn grip(
     let (hand, part) = (Hand::of(&cell.robots[id.0]), &cell.objects[object.0]);
     let distance_m = hand.distance_m(state, &part.shape, part_in_world);
     if distance_m > MAX_GRIP_DISTANCE_M {
-        let [distance, limit] = [distance_m, MAX_GRIP_DISTANCE_M].map(|m| cell.units.show_length(m));
+        let [distance, limit] =
+            [distance_m, MAX_GRIP_DISTANCE_M].map(|m| cell.units.show_length((m * 1e4).round() / 1e4));
         return Err(format!(
             "grips \"{}\", which is {distance} from the flange, the tool and the TCP: at most {limit} is within grip",
             part.name
