@@ -278,6 +278,10 @@ pub enum StepAction {
         /// On or off.
         active: bool,
     },
+    /// Attaches an object to the flange, where it is.
+    Grip(ObjectId),
+    /// Detaches an object from the flange: it stays where it is.
+    Release(ObjectId),
     /// Waits, s.
     Wait(f64),
     /// Sets the programmed override, 0..1.

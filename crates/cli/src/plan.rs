@@ -35,6 +35,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         },
         period_s: args.period,
         optimize: args.optimize,
+        ..PathRequest::default()
     };
     let answer = plan::plan(&cell, &request)?;
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {

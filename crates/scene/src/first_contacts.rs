@@ -1,13 +1,17 @@
 //! The times at which geometry begins to touch during a simulation.
 
+mod carried_objects;
+mod held_object;
+
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::motion_bound::motion_bound;
 use elbowroom_proximity::ccd::RigidMotion;
-use elbowroom_proximity::{Shape, collides, separation_within};
+use elbowroom_proximity::{Shape, collides, penetration, separation_within};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::Object;
+use held_object::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
 ///
@@ -30,6 +34,8 @@ pub struct FirstContacts<'a> {
     /// Joint values at the last call; empty before the first.
     last: Vec<Vec<f64>>,
     pairs: Vec<TrackedPair>,
+    /// Per object, how a robot carries it.
+    held: Vec<Option<HeldObject>>,
 }
 
 /// A pair that touches for the first time.
@@ -70,8 +76,10 @@ struct TrackedPair {
     touched: bool,
     /// No collider lies between the two: they may be designed to overlap.
     joined: bool,
-    /// In contact since the first call.
+    /// In contact since the first call, or since an object of the pair was attached or detached.
     resting: bool,
+    /// For a resting pair with a carried object: from which penetration depth on its contact counts, m.
+    allowed_depth: Option<f64>,
 }
 
 #[derive(Debug)]
@@ -91,6 +99,8 @@ const NEAR: f64 = 0.05;
 const MIN_DEPTH: f64 = 1e-5;
 /// and those that do not last longer than this share of the time, so that it ends at any speed.
 const MIN_DURATION: f64 = 1e-3;
+/// A contact that is permitted while a part is lifted off or set down counts from this penetration depth on, m.
+const SET_DOWN_DEPTH: f64 = 1e-3;
 /// Factor on measured distances, for the rounding of sums of motion bounds.
 const ROUNDING: f64 = 0.999;
 
@@ -101,10 +111,11 @@ impl<'a> FirstContacts<'a> {
         let boxes =
             robots.iter().map(|(r, _)| r.colliders.iter().map(|l| l.iter().map(local).collect()).collect()).collect();
         let list = collision_pairs(&robots.iter().map(|r| r.0).collect::<Vec<_>>(), objects.len());
-        let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, a, b)).collect();
+        let held = vec![None; objects.len()];
+        let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, &held, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&Pose::IDENTITY)).collect();
         let placed = objects.iter().map(|o| (o.in_world, o.shape.aabb(&o.in_world))).collect();
-        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs }
+        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs, held }
     }
 
     /// Declares which objects move by themselves: stationary links can meet those too.
@@ -114,7 +125,7 @@ impl<'a> FirstContacts<'a> {
             for (r, (robot, _)) in self.robots.iter().enumerate() {
                 for link in robot.links_with_colliders().filter(|l| !robot.chain.is_movable(*l)) {
                     let link = GeometryId::Link { robot: RobotId(r), link };
-                    self.pairs.push(TrackedPair::new(&self.robots, link, GeometryId::Object(o)));
+                    self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, GeometryId::Object(o)));
                 }
             }
             let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.max_distance(Vec3::ZERO));
@@ -136,6 +147,14 @@ impl<'a> FirstContacts<'a> {
         self.pairs.is_empty()
     }
 
+    fn place_held(&mut self, states: &[&ChainState]) {
+        for (o, held) in self.held.iter().enumerate() {
+            let Some(held) = held else { continue };
+            let pose = held.in_world(&self.robots, states);
+            self.placed[o] = (pose, self.object_boxes[o].transformed(&pose));
+        }
+    }
+
     /// Calls `found` for each pair that touched since the last call (or, at the first call, touches) and never did before.
     /// `states` holds forward kinematics, one per robot; `moved_objects` the objects declared by [`Self::moving`].
     pub fn check(
@@ -148,9 +167,10 @@ impl<'a> FirstContacts<'a> {
             let pose = s.path.pose(1.0);
             self.placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
-        let Self { robots, objects, boxes, object_boxes, placed, last, pairs } = self;
+        self.place_held(states);
+        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
-        let interval = Interval { now: &now, object_boxes, last, moved_objects };
+        let interval = Interval { now: &now, object_boxes, last, moved_objects, held };
         for pair in pairs.iter_mut().filter(|p| !p.touched) {
             let object = pair
                 .moving_object
@@ -164,6 +184,11 @@ impl<'a> FirstContacts<'a> {
                 continue;
             }
             let gap = now.gap(pair.a, pair.b);
+            if gap.is_none() && pair.resting && pair.is_too_deep(&now) {
+                pair.touched = true;
+                found(FirstContact { a: pair.a, b: pair.b, fraction: 1.0 });
+                continue;
+            }
             if pair.resting || (last.is_empty() && pair.joined) {
                 pair.resting = gap.is_none();
                 pair.measured(states, gap);
@@ -175,6 +200,9 @@ impl<'a> FirstContacts<'a> {
                 interval.first_contact(pair, travel, gap)
             };
             pair.measured(states, gap);
+            if first.is_some() && gap.is_none() && pair.is_set_down(held, &now) {
+                continue;
+            }
             if let Some(fraction) = first {
                 pair.touched = true;
                 found(FirstContact { a: pair.a, b: pair.b, fraction });
@@ -188,17 +216,15 @@ impl<'a> FirstContacts<'a> {
 }
 
 impl TrackedPair {
-    fn new(robots: &[(&Robot, Pose)], a: GeometryId, b: GeometryId) -> Self {
+    fn new(robots: &[(&Robot, Pose)], held: &[Option<HeldObject>], a: GeometryId, b: GeometryId) -> Self {
         let side = |id: GeometryId, other: GeometryId| -> Vec<PairJoint> {
-            let GeometryId::Link { robot, link } = id else { return Vec::new() };
+            let Some(Carrier { robot, link, radius }) = Carrier::of(id, robots, held) else { return Vec::new() };
             let model = robots[robot.0].0;
-            let joints = match other {
-                GeometryId::Link { robot: same, link: other } if same == robot => {
-                    model.chain.joints_between(link, other)
-                }
+            let joints = match Carrier::of(other, robots, held) {
+                Some(other) if other.robot == robot => model.chain.joints_between(link, other.link),
                 _ => model.chain.path(link),
             };
-            let bounds = motion_bound(&model.chain, link, model.link_radius(link), &joints);
+            let bounds = motion_bound(&model.chain, link, radius, &joints);
             let joint = |(index, motion_bound)| PairJoint { robot, index, motion_bound, measured_at: 0.0 };
             bounds.into_iter().map(joint).collect()
         };
@@ -211,7 +237,24 @@ impl TrackedPair {
             _ => false,
         };
         let (travel, clear) = (0.0, -1.0);
-        Self { a, b, joints, moving_object: None, travel, clear, touched: false, joined, resting: false }
+        let moving_object = None;
+        let (touched, resting, allowed_depth) = (false, false, None);
+        Self { a, b, joints, moving_object, travel, clear, touched, joined, resting, allowed_depth }
+    }
+
+    /// True where a resting pair is deeper in contact than is permitted.
+    fn is_too_deep(&self, now: &PlacedGeometry<'_, '_>) -> bool {
+        self.allowed_depth.is_some_and(|allowed| !(now.depth(self.a, self.b) <= allowed))
+    }
+
+    /// True where the contact is that of a part with what it is set down on; the pair rests from then on.
+    fn is_set_down(&mut self, held: &[Option<HeldObject>], now: &PlacedGeometry<'_, '_>) -> bool {
+        let (GeometryId::Object(a), GeometryId::Object(b)) = (self.a, self.b) else { return false };
+        let is_set_down = [a, b].iter().any(|o| held[o.0].as_ref().is_some_and(|h| h.set_down));
+        if is_set_down && now.depth(self.a, self.b) <= SET_DOWN_DEPTH {
+            (self.resting, self.allowed_depth) = (true, Some(SET_DOWN_DEPTH));
+        }
+        self.resting
     }
 
     /// Upper bound (m) on the displacement by joints since the last measurement.
@@ -232,6 +275,7 @@ struct Interval<'w, 'a> {
     object_boxes: &'w [Aabb],
     last: &'w [Vec<f64>],
     moved_objects: &'w [MovedObject<'w>],
+    held: &'w [Option<HeldObject>],
 }
 
 /// An instant of an interval at which a pair is apart.
@@ -300,6 +344,11 @@ impl Interval<'_, '_> {
             placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         let states: Vec<&ChainState> = states.iter().collect();
+        for (o, held) in self.held.iter().enumerate() {
+            let Some(held) = held else { continue };
+            let pose = held.in_world(self.now.robots, &states);
+            placed[o] = (pose, self.object_boxes[o].transformed(&pose));
+        }
         PlacedGeometry { states: &states, placed: &placed, ..*self.now }.gap(pair.a, pair.b)
     }
 }
@@ -332,6 +381,18 @@ impl<'a> PlacedGeometry<'_, 'a> {
                 (&collider.shape, pose, self.boxes[robot.0][link.0][i].transformed(&pose))
             }
         }
+    }
+
+    /// The largest penetration depth of two geometries in contact, m; of meshes, that of their hulls.
+    fn depth(&self, a: GeometryId, b: GeometryId) -> f64 {
+        let solids = |id| (0..self.shape_count(id)).map(move |i| (id, i));
+        let pairs = solids(a).flat_map(|a| solids(b).map(move |b| (a, b)));
+        let depth = |((a, i), (b, k))| {
+            let ((a, pose_a, _), (b, pose_b, _)): ((&Shape, Pose, _), (&Shape, Pose, _)) =
+                (self.shape(a, i), self.shape(b, k));
+            penetration(a, &pose_a, b, &pose_b).map_or(0.0, |p| p.depth)
+        };
+        pairs.map(depth).fold(0.0, f64::max)
     }
 
     /// A proven lower bound on the distance; `None` on contact.

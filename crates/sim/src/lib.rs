@@ -31,6 +31,7 @@
 
 pub mod check;
 pub mod csv;
+mod hand;
 pub mod motion;
 mod recording;
 pub mod run;

@@ -26,7 +26,7 @@ pub struct Recording {
     pub robots: Vec<RobotTrack>,
     /// One per region, in the order of the cell file.
     pub regions: Vec<RegionTrack>,
-    /// One per moving object, in the order of the cell file.
+    /// One per object that moves or is gripped: the moving ones in the order of the cell file, then the others.
     pub objects: Vec<ObjectTrack>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<Deadlock>,
@@ -175,7 +175,7 @@ pub struct Sample {
     pub reason: OverrideReason,
 }
 
-/// Poses of one moving object.
+/// Poses of one object that moves or is gripped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectTrack {
     /// The object's name in the cell file.
@@ -253,7 +253,7 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned; empty where none is.
+    /// The region concerned, or the object gripped or released; empty where none is.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -272,6 +272,10 @@ pub enum RunEvent {
     Stop,
     /// A stopped robot moves again.
     Resume,
+    /// A robot gripped an object, which is named in place of the region.
+    Grip,
+    /// A robot released an object, which is named in place of the region.
+    Release,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
 }
@@ -285,6 +289,8 @@ impl RunEvent {
             Self::Off => "off",
             Self::Stop => "stop",
             Self::Resume => "resume",
+            Self::Grip => "grip",
+            Self::Release => "release",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",

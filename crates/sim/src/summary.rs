@@ -3,7 +3,7 @@
 use elbowroom_avoidance::AvoiderState;
 use serde::Serialize;
 
-use crate::recording::{AvoidanceSample, AvoidanceTrack, Outcome, RecordedRegionKind, Recording};
+use crate::recording::{AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, RecordedRegionKind, Recording};
 
 /// Figures of a run, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,6 +24,28 @@ pub struct RunSummary {
     pub regions: Vec<RegionSummary>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<DeadlockSummary>,
+    /// Where the objects that move or are gripped are at the end; left out where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<ObjectSummary>,
+}
+
+/// An object at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObjectSummary {
+    /// Its name.
+    pub name: String,
+    /// Origin of its frame in the world, m.
+    pub at_m: [f64; 3],
+    /// Roll, pitch and yaw of its frame in the world, rad.
+    pub rpy_rad: [f64; 3],
+}
+
+impl ObjectSummary {
+    fn of(track: &ObjectTrack) -> Option<Self> {
+        let pose = track.poses.last()?;
+        let (at_m, rpy_rad) = (pose.translation.to_array(), pose.rotation.to_rpy());
+        Some(Self { name: track.name.clone(), at_m, rpy_rad })
+    }
 }
 
 /// Wall-clock time of ticks, ns.
@@ -179,6 +201,7 @@ impl From<&Recording> for RunSummary {
             tick_ns: TickNs { p50: r.tick_ns.p50, p99: r.tick_ns.p99, max: r.tick_ns.max },
             robots: r.robots.iter().map(robot).collect(),
             regions: r.regions.iter().map(region).collect(),
+            objects: r.objects.iter().filter_map(ObjectSummary::of).collect(),
         }
     }
 }

@@ -16,8 +16,8 @@ use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
     RrtConnectSettings, TaskSpaceRegion, TimedMotion,
 };
-use elbowroom_robot::RobotId;
-use elbowroom_scene::{Scene, SceneState};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Attachment, Scene, SceneState};
 use elbowroom_spatial::Pose;
 
 use crate::cover_cache::CoverCache;
@@ -63,12 +63,26 @@ pub struct PathRequest {
     pub period_s: Option<f64>,
     /// Goes on until the time limit, with shorter and shorter paths.
     pub optimize: bool,
+    /// Objects that are elsewhere than at the start of the cell's programs, in the world.
+    pub placed: Vec<(ObjectId, Pose)>,
+    /// Objects that a robot carries.
+    pub carried: Vec<(ObjectId, Attachment)>,
 }
 
 impl Default for PathRequest {
     fn default() -> Self {
         let options = RrtConnectSettings::default();
-        Self { robot: None, from: None, to: PathGoal::default(), speed: 1.0, options, period_s: None, optimize: false }
+        Self {
+            robot: None,
+            from: None,
+            to: PathGoal::default(),
+            speed: 1.0,
+            options,
+            period_s: None,
+            optimize: false,
+            placed: Vec::new(),
+            carried: Vec::new(),
+        }
     }
 }
 
@@ -106,7 +120,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     request_validation::check_joint_values(cell, robot, "start", from)?;
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
-    let state = start_state(cell, &scene, id, from).map_err(|e| refused(e.into()))?;
+    let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
     let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     // A link without bounds cannot be covered; the exact scene plans for it.
@@ -204,12 +218,19 @@ fn start_state(
     scene: &Scene,
     robot: RobotId,
     q: &[f64],
+    request: &PathRequest,
 ) -> Result<SceneState, elbowroom_scene::SceneError> {
     let mut state = SceneState::new(scene);
     for (i, r) in cell.robots.iter().enumerate() {
         let r: &CellRobot = r;
         let id = RobotId(i);
         state.set_q(scene, id, if id == robot { q } else { &r.start })?;
+    }
+    for (object, in_world) in &request.placed {
+        state.place(scene, *object, *in_world)?;
+    }
+    for (object, attachment) in &request.carried {
+        state.attach_at(scene, *object, attachment.clone())?;
     }
     Ok(state)
 }

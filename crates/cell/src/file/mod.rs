@@ -245,7 +245,7 @@ fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> R
     let mut programs = vec![None; cell.robots.len()];
     for (name, t) in root.named("program")? {
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
-        programs[id.0] = Some(program::read(&t, cell.units, robot, &cell.regions, warnings)?);
+        programs[id.0] = Some(program::read(&t, cell, robot, warnings)?);
     }
     cell.programs = programs;
     Ok(())

@@ -3,14 +3,15 @@
 use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
 use elbowroom_monitor::Life;
+use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::models;
 use super::read::{Table, Value};
 use super::robot::joint_values;
 use crate::{
-    CellRegion, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
-    Units, suggest,
+    Cell, CellRegion, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction,
+    TrajectoryRow, Units, suggest,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -18,13 +19,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// TCP speed (m/s) of a linear move that gives none: the reduced speed of ISO 10218-1.
 const LINEAR_SPEED: f64 = 0.25;
 
-pub(super) fn read(
-    t: &Table<'_>,
-    units: Units,
-    robot: &CellRobot,
-    regions: &[CellRegion],
-    warnings: &mut Vec<Warning>,
-) -> Result<Program> {
+pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Program> {
     t.only(&["override", "repeat", "steps", "trajectory"])?;
     let speed_override = t.get("override").map_or(Ok(1.0), |v| v.percent())?;
     let repeat = t.get("repeat").map_or(Ok(1), |v| v.whole(1, 1_000_000))?;
@@ -32,7 +27,7 @@ pub(super) fn read(
         (Some(_), Some(v)) => return Err(v.error("contradicts `steps`").hint("one of the two: steps or trajectory")),
         (Some(steps), None) => {
             let list = steps.list("steps = [{ move = \"joint\", to = [0, 0, 0, 0, 0, 0] }]")?;
-            ProgramBody::Steps(list.iter().map(|s| step(s, units, robot, regions)).collect::<Result<_>>()?)
+            ProgramBody::Steps(list.iter().map(|s| step(s, cell, robot)).collect::<Result<_>>()?)
         }
         (None, Some(file)) => ProgramBody::Trajectory(trajectory(&file, robot, warnings)?),
         (None, None) => {
@@ -43,15 +38,17 @@ pub(super) fn read(
     Ok(Program { speed_override, repeat, body, line: t.line })
 }
 
-fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) -> Result<ProgramStep> {
-    const KINDS: [&str; 4] = ["move", "region", "wait", "override"];
-    const EXAMPLE: &str =
-        "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 } or { override = 50 }";
+fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
+    const KINDS: [&str; 6] = ["move", "region", "wait", "override", "grip", "release"];
+    const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 }, \
+                           { override = 50 }, { grip = \"part\" } or { release = \"part\" }";
     let t = v.table(EXAMPLE)?;
     let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
     let action = match given.as_slice() {
-        ["move"] => movement(&t, units, robot)?,
-        ["region"] => switch(&t, regions)?,
+        ["move"] => movement(&t, cell.units, robot)?,
+        ["region"] => switch(&t, &cell.regions)?,
+        ["grip"] => StepAction::Grip(part(&t, "grip", cell)?),
+        ["release"] => StepAction::Release(part(&t, "release", cell)?),
         ["wait"] => {
             t.only(&["wait"])?;
             StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
@@ -61,12 +58,26 @@ fn step(v: &Value<'_>, units: Units, robot: &CellRobot, regions: &[CellRegion]) 
             StepAction::Override(t.need("override", "override = 50")?.percent()?)
         }
         [] => {
-            t.only(&["move", "to", "speed", "region", "active", "wait", "override"])?;
+            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release"])?;
             return Err(v.error("is not a step").hint(EXAMPLE));
         }
-        _ => return Err(v.error("is several steps in one").hint("one of move, region, wait, override per step")),
+        _ => {
+            let hint = "one of move, region, wait, override, grip, release per step";
+            return Err(v.error("is several steps in one").hint(hint));
+        }
     };
     Ok(ProgramStep { line: t.line, action })
+}
+
+/// The object that a step grips or releases.
+fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
+    t.only(&[key])?;
+    let v = t.need(key, &format!("{key} = \"part\""))?;
+    let name = v.text()?;
+    cell.objects.iter().position(|o| o.name == name).map(ObjectId).ok_or_else(|| {
+        let known = cell.objects.iter().map(|o| o.name.as_str());
+        v.error(format!("names the object \"{name}\", which is not in this cell")).hint(suggest::hint(name, known))
+    })
 }
 
 /// Kinds of moves.

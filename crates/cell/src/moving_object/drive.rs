@@ -68,7 +68,7 @@ impl MovingObject {
     }
 
     /// True where its velocity is not zero.
-    pub(crate) fn is_moving(&self, t_s: f64) -> bool {
+    pub fn is_moving(&self, t_s: f64) -> bool {
         self.motion(t_s) != FrameMotion::REST
     }
 }

@@ -2,8 +2,9 @@
 
 use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{CellRegionId, JointLimits};
+use elbowroom_robot::ObjectId;
 
-use super::{Geometry, PlanStep, ProgramPlan};
+use super::{Geometry, GripAction, PlanStep, ProgramPlan};
 
 /// Smallest share of the acceleration that remains for speeding up along a curve.
 const RESERVE: f64 = 0.1;
@@ -37,6 +38,7 @@ pub struct ProgramClock {
     here: PathPoint,
     intent: Vec<f64>,
     switches: Vec<RegionSwitch>,
+    grips: Vec<GripAction>,
     held: bool,
 }
 
@@ -57,6 +59,7 @@ impl ProgramClock {
             intent: here.dq.clone(),
             here,
             switches: Vec::new(),
+            grips: Vec::new(),
             held: false,
         };
         clock.execute_instant_steps();
@@ -137,6 +140,20 @@ impl ProgramClock {
     /// Region switches since the last call.
     pub fn take_switches(&mut self) -> Vec<RegionSwitch> {
         std::mem::take(&mut self.switches)
+    }
+
+    /// Objects gripped and released since the last call.
+    pub fn take_grips(&mut self) -> Vec<GripAction> {
+        std::mem::take(&mut self.grips)
+    }
+
+    /// The objects that are released before the next move: the present move sets them down.
+    pub fn objects_set_down(&self) -> impl Iterator<Item = ObjectId> + '_ {
+        let next = self.plan.steps.get(self.step + 1..).unwrap_or_default().iter();
+        let until_move = next.take_while(|s| !matches!(s, PlanStep::Move(_) | PlanStep::Play(_)));
+        let next = until_move.filter_map(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None });
+        // The releases that this instant executes, too: the move before them ends now.
+        self.grips.iter().chain(next).filter(|a| !a.grips).map(|a| a.object)
     }
 
     /// Advances by `dt` seconds under the override `target`.
@@ -251,6 +268,7 @@ impl ProgramClock {
                     self.switches.push(RegionSwitch { region: *region, active: *active });
                 }
                 Some(PlanStep::Override(o)) => self.programmed = *o,
+                Some(PlanStep::Grip(action)) => self.grips.push(*action),
                 Some(PlanStep::Move(m)) if m.duration() <= 0.0 => {}
                 Some(PlanStep::Wait(s)) if *s <= 0.0 => {}
                 _ => return,

@@ -9,12 +9,15 @@
 
 mod clock;
 mod geometry;
+mod grip_action;
 mod line;
 mod plan;
+mod planned_parts;
 mod segment;
 
 pub use clock::{ProgramClock, RegionSwitch};
 pub use geometry::Geometry;
+pub use grip_action::GripAction;
 pub use line::TcpLine;
 pub use plan::{PlanStep, ProgramPlan, plan};
 pub use segment::Segment;

@@ -12,7 +12,8 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_robot::RobotId;
 
-use super::{Geometry, Segment, TcpLine};
+use super::planned_parts::{PartError, PlannedParts};
+use super::{Geometry, GripAction, Segment, TcpLine};
 
 /// Largest number of steps of a plan, including repetitions.
 const MAX_STEPS: u64 = 1_000_000;
@@ -42,6 +43,8 @@ pub enum PlanStep {
         /// On or off.
         active: bool,
     },
+    /// Grips or releases an object.
+    Grip(GripAction),
     /// Waits, s.
     Wait(f64),
     /// Sets the programmed override, 0..1.
@@ -65,6 +68,7 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
         notes,
         planned_moves: Vec::new(),
         planned_paths: Vec::new(),
+        parts: PlannedParts::new(cell, robot),
     };
     match &program.body {
         ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
@@ -84,7 +88,17 @@ struct ProgramPlanner<'a> {
     /// Moves of earlier passes.
     planned_moves: Vec<(usize, Vec<f64>, Rc<Segment>)>,
     /// Paths of earlier passes.
-    planned_paths: Vec<(usize, Vec<f64>, Rc<Playback>)>,
+    planned_paths: Vec<PlannedPathEntry<'a>>,
+    /// The objects after the steps so far.
+    parts: PlannedParts<'a>,
+}
+
+/// The path of a planned step from some joint values, with the objects at some places.
+struct PlannedPathEntry<'a> {
+    step: usize,
+    from: Vec<f64>,
+    parts: PlannedParts<'a>,
+    play: Rc<Playback>,
 }
 
 impl ProgramPlanner<'_> {
@@ -100,6 +114,14 @@ impl ProgramPlanner<'_> {
                     StepAction::Wait(s) => PlanStep::Wait(*s),
                     StepAction::Override(o) => PlanStep::Override(*o),
                     StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
+                    StepAction::Grip(object) => {
+                        self.parts.grip(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
+                        PlanStep::Grip(GripAction { object: *object, grips: true, line: step.line })
+                    }
+                    StepAction::Release(object) => {
+                        self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
+                        PlanStep::Grip(GripAction { object: *object, grips: false, line: step.line })
+                    }
                     StepAction::Planned { to, speed } => PlanStep::Play(self.planned(i, step, to, *speed)?),
                 });
             }
@@ -128,7 +150,8 @@ impl ProgramPlanner<'_> {
         to: &MoveTarget,
         speed: f64,
     ) -> Result<Rc<Playback>, FormatError> {
-        let known = self.planned_paths.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let is_known = |k: &&PlannedPathEntry<'_>| k.step == index && k.from == self.q && k.parts == self.parts;
+        let known = self.planned_paths.iter().find(is_known).map(|k| k.play.clone());
         let play = if let Some(play) = known {
             play
         } else {
@@ -140,6 +163,8 @@ impl ProgramPlanner<'_> {
                     MoveTarget::Tcp(in_world) => PathGoal::Tcp(*in_world),
                 },
                 speed,
+                placed: self.parts.placed(),
+                carried: self.parts.carried().map_err(|e| self.part_error(index, step, e))?,
                 ..PathRequest::default()
             };
             let answer = elbowroom_analysis::plan::plan(self.cell, &request)
@@ -150,11 +175,16 @@ impl ProgramPlanner<'_> {
             };
             let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
             let play = Rc::new(Playback::new(rows, &motion_bounds(self.robot)));
-            self.planned_paths.push((index, self.q.clone(), play.clone()));
+            let (from, parts) = (self.q.clone(), self.parts.clone());
+            self.planned_paths.push(PlannedPathEntry { step: index, from, parts, play: play.clone() });
             play
         };
         self.q = play.q(play.duration());
         Ok(play)
+    }
+
+    fn part_error(&self, index: usize, step: &ProgramStep, e: PartError) -> FormatError {
+        self.error(index, step, &e.what).hint(e.hint)
     }
 
     fn error(&self, index: usize, step: &ProgramStep, what: &str) -> FormatError {

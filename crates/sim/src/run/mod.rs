@@ -1,6 +1,7 @@
 //! Simulation of a cell: programs on one clock, under the monitor.
 
 mod avoiding_robot;
+mod carried_parts;
 mod deadlock_detector;
 mod fault_injection;
 mod idle_detector;
@@ -16,21 +17,22 @@ use std::time::Instant;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRegionId, Frames, MovingObject, ObjectMotion, OutOfReachProofs, QueryModel};
+use elbowroom_cell::{Cell, CellRegionId, Frames, ObjectMotion, OutOfReachProofs, QueryModel};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
     AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp,
     ZoneArbiter,
 };
-use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 
-use crate::motion::{ProgramClock, RegionSwitch, plan};
+use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
     Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEvent, Sample, TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
+use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
 use idle_detector::IdleDetector;
@@ -113,7 +115,8 @@ pub struct RunProgress {
 /// override of a tick applies to the motion from this tick to the next.
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step. Nothing has moved then.
+/// [`FormatError`] at the line of an infeasible step. Nothing has moved then, except where a part that another robot
+/// moves cannot be gripped.
 pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
     simulate_with(cell, options, &mut |_| {})
 }
@@ -142,6 +145,7 @@ pub fn simulate_with(
         claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(i, &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
+    notes.extend(carried_parts::warnings(cell, options.avoidance));
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
     let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
@@ -156,7 +160,7 @@ pub fn simulate_with(
         if tick == 0 {
             run.publish_initial_occupancy();
         }
-        run.tick(t_s);
+        run.tick(t_s)?;
         if run.ended(t_s) {
             notes.extend(run.avoiding.iter().flatten().filter_map(|a| a.fault_warning(cell)));
             return Ok(RunOutcome { recording: run.finish(t_s), notes });
@@ -187,6 +191,9 @@ struct Simulation<'a> {
     fault_injector: fault_injection::FaultInjector<'a>,
     regions: RegionRecorder<'a>,
     checker: FirstContacts<'a>,
+    parts: CarriedParts<'a>,
+    /// The objects of the last tracks, which move only in a robot's hand.
+    gripped: Vec<ObjectId>,
     tracks: Vec<RobotTrack>,
     objects: Vec<ObjectTrack>,
     /// Time of the last collision check, s.
@@ -211,6 +218,8 @@ impl<'a> Simulation<'a> {
     ) -> Self {
         avoiding.resize_with(cell.robots.len(), || None);
         let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
+        let gripped: Vec<ObjectId> = CarriedParts::gripped_by_programs(cell).collect();
+        let moved = cell.moving_objects.iter().map(|m| m.object).chain(gripped.iter().copied());
         let track = |r: &elbowroom_cell::CellRobot| RobotTrack {
             name: r.name.clone(),
             joints: r.joint_names(),
@@ -240,7 +249,9 @@ impl<'a> Simulation<'a> {
             )
             .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>()),
             tracks: cell.robots.iter().map(track).collect(),
-            objects: cell.moving_objects.iter().map(|m| object_track(cell, m)).collect(),
+            objects: moved.map(|o| object_track(cell, o)).collect(),
+            parts: CarriedParts::new(cell),
+            gripped,
             checked_s: 0.0,
             stop_states: vec![StopState::default(); cell.robots.len()],
             applied: vec![0.0; cell.robots.len()],
@@ -296,7 +307,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Evaluates one instant; nothing moves.
-    fn tick(&mut self, t_s: f64) {
+    fn tick(&mut self, t_s: f64) -> Result<(), FormatError> {
         self.apply_switches(t_s);
         self.update_states(t_s);
         self.declare_claims();
@@ -308,6 +319,33 @@ impl<'a> Simulation<'a> {
             self.deadlocks.observe(t_s, arbiter, &self.stop_states);
         }
         self.check_collisions(t_s);
+        self.apply_grips(t_s)
+    }
+
+    /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this
+    /// instant, so that it can take a part over.
+    fn apply_grips(&mut self, t_s: f64) -> Result<(), FormatError> {
+        let mut late = Vec::new();
+        for robot in 0..self.clocks.len() {
+            let mut actions = self.clocks[robot].take_grips().into_iter();
+            while let Some(action) = actions.next() {
+                let holder = self.parts.carrier(action.object);
+                if action.grips && holder.is_some_and(|r| r.0 != robot) {
+                    late.extend(std::iter::once(action).chain(actions).map(|a| (robot, a)));
+                    break;
+                }
+                self.apply_grip(robot, action, t_s)?;
+            }
+        }
+        late.into_iter().try_for_each(|(robot, action)| self.apply_grip(robot, action, t_s))
+    }
+
+    fn apply_grip(&mut self, robot: usize, action: GripAction, t_s: f64) -> Result<(), FormatError> {
+        let states: Vec<&ChainState> = self.states.iter().collect();
+        self.parts.apply(RobotId(robot), action, t_s, &mut self.checker, &states)?;
+        let (cell, event) = (self.cell, if action.grips { RunEvent::Grip } else { RunEvent::Release });
+        self.event(t_s, robot, &cell.objects[action.object.0].name, event);
+        Ok(())
     }
 
     fn declare_claims(&mut self) {
@@ -468,20 +506,25 @@ impl<'a> Simulation<'a> {
     }
 
     fn check_collisions(&mut self, t_s: f64) {
-        let Self { checker, states, tracks, objects, cell, checked_s, .. } = self;
+        let Self { checker, parts, clocks, states, tracks, cell, checked_s, .. } = self;
         let states: Vec<&ChainState> = states.iter().collect();
         let before = std::mem::replace(checked_s, t_s);
-        let motions: Vec<ObjectMotion<'_>> =
-            cell.moving_objects.iter().map(|m| m.motion_between(before, t_s)).collect();
-        let moved: Vec<MovedObject<'_>> = cell
+        let motions: Vec<(ObjectId, ObjectMotion<'_>)> = cell
             .moving_objects
             .iter()
-            .zip(&motions)
-            .map(|(m, motion)| MovedObject { object: m.object, path: motion, jumps: motion.jumps() })
+            .filter(|m| !parts.is_taken(m.object))
+            .map(|m| (m.object, m.motion_between(before, t_s)))
             .collect();
-        objects.iter_mut().zip(&cell.moving_objects).for_each(|(track, m)| track.poses.push(m.pose(t_s)));
+        let moved: Vec<MovedObject<'_>> = motions
+            .iter()
+            .map(|(object, motion)| MovedObject { object: *object, path: motion, jumps: motion.jumps() })
+            .collect();
+        let set_down: Vec<ObjectId> = clocks.iter().flat_map(ProgramClock::objects_set_down).collect();
+        for object in (0..cell.objects.len()).map(ObjectId) {
+            checker.set_down(object, set_down.contains(&object));
+        }
         let name = |m: GeometryId| match m {
-            GeometryId::Object(o) => cell.objects[o.0].name.clone(),
+            GeometryId::Object(o) => parts.name(o),
             GeometryId::Link { robot, link } => {
                 let r = &cell.robots[robot.0];
                 format!("{}/{}", r.name, r.robot.chain.links()[link.0])
@@ -491,7 +534,10 @@ impl<'a> Simulation<'a> {
             // A contact at the end of the step has exactly the time of the tick.
             let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
             let collision = Collision { t_s, a: name(a), b: name(b) };
-            let robot = |m: GeometryId| if let GeometryId::Link { robot, .. } = m { Some(robot.0) } else { None };
+            let robot = |m: GeometryId| match m {
+                GeometryId::Link { robot, .. } => Some(robot.0),
+                GeometryId::Object(o) => parts.carrier(o).map(|r| r.0),
+            };
             // A collision of two robots is listed for both.
             let mut concerned: Vec<usize> = [robot(a), robot(b)].into_iter().flatten().collect();
             concerned.dedup();
@@ -499,6 +545,17 @@ impl<'a> Simulation<'a> {
                 tracks[robot].collisions.push(collision.clone());
             }
         });
+        self.record_objects(t_s);
+    }
+
+    fn record_objects(&mut self, t_s: f64) {
+        let Self { checker, parts, objects, gripped, cell, .. } = self;
+        let moving = cell
+            .moving_objects
+            .iter()
+            .map(|m| if parts.is_taken(m.object) { checker.object_in_world(m.object) } else { m.pose(t_s) });
+        let poses = moving.chain(gripped.iter().map(|o| checker.object_in_world(*o)));
+        objects.iter_mut().zip(poses).for_each(|(track, pose)| track.poses.push(pose));
     }
 
     fn ended(&mut self, t_s: f64) -> bool {
@@ -579,8 +636,8 @@ impl<'a> Simulation<'a> {
     }
 }
 
-fn object_track(cell: &Cell, moving_object: &MovingObject) -> ObjectTrack {
-    ObjectTrack { name: cell.objects[moving_object.object.0].name.clone(), poses: Vec::new() }
+fn object_track(cell: &Cell, object: ObjectId) -> ObjectTrack {
+    ObjectTrack { name: cell.objects[object.0].name.clone(), poses: Vec::new() }
 }
 
 /// Time of a tick, s, rounded to nanoseconds.

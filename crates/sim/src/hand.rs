@@ -1,0 +1,91 @@
+//! The hand of a robot: its flange and tool, as far as they grip.
+
+use elbowroom_cell::{Cell, CellRobot, ProgramBody, StepAction};
+use elbowroom_kinematics::{ChainState, JointId, LinkId};
+use elbowroom_proximity::{Shape, Sphere, collides, separation};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
+use elbowroom_spatial::Pose;
+
+/// Parts that are farther from the hand than this cannot be gripped, m.
+pub(crate) const MAX_GRIP_DISTANCE_M: f64 = 0.05;
+
+/// The hand of a robot: the flange link, what is fixed to it, and the fingers that it carries.
+pub(crate) struct Hand<'a> {
+    robot: &'a CellRobot,
+    links: Vec<LinkId>,
+}
+
+impl<'a> Hand<'a> {
+    pub(crate) fn of(robot: &'a CellRobot) -> Self {
+        let chain = &robot.robot.chain;
+        let moving = |link: LinkId| -> Vec<JointId> {
+            chain.path(link).into_iter().filter(|j| chain.joints()[j.0].kind.moves()).collect()
+        };
+        let of_flange = moving(robot.flange);
+        let is_in_hand = |link: &LinkId| moving(*link).starts_with(&of_flange);
+        let links = (0..chain.links().len()).map(LinkId).filter(is_in_hand).collect();
+        Self { robot, links }
+    }
+
+    /// Distance (m) from a part to the nearest solid of the hand, or to the TCP where that is nearer.
+    pub(crate) fn distance_m(&self, state: &ChainState, part: &Shape, part_in_world: &Pose) -> f64 {
+        let tcp = self.link_in_world(state, self.robot.flange) * self.robot.tcp_in_flange;
+        let point = Shape::Sphere(Sphere { radius: 0.0 });
+        let to_tcp = separation(&point, &tcp, part, part_in_world).distance;
+        let solids = self.links.iter().flat_map(|link| {
+            let link_in_world = self.link_in_world(state, *link);
+            self.robot.robot.colliders[link.0].iter().map(move |c| (&c.shape, link_in_world * c.in_link))
+        });
+        let to_solid = |(shape, in_world)| separation(shape, &in_world, part, part_in_world).distance;
+        solids.map(to_solid).fold(to_tcp, f64::min)
+    }
+
+    /// How a part is attached where it is: the hand, and the links that touch it now, may touch it.
+    pub(crate) fn attachment(&self, id: RobotId, state: &ChainState, part: &Shape, part_in_world: &Pose) -> Attachment {
+        let robot = &self.robot.robot;
+        let touches = |link: LinkId| {
+            let in_world = self.link_in_world(state, link);
+            robot.colliders[link.0].iter().any(|c| collides(&c.shape, &(in_world * c.in_link), part, part_in_world))
+        };
+        let touch_links = robot.links_with_colliders().filter(|l| self.links.contains(l) || touches(*l)).collect();
+        let flange_in_world = self.link_in_world(state, self.robot.flange);
+        let in_link = flange_in_world.inverse_mul(part_in_world);
+        Attachment { robot: id, link: self.robot.flange, in_link, touch_links }
+    }
+
+    fn link_in_world(&self, state: &ChainState, link: LinkId) -> Pose {
+        self.robot.base_in_world * state.link_in_root(link)
+    }
+}
+
+/// How a robot grips a part that is at `part_in_world`.
+///
+/// # Errors
+/// What is wrong, with the distance: the part is too far from the hand.
+pub(crate) fn grip(
+    cell: &Cell,
+    id: RobotId,
+    object: ObjectId,
+    part_in_world: &Pose,
+    state: &ChainState,
+) -> Result<Attachment, String> {
+    let (hand, part) = (Hand::of(&cell.robots[id.0]), &cell.objects[object.0]);
+    let distance_m = hand.distance_m(state, &part.shape, part_in_world);
+    if distance_m > MAX_GRIP_DISTANCE_M {
+        let [distance, limit] =
+            [distance_m, MAX_GRIP_DISTANCE_M].map(|m| cell.units.show_length((m * 1e4).round() / 1e4));
+        return Err(format!(
+            "grips \"{}\", which is {distance} from the flange, the tool and the TCP: at most {limit} is within grip",
+            part.name
+        ));
+    }
+    Ok(hand.attachment(id, state, &part.shape, part_in_world))
+}
+
+/// True where a step of the robot's program grips the object.
+pub(crate) fn program_grips(cell: &Cell, robot: RobotId, object: ObjectId) -> bool {
+    let program = cell.programs.get(robot.0).and_then(Option::as_ref);
+    let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return false };
+    steps.iter().any(|s| matches!(s.action, StepAction::Grip(o) if o == object))
+}

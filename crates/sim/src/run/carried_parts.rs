@@ -1,0 +1,117 @@
+//! Gripping and releasing of objects during a run.
+
+use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::FirstContacts;
+
+use crate::hand;
+use crate::motion::GripAction;
+
+/// Whose hand each object is in.
+#[derive(Debug)]
+pub(super) struct CarriedParts<'a> {
+    cell: &'a Cell,
+    /// Per object.
+    carriers: Vec<Option<RobotId>>,
+    /// Per object: it was gripped once, and no longer moves by itself.
+    taken: Vec<bool>,
+}
+
+impl<'a> CarriedParts<'a> {
+    pub fn new(cell: &'a Cell) -> Self {
+        let count = cell.objects.len();
+        Self { cell, carriers: vec![None; count], taken: vec![false; count] }
+    }
+
+    /// True where the object no longer moves by itself.
+    pub fn is_taken(&self, object: ObjectId) -> bool {
+        self.taken[object.0]
+    }
+
+    /// The objects in the programs' hands: those without a source of motion that a program grips.
+    pub fn gripped_by_programs(cell: &Cell) -> impl Iterator<Item = ObjectId> + '_ {
+        let robots = || (0..cell.robots.len()).map(RobotId);
+        let is_gripped = move |o: &ObjectId| robots().any(|r| hand::program_grips(cell, r, *o));
+        let moves = |o: &ObjectId| cell.moving_objects.iter().any(|m| m.object == *o);
+        (0..cell.objects.len()).map(ObjectId).filter(is_gripped).filter(move |o| !moves(o))
+    }
+
+    /// Name of an object: `robot/part` in a hand.
+    pub fn name(&self, object: ObjectId) -> String {
+        let name = &self.cell.objects[object.0].name;
+        self.carriers[object.0].map_or_else(|| name.clone(), |r| format!("{}/{name}", self.cell.robots[r.0].name))
+    }
+
+    /// The robot that carries an object.
+    pub fn carrier(&self, object: ObjectId) -> Option<RobotId> {
+        self.carriers[object.0]
+    }
+
+    /// Grips or releases an object.
+    ///
+    /// # Errors
+    /// At the line of the step: another robot holds the object, it moves, or it is too far away.
+    pub fn apply(
+        &mut self,
+        robot: RobotId,
+        action: GripAction,
+        t_s: f64,
+        checker: &mut FirstContacts<'_>,
+        states: &[&ChainState],
+    ) -> Result<(), FormatError> {
+        let object = action.object;
+        if !action.grips {
+            self.carriers[object.0] = None;
+            checker.detach(object, states);
+            return Ok(());
+        }
+        let (cell, name) = (self.cell, &self.cell.objects[object.0].name);
+        let error = |what: &str| {
+            let robot = &cell.robots[robot.0].name;
+            FormatError::new(&cell.file, action.line, format!("`program.{robot}` {what} (at {t_s:.3} s of the run)"))
+        };
+        if let Some(carrier) = self.carriers[object.0] {
+            let carrier = &cell.robots[carrier.0].name;
+            let what = format!("grips \"{name}\", which robot \"{carrier}\" holds");
+            let hint = format!("a `wait` before it, until the program of \"{carrier}\" has released it");
+            return Err(error(&what).hint(hint));
+        }
+        let moves = cell.moving_objects.iter().any(|m| m.object == object && m.is_moving(t_s));
+        if moves && !self.taken[object.0] {
+            let hint = "a `wait` before it, until the object is at rest";
+            return Err(error(&format!("grips \"{name}\", which moves")).hint(hint));
+        }
+        let pose = checker.object_in_world(object);
+        let attachment = hand::grip(cell, robot, object, &pose, states[robot.0]).map_err(|what| {
+            error(&what).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
+        })?;
+        checker.attach(object, attachment, states);
+        (self.carriers[object.0], self.taken[object.0]) = (Some(robot), true);
+        Ok(())
+    }
+}
+
+/// What is not checked of the parts that programs grip.
+pub(super) fn warnings(cell: &Cell, avoidance: bool) -> Vec<Warning> {
+    let robots = cell.robots.iter().enumerate();
+    let of_robot = |(i, robot): (usize, &CellRobot)| {
+        let grips = |o: &ObjectId| hand::program_grips(cell, RobotId(i), *o);
+        let parts: Vec<&str> =
+            (0..cell.objects.len()).map(ObjectId).filter(grips).map(|o| cell.objects[o.0].name.as_str()).collect();
+        if parts.is_empty() {
+            return None;
+        }
+        let parts = parts.join(", ");
+        let avoids = avoidance && cell.avoidance.get(i).is_some_and(Option::is_some);
+        let who = if avoids { "regions and avoidance do" } else { "regions do" };
+        let what = format!(
+            "robot \"{}\" carries {parts}: checked for collisions with objects and robots, but {who} not count it",
+            robot.name
+        );
+        let hint = "regions that are larger by what the part extends beyond the tool";
+        Some(Warning::new(&cell.file, robot.line, what).hint(hint))
+    };
+    robots.filter_map(of_robot).collect()
+}
