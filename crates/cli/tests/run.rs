@@ -43,6 +43,16 @@ fn a_collision_has_exit_status_1() {
 }
 
 #[test]
+fn notes_on_programs_are_called_warnings() {
+    let text = SWING.split("[program.arm]").next().unwrap().replacen("\n[region", "start = [10, 0]\n\n[region", 1);
+    let dir = with_cell(&(text + "[program.arm]\ntrajectory = \"t.csv\"\n"));
+    std::fs::write(dir.path().join("t.csv"), "t_s,joint_1,joint_2\n0,0,0\n1,-0.1,0\n").unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
+    let note = answer.stderr.lines().find(|l| l.contains("does not begin at `start`")).expect(&answer.stderr);
+    assert!(note.starts_with("warning: cell.toml:"), "{note}");
+}
+
+#[test]
 fn json_has_the_documented_keys_and_types() {
     let dir = swing();
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();

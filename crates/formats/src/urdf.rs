@@ -18,8 +18,7 @@ pub use model::{Geometry, LinkGeometry, UrdfJoint, UrdfLink, UrdfMimic, UrdfMode
 /// What a file with the root element `<sdf>` is.
 pub(crate) const SDF: &str = "is SDF, the format of Gazebo";
 /// What to do with it.
-pub(crate) const SDF_HINT: &str =
-    "the URDF that the SDF was made from, or the one that a converter makes of it; of a mesh the file that its <uri> names";
+pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the one that a converter makes of it; of a mesh the file that its <uri> names";
 
 /// Parses a URDF; meshes are named, not opened. `file` is named in messages.
 ///

@@ -39,7 +39,10 @@ fn formats_of_others_are_named_with_what_to_do() {
         assert!(message.contains("is SDF") && message.contains("URDF") && !message.contains("COLLADA"), "{message}");
     }
     for message in refused("cad/part.step", "ISO-10303-21;\nHEADER;\n") {
-        assert!(message.contains("is STEP") && message.contains("`gmsh cad/part.step -2 -o cad/part.stl`"), "{message}");
+        assert!(
+            message.contains("is STEP") && message.contains("`gmsh cad/part.step -2 -o cad/part.stl`"),
+            "{message}"
+        );
     }
     let xacro = "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/></robot>";
     for (file, command) in [
