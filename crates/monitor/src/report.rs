@@ -91,6 +91,7 @@ impl OverrideReason {
             Self::SpeedZone(r) => Self::SpeedZone(index(r)),
             Self::Waiting(r) => Self::Waiting(index(r)),
             Self::Fault(Fault::Source { region }) => Self::Fault(Fault::Source { region: index(region) }),
+            Self::Fault(Fault::SourceJump { region }) => Self::Fault(Fault::SourceJump { region: index(region) }),
             Self::Free | Self::Rate | Self::Fault(_) => self,
         }
     }
@@ -221,5 +222,25 @@ impl fmt::Display for Fault {
                 write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_with_a_region_gets_its_other_index() {
+        let [from, to] = [RegionId(0), RegionId(7)];
+        let reasons = |region: RegionId| {
+            [
+                OverrideReason::Region(region),
+                OverrideReason::SpeedZone(region),
+                OverrideReason::Waiting(region),
+                OverrideReason::Fault(Fault::Source { region }),
+                OverrideReason::Fault(Fault::SourceJump { region }),
+            ]
+        };
+        assert_eq!(reasons(from).map(|r| r.with_region(|_| to)), reasons(to));
     }
 }
