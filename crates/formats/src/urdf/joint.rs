@@ -23,7 +23,7 @@ impl UrdfParser<'_> {
             if let Some(first) = numbers.insert(name, i) {
                 let what = format!(
                     "a second joint `{}`; the first is on line {}",
-                    show_name(&name),
+                    show_name(name),
                     self.lines.line_at(nodes[first].range().start)
                 );
                 return Err(self.error(*node, what).hint("a name of its own for each joint"));
@@ -77,8 +77,7 @@ impl UrdfParser<'_> {
         };
         let line = xml::attribute_line(node, "type");
         let name = node.attribute("name").unwrap_or_default();
-        let what =
-            format!("the joint `{}` is of type `{}`, which is not read", show_name(&name), show(kind.as_bytes()));
+        let what = format!("the joint `{}` is of type `{}`, which is not read", show_name(name), show(kind.as_bytes()));
         Err(FormatError::new(self.file, line, what).hint(instead))
     }
 
@@ -93,10 +92,10 @@ impl UrdfParser<'_> {
             .ok_or_else(|| self.error(node, format!("the joint has no {element}")).hint(hint))?;
         let link = self.required(end, "link")?;
         links.get(link).copied().ok_or_else(|| {
-            let what = format!("there is no link `{}`", show_name(&link));
+            let what = format!("there is no link `{}`", show_name(link));
             let line = xml::attribute_line(end, "link");
             FormatError::new(self.file, line, what)
-                .hint(format!("<link name=\"{}\"/>, or the name of another link", show_name(&link)))
+                .hint(format!("<link name=\"{}\"/>, or the name of another link", show_name(link)))
         })
     }
 
@@ -159,7 +158,7 @@ impl UrdfParser<'_> {
         let Some(node) = xml::child(joint, "mimic") else { return Ok(None) };
         let source = self.required(node, "joint")?;
         let source = joints.get(source).copied().ok_or_else(|| {
-            let what = format!("there is no joint `{}` to follow", show_name(&source));
+            let what = format!("there is no joint `{}` to follow", show_name(source));
             self.error(node, what)
                 .hint("<mimic joint=\"NAME\" multiplier=\"1\" offset=\"0\"/> with the name of a joint")
         })?;

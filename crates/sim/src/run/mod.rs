@@ -520,7 +520,7 @@ impl<'a> Simulation<'a> {
         let in_motion = self.frames.is_any_moving(t_s);
         let can_continue = waiting
             || self.frames.is_any_moving_but_endless_belts(t_s)
-            || present.iter().any(|i| !self.finished(*i) && !(on_path(*i) && self.is_held_for_good(*i, t_s)));
+            || !present.iter().all(|i| self.finished(*i) || on_path(*i) && self.is_held_for_good(*i, t_s));
         if self.idle_detector.is_idle(t_s, &self.states, waiting || in_motion) {
             return Some(RunEnd::Rest);
         }
