@@ -10,7 +10,11 @@ fn a_guarded_arm_stops_before_the_region() {
     let answer = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
     assert!(answer.stdout.contains("before post"), "{}", answer.stdout);
     assert!(answer.stdout.contains("TCP on link_2"), "{}", answer.stdout);
-    assert!(answer.stdout.contains("continues when the program moves away from it"), "{}", answer.stdout);
+    assert!(
+        answer.stdout.contains("continues when the program moves away (direction_aware = true)\n"),
+        "{}",
+        answer.stdout
+    );
     assert!(answer.stdout.contains("Not a certified safety device."));
     assert_eq!(answer.stderr, "");
 }
@@ -107,7 +111,7 @@ fn json_has_the_documented_keys_and_types() {
     let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "point_m"];
     assert_eq!(keys(robot), [&what[..], &["release", "stopped_at_s", "stopped_s"]].concat());
     assert_eq!((json["end"].as_str(), robot["flange"].as_str()), (Some("rest"), Some("link_2")));
-    assert_eq!(robot["release"], "the program moves away from it under direction_aware = true");
+    assert_eq!(robot["release"], "the program moves away (direction_aware = true)");
     assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));
     assert!(robot["stopped_s"].as_f64().unwrap() >= 1.0, "a run ends after a second of rest");
     assert!(robot["min_override"].as_f64().unwrap() < 0.01);
@@ -273,6 +277,9 @@ fn a_region_that_a_program_switched_on_may_be_switched_off() {
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
     let release = json["robots"][0]["release"].as_str().unwrap();
     assert!(release.starts_with("a program switches it off, or "), "{release}");
+    let summary = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
+    assert!(summary.contains(" continues when a program switches it off\n"), "{summary}");
+    assert!(summary.contains(" or when the program moves away (direction_aware = true)\n"), "{summary}");
 }
 
 #[test]

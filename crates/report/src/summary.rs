@@ -194,7 +194,10 @@ fn detail_texts(robot: &RobotTrack) -> Vec<String> {
         parts.push(format!("closest {part} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
     }
     let place = (!parts.is_empty()).then(|| parts.join(", "));
-    place.into_iter().chain(release.as_ref().map(|r| format!("continues when {r}"))).collect()
+    // A line for each way, so that none is cut.
+    let ways = release.iter().flat_map(|ways| ways.split(", or ")).enumerate();
+    let ways = ways.map(|(i, way)| format!("{} when {way}", if i == 0 { "continues" } else { "or" }));
+    place.into_iter().chain(ways).collect()
 }
 
 /// Summary of avoidance.

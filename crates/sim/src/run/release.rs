@@ -50,7 +50,7 @@ fn from_region(cell: &Cell, setup: &MonitorSetup, region: CellRegionId) -> Strin
         ways.push("a program switches it off".to_owned());
     }
     // Without the direction-aware law a robot at override 0 cannot move away either.
-    let law = if setup.configuration.laws().direction_aware { "" } else { " under direction_aware = true" };
-    ways.push(format!("the program moves away from it{law}"));
+    let law = if setup.configuration.laws().direction_aware { "" } else { " (direction_aware = true)" };
+    ways.push(format!("the program moves away{law}"));
     ways.join(", or ")
 }
