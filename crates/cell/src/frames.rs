@@ -5,7 +5,7 @@ use elbowroom_monitor::SourceState;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
-use crate::{Cell, Follow};
+use crate::{Cell, Drive, Follow};
 
 /// Frames of robots, encoders, objects and pose files.
 #[derive(Debug)]
@@ -72,12 +72,30 @@ impl<'a> Frames<'a> {
 
     /// True where an encoder or a pose file that a region follows moves, or an object moves.
     pub fn is_any_moving(&self, t_s: f64) -> bool {
-        let travels = |f: &Option<Follow>| match f {
-            Some(Follow::Encoder(e)) => self.cell.encoders[*e].at(t_s).1 != 0.0,
-            Some(Follow::Poses(p)) => self.cell.pose_tracks[*p].motion(t_s) != FrameMotion::REST,
-            Some(Follow::Robot { .. } | Follow::Object(_)) | None => false,
-        };
-        self.cell.regions.iter().any(|r| travels(&r.follow))
+        self.cell.regions.iter().any(|r| r.follow.is_some_and(|f| !is_object(&f) && self.travels(&f, t_s)))
             || self.cell.moving_objects.iter().any(|m| m.is_moving(t_s))
     }
+
+    /// As [`Frames::is_any_moving`], without the belts that never stop and what they carry.
+    pub fn is_any_moving_but_endless_belts(&self, t_s: f64) -> bool {
+        let is_endless = |f: &Follow| matches!(f, Follow::Encoder(e) if self.cell.encoders[*e].is_endless());
+        let is_carried = |drive: &Drive| matches!(drive, Drive::Belt(encoder) if encoder.is_endless());
+        let follows = self.cell.regions.iter().filter_map(|r| r.follow);
+        follows.filter(|f| !is_object(f) && !is_endless(f)).any(|f| self.travels(&f, t_s))
+            || self.cell.moving_objects.iter().any(|m| !is_carried(&m.drive) && m.is_moving(t_s))
+    }
+
+    /// True where a followed frame moves by itself; frames of robots do not.
+    pub fn travels(&self, follow: &Follow, t_s: f64) -> bool {
+        match follow {
+            Follow::Encoder(e) => self.cell.encoders[*e].at(t_s).1 != 0.0,
+            Follow::Poses(p) => self.cell.pose_tracks[*p].motion(t_s) != FrameMotion::REST,
+            Follow::Object(o) => self.cell.moving_objects.iter().any(|m| m.object == *o && m.is_moving(t_s)),
+            Follow::Robot { .. } => false,
+        }
+    }
+}
+
+fn is_object(follow: &Follow) -> bool {
+    matches!(follow, Follow::Object(_))
 }

@@ -153,7 +153,8 @@ pub(crate) struct QueryArgs {
     /// The query: collision, distance, or tolerance=METRES
     #[arg(long, value_name = "WHAT")]
     pub(crate) ask: QueryKind,
-    /// Joint states (a header of joint names, then a row of radians or metres per state); default: the start state
+    /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input);
+    /// default: the start state
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
     /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
@@ -281,7 +282,8 @@ pub(crate) struct InspectArgs {
     /// The Denavit-Hartenberg tables to print, comma-separated; --json has all of them
     #[arg(long, value_enum, value_delimiter = ',', value_name = "TABLE,…", conflicts_with = "states")]
     pub(crate) dh: Vec<Dh>,
-    /// Joint states (a header of joint names, then a row of radians or metres per state): print link poses instead
+    /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input):
+    /// print link poses instead
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
     /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes

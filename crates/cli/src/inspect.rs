@@ -5,7 +5,6 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use elbowroom::analysis::query::QueryStates;
 use elbowroom::cell::QueryModel;
 use elbowroom::formats::stl::write_binary;
 use elbowroom::inspect::{DhConvention, InspectOptions, Inspection};
@@ -97,7 +96,7 @@ fn poses(inspection: &Inspection, states: &std::path::Path) -> Result<ExitStatus
         )));
     };
     let chain = &robot.chain;
-    let states = QueryStates::read(states, &QueryModel::of_robot(&inspection.model, robot.clone()))?;
+    let states = crate::states::read(states, &QueryModel::of_robot(&inspection.model, robot.clone()))?;
     let mut state = ChainState::new(chain);
     let mut text = String::from("index,link,r11,r12,r13,r21,r22,r23,r31,r32,r33,x_m,y_m,z_m\n");
     for index in 0..states.len() {

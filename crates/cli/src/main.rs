@@ -16,6 +16,7 @@ mod query;
 mod region;
 mod rules;
 mod run;
+mod states;
 mod teach;
 mod watch;
 

@@ -15,6 +15,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::QueryArgs;
 use crate::output::{ExitStatus, Failure, note, print};
+use crate::states;
 
 /// From this number of states on, pairs out of reach of each other are excluded first.
 const MANY: usize = 1000;
@@ -26,7 +27,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     let (mut model, cell) = query_model(args)?;
     let pairs = query_pairs(args, &mut model, cell.as_ref())?;
     let states = match &args.states {
-        Some(path) => QueryStates::read(path, &model)?,
+        Some(path) => states::read(path, &model)?,
         None => QueryStates::start(&model),
     };
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));

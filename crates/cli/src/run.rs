@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         warn_of_overruns(&cell)?;
     }
     let outcome = with_progress(&cell, &options)?;
-    outcome.notes.iter().for_each(note);
+    outcome.notes.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(dir) = &args.out {
         let without = if args.compare {
             Some(with_progress(&cell, &RunOptions { apply_override: false, ..options.clone() })?.recording)

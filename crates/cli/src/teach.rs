@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use elbowroom::analysis::query::QueryStates;
 use elbowroom::cell::{Cell, CellRobot, QueryModel};
 use elbowroom::kinematics::ChainState;
 use elbowroom::monitor::Region;
@@ -56,7 +55,7 @@ fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure>
 fn points(cell: &Cell, robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>, Failure> {
     let chain = &robot.robot.chain;
     let mut state = ChainState::new(chain);
-    let states = QueryStates::read(&args.states, &QueryModel::of_robot_in_cell(cell, robot))?;
+    let states = crate::states::read(&args.states, &QueryModel::of_robot_in_cell(cell, robot))?;
     let point = |index: usize| {
         states.of(index).for_each(|(_, q)| state.q.copy_from_slice(q));
         chain.forward(&mut state);

@@ -73,6 +73,25 @@ fn wrong_goals_are_refused_with_what_to_write() {
     }
 }
 
+/// The stretched arm ends 800 mm from its base; the start is far from all of the targets.
+#[test]
+fn a_target_out_of_reach_is_told_with_the_distance_that_is_missing_in_the_units_of_the_cell() {
+    let target = "{ at = [3800, 0, 0], rpy = [0, 0, 0] }";
+    let messages = [
+        plan(&["--to-pose", "3800,0,0,0,0,0"]).expect(2).stderr,
+        run(&format!("{{ move = \"joint\", to = {target} }}")).expect(2).stderr,
+    ];
+    for message in messages {
+        let rest = message.split("out of reach: the closest found is ").nth(1).unwrap_or_else(|| panic!("{message}"));
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        assert_eq!([words[1], words[2], words[4], words[5]], ["mm", "and", "deg", "away"], "{message}");
+        let missing: f64 = words[0].parse().unwrap();
+        assert!((missing - 3000.0).abs() < 5.0, "{message}");
+    }
+    let line = run(&format!("{{ move = \"linear\", to = {target}, speed = 100 }}")).expect(2).stderr;
+    assert!(line.contains(" mm and ") && !line.contains(" rad "), "{line}");
+}
+
 fn run(steps: &str) -> Answer {
     let dir = with_cell(&format!("{CELL}[program.arm]\nsteps = [{steps}]\n"));
     elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"])

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Answer, elbowroom, examples, keys, with_cell};
+use common::{Answer, elbowroom, examples, keys, with_cell, with_input};
 
 const HEADER: &str = "index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level";
 
@@ -54,6 +54,21 @@ fn distance_has_a_row_per_state_whatever_the_order_of_columns() {
         assert!((apart - number(2)).abs() < 1e-9 && number(2) > 0.3, "{second:?}");
         assert!(((b[0] - 0.8).hypot(b[1]) - 0.1).abs() < 1e-9, "on the ball: {b:?}");
     }
+}
+
+#[test]
+fn states_come_from_standard_input_too() {
+    let states = "joint_1,joint_2\n0,0\n1.5,0\n";
+    let file = query(CELL, Some(states), &["--ask", "distance"]).expect(0);
+    let dir = with_cell(CELL);
+    let args = ["query", "cell.toml", "--ask", "distance", "--states", "-"];
+    assert_eq!(with_input(dir.path(), &args, states).expect(0).stdout, file.stdout);
+    let wrong = with_input(dir.path(), &args, "joint_1,joint_2\n0,x\n").expect(2);
+    assert!(wrong.stderr.contains("standard input:2:"), "{}", wrong.stderr);
+    let ns16 = examples().join("models/ns16/ns16.urdf");
+    let joints = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n";
+    let poses = with_input(dir.path(), &["inspect", ns16.to_str().unwrap(), "--states", "-"], joints).expect(0);
+    assert!(poses.stdout.lines().count() > 6, "{}", poses.stdout);
 }
 
 #[test]

@@ -9,6 +9,12 @@ fn a_guarded_arm_stops_before_the_region() {
     let dir = swing();
     let answer = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
     assert!(answer.stdout.contains("before post"), "{}", answer.stdout);
+    assert!(answer.stdout.contains("TCP on link_2"), "{}", answer.stdout);
+    assert!(
+        answer.stdout.contains("continues when the program moves away (direction_aware = true)\n"),
+        "{}",
+        answer.stdout
+    );
     assert!(answer.stdout.contains("Not a certified safety device."));
     assert_eq!(answer.stderr, "");
 }
@@ -43,10 +49,58 @@ fn a_collision_has_exit_status_1() {
 }
 
 #[test]
+fn notes_on_programs_are_called_warnings() {
+    let text = SWING.split("[program.arm]").next().unwrap().replacen("\n[region", "start = [10, 0]\n\n[region", 1);
+    let dir = with_cell(&(text + "[program.arm]\ntrajectory = \"t.csv\"\n"));
+    std::fs::write(dir.path().join("t.csv"), "t_s,joint_1,joint_2\n0,0,0\n1,-0.1,0\n").unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0);
+    let note = answer.stderr.lines().find(|l| l.contains("does not begin at `start`")).expect(&answer.stderr);
+    assert!(note.starts_with("warning: cell.toml:"), "{note}");
+}
+
+/// A belt that never stops, with a region on it: far away, or across the path of the arm.
+fn with_belt(base: &str, speed: f64) -> String {
+    SWING.to_owned()
+        + &format!(
+            "\n[encoder.belt]\ndirection = [0, 0, 1]\nspeed = {speed}\n[region.part]\nshape = \"cylinder\"\n\
+             base = {base}\nradius = 50\nheight = 200\nwarning = 100\nguards = [\"tcp\"]\n\
+             follow = {{ encoder = \"belt\" }}\n"
+        )
+}
+
+#[test]
+fn a_run_ends_where_only_an_endless_belt_moves() {
+    let dir = with_cell(&with_belt("[5000, 5000, 0]", 100.0));
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    let robot = &json["robots"][0];
+    assert_eq!((json["end"].as_str(), robot["outcome"].as_str()), (Some("standstill"), Some("stopped")), "{json}");
+    let (ended, stopped) = (json["duration_s"].as_f64().unwrap(), robot["stopped_at_s"].as_f64().unwrap());
+    assert!((9.0..11.0).contains(&(ended - stopped)), "{stopped} to {ended}");
+    let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
+    assert!(text.contains("only endless belts moved"), "{text}");
+}
+
+#[test]
+fn a_robot_that_waits_for_the_belt_to_carry_its_region_away_is_waited_for() {
+    // The part is on the path for about 20 s; nothing else is.
+    let text = with_belt("[495, 495, -200]", 10.0).replacen("base = [495, 495, -500]", "base = [5000, 0, 0]", 1);
+    let json = elbowroom(with_cell(&text).path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    assert_eq!(
+        (json["end"].as_str(), json["robots"][0]["finished"].as_bool()),
+        (Some("finished"), Some(true)),
+        "{json}"
+    );
+    assert!(json["robots"][0]["stopped_s"].as_f64().unwrap() > 10.5, "{json}");
+}
+
+#[test]
 fn json_has_the_documented_keys_and_types() {
     let dir = swing();
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
-    assert_eq!(keys(&json), ["cell", "checksum", "deadlocks", "duration_s", "regions", "robots", "tick_ns", "ticks"]);
+    assert_eq!(
+        keys(&json),
+        ["cell", "checksum", "deadlocks", "duration_s", "end", "regions", "robots", "tick_ns", "ticks"]
+    );
     assert_eq!(json["cell"], "cell");
     let checksum = json["checksum"].as_str().unwrap();
     assert!(checksum.len() == 64 && checksum.chars().all(|c| c.is_ascii_hexdigit()), "{checksum}");
@@ -54,8 +108,10 @@ fn json_has_the_documented_keys_and_types() {
     assert_eq!(keys(&json["tick_ns"]), ["max", "p50", "p99"]);
     assert!(json["tick_ns"]["p50"].as_u64() <= json["tick_ns"]["max"].as_u64());
     let robot = &json["robots"][0];
-    let what = ["by", "collisions", "finished", "min_override", "name", "outcome", "part", "point_m"];
-    assert_eq!(keys(robot), [&what[..], &["stopped_at_s", "stopped_s"]].concat());
+    let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "point_m"];
+    assert_eq!(keys(robot), [&what[..], &["release", "stopped_at_s", "stopped_s"]].concat());
+    assert_eq!((json["end"].as_str(), robot["flange"].as_str()), (Some("rest"), Some("link_2")));
+    assert_eq!(robot["release"], "the program moves away (direction_aware = true)");
     assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));
     assert!(robot["stopped_s"].as_f64().unwrap() >= 1.0, "a run ends after a second of rest");
     assert!(robot["min_override"].as_f64().unwrap() < 0.01);
@@ -182,6 +238,48 @@ fn every_example_runs_free_of_trouble() {
         let finished = json["robots"].as_array().unwrap().iter().all(|r| r["finished"] == true);
         assert_eq!(finished, name != "figure12", "{name}: {json}");
     }
+}
+
+#[test]
+fn a_robot_that_waits_is_told_who_must_leave() {
+    let carriage = |name: &str, x: f64, yaw: f64, to: f64| {
+        format!(
+            "[robot.{name}]\nbase = {{ at = [{x}, 0, 0], rpy = [0, 90, {yaw}] }}\n\
+             dh = [{{ kind = \"prismatic\", min = -2000, max = 2000, speed = 1000 }}]\n\
+             links = [{{ sphere = {{ at = [0, 0, 0], radius = 50 }} }}]\n\
+             [program.{name}]\nsteps = [{{ move = \"joint\", to = [{to}] }}]\n"
+        )
+    };
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 4\n{}{}\
+         [region.shared]\nshape = \"box\"\nbase = [0, 0, -300]\nsize = [400, 400, 600]\nwarning = 100\nkind = \"exchange\"\n",
+        carriage("stays", 0.0, 0.0, 10.0),
+        carriage("waits", 1000.0, 180.0, 1500.0),
+    );
+    let dir = with_cell(&text);
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    let waits = &json["robots"][1];
+    assert_eq!(
+        (waits["outcome"].as_str(), waits["release"].as_str()),
+        (Some("held"), Some("stays leaves it")),
+        "{json}"
+    );
+    let summary = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
+    assert!(summary.contains("continues when stays leaves it"), "{summary}");
+    assert!(summary.contains("closest link_1 at ("), "{summary}");
+}
+
+#[test]
+fn a_region_that_a_program_switched_on_may_be_switched_off() {
+    let text = SWING.replace("guards", "life = \"temporary\"\nguards");
+    let text = text.replace("steps = [", "steps = [{ region = \"post\", active = true }, ");
+    let dir = with_cell(&text);
+    let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
+    let release = json["robots"][0]["release"].as_str().unwrap();
+    assert!(release.starts_with("a program switches it off, or "), "{release}");
+    let summary = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
+    assert!(summary.contains(" continues when a program switches it off\n"), "{summary}");
+    assert!(summary.contains(" or when the program moves away (direction_aware = true)\n"), "{summary}");
 }
 
 #[test]

@@ -34,7 +34,7 @@ pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
-/// Refuses empty files, Git LFS pointers, and archives.
+/// Refuses empty files, Git LFS pointers, archives, and STEP files.
 pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError> {
     let refuse = |what: &str, hint: &str| Err(FormatError::new(file, None, what).hint(hint));
     if bytes.iter().all(u8::is_ascii_whitespace) {
@@ -46,6 +46,13 @@ pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
         return refuse("is a zip archive (.zae, .3mf and the like)", "unpack it and name the .dae or .stl inside");
+    }
+    if bytes.trim_ascii_start().starts_with(b"ISO-10303") {
+        let stl = file.with_extension("stl");
+        return refuse(
+            "is STEP, a CAD format without triangles",
+            &format!("run `gmsh {} -2 -o {}` and name its output, in mm", file.display(), stl.display()),
+        );
     }
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return refuse("is compressed with gzip", "unpack it first: gunzip FILE");

@@ -147,6 +147,14 @@ impl JointStates {
         Self::from_lines(path, CsvLines::open(path, options.max_bytes)?, options)
     }
 
+    /// Reads from a source such as standard input; `path` is named in messages.
+    ///
+    /// # Errors
+    /// As for [`JointStates::read`]; the size is not limited.
+    pub fn read_from(path: &Path, source: impl BufRead, options: &JointStateOptions<'_>) -> Result<Self> {
+        Self::from_lines(path, CsvLines::new(source, path), options)
+    }
+
     /// Parses text; `path` is named in messages.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use elbowroom_spatial::units::LengthUnit;
 
 pub use crate::mesh_data::{LoadedMeshes, MeshData, UpAxis};
 use crate::nodetree::NodeTree;
-use crate::{FormatError, Warning, dae, gltf, input, obj, off, ply, stl, tds};
+use crate::{FormatError, Warning, dae, gltf, input, obj, off, ply, stl, tds, urdf};
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,6 +157,9 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
         return Err(FormatError::new(file, None, format!("is {kind}")).hint(hint));
     }
     if head.starts_with(b"<") || bytes.starts_with(b"<\0") {
+        if contains(&decoded, b"<sdf") {
+            return Err(FormatError::new(file, 1, format!("{}, no mesh", urdf::SDF)).hint(urdf::SDF_HINT));
+        }
         return if contains(&decoded, b"COLLADA") || extension_is(file, "dae") {
             Ok(MeshFormat::Dae)
         } else {
@@ -193,7 +196,6 @@ fn unsupported_format(head: &[u8]) -> Option<(&'static str, &'static str)> {
         (b"# .PCD", "a point cloud, not a mesh", "a mesh of the surface: collision checking needs triangles"),
         (b"VERSION .7", "a point cloud, not a mesh", "a mesh of the surface: collision checking needs triangles"),
         (b"# Octomap", "an octree, not a mesh", READABLE),
-        (b"ISO-10303", "STEP, a CAD format", "the part exported from your CAD system as STL or glTF"),
         (b"xof ", "a DirectX file", READABLE),
     ]
     .into_iter()

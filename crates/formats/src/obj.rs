@@ -1,9 +1,9 @@
 //! Wavefront OBJ: polygons of any size, relative indices, continued lines.
 //!
 //! One entry per object: by `o` where the file has any, else by `g`; a repeated name continues its object.
-//! Materials, normals, texture coordinates, points and lines are ignored.
+//! Materials, normals, texture coordinates, points and lines are ignored, unknown statements with a warning.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
@@ -13,10 +13,13 @@ use crate::mesh_data::{LoadedMeshes, MeshData, split_vertices};
 use crate::tokens::{Lines, integer, show, vector};
 use crate::{FormatError, Warning, input, polygon};
 
+/// Number of different unknown words that are warned of.
+const MAX_UNKNOWN_WORDS: usize = 20;
+
 /// Parses an OBJ file. Numbers are taken as metres.
 ///
 /// # Errors
-/// Faces without corners, missing vertices, invalid numbers.
+/// Faces without corners, missing vertices, invalid numbers; a file of unknown statements alone.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
@@ -75,6 +78,9 @@ struct ObjParser<'a> {
     index_of: HashMap<String, usize>,
     object: usize,
     has_objects: bool,
+    /// The first statement that OBJ does not have: its line and its word.
+    first_unknown: Option<(usize, String)>,
+    unknown_words: HashSet<String>,
     warnings: WarningList,
 }
 
@@ -90,6 +96,8 @@ impl<'a> ObjParser<'a> {
             names: vec![name],
             object: 0,
             has_objects: false,
+            first_unknown: None,
+            unknown_words: HashSet::new(),
             warnings: WarningList::default(),
         }
     }
@@ -104,13 +112,20 @@ impl<'a> ObjParser<'a> {
             Some(b"surf" | b"curv" | b"curv2") => self.warnings.push_with(|| {
                 Warning::new(self.file, line, "a free-form curve or surface is ignored").hint("polygons: f 1 2 3")
             }),
-            Some(word) if self.vertices.is_empty() && self.faces.is_empty() && !is_keyword(word) => {
-                let what = format!("`{}` is no OBJ statement: is this an OBJ file?", show(word));
-                return Err(FormatError::new(self.file, line, what).hint("v x y z, then f 1 2 3"));
-            }
+            Some(word) if !is_keyword(word) => self.unknown(line, word),
             _ => {}
         }
         Ok(())
+    }
+
+    /// Warns of a statement that OBJ does not have, once for each word.
+    fn unknown(&mut self, line: usize, word: &[u8]) {
+        let word = show(word);
+        self.first_unknown.get_or_insert_with(|| (line, word.clone()));
+        if self.unknown_words.len() < MAX_UNKNOWN_WORDS && self.unknown_words.insert(word.clone()) {
+            let what = format!("`{word}` is no OBJ statement: such lines are skipped");
+            self.warnings.push_with(|| Warning::new(self.file, line, what));
+        }
     }
 
     /// The first `o` merges the groups before it: objects take precedence over groups.
@@ -183,6 +198,10 @@ impl<'a> ObjParser<'a> {
             polygon::triangulate(&self.vertices, corners, &mut meshes[face.object].triangles);
             begin = face.end;
         }
+        if let (0, Some((line, word))) = (known, &self.first_unknown) {
+            let what = format!("`{word}` is no OBJ statement: is this an OBJ file?");
+            return Err(FormatError::new(self.file, *line, what).hint("v x y z, then f 1 2 3"));
+        }
         if self.faces.is_empty() && known > 0 {
             let what = format!("is a point cloud: {known} vertices, no faces");
             return Err(FormatError::new(self.file, None, what).hint("faces: f 1 2 3"));
@@ -193,30 +212,57 @@ impl<'a> ObjParser<'a> {
     }
 }
 
+/// True for a statement of OBJ that is read or ignored: those of the format's description, and former ones.
 fn is_keyword(word: &[u8]) -> bool {
-    const KEYWORDS: [&[u8]; 20] = [
-        b"v",
-        b"vt",
-        b"vn",
-        b"vp",
-        b"f",
-        b"l",
-        b"p",
-        b"o",
-        b"g",
-        b"s",
-        b"mg",
-        b"mtllib",
-        b"usemtl",
-        b"maplib",
-        b"usemap",
-        b"lod",
-        b"bevel",
-        b"deg",
-        b"cstype",
-        b"shadow_obj",
+    const KEYWORDS: &[&str] = &[
+        "v",
+        "vt",
+        "vn",
+        "vp",
+        "f",
+        "fo",
+        "l",
+        "p",
+        "o",
+        "g",
+        "s",
+        "mg",
+        "mtllib",
+        "usemtl",
+        "maplib",
+        "usemap",
+        "lod",
+        "bevel",
+        "c_interp",
+        "d_interp",
+        "shadow_obj",
+        "trace_obj",
+        "ctech",
+        "stech",
+        "deg",
+        "cstype",
+        "bmat",
+        "step",
+        "curv",
+        "curv2",
+        "surf",
+        "parm",
+        "trim",
+        "hole",
+        "scrv",
+        "sp",
+        "end",
+        "con",
+        "call",
+        "scmp",
+        "csh",
+        "bsp",
+        "bzp",
+        "cdc",
+        "cdp",
+        "res",
     ];
-    KEYWORDS.contains(&word)
+    KEYWORDS.iter().any(|k| k.as_bytes() == word)
 }
 
 #[cfg(test)]
@@ -230,6 +276,20 @@ mod tests {
         assert_eq!(error.line, Some(7));
         let valid = parse(&text[..text.len() - 8], Path::new("a.obj")).unwrap();
         assert_eq!(valid.meshes[0].triangles, [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn unknown_statements_are_skipped_with_a_warning_each() {
+        let text = "exported by x\nv 0 0 0\nv 1 0 0\nv 0 1 0\ntag 1\nf 1 2 3\ntag 2\nparm u 0 1\nend\n";
+        let loaded = parse(text.as_bytes(), Path::new("a.obj")).unwrap();
+        assert_eq!(loaded.meshes[0].triangles, [[0, 1, 2]]);
+        let warned: Vec<_> = loaded.warnings.iter().map(|w| (w.line, w.what.as_str())).collect();
+        let skipped = |line, word| (Some(line), format!("`{word}` is no OBJ statement: such lines are skipped"));
+        let expected = [skipped(1, "exported"), skipped(5, "tag")];
+        assert_eq!(warned, expected.each_ref().map(|(line, what)| (*line, what.as_str())));
+        // Without a vertex it is no OBJ file.
+        let error = parse(b"\nhello world\n", Path::new("a.obj")).unwrap_err();
+        assert!(error.line == Some(2) && error.what.contains("is this an OBJ file?"), "{error}");
     }
 
     #[test]

@@ -35,7 +35,7 @@ fn describe_search(reference: &str, base: &Path) -> String {
                 Some(directory) => format!("there is no {path} in {}", directory.display()),
                 None => format!(
                     "no directory called `{name}`, and none with that name in its package.xml, in {} or above",
-                    base.display()
+                    folder(base)
                 ),
             }
         }
@@ -43,6 +43,11 @@ fn describe_search(reference: &str, base: &Path) -> String {
         Some((scheme, _)) => format!("`{scheme}://` is not followed"),
         None => format!("there is no file {}", base.join(reference).display()),
     }
+}
+
+/// The name of a folder; the current one has none in a relative path.
+fn folder(base: &Path) -> String {
+    if base.as_os_str().is_empty() { "the current folder".to_owned() } else { base.display().to_string() }
 }
 
 fn in_package(rest: &str, base: &Path) -> Option<PathBuf> {
@@ -134,6 +139,12 @@ mod tests {
         assert_eq!(ends("../../meshes/Link.stl").unwrap().file_name().unwrap(), "Link.STL");
         assert!(ends("package://nobody/a.stl").unwrap_err().contains("nobody"));
         assert!(ends("http://example.org/a.stl").unwrap_err().contains("http"));
+    }
+
+    #[test]
+    fn the_search_from_the_current_folder_is_said() {
+        let why = resolve("package://nobody/a.stl", Path::new("")).unwrap_err();
+        assert!(why.ends_with("in the current folder or above"), "{why}");
     }
 
     #[test]

@@ -130,6 +130,16 @@ pub(crate) fn show(word: &[u8]) -> String {
     shown
 }
 
+/// A name for a message: whole, unless it is longer than any name that people write.
+pub(crate) fn show_name(name: &str) -> String {
+    const MAX_CHARS: usize = 200;
+    let mut shown: String = name.chars().take(MAX_CHARS).map(|c| if c.is_control() { '?' } else { c }).collect();
+    if name.chars().nth(MAX_CHARS).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
 /// Three finite numbers from the next tokens.
 pub(crate) fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,

@@ -15,6 +15,11 @@ use crate::tokens::{LineIndex, show};
 use crate::{FormatError, input, xml};
 pub use model::{Geometry, LinkGeometry, UrdfJoint, UrdfLink, UrdfMimic, UrdfModel};
 
+/// What a file with the root element `<sdf>` is.
+pub(crate) const SDF: &str = "is SDF, the format of Gazebo";
+/// What to do with it.
+pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the one that a converter makes of it; of a mesh the file that its <uri> names";
+
 /// Parses a URDF; meshes are named, not opened. `file` is named in messages.
 ///
 /// # Errors
@@ -63,7 +68,7 @@ fn check_root(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
             ("is an SRDF, not a URDF".to_owned(), "the URDF as the model, and this file as its srdf")
         }
         "robot" => ("the robot has no links".to_owned(), "<link name=\"base_link\"/>"),
-        "sdf" => ("is SDF, not URDF".to_owned(), "the robot as URDF"),
+        "sdf" => (format!("{SDF}, not URDF"), SDF_HINT),
         "mujoco" => ("is MuJoCo's MJCF, not URDF".to_owned(), "the robot as URDF"),
         "COLLADA" => ("is a COLLADA mesh, not a URDF".to_owned(), "a URDF that names this mesh"),
         _ => {
@@ -88,7 +93,7 @@ fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
         "an expression, ${…} or $(…)".to_owned()
     };
     Err(FormatError::new(file, xml::line(node), format!("is a xacro file that is not expanded: {found}"))
-        .hint("run `xacro FILE > robot.urdf` and name its output"))
+        .hint(xml::xacro_hint(file)))
 }
 
 /// `<drake:joint>` and `<drake:link>` belong to the tree: without them the robot would be a different one.

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::FormatError;
 use crate::tokens::show;
+use crate::{FormatError, input};
 
 /// Largest number of nodes, which bounds the memory of the tree (a node takes about 100 bytes).
 const MAX_NODES: u32 = 4_000_000;
@@ -25,7 +25,7 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
     }
     match error {
         roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-            at("xacro macros that are not expanded".into()).hint("run `xacro FILE > robot.urdf` and name its output")
+            at("xacro macros that are not expanded".into()).hint(xacro_hint(file))
         }
         roxmltree::Error::UnknownNamespace(prefix, _) => at(format!("the prefix `{prefix}:` is not declared"))
             .hint(format!("xmlns:{prefix}=\"http://{prefix}\" in the root element, or remove the element")),
@@ -89,4 +89,16 @@ pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
 /// A text as the value of an attribute.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The command that expands a xacro file: to `arm.urdf` from `arm.xacro` and from `arm.urdf.xacro`.
+pub(crate) fn xacro_hint(file: &Path) -> String {
+    let stem = input::stem(file);
+    let stem = stem.strip_suffix(".urdf").unwrap_or(&stem);
+    let mut urdf = file.with_file_name(format!("{stem}.urdf"));
+    // A xacro file may itself be called .urdf.
+    if urdf == file {
+        urdf = file.with_file_name(format!("{stem}.expanded.urdf"));
+    }
+    format!("run `xacro {} > {}` and name its output", file.display(), urdf.display())
 }

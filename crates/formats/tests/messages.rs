@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, srdf, urdf};
+use elbowroom_formats::{FormatError, mesh, srdf, urdf};
 
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n";
 
@@ -15,6 +15,44 @@ fn with_joint(kind: &str, inside: &str, after: &str) -> String {
 
 fn refused(text: &str) -> FormatError {
     urdf::parse(text.as_bytes(), Path::new("arm.urdf")).expect_err(text)
+}
+
+#[test]
+fn names_are_shown_whole() {
+    let name = "left_hand_of_the_second_robot_finger_joint_number_one";
+    let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{name}\"")));
+    assert!(error.what.contains(name), "{error}");
+    // What no one calls a joint is still cut.
+    let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{}\"", "x".repeat(5000))));
+    assert!(error.what.len() < 300 && error.what.contains('…'), "{error}");
+}
+
+#[test]
+fn formats_of_others_are_named_with_what_to_do() {
+    let refused = |file: &str, text: &str| {
+        let path = Path::new(file);
+        let urdf = urdf::parse(text.as_bytes(), path).expect_err(text);
+        let mesh = mesh::parse(text.as_bytes(), path, None, mesh::UpAxis::ToZ).expect_err(text);
+        [urdf, mesh].map(|e| e.to_string())
+    };
+    for message in refused("arm.sdf", "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\"/>") {
+        assert!(message.contains("is SDF") && message.contains("URDF") && !message.contains("COLLADA"), "{message}");
+    }
+    for message in refused("cad/part.step", "ISO-10303-21;\nHEADER;\n") {
+        assert!(
+            message.contains("is STEP") && message.contains("`gmsh cad/part.step -2 -o cad/part.stl`"),
+            "{message}"
+        );
+    }
+    let xacro = "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/></robot>";
+    for (file, command) in [
+        ("arm.urdf.xacro", "`xacro arm.urdf.xacro > arm.urdf`"),
+        ("d/arm.xacro", "`xacro d/arm.xacro > d/arm.urdf`"),
+        ("arm.urdf", "`xacro arm.urdf > arm.expanded.urdf`"),
+    ] {
+        let message = urdf::parse(xacro.as_bytes(), Path::new(file)).unwrap_err().to_string();
+        assert!(message.contains("is a xacro file") && message.contains(command), "{message}");
+    }
 }
 
 #[test]
@@ -32,9 +70,9 @@ fn every_error_names_its_line_and_a_remedy() {
         ("<COLLADA/>".into(), 1, "COLLADA", "URDF"),
         ("<robot name=\"r\"/>".into(), 1, "no links", "<link"),
         ("<robot>\n<group name=\"g\"/></robot>".into(), 1, "SRDF", "srdf"),
-        ("<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/>\n<link name=\"a\"/></robot>".into(), 2, "xacro", "xacro FILE"),
-        ("<robot>\n<xacro:arm/></robot>".into(), 2, "xacro", "xacro FILE"),
-        ("<robot><link name=\"a\">\n<collision><origin xyz=\"0 0 ${h}\"/></collision></link></robot>".into(), 2, "xacro", "xacro FILE"),
+        ("<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/>\n<link name=\"a\"/></robot>".into(), 2, "xacro", "xacro arm.urdf > arm.expanded.urdf"),
+        ("<robot>\n<xacro:arm/></robot>".into(), 2, "xacro", "xacro arm.urdf > arm.expanded.urdf"),
+        ("<robot><link name=\"a\">\n<collision><origin xyz=\"0 0 ${h}\"/></collision></link></robot>".into(), 2, "xacro", "xacro arm.urdf > arm.expanded.urdf"),
         (format!("{HEAD}<link name=\"a\"/></robot>"), 5, "second link `a`; the first is on line 3", "name of its own"),
         (format!("{HEAD}<link/></robot>"), 5, "no name", "name="),
         (format!("{HEAD}</robot>"), 4, "2 links have no parent", "fixed"),

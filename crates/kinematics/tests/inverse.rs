@@ -241,6 +241,30 @@ fn errors_name_the_cause() {
     }
 }
 
+/// The remaining error is that of the closest pose found, not that of the seed.
+#[test]
+fn a_target_beyond_reach_is_as_far_as_the_arm_ends_before_it() {
+    let z = Vec3::Z;
+    let planar = serial(&[
+        (JointKind::Revolute, Pose::IDENTITY, z, Limits::symmetric(3.0)),
+        (JointKind::Revolute, Pose::from_translation(Vec3::X), z, Limits::symmetric(3.0)),
+        (JointKind::Revolute, Pose::from_translation(Vec3::X), z, Limits::symmetric(3.0)),
+        (JointKind::Fixed, Pose::from_translation(Vec3::X * 0.1), z, Limits::UNLIMITED),
+    ]);
+    for task in [IkTask::Pose, IkTask::Position] {
+        let options = IkOptions { task, ..IkOptions::default() };
+        let mut solver = IkSolver::new(&planar, planar.tip(), Pose::IDENTITY, options);
+        // The seed points the other way: 5.1 m from the target.
+        match solver.solve(&Pose::from_translation(Vec3::X * 3.0), &[PI - 0.2, 0.0, 0.0]) {
+            Err(IkError::Unreachable { position_error_m, angle_error_rad }) => {
+                assert!((position_error_m - 0.9).abs() < 1e-3, "{task:?}: {position_error_m}");
+                assert!(task == IkTask::Position || angle_error_rad < 1e-2, "{angle_error_rad}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
 #[test]
 fn extreme_numbers_terminate_without_success() {
     let mut random = Random(21);

@@ -90,7 +90,7 @@ pub use monitor::Monitor;
 pub use region::{Guards, Life, Region, RegionId, RegionKind, SourceId, VolumeId};
 pub use region_distance_query::RegionDistanceQuery;
 pub use region_sweep::{ClosestApproach, RegionSweep};
-pub use report::{Fault, OverrideReason, TickReport, VirtualTcp};
+pub use report::{Fault, NamedReason, OverrideReason, TickReport, VirtualTcp};
 pub use snapshot::{Snapshot, SourceState};
 pub use source_limits::{SourceLimits, SourceSpec};
 pub use volume::{Part, Volume, VolumeModel, arm_volumes};

@@ -4,7 +4,7 @@ use std::fmt;
 
 use elbowroom_spatial::Vec3;
 
-use crate::{RegionId, VolumeId};
+use crate::{Region, RegionId, VolumeId};
 
 /// The result of one tick: plain data of fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +13,7 @@ pub struct TickReport {
     pub stamp_s: f64,
     /// The speed override to apply, 0..1; it includes the programmed override.
     pub speed_override: f64,
-    /// Why the override has this value.
+    /// Why the override has this value; [`OverrideReason::named`] shows it with names.
     pub reason: OverrideReason,
     /// The virtual TCP that requests the smallest override, where one limits it.
     pub governing: Option<VirtualTcp>,
@@ -68,6 +68,21 @@ impl OverrideReason {
         }
     }
 
+    /// The reason with the names of the regions, those of the monitor's configuration: for messages. Without names
+    /// `Display` shows the region's index.
+    ///
+    /// ```
+    /// use elbowroom_monitor::{OverrideReason, Region, RegionId};
+    /// use elbowroom_spatial::{Rotation, Vec3};
+    /// let regions = [Region::cylinder("post", Vec3::ZERO, 0.1, 2.0, Rotation::IDENTITY)];
+    /// let reason = OverrideReason::Region(RegionId(0));
+    /// assert_eq!(reason.named(&regions).to_string(), "near forbidden region `post`");
+    /// assert_eq!(reason.to_string(), "near forbidden region 0");
+    /// ```
+    pub fn named(self, regions: &[Region]) -> NamedReason<'_> {
+        NamedReason { reason: self, regions }
+    }
+
     /// The same reason with its region, also that of a fault, under another index.
     #[must_use]
     pub fn with_region(self, index: impl FnOnce(RegionId) -> RegionId) -> Self {
@@ -76,6 +91,7 @@ impl OverrideReason {
             Self::SpeedZone(r) => Self::SpeedZone(index(r)),
             Self::Waiting(r) => Self::Waiting(index(r)),
             Self::Fault(Fault::Source { region }) => Self::Fault(Fault::Source { region: index(region) }),
+            Self::Fault(Fault::SourceJump { region }) => Self::Fault(Fault::SourceJump { region: index(region) }),
             Self::Free | Self::Rate | Self::Fault(_) => self,
         }
     }
@@ -83,13 +99,54 @@ impl OverrideReason {
 
 impl fmt::Display for OverrideReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.named(&[]).fmt(f)
+    }
+}
+
+/// An [`OverrideReason`] with the names of the regions: [`OverrideReason::named`].
+#[derive(Debug, Clone, Copy)]
+pub struct NamedReason<'a> {
+    reason: OverrideReason,
+    regions: &'a [Region],
+}
+
+impl NamedReason<'_> {
+    /// The name of a region, or its index where it is none of the regions given.
+    fn name(&self, id: RegionId) -> RegionName<'_> {
+        self.regions.get(id.0).map_or(RegionName::Index(id.0), |region| RegionName::Name(&region.name))
+    }
+}
+
+impl fmt::Display for NamedReason<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.reason {
+            OverrideReason::Free => write!(f, "free"),
+            OverrideReason::Region(r) => write!(f, "near forbidden region {}", self.name(r)),
+            OverrideReason::SpeedZone(r) => write!(f, "speed zone {}", self.name(r)),
+            OverrideReason::Waiting(r) => write!(f, "waiting for exchange region {}", self.name(r)),
+            OverrideReason::Rate => write!(f, "override changing at its largest rate"),
+            OverrideReason::Fault(Fault::Source { region }) => {
+                write!(f, "the source that region {} follows is lost", self.name(region))
+            }
+            OverrideReason::Fault(Fault::SourceJump { region }) => {
+                let name = self.name(region);
+                write!(f, "the source that region {name} follows jumped, or moves otherwise than it says")
+            }
+            OverrideReason::Fault(fault) => write!(f, "{fault}"),
+        }
+    }
+}
+
+enum RegionName<'a> {
+    Index(usize),
+    Name(&'a str),
+}
+
+impl fmt::Display for RegionName<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Free => write!(f, "free"),
-            Self::Region(r) => write!(f, "near forbidden region {}", r.0),
-            Self::SpeedZone(r) => write!(f, "speed zone {}", r.0),
-            Self::Waiting(r) => write!(f, "waiting for exchange region {}", r.0),
-            Self::Rate => write!(f, "override changing at its largest rate"),
-            Self::Fault(fault) => write!(f, "{fault}"),
+            Self::Index(index) => write!(f, "{index}"),
+            Self::Name(name) => write!(f, "`{name}`"),
         }
     }
 }
@@ -165,5 +222,25 @@ impl fmt::Display for Fault {
                 write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_with_a_region_gets_its_other_index() {
+        let [from, to] = [RegionId(0), RegionId(7)];
+        let reasons = |region: RegionId| {
+            [
+                OverrideReason::Region(region),
+                OverrideReason::SpeedZone(region),
+                OverrideReason::Waiting(region),
+                OverrideReason::Fault(Fault::Source { region }),
+                OverrideReason::Fault(Fault::SourceJump { region }),
+            ]
+        };
+        assert_eq!(reasons(from).map(|r| r.with_region(|_| to)), reasons(to));
     }
 }

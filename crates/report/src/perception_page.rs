@@ -89,6 +89,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
     let chain = &arm.robot.chain;
     let robot = RobotTrack {
         name: "arm".into(),
+        flange: chain.links()[flange.0].clone(),
         joints: chain.active_joints().iter().map(|id| chain.joints()[id.0].name.clone()).collect(),
         min_override: log.ticks.iter().map(|t| t.step.rate).fold(1.0, f64::min),
         samples,
@@ -103,6 +104,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
         checksum: String::new(),
         tick_s: log.tick_s,
         duration_s: log.ticks.last().map_or(0.0, |t| t.t_s),
+        end: elbowroom_sim::RunEnd::Finished,
         monitored: true,
         robots: vec![robot],
         regions: log.ground_truth.iter().map(region).collect(),

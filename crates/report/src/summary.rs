@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use elbowroom_sim::{AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotTrack};
+use elbowroom_sim::{
+    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd,
+};
 
 use crate::explanation::explanation;
 use crate::sparkline::sparkline;
@@ -16,9 +18,10 @@ const STATIONARY_M_S: f64 = 1e-4;
 /// codes only where `color` is true (a terminal). To list written files, use [`TextSummary`].
 ///
 /// ```
-/// use elbowroom_sim::{Recording, TickTimes};
+/// use elbowroom_sim::{Recording, RunEnd, TickTimes};
 /// let recording = Recording {
-///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, monitored: true,
+///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, end: RunEnd::Finished,
+///     monitored: true,
 ///     robots: vec![], regions: vec![], objects: vec![], deadlocks: vec![], events: vec![],
 ///     tick_ns: TickTimes::default(),
 /// };
@@ -105,6 +108,10 @@ impl fmt::Display for TextSummary<'_> {
             lines.extend(rec.deadlocks.iter().flat_map(deadlock_lines));
         }
         lines.push(Line::new());
+        if rec.end == RunEnd::Standstill {
+            let why = "  ended   robots at override 0 for 10 s, only endless belts moved";
+            lines.push(vec![(why.into(), Style::Warn)]);
+        }
         lines.push(ticks(rec));
         for line in &lines {
             self.write_line(f, line)?;
@@ -161,6 +168,7 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
         (curve, Style::Plain),
         (numbers, Style::Dim),
     ]);
+    lines.extend(detail_texts(robot).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
@@ -172,6 +180,24 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
             .map(|c| vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]),
     );
     lines
+}
+
+/// Where the TCP is, the part that was closest to the region that stopped the robot, and what would release it.
+fn detail_texts(robot: &RobotTrack) -> Vec<String> {
+    let RobotEnding { part, point, release, .. } = &robot.ending;
+    let mut parts = Vec::new();
+    if !robot.flange.is_empty() {
+        parts.push(format!("TCP on {}", robot.flange));
+    }
+    // Where the TCP itself is guarded, the line above has its place.
+    if let (Some(part), Some(p)) = (part.as_ref().filter(|part| *part != "tcp"), point) {
+        parts.push(format!("closest {part} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
+    }
+    let place = (!parts.is_empty()).then(|| parts.join(", "));
+    // A line for each way, so that none is cut.
+    let ways = release.iter().flat_map(|ways| ways.split(", or ")).enumerate();
+    let ways = ways.map(|(i, way)| format!("{} when {way}", if i == 0 { "continues" } else { "or" }));
+    place.into_iter().chain(ways).collect()
 }
 
 /// Summary of avoidance.

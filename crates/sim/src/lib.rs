@@ -39,7 +39,8 @@ mod summary;
 
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, RecordedRegionKind,
-    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEvent, Sample, Span, TickTimes,
+    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, Span,
+    TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, RunSummary};

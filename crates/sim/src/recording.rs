@@ -20,6 +20,8 @@ pub struct Recording {
     pub tick_s: f64,
     /// Simulated time from the first to the last tick, seconds.
     pub duration_s: f64,
+    /// Why it ended.
+    pub end: RunEnd,
     /// False where the override of the monitor was not applied.
     pub monitored: bool,
     /// One per robot, in the order of the cell file.
@@ -36,11 +38,28 @@ pub struct Recording {
     pub tick_ns: TickTimes,
 }
 
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunEnd {
+    /// All programs were completed.
+    #[default]
+    Finished,
+    /// Nothing moved any more.
+    Rest,
+    /// The robots stood at override 0 for ten seconds while only endless belts moved.
+    Standstill,
+    /// The time limit of the cell.
+    TimeLimit,
+}
+
 /// Recording of one robot.
 #[derive(Debug, Clone)]
 pub struct RobotTrack {
     /// The robot's name in the cell file.
     pub name: String,
+    /// The link that carries the tool centre point.
+    pub flange: String,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
     /// One per tick, first to last of the run.
@@ -72,6 +91,8 @@ pub struct RobotEnding {
     pub part: Option<String>,
     /// The point of that part closest to the region, in the world, m.
     pub point: Option<Vec3>,
+    /// What would let a stopped robot continue, in words; `None` where nothing is known to.
+    pub release: Option<String>,
 }
 
 /// Outcome of a robot's run.

@@ -3,7 +3,7 @@
 use elbowroom_avoidance::AvoiderState;
 use serde::Serialize;
 
-use crate::recording::{AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, RecordedRegionKind, Recording};
+use crate::recording::{AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, RecordedRegionKind, Recording, RunEnd};
 
 /// Figures of a run, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -14,6 +14,8 @@ pub struct RunSummary {
     pub checksum: String,
     /// Simulated time, s.
     pub duration_s: f64,
+    /// `finished`, `rest` (nothing moved any more), `standstill` (only endless belts did) or `time_limit`.
+    pub end: RunEnd,
     /// Number of ticks.
     pub ticks: usize,
     /// Wall-clock time of the monitor's ticks, ns.
@@ -64,6 +66,8 @@ pub struct TickNs {
 pub struct RobotSummary {
     /// Its name.
     pub name: String,
+    /// The link that carries the tool centre point.
+    pub flange: String,
     /// True where its program was completed.
     pub finished: bool,
     /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
@@ -76,6 +80,8 @@ pub struct RobotSummary {
     pub part: Option<String>,
     /// The point of that part closest to the region, in the world, m.
     pub point_m: Option<[f64; 3]>,
+    /// What would let it continue, in words; null where nothing is known to.
+    pub release: Option<String>,
     /// Time stopped by the monitor, s.
     pub stopped_s: f64,
     /// Smallest override, 0..1.
@@ -165,12 +171,14 @@ impl From<&Recording> for RunSummary {
     fn from(r: &Recording) -> Self {
         let robot = |t: &crate::recording::RobotTrack| RobotSummary {
             name: t.name.clone(),
+            flange: t.flange.clone(),
             finished: t.finished,
             outcome: t.ending.outcome,
             stopped_at_s: t.ending.stopped_at_s,
             by: t.ending.by.clone(),
             part: t.ending.part.clone(),
             point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
+            release: t.ending.release.clone(),
             stopped_s: t.stopped_s,
             min_override: t.min_override,
             collisions: t
@@ -197,6 +205,7 @@ impl From<&Recording> for RunSummary {
             cell: r.cell.clone(),
             checksum: r.checksum.clone(),
             duration_s: r.duration_s,
+            end: r.end,
             ticks: (r.duration_s / r.tick_s).round() as usize + 1,
             tick_ns: TickNs { p50: r.tick_ns.p50, p99: r.tick_ns.p99, max: r.tick_ns.max },
             robots: r.robots.iter().map(robot).collect(),

@@ -205,7 +205,10 @@ fn goals(
     if found.is_empty() {
         let mut solver = IkSolver::new(&robot.robot.chain, robot.flange, robot.tcp_in_flange, IkOptions::default());
         let why = solver.solve(&robot.base_in_world.inverse_mul(tcp_in_world), state.q(id)).err();
-        let why = why.map_or_else(|| "no posture within the limits was found".to_owned(), |e| e.to_string());
+        let why = why.map_or_else(
+            || "no posture within the limits was found".to_owned(),
+            |e| cell.units.describe_ik_error(&e, &robot.robot.chain),
+        );
         let what = format!("the goal of robot \"{}\": {why}", robot.name);
         return Err(FormatError::new(&cell.file, robot.line, what).hint("a pose within reach, or joint values"));
     }

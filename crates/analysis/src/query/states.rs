@@ -1,5 +1,6 @@
 //! Joint states of a model, fully checked before the first query.
 
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use elbowroom_cell::{QueryModel, QueryRobot};
@@ -34,6 +35,14 @@ impl QueryStates {
     /// [`FormatError`] names the line and the column.
     pub fn read(path: &Path, model: &QueryModel) -> Result<Self> {
         joint_states::JointStates::read(path, &options(model)).map(Self::new)
+    }
+
+    /// As [`QueryStates::read`], from a source such as standard input; `path` is named in messages.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn read_from(path: &Path, source: impl BufRead, model: &QueryModel) -> Result<Self> {
+        joint_states::JointStates::read_from(path, source, &options(model)).map(Self::new)
     }
 
     /// As [`QueryStates::read`], for text in place of the file `path`.

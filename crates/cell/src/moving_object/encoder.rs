@@ -89,6 +89,11 @@ impl Encoder {
         }
     }
 
+    /// True for a belt that never stops once it runs.
+    pub(crate) fn is_endless(&self) -> bool {
+        matches!(self.travel, Travel::Constant { end_s, .. } if end_s == f64::INFINITY)
+    }
+
     /// As [`Self::at`], without wrapping.
     fn travelled(&self, t_s: f64) -> (f64, f64) {
         match &self.travel {

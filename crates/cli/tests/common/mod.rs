@@ -1,8 +1,9 @@
 //! Runs the built command as a shell would.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -39,6 +40,15 @@ pub fn command(dir: &Path, args: &[&str]) -> Command {
 /// `elbowroom args…` in `dir`.
 pub fn elbowroom(dir: &Path, args: &[&str]) -> Answer {
     answer(command(dir, args).output().unwrap())
+}
+
+/// `elbowroom args…` in `dir`, with this text on standard input.
+pub fn with_input(dir: &Path, args: &[&str], input: &str) -> Answer {
+    let mut child =
+        command(dir, args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // A command that ends without reading closes the pipe.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    answer(child.wait_with_output().unwrap())
 }
 
 pub fn answer(output: Output) -> Answer {

@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::model::{UrdfJoint, UrdfLink, UrdfMimic};
 use super::parser::UrdfParser;
 use crate::cycles::find_cycles;
-use crate::tokens::show;
+use crate::tokens::{show, show_name};
 use crate::{FormatError, xml};
 
 const LIMIT: &str = "<limit lower=\"-3.14\" upper=\"3.14\" velocity=\"1.5\" effort=\"0\"/>, or type=\"continuous\"";
@@ -23,7 +23,7 @@ impl UrdfParser<'_> {
             if let Some(first) = numbers.insert(name, i) {
                 let what = format!(
                     "a second joint `{}`; the first is on line {}",
-                    show(name.as_bytes()),
+                    show_name(name),
                     self.lines.line_at(nodes[first].range().start)
                 );
                 return Err(self.error(*node, what).hint("a name of its own for each joint"));
@@ -77,8 +77,7 @@ impl UrdfParser<'_> {
         };
         let line = xml::attribute_line(node, "type");
         let name = node.attribute("name").unwrap_or_default();
-        let what =
-            format!("the joint `{}` is of type `{}`, which is not read", show(name.as_bytes()), show(kind.as_bytes()));
+        let what = format!("the joint `{}` is of type `{}`, which is not read", show_name(name), show(kind.as_bytes()));
         Err(FormatError::new(self.file, line, what).hint(instead))
     }
 
@@ -93,10 +92,10 @@ impl UrdfParser<'_> {
             .ok_or_else(|| self.error(node, format!("the joint has no {element}")).hint(hint))?;
         let link = self.required(end, "link")?;
         links.get(link).copied().ok_or_else(|| {
-            let what = format!("there is no link `{}`", show(link.as_bytes()));
+            let what = format!("there is no link `{}`", show_name(link));
             let line = xml::attribute_line(end, "link");
             FormatError::new(self.file, line, what)
-                .hint(format!("<link name=\"{}\"/>, or the name of another link", show(link.as_bytes())))
+                .hint(format!("<link name=\"{}\"/>, or the name of another link", show_name(link)))
         })
     }
 
@@ -105,7 +104,7 @@ impl UrdfParser<'_> {
             return Ok(Limits::UNLIMITED);
         }
         let bounded = kind != JointKind::Continuous;
-        let name = show(joint.attribute("name").unwrap_or_default().as_bytes());
+        let name = show_name(joint.attribute("name").unwrap_or_default());
         let Some(node) = xml::child(joint, "limit") else {
             if bounded {
                 return Err(self.error(joint, format!("the joint `{name}` has no <limit>")).hint(LIMIT));
@@ -159,7 +158,7 @@ impl UrdfParser<'_> {
         let Some(node) = xml::child(joint, "mimic") else { return Ok(None) };
         let source = self.required(node, "joint")?;
         let source = joints.get(source).copied().ok_or_else(|| {
-            let what = format!("there is no joint `{}` to follow", show(source.as_bytes()));
+            let what = format!("there is no joint `{}` to follow", show_name(source));
             self.error(node, what)
                 .hint("<mimic joint=\"NAME\" multiplier=\"1\" offset=\"0\"/> with the name of a joint")
         })?;
@@ -180,7 +179,7 @@ impl UrdfParser<'_> {
                 );
                 joints[i].mimic = None;
             } else if !joints[mimic.joint].kind.moves() {
-                let what = format!("follows the fixed joint `{}`", show(joints[mimic.joint].name.as_bytes()));
+                let what = format!("follows the fixed joint `{}`", show_name(&joints[mimic.joint].name));
                 return Err(self.error(node, what).hint("the name of a joint that moves"));
             }
         }

@@ -8,7 +8,7 @@ use roxmltree::Node;
 
 use super::model::{LinkGeometry, UrdfLink};
 use crate::error::WarningList;
-use crate::tokens::{LineIndex, show};
+use crate::tokens::{LineIndex, show, show_name};
 use crate::{FormatError, Warning, xml};
 
 /// The use of a geometry.
@@ -97,7 +97,7 @@ impl UrdfParser<'_> {
             let name = self.required(node, "name")?;
             let line = self.lines.line_at(node.range().start);
             if let Some(first) = lines.insert(name, line) {
-                let what = format!("a second link `{}`; the first is on line {first}", show(name.as_bytes()));
+                let what = format!("a second link `{}`; the first is on line {first}", show_name(name));
                 return Err(self.error(node, what).hint("a name of its own for each link"));
             }
             let collisions = self.geometries(node, GeometryRole::Collision)?;

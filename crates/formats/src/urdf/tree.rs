@@ -5,15 +5,15 @@ use std::path::Path;
 use super::model::{UrdfJoint, UrdfLink};
 use crate::FormatError;
 use crate::cycles::find_cycles;
-use crate::tokens::show;
+use crate::tokens::show_name;
 
 pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Result<(), FormatError> {
-    let name = |i: usize| show(links[i].name.as_bytes());
+    let name = |i: usize| show_name(&links[i].name);
     let mut parent_joint: Vec<Option<usize>> = vec![None; links.len()];
     for (j, joint) in joints.iter().enumerate() {
         if joint.parent == joint.child {
             let what =
-                format!("the joint `{}` joins the link `{}` to itself", show(joint.name.as_bytes()), name(joint.child));
+                format!("the joint `{}` joins the link `{}` to itself", show_name(&joint.name), name(joint.child));
             return Err(FormatError::new(file, joint.line, what).hint("two different links as <parent> and <child>"));
         }
         if let Some(first) = parent_joint[joint.child].replace(j) {
@@ -49,6 +49,6 @@ fn refuse_cycles(
 ) -> Result<(), FormatError> {
     let cycles = find_cycles(links.len(), |link| parent_joint[link].map(|j| joints[j].parent));
     let Some(joint) = cycles.first().and_then(|&link| parent_joint[link]).map(|j| &joints[j]) else { return Ok(()) };
-    let what = format!("the joint `{}` closes a cycle of links", show(joint.name.as_bytes()));
+    let what = format!("the joint `{}` closes a cycle of links", show_name(&joint.name));
     Err(FormatError::new(file, joint.line, what).hint("a tree: open the cycle at one joint"))
 }

@@ -19,6 +19,8 @@ const REFINE_STEPS: usize = 12;
 /// Starts of the numeric method where the closed form has no solution within the limits: aligned wrist axes leave a choice that
 /// the closed form does not make by the limits.
 const STARTS_AFTER_CLOSED_FORM: usize = 12;
+/// Starts of the search for the closest pose where the target is beyond reach.
+const STARTS_BEYOND_REACH: usize = 8;
 /// Largest violation of a limit (rad) by a closed-form solution that is still refined into the range.
 const LIMIT_SLACK: f64 = 1e-6;
 
@@ -296,10 +298,8 @@ impl IkSolver {
         outside: Option<LimitViolation>,
     ) -> Result<IkSolution, IkError> {
         let mut closest = self.pose_error(target, start);
-        if self.beyond_reach(target) {
-            return Err(unreachable(&closest));
-        }
-        let starts = self.starts();
+        let beyond_reach = self.beyond_reach(target);
+        let starts = if beyond_reach { self.starts().min(STARTS_BEYOND_REACH) } else { self.starts() };
         for index in 0..starts {
             let (found, error) = self.minimize_from(target, start, index, true);
             if let Some(found) = found {
@@ -308,6 +308,9 @@ impl IkSolver {
             if self.weight(&error) < self.weight(&closest) {
                 closest = error;
             }
+        }
+        if beyond_reach {
+            return Err(unreachable(&closest));
         }
         let outside = outside.or_else(|| self.search_outside(target, start));
         match outside {

@@ -152,9 +152,11 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
         checksum: "3fa94c0b7de2518896ab".repeat(3),
         tick_s,
         duration_s: end_s,
+        end: elbowroom_sim::RunEnd::Finished,
         monitored,
         robots: vec![RobotTrack {
             name: "ns16".into(),
+            flange: "tool0".into(),
             joints: ["waist", "shoulder", "elbow"].map(String::from).to_vec(),
             finished: !monitored,
             stopped_s: if monitored { 1.1 } else { 0.0 },

@@ -2,9 +2,9 @@
 
 use std::cell::RefCell;
 
-use elbowroom_cell::CellRobot;
 use elbowroom_cell::trajectory::PathPoint;
-use elbowroom_kinematics::inverse::{IkError, IkOptions, IkSolver, IkTask};
+use elbowroom_cell::{CellRobot, Units};
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 
@@ -33,6 +33,8 @@ pub struct TcpLine {
     /// Joint values at equal steps of s.
     knots: Vec<Vec<f64>>,
     solver: RefCell<IkSolver>,
+    /// Of messages.
+    units: Units,
     /// False where the chain has too few joints to keep the orientation.
     pub keeps_orientation: bool,
 }
@@ -49,20 +51,21 @@ pub struct LineError {
 }
 
 impl TcpLine {
-    /// The line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`.
+    /// The line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`; `units` are those of
+    /// messages.
     ///
     /// # Errors
     /// `LineError` with the position and the cause of the failure.
-    pub fn new(robot: &CellRobot, q: &[f64], to: Pose) -> Result<Self, LineError> {
-        let whole = Self::with_task(robot, q, to, IkTask::Pose);
+    pub fn new(robot: &CellRobot, units: Units, q: &[f64], to: Pose) -> Result<Self, LineError> {
+        let whole = Self::with_task(robot, units, q, to, IkTask::Pose);
         let few = robot.robot.chain.path(robot.flange).len() < 6 || robot.robot.chain.dof() < 6;
         match whole {
-            Err(error) if few => Self::with_task(robot, q, to, IkTask::Position).map_err(|_| error),
+            Err(error) if few => Self::with_task(robot, units, q, to, IkTask::Position).map_err(|_| error),
             other => other,
         }
     }
 
-    fn with_task(robot: &CellRobot, q: &[f64], to: Pose, task: IkTask) -> Result<Self, LineError> {
+    fn with_task(robot: &CellRobot, units: Units, q: &[f64], to: Pose, task: IkTask) -> Result<Self, LineError> {
         let chain = &robot.robot.chain;
         let mut state = ChainState::new(chain);
         state.q.copy_from_slice(q);
@@ -75,6 +78,7 @@ impl TcpLine {
             to,
             knots: vec![q.to_vec()],
             solver: RefCell::new(solver),
+            units,
             keeps_orientation: task == IkTask::Pose,
         };
         let turn = if line.keeps_orientation { (from.rotation.inverse() * to.rotation).angle() } else { 0.0 };
@@ -121,7 +125,7 @@ impl TcpLine {
         let mut solver = self.solver.borrow_mut();
         let target = self.pose(s);
         if !solver.refine(&target, &mut q) {
-            q = solver.solve(&target, last).map_err(|e| explain(&e))?.q;
+            q = solver.solve(&target, last).map_err(|e| self.units.describe_ik_error(&e, chain))?.q;
         }
         for (j, id) in chain.active_joints().iter().enumerate() {
             let joint = &chain.joints()[id.0];
@@ -206,8 +210,4 @@ impl TcpLine {
         let q = if c == s { middle } else { self.q(s) };
         PathPoint { q, dq, ddq }
     }
-}
-
-fn explain(e: &IkError) -> String {
-    e.to_string()
 }

@@ -229,7 +229,7 @@ impl ProgramPlanner<'_> {
             MoveTarget::Tcp(in_world) => self.robot.base_in_world.inverse_mul(in_world),
             MoveTarget::Joints(q) => self.tcp_in_root(q),
         };
-        TcpLine::new(self.robot, &self.q, to_in_root).map_err(|error| {
+        TcpLine::new(self.robot, self.cell.units, &self.q, to_in_root).map_err(|error| {
             let [at, length] = [error.at_m, error.length_m].map(|m| format!("{:.1} mm", m * 1000.0));
             let what = format!("the line of {length} cannot be followed beyond {at}: {}", error.why);
             let hint = "a target within reach on this side of the arm, or a joint move to it";
@@ -255,7 +255,9 @@ impl ProgramPlanner<'_> {
             IkSolver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, IkOptions::default());
         match solver.solve(&target, &self.q) {
             Ok(solution) => Ok(solution.q),
-            Err(e) => Err(self.error(index, step, &e.to_string()).hint("a pose within reach, or joint values")),
+            Err(e) => Err(self
+                .error(index, step, &self.cell.units.describe_ik_error(&e, &self.robot.robot.chain))
+                .hint("a pose within reach, or joint values")),
         }
     }
 

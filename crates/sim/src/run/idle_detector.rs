@@ -6,21 +6,25 @@ use elbowroom_kinematics::ChainState;
 /// Joints that moved less than this (rad, m) count as stationary: the override law approaches a border asymptotically.
 const STATIONARY: f64 = 1e-5;
 /// A run ends after this time without motion, s.
-const IDLE_TIMEOUT_S: f64 = 1.0;
+pub(super) const IDLE_TIMEOUT_S: f64 = 1.0;
+/// A run ends after this time in which the robots stand at override 0 and only endless belts move, s.
+pub(super) const STANDSTILL_TIMEOUT_S: f64 = 10.0;
 
 /// Detects the end of all motion.
 #[derive(Debug)]
 pub(super) struct IdleDetector {
+    timeout_s: f64,
     idle_since_s: f64,
     reference: Vec<Vec<f64>>,
 }
 
 impl IdleDetector {
-    pub fn new(cell: &Cell) -> Self {
-        Self { idle_since_s: 0.0, reference: cell.robots.iter().map(|r| r.start.clone()).collect() }
+    /// Detects a time without motion of this length (s).
+    pub fn new(cell: &Cell, timeout_s: f64) -> Self {
+        Self { timeout_s, idle_since_s: 0.0, reference: cell.robots.iter().map(|r| r.start.clone()).collect() }
     }
 
-    /// True after a second without any motion; `progress` counts as motion.
+    /// True after the timeout without any motion; `progress` counts as motion.
     pub fn is_idle(&mut self, t_s: f64, states: &[ChainState], progress: bool) -> bool {
         let far = |(a, b): (&f64, &f64)| (a - b).abs() > STATIONARY;
         let moved = states.iter().zip(&self.reference).any(|(s, r)| s.q.iter().zip(r).any(far));
@@ -30,6 +34,6 @@ impl IdleDetector {
                 reference.copy_from_slice(&state.q);
             }
         }
-        t_s - self.idle_since_s >= IDLE_TIMEOUT_S
+        t_s - self.idle_since_s >= self.timeout_s
     }
 }

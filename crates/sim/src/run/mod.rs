@@ -8,6 +8,7 @@ mod idle_detector;
 mod outcome;
 mod override_delay;
 mod region_recorder;
+mod release;
 mod stop_state;
 mod wait_for_graph;
 mod zone_claims;
@@ -29,13 +30,14 @@ use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
-    Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEvent, Sample, TickTimes,
+    Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample,
+    TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
 use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
-use idle_detector::IdleDetector;
+use idle_detector::{IDLE_TIMEOUT_S, IdleDetector, STANDSTILL_TIMEOUT_S};
 use override_delay::OverrideDelay;
 use region_recorder::RegionRecorder;
 use stop_state::StopState;
@@ -161,9 +163,9 @@ pub fn simulate_with(
             run.publish_initial_occupancy();
         }
         run.tick(t_s)?;
-        if run.ended(t_s) {
+        if let Some(end) = run.end(t_s) {
             notes.extend(run.avoiding.iter().flatten().filter_map(|a| a.fault_warning(cell)));
-            return Ok(RunOutcome { recording: run.finish(t_s), notes });
+            return Ok(RunOutcome { recording: run.finish(t_s, end), notes });
         }
         run.advance();
         tick += 1;
@@ -204,6 +206,7 @@ struct Simulation<'a> {
     delays: Vec<OverrideDelay>,
     events: Vec<EventRow>,
     idle_detector: IdleDetector,
+    standstill_detector: IdleDetector,
     tick_ns: Vec<u64>,
 }
 
@@ -222,6 +225,7 @@ impl<'a> Simulation<'a> {
         let moved = cell.moving_objects.iter().map(|m| m.object).chain(gripped.iter().copied());
         let track = |r: &elbowroom_cell::CellRobot| RobotTrack {
             name: r.name.clone(),
+            flange: r.robot.chain.links()[r.flange.0].clone(),
             joints: r.joint_names(),
             samples: Vec::new(),
             finished: false,
@@ -257,7 +261,8 @@ impl<'a> Simulation<'a> {
             applied: vec![0.0; cell.robots.len()],
             delays: cell.robots.iter().map(|_| OverrideDelay::new(cell.laws.reaction_delay_s)).collect(),
             events: Vec::new(),
-            idle_detector: IdleDetector::new(cell),
+            idle_detector: IdleDetector::new(cell, IDLE_TIMEOUT_S),
+            standstill_detector: IdleDetector::new(cell, STANDSTILL_TIMEOUT_S),
             tick_ns: Vec::new(),
             monitors,
             clocks,
@@ -558,15 +563,32 @@ impl<'a> Simulation<'a> {
         objects.iter_mut().zip(poses).for_each(|(track, pose)| track.poses.push(pose));
     }
 
-    fn ended(&mut self, t_s: f64) -> bool {
+    /// Why the run ends now; `None` where it goes on.
+    fn end(&mut self, t_s: f64) -> Option<RunEnd> {
         let present: Vec<usize> = (0..self.clocks.len()).filter(|i| !self.is_silent(*i, t_s)).collect();
-        if present.iter().all(|i| self.finished(*i)) || t_s >= self.cell.max_s {
-            return true;
+        if present.iter().all(|i| self.finished(*i)) {
+            return Some(RunEnd::Finished);
+        }
+        if t_s >= self.cell.max_s {
+            return Some(RunEnd::TimeLimit);
         }
         let on_path = |i: usize| self.avoiding[i].as_ref().is_none_or(AvoidingRobot::is_on_path);
         let waiting = present.iter().any(|i| self.clocks[*i].waiting() && on_path(*i));
         let in_motion = self.frames.is_any_moving(t_s);
-        self.idle_detector.is_idle(t_s, &self.states, waiting || in_motion)
+        let can_continue = waiting
+            || self.frames.is_any_moving_but_endless_belts(t_s)
+            || !present.iter().all(|i| self.finished(*i) || on_path(*i) && self.is_held_for_good(*i, t_s));
+        if self.idle_detector.is_idle(t_s, &self.states, waiting || in_motion) {
+            return Some(RunEnd::Rest);
+        }
+        self.standstill_detector.is_idle(t_s, &self.states, can_continue).then_some(RunEnd::Standstill)
+    }
+
+    /// True where the monitor has stopped a robot, and not at a region that moves on by itself.
+    fn is_held_for_good(&self, robot: usize, t_s: f64) -> bool {
+        let region = self.tracks[robot].samples.last().and_then(|s| s.region);
+        let follow = region.and_then(|r| self.cell.regions[r.0].follow);
+        self.stop_states[robot].stopped && !follow.is_some_and(|f| self.frames.travels(&f, t_s))
     }
 
     fn finished(&self, robot: usize) -> bool {
@@ -596,7 +618,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn finish(mut self, t_s: f64) -> Recording {
+    fn finish(mut self, t_s: f64, end: RunEnd) -> Recording {
         let mut robots = std::mem::take(&mut self.tracks);
         for (i, track) in robots.iter_mut().enumerate() {
             track.finished = self.finished(i);
@@ -616,6 +638,7 @@ impl<'a> Simulation<'a> {
             let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
+            track.ending.release = release::release(self.cell, &self.setups[i], self.arbiter.as_deref(), i, track);
         }
         for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
             track.avoidance = avoiding.map(AvoidingRobot::finish);
@@ -625,6 +648,7 @@ impl<'a> Simulation<'a> {
             checksum: self.cell.checksum.clone(),
             tick_s: self.cell.tick_s,
             duration_s: t_s,
+            end,
             monitored: self.options.apply_override,
             robots,
             regions: self.regions.finish(t_s),

@@ -25,6 +25,7 @@ pub(super) fn ending(
             by: Some(by.clone()),
             part: part.strip_prefix(&own).map(str::to_owned),
             point: None,
+            release: None,
         };
     }
     if track.finished {
@@ -43,6 +44,7 @@ pub(super) fn ending(
         by: region.map(str::to_owned),
         part: point.and_then(|p| configuration.volumes().get(p.volume.0)).map(|v| v.name.clone()),
         point: point.map(|p| p.position),
+        release: None,
     }
 }
 

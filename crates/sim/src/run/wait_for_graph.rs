@@ -93,7 +93,7 @@ impl<'a> WaitForGraph<'a> {
 }
 
 /// The robots that keep this one out of a region: its carrier, its holder, and robots inside.
-fn blockers(
+pub(super) fn blockers(
     cell: &Cell,
     setup: &MonitorSetup,
     arbiter: Option<&ZoneArbiter>,

@@ -1,0 +1,15 @@
+//! `--states FILE`: joint states from a file, or from standard input.
+
+use std::path::Path;
+
+use elbowroom::analysis::query::QueryStates;
+use elbowroom::cell::QueryModel;
+use elbowroom::formats::FormatError;
+
+/// Reads the states of `path`; `-` is standard input.
+pub(crate) fn read(path: &Path, model: &QueryModel) -> Result<QueryStates, FormatError> {
+    if path == Path::new("-") {
+        return QueryStates::read_from(Path::new("standard input"), std::io::stdin().lock(), model);
+    }
+    QueryStates::read(path, model)
+}

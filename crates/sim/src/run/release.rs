@@ -1,0 +1,56 @@
+//! What would let a stopped robot continue.
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, CellRegionId, Follow};
+use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
+
+use super::wait_for_graph::blockers;
+use crate::recording::{Outcome, RobotTrack};
+
+/// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to.
+pub(super) fn release(
+    cell: &Cell,
+    setup: &MonitorSetup,
+    arbiter: Option<&ZoneArbiter>,
+    robot: usize,
+    track: &RobotTrack,
+) -> Option<String> {
+    let last = track.samples.last()?;
+    track.ending.stopped_at_s?;
+    match track.ending.outcome {
+        Outcome::Finished | Outcome::Collided => None,
+        Outcome::Deadlock => Some("one of the robots is moved out by hand".to_owned()),
+        Outcome::Held => Some(holders_leave(&blockers(cell, setup, arbiter, robot, last.region?), cell)),
+        Outcome::Stopped => match (last.region, last.reason) {
+            (Some(region), _) => Some(from_region(cell, setup, region)),
+            (None, OverrideReason::Fault(_)) => Some("the input of the monitor is valid again".to_owned()),
+            _ => None,
+        },
+    }
+}
+
+fn holders_leave(holders: &[usize], cell: &Cell) -> String {
+    let names: Vec<&str> = holders.iter().map(|r| cell.robots[*r].name.as_str()).collect();
+    match names[..] {
+        [] => "the regions that are granted with it become free".to_owned(),
+        [one] => format!("{one} leaves it"),
+        _ => format!("{} leave it", names.join(", ")),
+    }
+}
+
+fn from_region(cell: &Cell, setup: &MonitorSetup, region: CellRegionId) -> String {
+    let region = &cell.regions[region.0];
+    let mut ways = Vec::new();
+    match region.follow {
+        Some(Follow::Robot { robot, .. }) => ways.push(format!("{} moves away", cell.robots[robot.0].name)),
+        Some(_) => ways.push("it moves away".to_owned()),
+        None => {}
+    }
+    if region.region.life == Life::Temporary {
+        ways.push("a program switches it off".to_owned());
+    }
+    // Without the direction-aware law a robot at override 0 cannot move away either.
+    let law = if setup.configuration.laws().direction_aware { "" } else { " (direction_aware = true)" };
+    ways.push(format!("the program moves away{law}"));
+    ways.join(", or ")
+}
