@@ -6,7 +6,7 @@
 //! efficient trajectory planning: the path-velocity decomposition*, 1986). If one priority leaves a robot without a path,
 //! others are tried.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, SweepMove, SweepOptions};
@@ -125,7 +125,7 @@ impl<'s> PrioritizedPlanner<'s> {
         period_s: f64,
         settings: &RrtConnectSettings,
     ) -> Result<Vec<PrioritizedMotion>, RrtConnectError> {
-        let deadline = Instant::now() + settings.time_limit;
+        let begin = Instant::now();
         let mut first_error = None;
         for order in orders(goals.len()) {
             let planned = self.plan_in_order(start, goals, &order, period_s, settings);
@@ -134,9 +134,11 @@ impl<'s> PrioritizedPlanner<'s> {
                     motions.sort_by_key(|motion| goals.iter().position(|goal| goal.robot == motion.robot));
                     return Ok(motions);
                 }
-                Err(error) => first_error = first_error.or_else(|| Some(of_one_order(error, goals.len()))),
+                Err(error) => {
+                    first_error = first_error.or_else(|| Some(of_one_order(error, goals.len(), begin.elapsed())));
+                }
             }
-            if Instant::now() >= deadline {
+            if begin.elapsed() >= settings.time_limit {
                 break;
             }
         }
@@ -240,10 +242,10 @@ impl<'s> PrioritizedPlanner<'s> {
 }
 
 /// What is proven of one robot while the others rest somewhere is not proven of all together.
-fn of_one_order(error: RrtConnectError, robots: usize) -> RrtConnectError {
+fn of_one_order(error: RrtConnectError, robots: usize, after: Duration) -> RrtConnectError {
     match error {
         RrtConnectError::Disconnected { nearer, .. } if robots > 1 => {
-            RrtConnectError::NotFound { seconds: 0.0, states_checked: 0, nodes: 0, nearer }
+            RrtConnectError::NotFound { seconds: after.as_secs_f64(), states_checked: 0, nodes: 0, nearer }
         }
         other => other,
     }

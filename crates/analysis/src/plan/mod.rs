@@ -173,9 +173,18 @@ impl Query<'_> {
     }
 
     fn exactly(&self, mut planner: RrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+        // Each goal in its share of the time; what is wrong with the first one is said.
+        let share = u32::try_from(self.goals.len()).unwrap_or(u32::MAX).max(1);
+        let settings = RrtConnectSettings { time_limit: self.settings.time_limit / share, ..*self.settings };
         let mut path = Err(RrtConnectError::NoGoal);
-        for goal in self.goals {
-            path = path.or_else(|_| planner.plan(self.state, goal, self.settings));
+        for (i, goal) in self.goals.iter().enumerate() {
+            let found = planner.plan(self.state, goal, &settings);
+            if i == 0 || found.is_ok() {
+                path = found;
+            }
+            if path.is_ok() {
+                break;
+            }
         }
         let path = path?;
         let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;

@@ -11,6 +11,7 @@ use elbowroom_formats::{FormatError, Warning, frame_files};
 use elbowroom_perception::{ObstacleWatcher, PerceptionSettings, WatchedRobot};
 use elbowroom_vision::Frame;
 
+use crate::cover_cache::CoverCache;
 use crate::map::{axes, select_map};
 use joint_track::JointTrack;
 
@@ -121,6 +122,7 @@ fn map_builder(cell: &Cell, camera: &CellCamera, warnings: &mut Vec<Warning>) ->
     };
     let grid = Grid::new(axes).map_err(|e| refuse(e.to_string(), "step = 5   (larger)"))?;
     let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
-    CoverMapBuilder::new(&robot.robot, robot.base_in_world, &grid, joints, others, CoverMapSettings::default())
+    let (settings, covers) = (CoverMapSettings::default(), CoverCache::of_user());
+    CoverMapBuilder::with_covers(&robot.robot, robot.base_in_world, &grid, joints, others, settings, &covers)
         .map_err(|e| refuse(e.to_string(), "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"))
 }
