@@ -60,6 +60,14 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("start = [0, 0, 0, 0, 40, 0]", "start = [0, 0, 0, 0, 40]", "5 values for the 6 joints", "joint_1, joint_2"),
     (
         "start = [0, 0, 0, 0, 40, 0]",
+        "start = \"hom\"\nstates = { home = [0, 0, 0, 0, 40, 0] }",
+        "names the state \"hom\"",
+        "home",
+    ),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = \"home\"", "which robot \"c\" does not have", "define it first"),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = true", "must be a list", "[0, 0, 0, 0, 0, 0]"),
+    (
+        "start = [0, 0, 0, 0, 40, 0]",
         "start = [0, 0, 0, 0, 140, 0]",
         "joint \"joint_5\" to 140 deg",
         "-120 deg to 120 deg",

@@ -56,6 +56,14 @@ fn goals_are_states_values_in_cell_units_or_poses() {
 }
 
 #[test]
+fn a_robot_starts_in_a_named_state() {
+    let cell = CELL.replace("start = [-60, 0, 0]", "start = \"left\"");
+    let answer = elbowroom(with_cell(&cell).path(), &["plan", "cell.toml", "--to", "right", "--json"]).expect(0);
+    let first = answer.json()["waypoints"][0][0].as_f64().unwrap();
+    assert!((first - 60.0_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
 fn wrong_goals_are_refused_with_what_to_write() {
     for (args, expected) in [
         (&["--to", "lefft"][..], "left"),

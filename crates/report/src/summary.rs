@@ -223,7 +223,7 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         let t = moving.map_or(last.t_s, |i| robot.samples[i].t_s);
         return format!("finished at {t:.2} s");
     }
-    let since = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S).map_or(0.0, |i| robot.samples[i].t_s);
+    let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
         let at = robot.ending.by.as_deref().unwrap_or("an exchange region");
         return format!("deadlock: stopped since {since:.2} s, waiting for {}", clip(at, 20));

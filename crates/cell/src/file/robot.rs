@@ -332,10 +332,13 @@ pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result
 }
 
 fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<f64>> {
-    if let Some(v) = t.get("start") {
-        return joint_values(&v, chain, units);
-    }
     let clamped: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| 0.0_f64.max(*lo).min(hi)).collect();
+    if let Some(v) = t.get("start") {
+        return match v.text() {
+            Ok(state) => start_state(name, &v, state, &states(t, chain, &clamped, units)?),
+            Err(_) => joint_values(&v, chain, units),
+        };
+    }
     if clamped.iter().any(|v| *v != 0.0) {
         let what =
             format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
@@ -344,6 +347,15 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
         );
     }
     Ok(clamped)
+}
+
+/// The named state in which a robot starts.
+fn start_state(robot: &str, v: &Value<'_>, state: &str, states: &[(String, Vec<f64>)]) -> Result<Vec<f64>> {
+    states.iter().find(|(name, _)| name == state).map(|(_, q)| q.clone()).ok_or_else(|| {
+        let known = states.iter().map(|(name, _)| name.as_str());
+        v.error(format!("names the state \"{state}\", which robot \"{robot}\" does not have"))
+            .hint(suggest::hint(state, known))
+    })
 }
 
 /// Time from full speed to rest, s.
