@@ -251,7 +251,7 @@ fn plan_between_named_states() {
         "{HEAD}[robot.arm]\nmodel = \"{arm}\"\nsrdf = \"{}\"\n[object.shelf]\nshape = \"box\"\nat = [500, 0, 200]\nsize = [200, 600, 20]\n",
         arm.replace(".urdf", ".srdf")
     ));
-    let json = type_command(&dir, "plan cell.toml --from ready --to transport --json", 0).json();
+    let json = type_command(&dir, "plan cell.toml --from ready --to extended --json", 0).json();
     assert_eq!(json["found"], true);
 }
 
@@ -262,7 +262,8 @@ fn check_and_correct_a_warning_zone() {
     let cell = |warning: &str| {
         format!(
             "{HEAD}[robot.arm]\nmodel = \"{}\"\nstart = [90, -90, 90, 0, 0, 0]\nstop_time = 0.6\n[region.aisle]\nshape = \"box\"\nfrom = [2500, -3000, 0]\nto = [4000, 3000, 3000]\n\
-             kind = \"forbidden\"\nwarning = {warning}\n",
+             kind = \"forbidden\"\nwarning = {warning}\n\
+             [program.arm]\nsteps = [{{ move = \"joint\", to = [0, -45, 45, 0, 0, 0] }}]\n",
             urdf(&data, "kuka_kr150r3100_2")
         )
     };
