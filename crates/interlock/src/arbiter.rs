@@ -146,7 +146,7 @@ impl Arbiter {
     }
 
     /// [`Arbiter::clear`] without the test, which is what makes it safe.
-    fn clear_at_once(&mut self, robot: RobotSlot, now: Micros) -> Outputs {
+    pub(crate) fn clear_at_once(&mut self, robot: RobotSlot, now: Micros) -> Outputs {
         let mut outputs = Outputs::default();
         let record = &mut self.robots[robot.0];
         (record.is_cleared, record.is_trusted) = (true, false);
@@ -368,4 +368,38 @@ impl Arbiter {
 /// A length of time on the clock of another process. Clocks may differ by one percent in rate; twice that is waited.
 fn with_drift(time: Micros) -> Micros {
     time + Micros(time.0 / 50 + 1)
+}
+
+/// What the model check needs to see and to renumber.
+#[cfg(test)]
+impl Arbiter {
+    pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
+        self.started.iter_mut().for_each(&mut *f);
+        self.robots.iter_mut().filter_map(|robot| robot.heard.as_mut()).for_each(f);
+    }
+
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(&mut Option<Token>)) {
+        self.slots.iter_mut().filter_map(|slot| slot.holder.as_mut()).for_each(|holder| f(&mut holder.token));
+        for report in self.robots.iter_mut().flat_map(|robot| &mut robot.reports) {
+            f(&mut report.token);
+            f(&mut report.released);
+        }
+    }
+
+    pub(crate) fn each_sequence(&mut self, robot: usize, f: &mut impl FnMut(&mut u64)) {
+        f(&mut self.robots[robot].sequence);
+    }
+
+    pub(crate) fn serial_mut(&mut self) -> &mut u64 {
+        &mut self.serial
+    }
+
+    pub(crate) fn tokens_mut(&mut self) -> &mut u64 {
+        &mut self.tokens
+    }
+
+    /// A fault for the model check to find.
+    pub(crate) fn take_back(&mut self, slot: SlotId) {
+        self.free(slot);
+    }
 }

@@ -226,3 +226,37 @@ impl GuardedSlot {
         }
     }
 }
+
+/// What the model check needs to see and to renumber.
+#[cfg(test)]
+impl Guard {
+    pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
+        self.sent.iter_mut().for_each(&mut *f);
+        self.slots.iter_mut().filter_map(|slot| slot.confirmed.as_mut()).for_each(f);
+    }
+
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(&mut Option<Token>)) {
+        for slot in &mut self.slots {
+            f(&mut slot.token);
+            f(&mut slot.released);
+        }
+    }
+
+    pub(crate) fn serial_mut(&mut self) -> &mut u64 {
+        &mut self.serial
+    }
+
+    pub(crate) fn sequence_now(&self) -> u64 {
+        self.sequence
+    }
+
+    /// Gives each of these sequence numbers its index; the times of all others are forgotten.
+    pub(crate) fn renumber(&mut self, seen: &[u64]) {
+        let mut sent = vec![Micros(0); REMEMBERED];
+        for (rank, sequence) in seen.iter().enumerate().skip(1).filter(|(_, n)| **n <= self.sequence) {
+            sent[rank] = self.sent_at(*sequence).unwrap_or(Micros(0));
+        }
+        self.sequence = seen.binary_search(&self.sequence).unwrap_or(0) as u64;
+        self.sent = sent;
+    }
+}

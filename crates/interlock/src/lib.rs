@@ -38,6 +38,8 @@ mod arbiter;
 mod event;
 mod guard;
 mod message;
+#[cfg(test)]
+mod model;
 mod settings;
 mod slot_record;
 mod time;
