@@ -178,7 +178,7 @@ impl Arbiter {
         self.robots[robot.0].heard.is_some_and(|heard| now - heard <= longest)
     }
 
-    /// A guard has started anew: what it held is neither confirmed nor given to others until it reports where its robot is.
+    /// A guard has started again: what it held is neither confirmed nor given to others until it reports where its robot is.
     fn start_guard(&mut self, robot: RobotSlot, boot: Boot, outputs: &mut Outputs) {
         let is_first = self.robots[robot.0].boot == Boot::NONE;
         self.robots[robot.0] = RobotRecord { boot, ..RobotRecord::new(self.slots.len()) };
@@ -230,7 +230,7 @@ impl Arbiter {
     fn gives_up(&self, slot: SlotId, robot: RobotSlot, report: SlotReport) -> bool {
         match self.slots[slot.0].token_of(robot) {
             Some(token) => report.released >= Some(token),
-            // Of a guard that started anew: the grant was for the former one.
+            // Of a guard that started again: the grant was for the former one.
             None => matches!(report.occupancy, Occupancy::Outside | Occupancy::Warning),
         }
     }

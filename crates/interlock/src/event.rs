@@ -17,7 +17,7 @@ pub enum ArbiterEvent {
     Conflict(SlotId, RobotSlot, RobotSlot),
     /// These robots wait for each other, and none can stop outside of what the next one needs.
     Deadlock(Vec<RobotSlot>),
-    /// A guard started anew.
+    /// A guard started again.
     GuardStarted(RobotSlot, Boot),
     /// The robot's configuration is another one: it is not trusted.
     OtherConfiguration(RobotSlot),

@@ -18,7 +18,7 @@ pub(crate) struct SlotRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Holder {
     pub(crate) robot: RobotSlot,
-    /// `None` where its guard has started anew and has not reported where the robot is: neither confirmed nor given to others.
+    /// `None` where its guard has started again and has not reported where the robot is: neither confirmed nor given to others.
     pub(crate) token: Option<Token>,
 }
 

@@ -69,7 +69,7 @@ pub fn encode(message: &Message) -> Option<Vec<u8>> {
     bytes.extend_from_slice(&[VERSION, kind]);
     bytes.extend_from_slice(&robot.to_le_bytes());
     bytes.extend_from_slice(&count.to_le_bytes());
-    words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     match message {
         Message::State(m) => m.slots.iter().for_each(|slot| write_report(slot, &mut bytes)),
         Message::Grants(m) => m.slots.iter().for_each(|slot| write_answer(slot, &mut bytes)),
@@ -119,6 +119,9 @@ fn write_answer(answer: &SlotAnswer, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(&[u8::from(answer.release_requested), u8::from(answer.halt)]);
 }
 
+/// Bytes that no guard and no arbiter writes.
+struct Meaningless;
+
 /// The bytes that are not read yet.
 struct Reader<'a> {
     rest: &'a [u8],
@@ -165,12 +168,12 @@ impl Reader<'_> {
         }
     }
 
-    /// A token that may be none; `None` where the bytes are neither.
-    fn token(&mut self) -> Option<Option<Token>> {
-        match (Boot(self.word()?), self.word()?) {
-            (Boot::NONE, 0) => Some(None),
-            (Boot::NONE, _) => None,
-            (boot, number) => Some(Some(Token { boot, number })),
+    /// A token that may be none.
+    fn token(&mut self) -> Result<Option<Token>, Meaningless> {
+        match (self.word().ok_or(Meaningless)?, self.word().ok_or(Meaningless)?) {
+            (0, 0) => Ok(None),
+            (0, _) => Err(Meaningless),
+            (boot, number) => Ok(Some(Token { boot: Boot(boot), number })),
         }
     }
 
@@ -183,10 +186,10 @@ impl Reader<'_> {
             [4] => Occupancy::Inside,
             _ => return None,
         };
-        Some(SlotReport { occupancy, wants: self.flag()?, token: self.token()?, released: self.token()? })
+        Some(SlotReport { occupancy, wants: self.flag()?, token: self.token().ok()?, released: self.token().ok()? })
     }
 
     fn answer(&mut self) -> Option<SlotAnswer> {
-        Some(SlotAnswer { granted: self.token()?, release_requested: self.flag()?, halt: self.flag()? })
+        Some(SlotAnswer { granted: self.token().ok()?, release_requested: self.flag()?, halt: self.flag()? })
     }
 }

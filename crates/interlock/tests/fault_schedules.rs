@@ -1,5 +1,7 @@
 //! Exclusion and progress under random schedules of faults, with simulated arms. `ELBOWROOM_SCHEDULES=100000` runs that many.
 
+#![allow(clippy::print_stdout, reason = "figures of a test")]
+
 mod common;
 
 use common::{Findings, PlantedFault, World};

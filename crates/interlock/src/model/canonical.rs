@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{CellState, NOW};
+use super::state::{CellState, NOW};
 use crate::{Boot, Micros, Token};
 
-/// Older than this is as old as can be told apart.
+/// Older than this is no different from this.
 const OLDEST: Micros = Micros(300);
 
 /// Lets time pass: everything that happened is older.

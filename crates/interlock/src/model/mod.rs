@@ -6,17 +6,17 @@
 
 mod canonical;
 mod programs;
+mod state;
 
 use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
 use stateright::{Checker, Model, Property};
 
 use crate::{Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, StateMessage, Token};
 use programs::Program;
+use state::{CellState, NOW};
 
 /// A step of time, and the validity of a grant.
 const STEP: Micros = Micros(100);
-/// Time of every state.
-const NOW: Micros = Micros(1_000);
 
 /// Faults that are built in to see whether the model check finds them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,20 +40,6 @@ struct CellModel {
     arbiter_crashes: u8,
     clears: u8,
     planted: PlantedFault,
-}
-
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-struct CellState {
-    arbiter: Arbiter,
-    guards: Vec<Guard>,
-    /// Index into the robot's program.
-    places: Vec<usize>,
-    to_arbiter: Vec<Vec<StateMessage>>,
-    to_guard: Vec<Vec<GrantsMessage>>,
-    guard_crashes: u8,
-    arbiter_crashes: u8,
-    clears: u8,
-    boots: u64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

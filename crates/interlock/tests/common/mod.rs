@@ -246,16 +246,18 @@ impl World {
         let is_outside = REGIONS.iter().all(|(from, to)| arm.x < *from || arm.x > *to);
         if arm.v == 0.0 && is_outside && self.arbiter_process.runs(self.ms) {
             let now = self.arbiter_process.clock(self.ms);
-            if !self.arbiter.is_known(RobotSlot(robot), now) || self.planted == PlantedFault::EndlessValidity {
-                if let Ok(outputs) = self.arbiter.clear(RobotSlot(robot), now) {
-                    self.findings.clears += 1;
-                    outputs.replies.into_iter().for_each(|m| self.send(m.robot.0, Packet::Grants(m)));
-                }
+            let is_hasty = self.planted == PlantedFault::EndlessValidity;
+            if self.arbiter.is_known(RobotSlot(robot), now) && !is_hasty {
+                return;
+            }
+            if let Ok(outputs) = self.arbiter.clear(RobotSlot(robot), now) {
+                self.findings.clears += 1;
+                outputs.replies.into_iter().for_each(|m| self.send(m.robot.0, &Packet::Grants(m)));
             }
         }
     }
 
-    fn send(&mut self, robot: usize, packet: Packet) {
+    fn send(&mut self, robot: usize, packet: &Packet) {
         if self.ms < self.cut_until_ms[robot] || self.chance(self.loss) {
             return;
         }
@@ -273,14 +275,14 @@ impl World {
                 if self.ms.is_multiple_of(TICK_MS) {
                     self.tick(r);
                 }
-                if (self.ms + r as u64) % SEND_MS == 0 {
+                if (self.ms + r as u64).is_multiple_of(SEND_MS) {
                     let message = self.guards[r].state(self.processes[r].clock(self.ms));
-                    self.send(r, Packet::State(message));
+                    self.send(r, &Packet::State(message));
                 }
             }
             self.move_arm(r);
         }
-        self.judge();
+        self.count_double_occupancies();
         self.ms += STEP_MS;
     }
 
@@ -298,7 +300,7 @@ impl World {
                 continue;
             }
             match self.packets.swap_remove(i).1 {
-                Packet::State(message) => self.to_arbiter(message),
+                Packet::State(message) => self.arbiter_receives(message),
                 Packet::Grants(message) if self.processes[message.robot.0].runs(self.ms) => {
                     let _ = self.guards[message.robot.0].receive(&message);
                 }
@@ -307,7 +309,7 @@ impl World {
         }
     }
 
-    fn to_arbiter(&mut self, mut message: StateMessage) {
+    fn arbiter_receives(&mut self, mut message: StateMessage) {
         if !self.arbiter_process.runs(self.ms) {
             return;
         }
@@ -320,16 +322,11 @@ impl World {
         let now = self.arbiter_process.clock(self.ms);
         let outputs = self.arbiter.receive(&message, now);
         for reply in outputs.replies {
-            if self.planted == PlantedFault::UnilateralRelease && reply.robot == message.robot {
-                let mut forged = message.clone();
-                forged.sequence += 1;
-                for (slot, answer) in forged.slots.iter_mut().zip(&reply.slots).filter(|(_, a)| a.release_requested) {
-                    (slot.released, slot.token) = (answer.granted, None);
-                    self.arbiter.receive(&forged_with(&message, &forged), now);
-                    break;
-                }
+            let takes_back = self.planted == PlantedFault::UnilateralRelease && reply.robot == message.robot;
+            if let Some(forged) = given_up(&message, &reply).filter(|_| takes_back) {
+                self.arbiter.receive(&forged, now);
             }
-            self.send(reply.robot.0, Packet::Grants(reply));
+            self.send(reply.robot.0, &Packet::Grants(reply));
         }
     }
 
@@ -389,7 +386,7 @@ impl World {
     }
 
     /// Counts the moments at which two arms begin to be in one region.
-    fn judge(&mut self) {
+    fn count_double_occupancies(&mut self) {
         for (s, (from, to)) in REGIONS.iter().enumerate() {
             let before = self.arms.iter().filter(|arm| arm.inside[s]).count();
             for arm in &mut self.arms {
@@ -401,15 +398,14 @@ impl World {
     }
 }
 
-/// A report as a unilateral arbiter would have it: given up, in the warning zone.
-fn forged_with(message: &StateMessage, forged: &StateMessage) -> StateMessage {
-    let mut forged = forged.clone();
-    for (slot, original) in forged.slots.iter_mut().zip(&message.slots) {
-        if slot.released != original.released {
-            slot.occupancy = Occupancy::Warning;
-        }
-    }
-    forged
+/// The message with which the robot would give up what it is asked for, in the warning zone.
+fn given_up(message: &StateMessage, reply: &GrantsMessage) -> Option<StateMessage> {
+    let mut forged = message.clone();
+    forged.sequence += 1;
+    let s = reply.slots.iter().position(|answer| answer.release_requested)?;
+    let slot = &mut forged.slots[s];
+    (slot.released, slot.token, slot.occupancy) = (reply.slots[s].granted, None, Occupancy::Warning);
+    Some(forged)
 }
 
 impl Arm {
