@@ -69,7 +69,7 @@ fn states_come_from_standard_input_too() {
         ("", "standard input:1: is empty", "joint_1"),
         ("joint_1\n0\n", "standard input:1: ", "joint_2"),
         ("joint_1,joint_2\n0,0\n\n1\n", "standard input:4: ", "write: "),
-        ("joint_1,joint_2\n", "standard input:1: ", "write: "),
+        ("joint_1,joint_2\n0,nan\n", "standard input:2: ", "write: "),
     ] {
         let refused = with_input(dir.path(), &args, input).expect(2);
         assert!(refused.stderr.contains(expected) && refused.stderr.contains(hint), "{input:?}: {}", refused.stderr);
