@@ -75,7 +75,7 @@ mod xml;
 mod yaml;
 
 pub use error::{FormatError, Warning};
-pub use input::read_file;
+pub use input::{planning_scene_hint, read_file};
 pub use joint_states::{JointStateOptions, JointStateRobot, JointStates};
 pub use mesh::{LoadedMeshes, MeshData, unit_warning};
 pub use nodetree::NodeTree;

@@ -44,11 +44,30 @@ fn formats_of_others_are_named_with_what_to_do() {
             "{message}"
         );
     }
+    for (file, command) in [
+        ("my part.STP", "`gmsh 'my part.STP' -2 -o 'my part.stl'`"),
+        ("part.stl", "`gmsh part.stl -2 -o part.mesh.stl`"),
+    ] {
+        for message in refused(file, "ISO-10303-21;\nHEADER;\n") {
+            assert!(message.contains(command) && message.contains("--unit mm"), "{message}");
+        }
+    }
+    for message in refused("shelf.scene", "shelf\n.\n") {
+        assert!(
+            message.contains("[scene.NAME] file = \"shelf.scene\"") && message.contains("convert shelf.scene"),
+            "{message}"
+        );
+    }
+    for text in [r#"{"asset":{"version":"1.0"}}"#, r#"{"asset":{"version":"1.1"},"nodes":{"a":{}}}"#] {
+        let error = mesh::parse(text.as_bytes(), Path::new("a.gltf"), None, mesh::UpAxis::ToZ).unwrap_err().to_string();
+        assert!(error.contains("is glTF of version 1.") && error.contains("exported as glTF 2.0"), "{error}");
+    }
     let xacro = "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/></robot>";
     for (file, command) in [
         ("arm.urdf.xacro", "`xacro arm.urdf.xacro > arm.urdf`"),
         ("d/arm.xacro", "`xacro d/arm.xacro > d/arm.urdf`"),
         ("arm.urdf", "`xacro arm.urdf > arm.expanded.urdf`"),
+        ("my arm.xacro", "`xacro 'my arm.xacro' > 'my arm.urdf'`"),
     ] {
         let message = urdf::parse(xacro.as_bytes(), Path::new(file)).unwrap_err().to_string();
         assert!(message.contains("is a xacro file") && message.contains(command), "{message}");

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use elbowroom::cell::{self, Cell, ObjectTables};
-use elbowroom::formats::{planning_scene, stl};
+use elbowroom::formats::planning_scene::{self, FixedFrame};
+use elbowroom::formats::stl;
 
 use super::refuse_existing;
 use crate::args::ConvertArgs;
@@ -43,11 +44,13 @@ pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Fai
 /// is no robot to which it could belong.
 fn cell_text(file: &Path) -> Result<String, Failure> {
     let scene = planning_scene::read(file)?;
-    let defined = |frame: &str| frame.is_empty() || frame == "world" || scene.frames.iter().any(|f| f.name == frame);
-    let mut others: Vec<&str> = scene.objects.iter().map(|o| o.frame.as_str()).filter(|f| !defined(f)).collect();
-    others.dedup();
-    let frame = match others[..] {
-        [] => String::new(),
+    // The frame that each object is in the end placed by.
+    let frames = scene.objects.iter().map(|o| FixedFrame::ancestor(&scene.frames, &o.frame, |_| false).0);
+    let mut frames: Vec<&str> = frames.filter(|frame| !frame.is_empty()).collect();
+    frames.sort_unstable();
+    frames.dedup();
+    let frame = match frames[..] {
+        [] | ["world"] => String::new(),
         [one] => {
             let what = format!("the frame `{one}` of the scene is the world of the cell");
             note(format_args!("warning: {}: {what}", file.display()));

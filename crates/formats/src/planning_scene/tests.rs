@@ -130,6 +130,7 @@ fn errors_name_the_line_and_a_remedy() {
         ("a.yaml", YAML, "type: cylinder", "type: tube", 7, "\"tube\", no known shape", "cone"),
         ("a.yaml", YAML, "id: can", "id: board", 1, "two objects `board`", "a name of its own"),
         ("a.yaml", YAML, "id: board", "id: board\n      operation: 1", 13, "only objects that are added", "\"add\""),
+        ("a.yaml", "- world: {}\n", "- world", "- world", 1, "is no planning scene", "collision_objects"),
         ("a.yaml", YAML, "world:\n", "World:\n", 1, "has no `world`: it is no planning scene", "collision_objects"),
         (
             "a.yaml",

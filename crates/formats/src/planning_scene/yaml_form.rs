@@ -15,6 +15,9 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatErro
     let document = yaml::parse(text, file)?;
     let location = Location { file, part: String::new(), yaml: Some(text) };
     let root = Field::root(&location, &document);
+    if !document.is_object() {
+        return Err(root.error("is no planning scene", LAYOUT));
+    }
     // The answer of the service `get_planning_scene` has the scene in a field.
     let root = root.get("scene")?.unwrap_or(root);
     if root.get("world")?.is_none() {

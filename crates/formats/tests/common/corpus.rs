@@ -169,13 +169,36 @@ const SCENE: &str = "(noname)+\n* Box_0\n-0.32 0.02 0\n0 0 0 1\n2\nbox\n0.2 0.6 
 0 0 0 0\n1\ntip\n0 0 1\n0 0 0 1\n* my floor\n0 0 0\n0 0 0 1\n1\nplane\n0 0 1 0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n.\n";
 const OLD_SCENE: &str = "cell\n* wedge\n2\nmesh\n4 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 2 1\n0 1 3\n1 2 3\n0 3 2\n0 0 0\n0 0 0 1\n0 0 0 0\n\
 cylinder\n0.05 0.8\n1 0 0\n0 0 0 1\n0 0 0 0\n* ball\n1\nsphere\n0.1\n0 0 1\n0 0 0 1\n0 0 0 0\n.\n";
-const SCENE_YAML: &str = "name: shelf\nfixed_frame_transforms:\n  - child_frame_id: base\n    transform: {translation: [0, 0, 1], \
-rotation: {x: 0, y: 0, z: 0, w: 1}}\nworld:\n  collision_objects:\n    - id: Can1\n      header: {frame_id: base}\n      primitives:\n\
-        - {type: cylinder, dimensions: [0.14, 0.03]}\n        - type: 1\n          dimensions: &size [0.1, 0.2, 0.3]\n      primitive_poses:\n\
-        - position: [0.8, 0, 0.55]\n          orientation: [0, 0, 0, 1]\n        - {position: *size}\n    - id: 'wedge'\n      operation: !!binary AA==\n\
-      meshes:\n        - vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0., 0, 1.0]]\n          triangles: [[0, 2, 1], [0, 1, 3], \
-{vertex_indices: [1, 2, 3]}, [0, 3, 2]]\n      mesh_poses: [{position: {x: 0, y: 0, z: 0}}]\nallowed_collision_matrix:\n  entry_names: [base, Can1]\n\
-  entry_values:\n    - enabled: [false, true]\n    - enabled: [true, false]\nrobot_state:\n  joint_state: {name: [a], position: [0.5]}\n";
+const SCENE_YAML: &str = r"name: shelf
+fixed_frame_transforms:
+  - child_frame_id: base
+    transform: {translation: [0, 0, 1], rotation: {x: 0, y: 0, z: 0, w: 1}}
+world:
+  collision_objects:
+    - id: Can1
+      header: {frame_id: base}
+      primitives:
+        - {type: cylinder, dimensions: [0.14, 0.03]}
+        - type: 1
+          dimensions: &size [0.1, 0.2, 0.3]
+      primitive_poses:
+        - position: [0.8, 0, 0.55]
+          orientation: [0, 0, 0, 1]
+        - {position: *size}
+    - id: 'wedge'
+      operation: !!binary AA==
+      meshes:
+        - vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0., 0, 1.0]]
+          triangles: [[0, 2, 1], [0, 1, 3], {vertex_indices: [1, 2, 3]}, [0, 3, 2]]
+      mesh_poses: [{position: {x: 0, y: 0, z: 0}}]
+allowed_collision_matrix:
+  entry_names: [base, Can1]
+  entry_values:
+    - enabled: [false, true]
+    - enabled: [true, false]
+robot_state:
+  joint_state: {name: [a], position: [0.5]}
+";
 
 /// Xorshift: the same damage for the same seed.
 pub struct Random(pub u64);
