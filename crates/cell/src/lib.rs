@@ -33,6 +33,7 @@ mod file;
 mod frames;
 mod ik_message;
 mod moving_object;
+mod object_tables;
 mod poses;
 mod query_model;
 pub mod region_constraint;
@@ -45,8 +46,9 @@ pub use cell::{
     AvoidanceSpec, Cell, CellCamera, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec,
     MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
-pub use file::CellFile;
+pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
+pub use object_tables::{ObjectTables, object_tables};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};

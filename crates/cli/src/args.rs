@@ -30,7 +30,7 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Report the contents of a robot or mesh file
     Inspect(InspectArgs),
-    /// Write a robot as a URDF with STL meshes, or as 3DS
+    /// Write a robot as a URDF with STL meshes, as 3DS or SRDF; a planning scene as a cell file
     Convert(ConvertArgs),
     /// Compute the joint-space occupancy of a cell's objects for one robot
     Map(MapArgs),
@@ -191,14 +191,19 @@ pub(crate) struct JointArgs {
   elbowroom convert arm.urdf --out arm --to 3ds        arm/arm.3ds and arm/arm.joints.toml
   elbowroom convert arm.glb --out arm --joint \"link_1: axis=z, min=-170, max=170, speed=100\"
   elbowroom convert cell.toml --robot ns16 --out ns16  the robot of a cell, with its tool and load
+  elbowroom convert arm.urdf arm.srdf                  its groups, states, and the pairs that need no test
+  elbowroom convert shelf.scene shelf.toml             a MoveIt planning scene (or .yaml) as objects of a cell file
 
 Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
-    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it (docs/models.md)
+    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it; or a planning scene (docs/models.md)
     pub(crate) model: PathBuf,
-    /// The output folder
+    /// The output, a new file: .srdf for a robot, .toml for a planning scene
+    #[arg(required_unless_present = "out", conflicts_with_all = ["out", "to"])]
+    pub(crate) output: Option<PathBuf>,
+    /// The output folder of --to
     #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    pub(crate) out: Option<PathBuf>,
     /// The output format; urdf,3ds for both
     #[arg(long, value_enum, value_delimiter = ',', default_value = "urdf")]
     pub(crate) to: Vec<Written>,

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
-use elbowroom::cell::{Cell, suggest};
+use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, suggest};
 use elbowroom::planner::RrtConnectSettings;
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
@@ -93,7 +93,11 @@ fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
             Rotation::from_rpy(roll, pitch, yaw)
         }
         [qx, qy, qz, qw] => {
-            Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).ok_or_else(|| wrong("a quaternion of length 0"))?
+            let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
+            // As in a cell file.
+            let is_unit = (length - 1.0).abs() <= QUATERNION_TOLERANCE;
+            let rotation = Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).filter(|_| is_unit);
+            rotation.ok_or_else(|| wrong(&format!("a quaternion of length {length}, and a rotation has 1")))?
         }
         _ => return Err(wrong(&format!("{} numbers", numbers.len()))),
     };

@@ -46,7 +46,7 @@ pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellCamera>> {
 fn camera(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellCamera> {
     t.only(KEYS)?;
     let units = cell.units;
-    let of_vision = |e: VisionError| t.error(format!("`{}`: {e}", t.name));
+    let of_vision = |e: VisionError| refused(t, &e);
     let pose =
         units.pose(&t.need("pose", "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)")?)?;
     let camera = Camera::new(intrinsics(t)?, pose).map_err(of_vision)?;
@@ -68,12 +68,29 @@ fn camera(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellCamera> {
     })
 }
 
+/// An error of the camera at the key that is wrong, in the words of the cell file.
+fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
+    const LOOKS_DOWN: &str = "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)";
+    let key = match e {
+        VisionError::Setting { name, .. } => name.trim_end_matches("_mps").trim_end_matches("_m"),
+        VisionError::Calibration(why) if why.contains("distortion") => "distortion",
+        VisionError::Calibration(why) if why.contains("focal") => "focal_px",
+        _ => "pose",
+    };
+    let Some(v) = t.get(key) else { return t.error(format!("`{}`: {e}", t.name)).hint(LOOKS_DOWN) };
+    match e {
+        VisionError::Setting { expected, .. } => v.error("is out of its range").hint(*expected),
+        _ if key == "pose" => v.error(format!("does not show the floor: {e}")).hint(LOOKS_DOWN),
+        _ => v.error(e.to_string()).hint("the numbers of the calibration, for pictures of this `size`"),
+    }
+}
+
 /// The robot in whose map the obstacles are: the one named, or the only one.
 fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
     match t.get("robot") {
         Some(v) => {
             let name = v.text()?;
-            robot_of(name, t, &cell.robots).map(|(id, _)| id)
+            robot_of(name, &t.clone().at_line(v.line), &cell.robots).map(|(id, _)| id)
         }
         None if cell.robots.len() == 1 => Ok(RobotId(0)),
         None => {
@@ -94,6 +111,9 @@ fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
     let focal = t.need("focal_px", "focal_px = [600, 600]   (pixels, from the calibration)")?;
     let [fx, fy] = if focal.is_number() { [focal.positive()?; 2] } else { two(&focal, "focal_px = [600, 600]")? };
     let middle = [0.5 * width as f64, 0.5 * height as f64];
+    if let (Some(_), Some(v)) = (t.get("centre_px"), t.get("center_px")) {
+        return Err(v.error("contradicts `centre_px`").hint("one of the two spellings"));
+    }
     let centre = t.get("centre_px").or_else(|| t.get("center_px"));
     let [cx, cy] = centre.map_or(Ok(middle), |v| two(&v, "centre_px = [320, 240]"))?;
     let mut radial = [0.0; 3];

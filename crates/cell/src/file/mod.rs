@@ -10,6 +10,7 @@ mod guarding;
 mod models;
 pub(crate) mod node;
 mod object;
+mod planning_scene;
 mod plausibility;
 mod poses;
 mod program;
@@ -28,6 +29,7 @@ use elbowroom_robot::RobotId;
 pub use document::CellFile;
 use read::{Table, Value};
 use robot::robot_of;
+pub use units::QUATERNION_TOLERANCE;
 
 use crate::{Cell, CellLaws, MapSpec, Units, configure, seal, suggest};
 
@@ -42,6 +44,7 @@ const KEYS: &[&str] = &[
     "checksum",
     "robot",
     "object",
+    "scene",
     "region",
     "encoder",
     "camera",
@@ -93,6 +96,7 @@ impl CellFile {
             cell.encoders.push(region::encoder(name, &t, units)?);
         }
         object::read(&root, &mut cell)?;
+        let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
@@ -105,7 +109,7 @@ impl CellFile {
             cell.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
-        plausibility::check(&root, &cell, &mut warnings)?;
+        plausibility::check(&root, &cell, &scenes, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }

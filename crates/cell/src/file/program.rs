@@ -3,6 +3,7 @@
 use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
 use elbowroom_monitor::Life;
+use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
@@ -74,10 +75,16 @@ fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
     t.only(&[key])?;
     let v = t.need(key, &format!("{key} = \"part\""))?;
     let name = v.text()?;
-    cell.objects.iter().position(|o| o.name == name).map(ObjectId).ok_or_else(|| {
+    let index = cell.objects.iter().position(|o| o.name == name).ok_or_else(|| {
         let known = cell.objects.iter().map(|o| o.name.as_str());
         v.error(format!("names the object \"{name}\", which is not in this cell")).hint(suggest::hint(name, known))
-    })
+    })?;
+    if matches!(cell.objects[index].shape, Shape::HalfSpace(_)) {
+        return Err(v
+            .error(format!("names \"{name}\", a plane, which is unbounded"))
+            .hint("an object of another shape"));
+    }
+    Ok(ObjectId(index))
 }
 
 /// Kinds of moves.
@@ -181,6 +188,11 @@ fn recording_layout(t: &Table<'_>, robot: &CellRobot) -> Result<RecordingLayout>
     let (time, period) = (t.get("time"), t.get("period_ms"));
     if let (Some(_), Some(period)) = (&time, &period) {
         return Err(period.error("contradicts `time`").hint("one of the two: time = \"COLUMN\" or period_ms = 4"));
+    }
+    if let (Some(unit), Some(_)) = (t.get("time_unit"), &period) {
+        return Err(unit
+            .error("contradicts `period_ms`, which is in milliseconds")
+            .hint("time = \"COLUMN\" with it, or leave it out"));
     }
     let time_unit_s = t.get("time_unit").map(|v| v.word(&[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])).transpose()?;
     Ok(RecordingLayout {

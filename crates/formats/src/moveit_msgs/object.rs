@@ -5,16 +5,16 @@ use std::collections::HashSet;
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
-use super::field::{Field, Notes};
-use super::problem::{AttachedObject, ProblemObject};
+use super::field::{Field, Reading};
+use super::types::{AttachedObject, CollisionObject};
 use super::{pose, solid};
 use crate::FormatError;
 
 /// The objects of `scene.world`.
-pub(super) fn world(scene: &Field<'_>, notes: &mut Notes) -> Result<Vec<ProblemObject>, FormatError> {
+pub(crate) fn world(scene: &Field<'_>, reading: &mut Reading) -> Result<Vec<CollisionObject>, FormatError> {
     let Some(world) = scene.get("world")? else { return Ok(Vec::new()) };
     refuse_octomap(&world)?;
-    world.list("collision_objects")?.iter().map(|field| object(field, notes)).collect()
+    world.list("collision_objects")?.iter().map(|field| object(field, reading)).collect()
 }
 
 /// An octomap that is not read would be an obstacle that is not seen.
@@ -29,7 +29,7 @@ fn refuse_octomap(world: &Field<'_>) -> Result<(), FormatError> {
 }
 
 /// An object with its shapes in its frame.
-fn object(field: &Field<'_>, notes: &mut Notes) -> Result<ProblemObject, FormatError> {
+fn object(field: &Field<'_>, reading: &mut Reading) -> Result<CollisionObject, FormatError> {
     let id = field.require("id", "\"id\": \"NAME\"")?.name()?.to_owned();
     if let Some(operation) = field.get("operation")?.filter(|o| !o.is("add", 0)) {
         let what = format!("is {}: only objects that are added are read", operation.shown());
@@ -39,10 +39,10 @@ fn object(field: &Field<'_>, notes: &mut Notes) -> Result<ProblemObject, FormatE
     let in_frame = own.as_ref().map_or(Ok(Pose::IDENTITY), pose::pose)?;
     let mut solids = Vec::new();
     for (shape, at) in posed(field, ["primitives", "primitive_poses"], own.is_some())? {
-        solids.push((solid::primitive(&shape, notes)?, at));
+        solids.push((solid::primitive(&shape, reading)?, at));
     }
     for (shape, at) in posed(field, ["meshes", "mesh_poses"], own.is_some())? {
-        solids.push((solid::mesh(&shape)?, at));
+        solids.push((solid::mesh(&shape, reading)?, at));
     }
     for (shape, at) in posed(field, ["planes", "plane_poses"], true)? {
         let (shape, in_object): (Shape, Pose) = solid::plane(&shape)?;
@@ -55,7 +55,7 @@ fn object(field: &Field<'_>, notes: &mut Notes) -> Result<ProblemObject, FormatE
         let hint = "\"primitives\": [{\"type\": \"box\", \"dimensions\": [x, y, z]}], and \"primitive_poses\"";
         return Err(field.error(format!("`{id}` has no shape"), hint));
     }
-    Ok(ProblemObject { id, frame: pose::frame_id(field)?, solids })
+    Ok(CollisionObject { id, frame: pose::frame_id(field)?, solids })
 }
 
 /// Shapes with their poses; without any pose they are at the object's, where it `has_own`.
@@ -68,9 +68,9 @@ fn posed<'a>(field: &Field<'a>, keys: [&str; 2], has_own: bool) -> Result<Vec<(F
 }
 
 /// An object that a link carries.
-pub(super) fn attached(field: &Field<'_>, notes: &mut Notes) -> Result<AttachedObject, FormatError> {
+pub(crate) fn attached(field: &Field<'_>, reading: &mut Reading) -> Result<AttachedObject, FormatError> {
     let link = field.require("link_name", "\"link_name\": the link that carries the object")?.name()?.to_owned();
-    let mut object = object(&field.require("object", "\"object\": {\"id\": …}")?, notes)?;
+    let mut object = object(&field.require("object", "\"object\": {\"id\": …}")?, reading)?;
     if object.frame.is_empty() {
         object.frame.clone_from(&link);
     }
@@ -78,15 +78,20 @@ pub(super) fn attached(field: &Field<'_>, notes: &mut Notes) -> Result<AttachedO
 }
 
 /// Refuses two objects of one name.
-pub(super) fn check_ids(
+pub(crate) fn check_ids(
     root: &Field<'_>,
-    objects: &[ProblemObject],
+    objects: &[CollisionObject],
     attached: &[AttachedObject],
 ) -> Result<(), FormatError> {
-    let mut known = HashSet::new();
-    let ids = objects.iter().map(|o| &o.id).chain(attached.iter().map(|a| &a.object.id));
-    match ids.into_iter().find(|id| !known.insert(id.as_str())) {
+    let attached = attached.iter().map(|a| &a.object);
+    match duplicate(objects.iter().chain(attached)) {
         Some(id) => Err(root.error(format!("has two objects `{id}`"), "a name of its own for each object")),
         None => Ok(()),
     }
+}
+
+/// The first name that two objects have.
+pub(crate) fn duplicate<'o>(mut objects: impl Iterator<Item = &'o CollisionObject>) -> Option<&'o str> {
+    let mut known = HashSet::new();
+    objects.find(|o| !known.insert(o.id.as_str())).map(|o| o.id.as_str())
 }

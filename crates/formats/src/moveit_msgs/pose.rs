@@ -3,21 +3,21 @@
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::field::Field;
-use super::problem::FixedFrame;
+use super::types::FixedFrame;
 use crate::FormatError;
 
 /// Quaternions shorter than this have no direction that their writer meant.
 const MIN_QUATERNION: f64 = 1e-3;
-/// Larger coordinates are refused, metres: squares of them must stay finite.
+/// Larger coordinates are refused, metres.
 const MAX_COORDINATE_M: f64 = 1e9;
 
 /// A pose with `position` and `orientation` (x, y, z, w); a missing part is zero.
-pub(super) fn pose(field: &Field<'_>) -> Result<Pose, FormatError> {
+pub(crate) fn pose(field: &Field<'_>) -> Result<Pose, FormatError> {
     parts(field, ["position", "orientation"])
 }
 
 /// The same under the names of a transform.
-pub(super) fn transform(field: &Field<'_>) -> Result<Pose, FormatError> {
+pub(crate) fn transform(field: &Field<'_>) -> Result<Pose, FormatError> {
     parts(field, ["translation", "rotation"])
 }
 
@@ -28,27 +28,36 @@ fn parts(field: &Field<'_>, [translation, rotation]: [&str; 2]) -> Result<Pose, 
 }
 
 /// Three coordinates, metres.
-pub(super) fn point(field: &Field<'_>) -> Result<Vec3, FormatError> {
+pub(crate) fn point(field: &Field<'_>) -> Result<Vec3, FormatError> {
     let [x, y, z] = field.tuple(["x", "y", "z"])?;
     let point = Vec3::new(x, y, z);
-    if point.abs().max_element() > MAX_COORDINATE_M {
-        return Err(field.error("has a coordinate above 1e9 m", "coordinates in metres"));
+    if is_position(point) {
+        Ok(point)
+    } else {
+        Err(field.error("has a coordinate above 1e9 m", "coordinates in metres"))
     }
-    Ok(point)
 }
 
-/// A quaternion x, y, z, w, normalized.
+/// True where squares of the coordinates stay finite.
+pub(crate) fn is_position(point: Vec3) -> bool {
+    point.abs().max_element() <= MAX_COORDINATE_M
+}
+
 fn quaternion(field: &Field<'_>) -> Result<Rotation, FormatError> {
-    let q = field.tuple(["x", "y", "z", "w"])?;
-    let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let rotation = (length >= MIN_QUATERNION).then(|| Rotation::from_quaternion_xyzw(q)).flatten();
-    rotation.filter(|r| r.is_finite()).ok_or_else(|| {
+    rotation(field.tuple(["x", "y", "z", "w"])?).ok_or_else(|| {
         field.error("is a quaternion without direction", "a unit quaternion x, y, z, w: [0, 0, 0, 1] for no rotation")
     })
 }
 
+/// The rotation of a quaternion x, y, z, w, normalized; `None` where it has no direction.
+pub(crate) fn rotation(q: [f64; 4]) -> Option<Rotation> {
+    let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let rotation = (length >= MIN_QUATERNION).then(|| Rotation::from_quaternion_xyzw(q)).flatten();
+    rotation.filter(|r| r.is_finite())
+}
+
 /// The frames of `fixed_frame_transforms`.
-pub(super) fn fixed_frames(scene: &Field<'_>) -> Result<Vec<FixedFrame>, FormatError> {
+pub(crate) fn fixed_frames(scene: &Field<'_>) -> Result<Vec<FixedFrame>, FormatError> {
     let frame = |field: &Field<'_>| {
         let name = field.require("child_frame_id", "\"child_frame_id\": \"NAME\"")?.name()?.to_owned();
         let in_parent = field.get("transform")?.map_or(Ok(Pose::IDENTITY), |f| transform(&f))?;
@@ -58,7 +67,7 @@ pub(super) fn fixed_frames(scene: &Field<'_>) -> Result<Vec<FixedFrame>, FormatE
 }
 
 /// The frame in the header of a message; empty where it has none.
-pub(super) fn frame_id(field: &Field<'_>) -> Result<String, FormatError> {
+pub(crate) fn frame_id(field: &Field<'_>) -> Result<String, FormatError> {
     let id = field.get("header")?.map_or(Ok(""), |header| header.text_of("frame_id"))?;
     Ok(id.strip_prefix('/').unwrap_or(id).to_owned())
 }

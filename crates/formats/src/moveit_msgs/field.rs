@@ -1,55 +1,63 @@
-//! A field of a problem, with its path for messages.
+//! A field of a document, with its path for messages.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
+
+use elbowroom_proximity::TriMesh;
 
 use serde_json::Value;
 
-use crate::{FormatError, Warning};
+use crate::{FormatError, Warning, yaml};
 
 /// Larger values of joints are refused, rad or m: poses computed from them would not be finite.
 const MAX_JOINT_VALUE: f64 = 1e6;
 
-/// The problem that a field belongs to.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Location<'a> {
-    pub(super) file: &'a Path,
-    pub(super) set: &'a str,
-    pub(super) id: &'a str,
+/// The document that a field belongs to.
+#[derive(Debug)]
+pub(crate) struct Location<'a> {
+    pub(crate) file: &'a Path,
+    /// The part of the file, before the path in messages: ``set `A`, problem `B`: ``, or nothing.
+    pub(crate) part: String,
+    /// The text of a YAML document, in which lines are looked up.
+    pub(crate) yaml: Option<&'a str>,
 }
 
 /// A value of the document, and where it is.
 #[derive(Debug, Clone)]
-pub(super) struct Field<'a> {
-    pub(super) location: &'a Location<'a>,
-    /// Empty for the problem itself.
+pub(crate) struct Field<'a> {
+    pub(crate) location: &'a Location<'a>,
+    /// Empty for the document itself.
     path: String,
     value: &'a Value,
 }
 
 impl<'a> Field<'a> {
-    pub(super) fn root(location: &'a Location<'a>, value: &'a Value) -> Self {
+    pub(crate) fn root(location: &'a Location<'a>, value: &'a Value) -> Self {
         Self { location, path: String::new(), value }
     }
 
     /// An error here.
-    pub(super) fn error(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> FormatError {
-        FormatError::new(self.location.file, None, self.sentence(what)).hint(hint)
+    pub(crate) fn error(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> FormatError {
+        FormatError::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
     }
 
     /// A warning here.
     fn warning(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> Warning {
-        Warning::new(self.location.file, None, self.sentence(what)).hint(hint)
+        Warning::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
+    }
+
+    fn line(&self) -> Option<usize> {
+        self.location.yaml.map(|text| yaml::line_of(text, self.location.file, &self.path))
     }
 
     fn sentence(&self, what: impl std::fmt::Display) -> String {
-        let Location { set, id, .. } = self.location;
         let path = if self.path.is_empty() { String::new() } else { format!("`{}` ", self.path) };
-        format!("set `{set}`, problem `{id}`: {path}{what}")
+        format!("{}{path}{what}", self.location.part)
     }
 
     /// The field of an object; `None` where it is missing or null.
-    pub(super) fn get(&self, key: &str) -> Result<Option<Self>, FormatError> {
+    pub(crate) fn get(&self, key: &str) -> Result<Option<Self>, FormatError> {
         let Value::Object(fields) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "an object: {\"NAME\": …}"));
         };
@@ -59,12 +67,16 @@ impl<'a> Field<'a> {
     }
 
     /// The field of an object that must have it.
-    pub(super) fn require(&self, key: &str, hint: &str) -> Result<Self, FormatError> {
+    pub(crate) fn require(&self, key: &str, hint: &str) -> Result<Self, FormatError> {
         self.get(key)?.ok_or_else(|| self.error(format!("has no `{key}`"), hint))
     }
 
+    pub(crate) fn is_list(&self) -> bool {
+        self.value.is_array()
+    }
+
     /// The elements of a list.
-    pub(super) fn elements(&self) -> Result<Vec<Self>, FormatError> {
+    pub(crate) fn elements(&self) -> Result<Vec<Self>, FormatError> {
         let Value::Array(values) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "a list: […]"));
         };
@@ -73,12 +85,12 @@ impl<'a> Field<'a> {
     }
 
     /// The elements of a list in an object; none where it is missing.
-    pub(super) fn list(&self, key: &str) -> Result<Vec<Self>, FormatError> {
+    pub(crate) fn list(&self, key: &str) -> Result<Vec<Self>, FormatError> {
         self.get(key)?.map_or_else(|| Ok(Vec::new()), |field| field.elements())
     }
 
     /// Two lists of equal length, element by element.
-    pub(super) fn paired_lists(&self, keys: [&str; 2]) -> Result<Vec<(Self, Self)>, FormatError> {
+    pub(crate) fn paired_lists(&self, keys: [&str; 2]) -> Result<Vec<(Self, Self)>, FormatError> {
         let [a, b] = [self.list(keys[0])?, self.list(keys[1])?];
         if a.len() != b.len() {
             let what = format!("has {} in `{}` and {} in `{}`", a.len(), keys[0], b.len(), keys[1]);
@@ -87,37 +99,37 @@ impl<'a> Field<'a> {
         Ok(a.into_iter().zip(b).collect())
     }
 
-    pub(super) fn text(&self) -> Result<&'a str, FormatError> {
+    pub(crate) fn text(&self) -> Result<&'a str, FormatError> {
         self.value.as_str().ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a text: \"…\""))
     }
 
     /// The text of a field of an object; empty where it is missing.
-    pub(super) fn text_of(&self, key: &str) -> Result<&'a str, FormatError> {
+    pub(crate) fn text_of(&self, key: &str) -> Result<&'a str, FormatError> {
         self.get(key)?.map_or(Ok(""), |field| field.text())
     }
 
     /// A text that is not empty.
-    pub(super) fn name(&self) -> Result<&'a str, FormatError> {
+    pub(crate) fn name(&self) -> Result<&'a str, FormatError> {
         Some(self.text()?).filter(|name| !name.is_empty()).ok_or_else(|| self.error("is empty", "a name"))
     }
 
-    pub(super) fn names(&self, key: &str) -> Result<Vec<String>, FormatError> {
+    pub(crate) fn names(&self, key: &str) -> Result<Vec<String>, FormatError> {
         self.list(key)?.iter().map(|field| Ok(field.name()?.to_owned())).collect()
     }
 
-    pub(super) fn flag(&self) -> Result<bool, FormatError> {
+    pub(crate) fn flag(&self) -> Result<bool, FormatError> {
         let word = || format!("is {}", kind(self.value));
         self.value.as_bool().or(self.value.as_u64().map(|n| n != 0)).ok_or_else(|| self.error(word(), "true or false"))
     }
 
     /// A finite number.
-    pub(super) fn number(&self) -> Result<f64, FormatError> {
+    pub(crate) fn number(&self) -> Result<f64, FormatError> {
         let number = self.value.as_f64().filter(|v| v.is_finite());
         number.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a finite number, as 0.25"))
     }
 
     /// The value of a joint, rad or m.
-    pub(super) fn joint_value(&self) -> Result<f64, FormatError> {
+    pub(crate) fn joint_value(&self) -> Result<f64, FormatError> {
         let value = self.number()?;
         if value.abs() <= MAX_JOINT_VALUE {
             return Ok(value);
@@ -126,18 +138,18 @@ impl<'a> Field<'a> {
     }
 
     /// A whole number from 0 up.
-    pub(super) fn index(&self) -> Result<u32, FormatError> {
+    pub(crate) fn index(&self) -> Result<u32, FormatError> {
         let index = self.value.as_u64().and_then(|n| u32::try_from(n).ok());
         index.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a whole number, 0 or more"))
     }
 
     /// A list of any number of numbers.
-    pub(super) fn numbers(&self) -> Result<Vec<f64>, FormatError> {
+    pub(crate) fn numbers(&self) -> Result<Vec<f64>, FormatError> {
         self.elements()?.iter().map(Self::number).collect()
     }
 
     /// So many numbers: a list, or an object with these names.
-    pub(super) fn tuple<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], FormatError> {
+    pub(crate) fn tuple<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], FormatError> {
         let hint = format!("[{}]", names.join(", "));
         let numbers = match self.value {
             Value::Object(_) => {
@@ -150,12 +162,12 @@ impl<'a> Field<'a> {
     }
 
     /// True for a whole number or a word of this meaning, as in messages and in files written by hand.
-    pub(super) fn is(&self, word: &str, number: u64) -> bool {
+    pub(crate) fn is(&self, word: &str, number: u64) -> bool {
         self.value.as_str().is_some_and(|w| w.eq_ignore_ascii_case(word)) || self.value.as_u64() == Some(number)
     }
 
     /// The value for a message, shortened.
-    pub(super) fn shown(&self) -> String {
+    pub(crate) fn shown(&self) -> String {
         match self.value {
             Value::String(_) | Value::Number(_) | Value::Bool(_) => self.value.to_string().chars().take(60).collect(),
             other => kind(other).to_owned(),
@@ -175,16 +187,19 @@ fn kind(value: &Value) -> &'static str {
     }
 }
 
-/// Warnings, each kind once: a file may have thousands of problems of the same kind.
+/// What is kept while a document is read: warnings, each kind once (a file may have thousands of problems of the same
+/// kind), and the mesh files that it names.
 #[derive(Debug, Default)]
-pub(super) struct Notes {
+pub(crate) struct Reading {
     seen: HashSet<&'static str>,
-    pub(super) warnings: Vec<Warning>,
+    pub(crate) warnings: Vec<Warning>,
+    /// By reference as written and scale.
+    pub(crate) mesh_files: HashMap<(String, [u64; 3]), Arc<TriMesh>>,
 }
 
-impl Notes {
+impl Reading {
     /// Warns of the first of a kind.
-    pub(super) fn once(&mut self, kind: &'static str, at: &Field<'_>, what: impl std::fmt::Display, hint: &str) {
+    pub(crate) fn once(&mut self, kind: &'static str, at: &Field<'_>, what: impl std::fmt::Display, hint: &str) {
         if self.seen.insert(kind) {
             self.warnings.push(at.warning(format!("{what} (reported once)"), hint));
         }

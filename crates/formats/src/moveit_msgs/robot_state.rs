@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use elbowroom_spatial::Pose;
 
-use super::field::{Field, Notes};
-use super::problem::{AttachedObject, JointValue};
+use super::field::{Field, Reading};
+use super::types::{AttachedObject, JointValue};
 use super::{object, pose};
 use crate::FormatError;
 
@@ -14,15 +14,15 @@ const IDENTITY_TOLERANCE: f64 = 1e-9;
 
 /// The state of the robot, as far as the file has it.
 #[derive(Debug, Default)]
-pub(super) struct RobotState {
-    pub(super) joints: Vec<JointValue>,
-    pub(super) base_in_world: Option<Pose>,
-    pub(super) attached: Vec<AttachedObject>,
+pub(crate) struct RobotState {
+    pub(crate) joints: Vec<JointValue>,
+    pub(crate) base_in_world: Option<Pose>,
+    pub(crate) attached: Vec<AttachedObject>,
 }
 
 impl RobotState {
     /// Takes over what another state has.
-    pub(super) fn overlay(&mut self, other: Self) {
+    pub(crate) fn overlay(&mut self, other: Self) {
         let given: HashSet<String> = other.joints.iter().map(|j| j.joint.clone()).collect();
         self.joints.retain(|j| !given.contains(&j.joint));
         self.joints.extend(other.joints);
@@ -33,14 +33,14 @@ impl RobotState {
     }
 }
 
-pub(super) fn parse(field: &Field<'_>, notes: &mut Notes) -> Result<RobotState, FormatError> {
+pub(crate) fn parse(field: &Field<'_>, reading: &mut Reading) -> Result<RobotState, FormatError> {
     let joints = field.get("joint_state")?.map_or(Ok(Vec::new()), |f| joint_values(&f, ["name", "position"]))?;
     let base_in_world = match field.get("multi_dof_joint_state")? {
         Some(joints) => base(&joints)?,
         None => None,
     };
     let attached = field.list("attached_collision_objects")?;
-    let attached = attached.iter().map(|f| object::attached(f, notes)).collect::<Result<_, _>>()?;
+    let attached = attached.iter().map(|f| object::attached(f, reading)).collect::<Result<_, _>>()?;
     Ok(RobotState { joints, base_in_world, attached })
 }
 

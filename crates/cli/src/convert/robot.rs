@@ -1,9 +1,9 @@
-//! `elbowroom convert`: a robot as URDF with STL meshes, or as 3DS.
+//! A robot as URDF with STL meshes, or as 3DS.
 
 use std::path::{Path, PathBuf};
 
-use elbowroom::cell::Cell;
-use elbowroom::formats::robot::{self, LoadOptions};
+use elbowroom::cell::{Cell, CellRobot};
+use elbowroom::formats::robot::{self, LoadOptions, LoadedRobot};
 use elbowroom::formats::{joints, tds};
 use elbowroom::robot::Robot;
 use elbowroom::spatial::units::LengthUnit;
@@ -11,12 +11,18 @@ use elbowroom::spatial::units::LengthUnit;
 use crate::args::{ConvertArgs, Written};
 use crate::output::{ExitStatus, Failure, cannot_write, note};
 
-pub(crate) fn convert(args: &ConvertArgs) -> Result<ExitStatus, Failure> {
-    let is_cell = args.model.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    let (name, robot) = if is_cell { of_cell(args)? } else { of_model(args)? };
-    std::fs::create_dir_all(&args.out).map_err(cannot_write(&args.out))?;
+/// Writes the robot to the folder `out`.
+pub(super) fn convert(args: &ConvertArgs, out: &Path) -> Result<ExitStatus, Failure> {
+    let (name, robot) = if has_extension(&args.model, "toml") {
+        let robot = of_cell(args)?;
+        (robot.name.clone(), robot.robot)
+    } else {
+        let name = args.model.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        (name, of_model(args)?.robot)
+    };
+    std::fs::create_dir_all(out).map_err(cannot_write(out))?;
     for to in &args.to {
-        let path = args.out.join(match to {
+        let path = out.join(match to {
             Written::Urdf => format!("{name}.urdf"),
             Written::Tds => format!("{name}.3ds"),
         });
@@ -25,10 +31,10 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<ExitStatus, Failure> {
             Written::Tds => &["3ds", "joints.toml"],
         };
         for extension in beside {
-            keep_own(&args.out.join(format!("{name}.{extension}")), &args.model)?;
+            keep_own(&out.join(format!("{name}.{extension}")), &args.model)?;
         }
         let files = match to {
-            Written::Urdf => robot::write_urdf(&robot, &args.out, &name)?,
+            Written::Urdf => robot::write_urdf(&robot, out, &name)?,
             Written::Tds => write_tds(&robot, &path)?,
         };
         let more = files.len() - 1;
@@ -37,7 +43,13 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Success)
 }
 
-fn of_model(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
+/// True for a file with this extension, in any case.
+pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
+/// The robot of a model.
+pub(super) fn of_model(args: &ConvertArgs) -> Result<LoadedRobot, Failure> {
     if args.robot.is_some() {
         return Err(Failure::Wrong("--robot goes with a cell file\n  write: a model without --robot".to_owned()));
     }
@@ -50,11 +62,11 @@ fn of_model(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
     };
     let loaded = robot::load(&args.model, &options)?;
     loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let name = args.model.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok((name, loaded.robot))
+    Ok(loaded)
 }
 
-fn of_cell(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
+/// The robot of a cell.
+pub(super) fn of_cell(args: &ConvertArgs) -> Result<CellRobot, Failure> {
     let given =
         args.srdf.is_some() || args.unit.is_some() || args.joints.joints.is_some() || !args.joints.joint.is_empty();
     if given {
@@ -62,17 +74,17 @@ fn of_cell(args: &ConvertArgs) -> Result<(String, Robot), Failure> {
             "--srdf, --unit, --joints and --joint go with a model\n  write: the cell file says these things itself";
         return Err(Failure::Wrong(what.to_owned()));
     }
-    let cell = Cell::load(&args.model)?;
+    let mut cell = Cell::load(&args.model)?;
     let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
     let chosen = match &args.robot {
-        Some(name) => cell.robots.iter().find(|r| r.name == *name),
-        None => cell.robots.first().filter(|_| names.len() == 1),
+        Some(name) => names.iter().position(|n| n == name),
+        None => (names.len() == 1).then_some(0),
     };
-    let robot = chosen.ok_or_else(|| {
+    let chosen = chosen.ok_or_else(|| {
         let file = args.model.display();
         Failure::Wrong(format!("{file}: which robot?\n  write: --robot with one of {}", names.join(", ")))
     })?;
-    Ok((robot.name.clone(), robot.robot.clone()))
+    Ok(cell.robots.swap_remove(chosen))
 }
 
 /// The 3DS model, and a file with the joints, which 3DS cannot hold.

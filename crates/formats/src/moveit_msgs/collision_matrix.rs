@@ -1,22 +1,12 @@
 //! Allowed collision matrix of a scene.
 
-use super::field::{Field, Notes};
+use super::field::{Field, Reading};
+use super::types::AllowedCollisions;
 use crate::FormatError;
 
-/// The pairs that may touch, by the matrix of a problem.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct ProblemMatrix {
-    /// Names of links and objects.
-    pub names: Vec<String>,
-    /// Pairs that may touch: indices of `names`, the smaller first.
-    pub allowed: Vec<(usize, usize)>,
-    /// Names of what may touch everything that the matrix does not name.
-    pub allowed_by_default: Vec<String>,
-}
-
 /// The matrix; empty where the scene has none.
-pub(super) fn parse(scene: &Field<'_>, notes: &mut Notes) -> Result<ProblemMatrix, FormatError> {
-    let Some(field) = scene.get("allowed_collision_matrix")? else { return Ok(ProblemMatrix::default()) };
+pub(crate) fn parse(scene: &Field<'_>, reading: &mut Reading) -> Result<AllowedCollisions, FormatError> {
+    let Some(field) = scene.get("allowed_collision_matrix")? else { return Ok(AllowedCollisions::default()) };
     let names = field.names("entry_names")?;
     let rows: Vec<Field<'_>> = field.list("entry_values")?;
     let wrong_count = |at: &Field<'_>, n: usize| {
@@ -28,27 +18,25 @@ pub(super) fn parse(scene: &Field<'_>, notes: &mut Notes) -> Result<ProblemMatri
     }
     let mut values = Vec::with_capacity(rows.len());
     for row in &rows {
-        let entries = match row.get("enabled") {
-            Ok(Some(enabled)) => enabled.elements()?,
-            _ => row.elements()?,
-        };
+        let hint = "\"enabled\": [true, false, …], or the list alone";
+        let entries = if row.is_list() { row.elements()? } else { row.require("enabled", hint)?.elements()? };
         if entries.len() != names.len() {
             return Err(wrong_count(row, entries.len()));
         }
         values.push(entries.iter().map(Field::flag).collect::<Result<Vec<_>, _>>()?);
     }
-    let allowed = symmetric(&field, &values, notes);
-    Ok(ProblemMatrix { names, allowed, allowed_by_default: allowed_by_default(&field)? })
+    let allowed = symmetric(&field, &values, reading);
+    Ok(AllowedCollisions { names, allowed, allowed_by_default: allowed_by_default(&field)? })
 }
 
 /// The pairs for which both entries are true.
-fn symmetric(field: &Field<'_>, values: &[Vec<bool>], notes: &mut Notes) -> Vec<(usize, usize)> {
+fn symmetric(field: &Field<'_>, values: &[Vec<bool>], reading: &mut Reading) -> Vec<(usize, usize)> {
     let mut allowed = Vec::new();
     for (i, row) in values.iter().enumerate() {
         for (j, &value) in row.iter().enumerate().skip(i + 1) {
             if value != values[j][i] {
                 let what = format!("is not symmetric at [{i}][{j}]: such a pair may not touch");
-                notes.once("matrix", field, what, "the same value at [j][i] as at [i][j]");
+                reading.once("matrix", field, what, "the same value at [j][i] as at [i][j]");
             } else if value {
                 allowed.push((i, j));
             }
