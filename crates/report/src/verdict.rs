@@ -1,0 +1,138 @@
+//! What became of a robot's program, in one sentence: where and when it stopped, what governed, how long, what would
+//! release it.
+
+use elbowroom_monitor::OverrideReason;
+use elbowroom_sim::{Outcome, Recording, RobotTrack, Stop};
+use elbowroom_spatial::Vec3;
+
+use crate::explanation::{collision_text, reason_text};
+use crate::summary::{last_motion_s, millimetres};
+
+/// Overrides below this share of the programmed one count as slowed down.
+const SLOWED: f64 = 0.995;
+
+/// Below this override the time is told for which a robot was so slow.
+const CRAWLING: f64 = 0.05;
+
+/// How good the news is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grade {
+    /// The program was completed.
+    Good,
+    /// It was not, and nothing was hit.
+    Stopped,
+    /// A collision or a deadlock, or a region was entered.
+    Bad,
+}
+
+/// A sentence on one robot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verdict {
+    pub grade: Grade,
+    pub text: String,
+}
+
+/// One per robot.
+pub fn verdicts(rec: &Recording) -> Vec<Verdict> {
+    rec.robots.iter().map(|robot| verdict(robot, rec)).collect()
+}
+
+fn verdict(robot: &RobotTrack, rec: &Recording) -> Verdict {
+    let ending = &robot.ending;
+    let (grade, what) = match (robot.collisions.first(), ending.outcome) {
+        (Some(hit), _) => (Grade::Bad, format!("collided: {}{}", collision_text(hit, robot), after_hit(robot))),
+        (None, _) if robot.finished => (Grade::Good, finished(robot, rec)),
+        (None, Outcome::Deadlock) => (Grade::Bad, format!("is in a deadlock: it {}", stopped(robot, rec))),
+        (None, _) => (Grade::Stopped, stopped(robot, rec)),
+    };
+    let entered: Vec<&str> = rec.regions.iter().filter(|r| r.is_violated()).map(|r| r.name.as_str()).collect();
+    let entry = |who: &str| format!("{who} {what}. Entered, which is forbidden: {}.", entered.join(", "));
+    match entered.is_empty() {
+        true => Verdict { grade, text: format!("{} {what}.", robot.name) },
+        false => Verdict { grade: Grade::Bad, text: entry(&robot.name) },
+    }
+}
+
+fn after_hit(robot: &RobotTrack) -> String {
+    match (robot.finished, robot.ending.stopped_at_s) {
+        (true, _) => "; it completed its program".into(),
+        (false, Some(t)) => format!("; it stands since {t:.2} s"),
+        (false, None) => String::new(),
+    }
+}
+
+fn finished(robot: &RobotTrack, rec: &Recording) -> String {
+    let at = format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(rec.duration_s));
+    match robot.stops.first() {
+        Some(first) => {
+            let total: f64 = robot.stops.iter().map(|s| s.to_s - s.from_s).sum();
+            let times = if robot.stops.len() == 1 {
+                format!("had stopped it for {total:.2} s at {:.2} s", first.from_s)
+            } else {
+                format!(
+                    "had stopped it {} times, {total:.2} s in all, first at {:.2} s",
+                    robot.stops.len(),
+                    first.from_s
+                )
+            };
+            format!("{at}; before, the monitor {times}{}", at_region(first, rec))
+        }
+        None => format!("{at}; {}", slowed(robot, rec)),
+    }
+}
+
+fn at_region(stop: &Stop, rec: &Recording) -> String {
+    let Some(by) = &stop.by else { return String::new() };
+    let place = format!(", {} before {}", millimetres(stop.distance_m), described(by, rec));
+    stop.part.as_ref().map_or(place.clone(), |part| format!("{place} (closest: {part})"))
+}
+
+/// The smallest override, and what governed then.
+fn slowed(robot: &RobotTrack, rec: &Recording) -> String {
+    let governed = robot.samples.iter().filter(|s| s.region.is_some());
+    let least = governed.min_by(|a, b| a.speed_override.total_cmp(&b.speed_override));
+    let Some(least) = least.filter(|s| s.speed_override < SLOWED) else { return "no region slowed it down".into() };
+    let region = least.region.and_then(|r| rec.regions.get(r.0)).map_or("?", |r| r.name.as_str());
+    let part = robot.governing_part(least).map_or_else(String::new, |part| format!(" (closest: {part})"));
+    let (percent, t) = (100.0 * least.speed_override, least.t_s);
+    let crawl_s = robot.samples.iter().filter(|s| s.speed_override < CRAWLING).count() as f64 * rec.tick_s;
+    let long =
+        if crawl_s > 0.0 { format!(", below {:.0} % for {crawl_s:.2} s", 100.0 * CRAWLING) } else { String::new() };
+    format!("slowed down to {percent:.1} % at {t:.2} s near {}{part}{long}", described(region, rec))
+}
+
+/// From "stopped" on: since when, where, what governs, how long, what releases.
+fn stopped(robot: &RobotTrack, rec: &Recording) -> String {
+    let ending = &robot.ending;
+    let Some(since) = ending.stopped_at_s else {
+        return format!("was still moving when the run ended at {:.2} s", rec.duration_s);
+    };
+    let Some(last) = robot.samples.last() else { return "has no samples".into() };
+    let waits = ending.outcome == Outcome::Held;
+    let verb = if waits { "waits since" } else { "stopped at" };
+    let mut text = format!("{verb} {since:.2} s");
+    match (&ending.by, last.distance_m) {
+        (Some(by), Some(d)) => text += &format!(", {} before {}", millimetres(Some(d)), described(by, rec)),
+        (Some(by), None) => text += &format!(", before {by}"),
+        (None, _) if last.reason != OverrideReason::Free => text += &format!(": {}", reason_text(last.reason, rec)),
+        (None, _) => text += &format!(", TCP at {}", place(last.tcp)),
+    }
+    if let (Some(part), Some(p)) = (&ending.part, ending.point) {
+        text += &format!("; closest: {part} at {}", place(p));
+    }
+    text += &format!("; it stood still for {:.2} s until the end of the run", rec.duration_s - since);
+    if let Some(ways) = &ending.release {
+        text += &format!(" and continues when {ways}");
+    }
+    text
+}
+
+fn place(p: Vec3) -> String {
+    format!("({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z)
+}
+
+/// A region with its kind, or an obstacle.
+fn described(name: &str, rec: &Recording) -> String {
+    let region = rec.regions.iter().find(|r| r.name == name);
+    region.map_or_else(|| name.to_owned(), |r| format!("the {} region {name}", r.kind.name()))
+}
