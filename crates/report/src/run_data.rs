@@ -68,7 +68,7 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
             json!({ "poses": poses, "held": held(rec, &o.name) })
         })
         .collect();
-    let robots: Vec<Value> = rec.robots.iter().map(|track| robot(track, rec, &frames, packer)).collect();
+    let robots: Vec<Value> = rec.robots.iter().map(|track| robot(scene, track, rec, &frames, packer)).collect();
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
         "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
@@ -86,7 +86,13 @@ fn held(rec: &Recording, object: &str) -> Vec<(f64, f64)> {
     crate::spans::pair(edges, rec.duration_s)
 }
 
-fn robot(track: &RobotTrack, rec: &Recording, frames: &[usize], packer: &mut ArrayPacker) -> Value {
+fn robot(
+    scene: &ReportScene,
+    track: &RobotTrack,
+    rec: &Recording,
+    frames: &[usize],
+    packer: &mut ArrayPacker,
+) -> Value {
     let mut reasons: Vec<String> = Vec::new();
     let mut reason_at = Vec::with_capacity(frames.len());
     for &i in frames {
@@ -98,6 +104,13 @@ fn robot(track: &RobotTrack, rec: &Recording, frames: &[usize], packer: &mut Arr
         }
     }
     let q: Vec<f64> = frames.iter().flat_map(|&i| track.samples[i].q.iter().copied()).collect();
+    let region = |i: &usize| track.samples[*i].region.map_or(f64::NAN, |r| r.0 as f64);
+    let regions: Vec<f64> = frames.iter().map(region).collect();
+    let obstacle = |tick: usize| {
+        let name = track.governing_obstacle(tick)?;
+        scene.objects.iter().position(|o| o.name == name)
+    };
+    let obstacles: Vec<f64> = frames.iter().map(|&i| obstacle(i).map_or(f64::NAN, |o| o as f64)).collect();
     let column = |packer: &mut ArrayPacker, f: &dyn Fn(&Sample) -> f64| {
         let values: Vec<f64> = frames.iter().map(|&i| f(&track.samples[i])).collect();
         packer.add(&values, 1, SHOWN_STEP)
@@ -108,7 +121,8 @@ fn robot(track: &RobotTrack, rec: &Recording, frames: &[usize], packer: &mut Arr
         "override": column(packer, &|s| s.speed_override),
         "speed": column(packer, &|s| s.tcp_speed),
         "distance": column(packer, &|s| s.distance_m.unwrap_or(f64::NAN)),
-        "region": column(packer, &|s| s.region.map_or(f64::NAN, |r| r.0 as f64)),
+        "region": packer.add(&regions, 1, 1.0),
+        "obstacle": packer.add(&obstacles, 1, 1.0),
         "reason": packer.add(&reason_at, 1, 1.0),
         "reasons": reasons,
         "stops": track.stops.iter().map(|s| (s.from_s, s.to_s)).collect::<Vec<_>>(),

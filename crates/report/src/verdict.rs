@@ -2,7 +2,7 @@
 //! release it.
 
 use elbowroom_monitor::OverrideReason;
-use elbowroom_sim::{Outcome, Recording, RobotTrack, Stop};
+use elbowroom_sim::{AvoidanceSummary, Outcome, Recording, RobotTrack, Stop};
 use elbowroom_spatial::Vec3;
 
 use crate::explanation::{collision_text, reason_text};
@@ -77,8 +77,25 @@ fn finished(robot: &RobotTrack, rec: &Recording) -> String {
             };
             format!("{at}; before, the monitor {times}{}", at_region(first, rec))
         }
-        None => format!("{at}; {}", slowed(robot, rec)),
+        None if rec.regions.is_empty() => at + &evaded(robot, rec),
+        None => format!("{at}; {}{}", slowed(robot, rec), evaded(robot, rec)),
     }
+}
+
+/// What avoidance did.
+fn evaded(robot: &RobotTrack, rec: &Recording) -> String {
+    let Some(track) = &robot.avoidance else { return String::new() };
+    let summary = AvoidanceSummary::new(track, rec.tick_s);
+    let samples = track.samples.iter().enumerate().filter(|(i, _)| robot.governing_obstacle(*i).is_some());
+    let nearest = samples.min_by(|a, b| a.1.nearest_m.total_cmp(&b.1.nearest_m));
+    let nearest = nearest.and_then(|(i, s)| Some((robot.governing_obstacle(i)?, s.nearest_m)));
+    nearest.map_or_else(String::new, |(name, distance)| {
+        let (evading, waiting) = (summary.evading_s, summary.waiting_s);
+        format!(
+            "; it evaded for {evading:.2} s and waited {waiting:.2} s, closest: {} to {name}",
+            millimetres(Some(distance))
+        )
+    })
 }
 
 fn at_region(stop: &Stop, rec: &Recording) -> String {

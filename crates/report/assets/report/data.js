@@ -41,7 +41,7 @@ const Data = await (async () => {
   for (const run of data.runs) {
     run.t = read(run.t);
     for (const robot of run.robots) {
-      for (const key of ['q', 'override', 'speed', 'distance', 'region', 'reason']) robot[key] = read(robot[key]);
+      for (const key of ['q', 'override', 'speed', 'distance', 'region', 'obstacle', 'reason']) robot[key] = read(robot[key]);
     }
     for (const region of run.regions) region.poses = read(region.poses);
     for (const object of run.objects) object.poses = object.poses && read(object.poses);

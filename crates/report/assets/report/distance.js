@@ -56,20 +56,27 @@ const Distance = (() => {
       };
       return { radius: 0, support };
     };
+    // Splits at the middle of the centroids along the longest side.
     const build = (list) => {
       const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-      for (const t of list) for (let k = 0; k < 3; k++) for (let axis = 0; axis < 3; axis++) {
-        const x = corner(t, k)[axis];
-        low[axis] = Math.min(low[axis], x);
-        high[axis] = Math.max(high[axis], x);
+      for (const t of list) for (let k = 0; k < 9; k++) {
+        const axis = k % 3, x = v[3 * i[3 * t + (k - axis) / 3] + axis];
+        if (x < low[axis]) low[axis] = x;
+        if (x > high[axis]) high[axis] = x;
       }
       const node = box(low, high);
-      if (list.length <= LEAF) return { ...node, pieces: list.map(triangle) };
+      if (list.length <= LEAF) {
+        // Made when they are first needed: most triangles never are.
+        let made = null;
+        return { ...node, get pieces() { return (made ||= list.map(triangle)); } };
+      }
       const axis = node.half.indexOf(Math.max(...node.half));
-      const at = (t) => corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis];
-      list.sort((a, b) => at(a) - at(b));
-      const middle = list.length >> 1;
-      return { ...node, children: [build(list.slice(0, middle)), build(list.slice(middle))] };
+      const at = (t) => v[3 * i[3 * t] + axis] + v[3 * i[3 * t + 1] + axis] + v[3 * i[3 * t + 2] + axis];
+      const sides = [[], []];
+      for (const t of list) sides[at(t) < 3 * node.middle[axis] ? 0 : 1].push(t);
+      const isSplit = sides[0].length && sides[1].length;
+      const half = list.length >> 1;
+      return { ...node, children: (isSplit ? sides : [list.slice(0, half), list.slice(half)]).map(build) };
     };
     const triangles = Array.from({ length: i.length / 3 }, (_, t) => t);
     return { root: build(triangles), v, inside: hasInterior ? (p) => inside(v, i, p) : null, first: v.subarray(0, 3) };

@@ -10,7 +10,9 @@ const Panel = (() => {
   // Joint values in the mode "move the joints"; null in the recording.
   let moved = null;
 
-  const shownJoint = (slider, value) => (slider.slides ? `${(1000 * value).toFixed(1)} mm` : `${((180 * value) / Math.PI).toFixed(2)}°`);
+  // Plus 0, which makes −0 a 0.
+  const rounded = (value, digits) => (Number(value.toFixed(digits)) + 0).toFixed(digits);
+  const shownJoint = (slider, value) => (slider.slides ? `${rounded(1000 * value, 1)} mm` : `${rounded((180 * value) / Math.PI, 2)}°`);
   const inputs = Data.robots.map((robot, i) => {
     const set = element('fieldset', {}, element('legend', { textContent: robot.name }));
     joints.append(set);

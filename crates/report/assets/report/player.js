@@ -32,12 +32,14 @@
     });
   }
 
-  // The pair to draw for a robot: that of the region which governs, else the nearest.
+  // The pair to draw for a robot: that of the region which governs, or of the object which it evades, else the nearest.
   function lineOf(cell, robot) {
     const own = pairs.filter((pair) => pair.robot === robot && pair.distance !== undefined && !pair.state);
-    const governing = cell.moved ? NaN : cell.run.robots[robot].region[cell.frame.frame];
     const least = own.reduce((best, pair) => (!best || pair.distance < best.distance ? pair : best), null);
-    return own.find((pair) => pair.target.kind === 'region' && pair.target.index === governing) || least;
+    if (cell.moved) return least;
+    const track = cell.run.robots[robot], { frame } = cell.frame;
+    const of = (kind, index) => own.find((pair) => pair.target.kind === kind && pair.target.index === index);
+    return of('region', track.region[frame]) || of('object', track.obstacle[frame]) || least;
   }
 
   function update() {
