@@ -124,7 +124,7 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
     out.flush()
 }
 
-/// A sentence per robot, then the table of the regions; for each run.
+/// A sentence per robot and per region that was entered, then the table of the regions; for each run.
 fn verdict_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
     let mut out = String::new();
     for (i, (label, rec)) in runs.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! Colours of plots and of the 3-D scene.
 
-/// Colour of the region with this index: in tables, plots and the 3-D scene. Distinct on white and on black, and none is
-/// that of a robot or an object.
+/// Colour of the region with this index: in tables, plots and the 3-D scene. Distinct on white and on black, the first ones
+/// from those of runs and robots, too.
 pub fn of_region(index: usize) -> &'static str {
     const COLORS: [&str; 10] =
-        ["#e5484d", "#2f7ed8", "#2e9e5b", "#b45ad6", "#d98a00", "#0fa3b1", "#e0559b", "#7c8a12", "#6e6ae0", "#a5673f"];
+        ["#9a4fd6", "#1f9d55", "#d9488b", "#b58900", "#0f9fb5", "#a5673f", "#6a67e0", "#7c8a12", "#e5484d", "#2f7ed8"];
     COLORS[index % COLORS.len()]
 }
 

@@ -2,7 +2,7 @@
 //! release it.
 
 use elbowroom_monitor::OverrideReason;
-use elbowroom_sim::{AvoidanceSummary, Outcome, Recording, RobotTrack, Stop};
+use elbowroom_sim::{AvoidanceSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop};
 use elbowroom_spatial::Vec3;
 
 use crate::explanation::{collision_text, reason_text};
@@ -21,36 +21,43 @@ pub enum Grade {
     Good,
     /// It was not, and nothing was hit.
     Stopped,
-    /// A collision or a deadlock, or a region was entered.
+    /// A collision or a deadlock, or the entry of a region.
     Bad,
 }
 
-/// A sentence on one robot.
+/// A sentence on one robot or region.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
     pub grade: Grade,
     pub text: String,
 }
 
-/// One per robot.
+/// One per robot, then one per region that was entered and must not be.
 pub fn verdicts(rec: &Recording) -> Vec<Verdict> {
-    rec.robots.iter().map(|robot| verdict(robot, rec)).collect()
+    let robots = rec.robots.iter().map(|robot| verdict(robot, rec));
+    let entries = rec.regions.iter().filter(|r| r.is_violated()).map(|r| entry(r, rec));
+    robots.chain(entries).collect()
 }
 
 fn verdict(robot: &RobotTrack, rec: &Recording) -> Verdict {
-    let ending = &robot.ending;
-    let (grade, what) = match (robot.collisions.first(), ending.outcome) {
+    let (grade, what) = match (robot.collisions.first(), robot.ending.outcome) {
         (Some(hit), _) => (Grade::Bad, format!("collided: {}{}", collision_text(hit, robot), after_hit(robot))),
         (None, _) if robot.finished => (Grade::Good, finished(robot, rec)),
         (None, Outcome::Deadlock) => (Grade::Bad, format!("is in a deadlock: it {}", stopped(robot, rec))),
         (None, _) => (Grade::Stopped, stopped(robot, rec)),
     };
-    let entered: Vec<&str> = rec.regions.iter().filter(|r| r.is_violated()).map(|r| r.name.as_str()).collect();
-    let entry = |who: &str| format!("{who} {what}. Entered, which is forbidden: {}.", entered.join(", "));
-    match entered.is_empty() {
-        true => Verdict { grade, text: format!("{} {what}.", robot.name) },
-        false => Verdict { grade: Grade::Bad, text: entry(&robot.name) },
+    Verdict { grade, text: format!("{} {what}.", robot.name) }
+}
+
+/// Who entered a region, and when first.
+fn entry(region: &RegionTrack, rec: &Recording) -> Verdict {
+    let mut who: Vec<String> = Vec::new();
+    for (i, robot) in rec.robots.iter().enumerate() {
+        let first = region.inside_spans.iter().find(|s| s.robot.0 == i);
+        who.extend(first.map(|s| format!("{} at {:.2} s", robot.name, s.from_s)));
     }
+    let text = format!("The {} region {} was entered: {}.", region.kind.name(), region.name, who.join(", "));
+    Verdict { grade: Grade::Bad, text }
 }
 
 fn after_hit(robot: &RobotTrack) -> String {
@@ -100,7 +107,7 @@ fn evaded(robot: &RobotTrack, rec: &Recording) -> String {
 
 fn at_region(stop: &Stop, rec: &Recording) -> String {
     let Some(by) = &stop.by else { return String::new() };
-    let place = format!(", {} before {}", millimetres(stop.distance_m), described(by, rec));
+    let place = format!(", {}", before(by, stop.distance_m, rec));
     stop.part.as_ref().map_or(place.clone(), |part| format!("{place} (closest: {part})"))
 }
 
@@ -129,8 +136,7 @@ fn stopped(robot: &RobotTrack, rec: &Recording) -> String {
     let verb = if waits { "waits since" } else { "stopped at" };
     let mut text = format!("{verb} {since:.2} s");
     match (&ending.by, last.distance_m) {
-        (Some(by), Some(d)) => text += &format!(", {} before {}", millimetres(Some(d)), described(by, rec)),
-        (Some(by), None) => text += &format!(", before {by}"),
+        (Some(by), distance) => text += &format!(", {}", before(by, distance, rec)),
         (None, _) if last.reason != OverrideReason::Free => text += &format!(": {}", reason_text(last.reason, rec)),
         (None, _) => text += &format!(", TCP at {}", place(last.tcp)),
     }
@@ -146,6 +152,16 @@ fn stopped(robot: &RobotTrack, rec: &Recording) -> String {
 
 fn place(p: Vec3) -> String {
     format!("({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z)
+}
+
+/// How far from what: `0.50 mm before the forbidden region post`.
+fn before(by: &str, distance_m: Option<f64>, rec: &Recording) -> String {
+    let what = described(by, rec);
+    match distance_m {
+        Some(0.0) => format!("inside {what}"),
+        Some(d) => format!("{} before {what}", millimetres(Some(d))),
+        None => format!("before {what}"),
+    }
 }
 
 /// A region with its kind, or an obstacle.

@@ -232,9 +232,9 @@ fn the_verdict_comes_first_and_names_what_governs() {
     }
     assert!(first.contains("continues when the program moves away."), "{first}");
     let collided = "ns16 collided: fore hit table at 3.100 s";
-    assert!(first.contains(collided) && first.contains("Entered, which is forbidden: column"), "{first}");
+    assert!(first.contains(collided) && first.contains("The forbidden region column was entered: ns16 at "), "{first}");
     // The table of the regions: colour, kind, least distance, entered, and what it would be without the monitor.
-    assert!(first.contains("<i class=\"chip\" style=\"background:#e5484d\"></i>column"), "{first}");
+    assert!(first.contains("<i class=\"chip\" style=\"background:#9a4fd6\"></i>column"), "{first}");
     assert!(first.contains("without monitor") && first.contains("0.00 mm, entered"), "{first}");
 
     // A robot that went on: what had stopped it.
@@ -246,7 +246,7 @@ fn the_verdict_comes_first_and_names_what_governs() {
     assert!(summary(&run, 120, false).contains("before column, closest tcp"), "{}", summary(&run, 120, false));
     // Slowed down, and not at all.
     run.robots[0].stops.clear();
-    run.robots[0].samples.truncate(1100);
+    run.robots[0].samples.truncate(1400);
     assert!(verdict(&page(&run, &run)).contains(" % at 2."), "{}", verdict(&page(&run, &run)));
     for sample in &mut run.robots[0].samples {
         (sample.region, sample.speed_override) = (None, 1.0);
@@ -260,7 +260,7 @@ fn a_region_has_one_colour_everywhere() {
     let (on, off) = (report_demo::recording(true, 3000, "column"), report_demo::recording(false, 3000, "column"));
     let html = page(&on, &off);
     let regions = block(&html, "scene-data")["regions"].clone();
-    for (name, color) in [("column", "#e5484d"), ("drone", "#2f7ed8")] {
+    for (name, color) in [("column", "#9a4fd6"), ("drone", "#1f9d55")] {
         let of_scene = regions.as_array().unwrap().iter().find(|r| r["name"] == name).unwrap();
         assert_eq!(of_scene["color"], color);
         assert!(verdict(&html).contains(&format!("background:{color}\"></i>{name}")));
