@@ -36,7 +36,7 @@ pub(super) struct PageContent<'a> {
     pub title: &'a str,
     /// What became of the run, and its regions: above the scene, HTML.
     pub verdict: String,
-    /// List below the plots, HTML.
+    /// Below the tables, HTML.
     pub facts: String,
     /// Options of the run selector, HTML.
     pub options: String,
@@ -196,7 +196,8 @@ fn facts(runs: &[(&str, &Recording)]) -> String {
         let _ = write!(out, "<li>{}</li>", escape(line.trim_start_matches(": ")));
     }
     let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
-    format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))
+    let list = format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum));
+    format!("<section class=\"card wide\"><h2>Run</h2>{list}</section>")
 }
 
 fn options(runs: &[(&str, &Recording)]) -> String {

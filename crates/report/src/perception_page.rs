@@ -30,8 +30,8 @@ pub fn write_perception_html(out: impl Write, arm: &MappedArm, log: &PerceptionL
     let recording = recording(arm, log, flange);
     let content = PageContent {
         title: &log.title,
-        verdict: String::new(),
-        facts: facts(log),
+        verdict: facts(log),
+        facts: String::new(),
         options: "<option value=\"0\">run</option>".into(),
         figures: &plots::perception(&scene, log, &recording),
         tables: stage_times(log) + &rejected_frames(log) + &images(log),
@@ -141,7 +141,7 @@ fn region(ground_truth: &elbowroom_perception::GroundTruth) -> RegionTrack {
 
 fn facts(log: &PerceptionLog) -> String {
     let lines = log.facts.iter().map(|line| format!("<li>{}</li>", escape(line)));
-    format!("<ul class=\"facts\">{}</ul>", lines.collect::<String>())
+    card("Result", &format!("<ul class=\"facts\">{}</ul>", lines.collect::<String>()))
 }
 
 fn card(heading: &str, body: &str) -> String {
