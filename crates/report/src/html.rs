@@ -7,11 +7,11 @@ use elbowroom_sim::Recording;
 use serde_json::{Value, json};
 
 use crate::packing::deflated;
+use crate::results::{Grade, ResultLine, results};
 use crate::scene::ReportScene;
 use crate::scene_data::PageData;
 use crate::summary::duration;
 use crate::tables::{self, escape};
-use crate::verdict::{Grade, Verdict, verdicts};
 use crate::{plots, scene_data};
 
 const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
@@ -35,7 +35,7 @@ pub(super) struct PageContent<'a> {
     /// Title, plain text.
     pub title: &'a str,
     /// What became of the run, and its regions: above the scene, HTML.
-    pub verdict: String,
+    pub result: String,
     /// Below the tables, HTML.
     pub facts: String,
     /// Options of the run selector, HTML.
@@ -77,7 +77,7 @@ impl<'a> HtmlReport<'a> {
         let Self { scene, runs, planned } = *self;
         let content = PageContent {
             title: runs.first().map_or("no run", |(_, r)| &r.cell),
-            verdict: verdict_section(runs, planned),
+            result: result_section(runs, planned),
             facts: facts(runs),
             options: options(runs),
             figures: &plots::all(scene, runs, planned),
@@ -106,7 +106,7 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "" => {}
             "title" => out.write_all(escape(content.title).as_bytes())?,
             "style" => out.write_all(STYLE.as_bytes())?,
-            "verdict" => out.write_all(content.verdict.as_bytes())?,
+            "result" => out.write_all(content.result.as_bytes())?,
             "facts" => out.write_all(content.facts.as_bytes())?,
             "options" => out.write_all(content.options.as_bytes())?,
             "figures" => out.write_all(placeholders(content.figures).as_bytes())?,
@@ -125,33 +125,33 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
 }
 
 /// A sentence per robot and per region that was entered, then the table of the regions; for each run.
-fn verdict_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
+fn result_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
     let mut out = String::new();
     for (i, (label, rec)) in runs.iter().enumerate() {
         let mut sentences = String::new();
-        for Verdict { grade, text } in verdicts(rec) {
+        for ResultLine { grade, text } in results(rec) {
             let (class, mark) = match grade {
                 Grade::Good => ("good", "✓"),
                 Grade::Stopped => ("warn", "■"),
                 Grade::Bad => ("bad", "✕"),
             };
             let mark = format!("<span class=\"mark\" aria-hidden=\"true\">{mark}</span>");
-            let _ = write!(sentences, "<p class=\"verdict {class}\">{mark}<span>{}</span></p>", escape(&text));
+            let _ = write!(sentences, "<p class=\"result {class}\">{mark}<span>{}</span></p>", escape(&text));
         }
         for d in &rec.deadlocks {
             let (robots, regions) = (d.robots.join(", "), d.regions.join(", "));
             let line = format!("Deadlock since {:.2} s: {robots} wait for each other at {regions}.", d.t_s);
-            let _ = write!(sentences, "<p class=\"verdict bad\"><span>{}</span></p>", escape(&line));
+            let _ = write!(sentences, "<p class=\"result bad\"><span>{}</span></p>", escape(&line));
         }
-        let heading = if runs.len() > 1 { format!("Verdict, {label}") } else { "Verdict".to_owned() };
+        let heading = if runs.len() > 1 { format!("Result, {label}") } else { "Result".to_owned() };
         let table = if rec.regions.is_empty() {
             String::new()
         } else {
             format!("<div class=\"scroll\" tabindex=\"0\">{}</div>", tables::regions(rec, planned))
         };
-        let _ = write!(
+        let _ = writeln!(
             out,
-            "<section class=\"card wide\" data-run=\"{i}\" aria-label=\"{0}\"><h2>{0}</h2>{sentences}{table}</section>\n",
+            "<section class=\"card wide\" data-run=\"{i}\" aria-label=\"{0}\"><h2>{0}</h2>{sentences}{table}</section>",
             escape(&heading)
         );
     }

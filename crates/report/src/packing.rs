@@ -4,6 +4,7 @@ use std::io::{self, Write as _};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use elbowroom_spatial::Pose;
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use serde_json::{Value, json};
@@ -54,6 +55,13 @@ impl ArrayPacker {
         }
         json!({ "at": at, "n": values.len(), "width": width, "step": step, "zero": low - step })
     }
+}
+
+/// Quaternion x y z w, then the translation.
+pub fn pose_values(pose: &Pose) -> [f64; 7] {
+    let [x, y, z, w] = pose.rotation.to_quaternion_xyzw();
+    let t = pose.translation;
+    [x, y, z, w, t.x, t.y, t.z]
 }
 
 /// Small differences of either sign as small numbers.

@@ -30,7 +30,7 @@ pub fn write_perception_html(out: impl Write, arm: &MappedArm, log: &PerceptionL
     let recording = recording(arm, log, flange);
     let content = PageContent {
         title: &log.title,
-        verdict: facts(log),
+        result: facts(log),
         facts: String::new(),
         options: "<option value=\"0\">run</option>".into(),
         figures: &plots::perception(&scene, log, &recording),

@@ -6,9 +6,8 @@ use serde_json::{Value, json};
 
 use crate::downsample::every;
 use crate::explanation::explanation;
-use crate::packing::ArrayPacker;
+use crate::packing::{ArrayPacker, pose_values};
 use crate::scene::ReportScene;
-use crate::scene_data::pose_values;
 use crate::summary;
 
 /// Largest number of evenly spaced frames.

@@ -5,10 +5,9 @@ use elbowroom_monitor::{Guards, Volume};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::RobotId;
 use elbowroom_sim::{Recording, RegionTrack};
-use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
 
-use crate::packing::ArrayPacker;
+use crate::packing::{ArrayPacker, pose_values};
 use crate::page_meshes::{MeshUse, PageMeshes};
 use crate::scene::{CHORD_ERROR_M, ReportMesh, ReportObject, ReportRobot, ReportScene};
 use crate::{palette, region_surface, run_data};
@@ -154,11 +153,4 @@ fn region(scene: &ReportScene, index: usize, region: &RegionTrack, pack: &mut Pa
 fn volumes_for(robot: &ReportRobot, guards: Guards) -> Vec<usize> {
     let each = robot.volumes.iter().enumerate();
     each.filter(|(_, v)| v.part.counts_for(guards)).map(|(i, _)| i).collect()
-}
-
-/// Quaternion x y z w, then the translation.
-pub fn pose_values(pose: &Pose) -> [f64; 7] {
-    let [x, y, z, w] = pose.rotation.to_quaternion_xyzw();
-    let t = pose.translation;
-    [x, y, z, w, t.x, t.y, t.z]
 }

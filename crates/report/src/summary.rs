@@ -205,14 +205,10 @@ fn detail_texts(robot: &RobotTrack) -> Vec<String> {
 
 /// A stop after which the robot went on.
 fn stop_text(stop: &Stop) -> String {
-    let mut text = format!("stood {:.2} to {:.2} s", stop.from_s, stop.to_s);
-    if let Some(by) = &stop.by {
-        text += &format!(", {} before {}", millimetres(stop.distance_m), clip(by, 20));
-    }
-    if let Some(part) = &stop.part {
-        text += &format!(", closest {part}");
-    }
-    text
+    let by = stop.by.as_ref();
+    let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clip(by, 20)));
+    let part = stop.part.as_ref().map_or_else(String::new, |part| format!(", closest {part}"));
+    format!("stood {:.2} to {:.2} s{place}{part}", stop.from_s, stop.to_s)
 }
 
 /// Summary of avoidance.

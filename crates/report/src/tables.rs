@@ -128,8 +128,8 @@ pub fn events(recording: &Recording) -> String {
 }
 
 fn header(caption: &str, names: &[&str]) -> String {
-    let names: String = names.iter().map(|n| format!("<th scope=\"col\">{n}</th>")).collect();
-    format!("<table><caption>{caption}</caption><thead><tr>{names}</tr></thead><tbody>")
+    let names = names.join("</th><th scope=\"col\">");
+    format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{names}</th></tr></thead><tbody>")
 }
 
 fn row(out: &mut String, cells: &[String], class: &str) {

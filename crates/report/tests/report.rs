@@ -36,7 +36,7 @@ fn block(html: &str, id: &str) -> Value {
 }
 
 /// What is written above the scene.
-fn verdict(html: &str) -> &str {
+fn result(html: &str) -> &str {
     let to = html.find("id=\"stage\"").unwrap();
     &html[html.find("<main>").unwrap()..to]
 }
@@ -213,7 +213,7 @@ fn the_summary_names_a_deadlock() {
 
 /// The first words of the page: what became of the robot, where, by what, how long, and what would release it.
 #[test]
-fn the_verdict_comes_first_and_names_what_governs() {
+fn the_result_comes_first_and_names_what_governs() {
     let mut run = report_demo::recording(true, 3000, "column");
     let stop = run.robots[0].stops[0].clone();
     run.robots[0].ending = elbowroom_sim::RobotEnding {
@@ -225,7 +225,7 @@ fn the_verdict_comes_first_and_names_what_governs() {
         release: Some("the program moves away".into()),
     };
     let html = page(&run, &report_demo::recording(false, 3000, "column"));
-    let first = verdict(&html);
+    let first = result(&html);
     let stood = format!("it stood still for {:.2} s until the end of the run", run.duration_s - stop.from_s);
     for part in ["ns16 stopped at", "before the forbidden region column", "closest: tcp at (0.900, ", &stood] {
         assert!(first.contains(part), "{part} in\n{first}");
@@ -242,16 +242,16 @@ fn the_verdict_comes_first_and_names_what_governs() {
     run.robots[0].stops[0].to_s = stop.from_s + 0.5;
     let html = page(&run, &run);
     let text = "before, the monitor had stopped it for 0.50 s at";
-    assert!(verdict(&html).contains(text) && verdict(&html).contains("(closest: tcp)"), "{}", verdict(&html));
+    assert!(result(&html).contains(text) && result(&html).contains("(closest: tcp)"), "{}", result(&html));
     assert!(summary(&run, 120, false).contains("before column, closest tcp"), "{}", summary(&run, 120, false));
     // Slowed down, and not at all.
     run.robots[0].stops.clear();
     run.robots[0].samples.truncate(1400);
-    assert!(verdict(&page(&run, &run)).contains(" % at 2."), "{}", verdict(&page(&run, &run)));
+    assert!(result(&page(&run, &run)).contains(" % at 2."), "{}", result(&page(&run, &run)));
     for sample in &mut run.robots[0].samples {
         (sample.region, sample.speed_override) = (None, 1.0);
     }
-    assert!(verdict(&page(&run, &run)).contains("no region slowed it down"));
+    assert!(result(&page(&run, &run)).contains("no region slowed it down"));
 }
 
 /// One colour per region: in the table, in every plot, in the scene.
@@ -263,7 +263,7 @@ fn a_region_has_one_colour_everywhere() {
     for (name, color) in [("column", "#9a4fd6"), ("drone", "#1f9d55")] {
         let of_scene = regions.as_array().unwrap().iter().find(|r| r["name"] == name).unwrap();
         assert_eq!(of_scene["color"], color);
-        assert!(verdict(&html).contains(&format!("background:{color}\"></i>{name}")));
+        assert!(result(&html).contains(&format!("background:{color}\"></i>{name}")));
         let mut curves = 0;
         for figure in block(&html, "plot-data").as_array().unwrap() {
             for trace in figure["data"].as_array().unwrap() {

@@ -11,7 +11,7 @@ const Cell = (() => {
   const isActive = (switches, t) => switches.reduce((on, [at, value]) => (at <= t + 1e-9 ? value : on), false);
   const within = (spans, t) => spans.some(([begin, end]) => t >= begin && t <= end);
 
-  // The frame at or before t, the next one, and the part of the way to it.
+  // The frame at or before t, the next one, and how far t is between them, 0 to 1.
   function frameAt(times, t) {
     let low = 0, high = times.length - 1;
     while (low < high) {

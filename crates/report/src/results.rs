@@ -11,7 +11,7 @@ use crate::summary::{last_motion_s, millimetres};
 /// Overrides below this share of the programmed one count as slowed down.
 const SLOWED: f64 = 0.995;
 
-/// Below this override the time is told for which a robot was so slow.
+/// Below this override the time is given for which a robot was so slow.
 const CRAWLING: f64 = 0.05;
 
 /// How good the news is.
@@ -27,37 +27,37 @@ pub enum Grade {
 
 /// A sentence on one robot or region.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verdict {
+pub struct ResultLine {
     pub grade: Grade,
     pub text: String,
 }
 
 /// One per robot, then one per region that was entered and must not be.
-pub fn verdicts(rec: &Recording) -> Vec<Verdict> {
-    let robots = rec.robots.iter().map(|robot| verdict(robot, rec));
+pub fn results(rec: &Recording) -> Vec<ResultLine> {
+    let robots = rec.robots.iter().map(|robot| of_robot(robot, rec));
     let entries = rec.regions.iter().filter(|r| r.is_violated()).map(|r| entry(r, rec));
     robots.chain(entries).collect()
 }
 
-fn verdict(robot: &RobotTrack, rec: &Recording) -> Verdict {
+fn of_robot(robot: &RobotTrack, rec: &Recording) -> ResultLine {
     let (grade, what) = match (robot.collisions.first(), robot.ending.outcome) {
         (Some(hit), _) => (Grade::Bad, format!("collided: {}{}", collision_text(hit, robot), after_hit(robot))),
         (None, _) if robot.finished => (Grade::Good, finished(robot, rec)),
         (None, Outcome::Deadlock) => (Grade::Bad, format!("is in a deadlock: it {}", stopped(robot, rec))),
         (None, _) => (Grade::Stopped, stopped(robot, rec)),
     };
-    Verdict { grade, text: format!("{} {what}.", robot.name) }
+    ResultLine { grade, text: format!("{} {what}.", robot.name) }
 }
 
 /// Who entered a region, and when first.
-fn entry(region: &RegionTrack, rec: &Recording) -> Verdict {
+fn entry(region: &RegionTrack, rec: &Recording) -> ResultLine {
     let mut who: Vec<String> = Vec::new();
     for (i, robot) in rec.robots.iter().enumerate() {
         let first = region.inside_spans.iter().find(|s| s.robot.0 == i);
         who.extend(first.map(|s| format!("{} at {:.2} s", robot.name, s.from_s)));
     }
     let text = format!("The {} region {} was entered: {}.", region.kind.name(), region.name, who.join(", "));
-    Verdict { grade: Grade::Bad, text }
+    ResultLine { grade: Grade::Bad, text }
 }
 
 fn after_hit(robot: &RobotTrack) -> String {
@@ -132,22 +132,19 @@ fn stopped(robot: &RobotTrack, rec: &Recording) -> String {
         return format!("was still moving when the run ended at {:.2} s", rec.duration_s);
     };
     let Some(last) = robot.samples.last() else { return "has no samples".into() };
-    let waits = ending.outcome == Outcome::Held;
-    let verb = if waits { "waits since" } else { "stopped at" };
-    let mut text = format!("{verb} {since:.2} s");
-    match (&ending.by, last.distance_m) {
-        (Some(by), distance) => text += &format!(", {}", before(by, distance, rec)),
-        (None, _) if last.reason != OverrideReason::Free => text += &format!(": {}", reason_text(last.reason, rec)),
-        (None, _) => text += &format!(", TCP at {}", place(last.tcp)),
-    }
-    if let (Some(part), Some(p)) = (&ending.part, ending.point) {
-        text += &format!("; closest: {part} at {}", place(p));
-    }
-    text += &format!("; it stood still for {:.2} s until the end of the run", rec.duration_s - since);
-    if let Some(ways) = &ending.release {
-        text += &format!(" and continues when {ways}");
-    }
-    text
+    let verb = if ending.outcome == Outcome::Held { "waits since" } else { "stopped at" };
+    let at = match (&ending.by, last.distance_m) {
+        (Some(by), distance) => format!(", {}", before(by, distance, rec)),
+        (None, _) if last.reason != OverrideReason::Free => format!(": {}", reason_text(last.reason, rec)),
+        (None, _) => format!(", TCP at {}", place(last.tcp)),
+    };
+    let closest = match (&ending.part, ending.point) {
+        (Some(part), Some(p)) => format!("; closest: {part} at {}", place(p)),
+        _ => String::new(),
+    };
+    let stood = format!("; it stood still for {:.2} s until the end of the run", rec.duration_s - since);
+    let release = ending.release.as_ref().map_or_else(String::new, |ways| format!(" and continues when {ways}"));
+    format!("{verb} {since:.2} s{at}{closest}{stood}{release}")
 }
 
 fn place(p: Vec3) -> String {
