@@ -30,7 +30,7 @@ fn from_above(log: &PerceptionLog, recording: &Recording) -> Figure {
         let xs = kept.iter().map(|&n| round(truth.poses[n].translation.x)).collect();
         let ys = kept.iter().map(|&n| round(truth.poses[n].translation.y)).collect();
         let name = plain(&format!("{}, ground truth", truth.name));
-        plot.add(with(line(xs, ys, &name, stroke(palette::of_index(i), 6.0)), json!({ "opacity": 0.35 })));
+        plot.add(with(line(xs, ys, &name, stroke(palette::of_region(i), 6.0)), json!({ "opacity": 0.35 })));
     }
     let prisms = || log.frames.iter().filter_map(|f| f.result.as_ref().ok()).flat_map(|(s, _)| &s.prisms);
     let mut ids: Vec<_> = prisms().map(|p| p.id).collect();
