@@ -23,7 +23,7 @@ use serde_json::{Value, json};
 const AGREED_M: f64 = 1e-7;
 /// What a shown number may differ by, m: it has three decimals of a millimetre.
 const SHOWN_M: f64 = 0.51e-6;
-const TIMEOUT: Duration = Duration::from_secs(50);
+const TIMEOUT: Duration = Duration::from_secs(100);
 /// Configurations to which the sliders are set.
 const CONFIGURATIONS: usize = 40;
 

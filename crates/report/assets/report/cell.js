@@ -67,11 +67,13 @@ const Cell = (() => {
     return best ? { ...best, state: target.kind === 'region' && !place.active ? 'off' : '' } : { state: 'none' };
   }
 
-  // All pairs of a robot and a region or object that concern each other.
-  function distances(cell) {
-    return Data.robots.flatMap((_, robot) =>
-      targets.map((target) => ({ robot, target, ...distance(cell, robot, target) })).filter((d) => d.state !== 'none'));
+  // A pair of a robot and a region or object with its distance.
+  const pair = (cell, robot, target) => ({ robot, target, ...distance(cell, robot, target) });
+
+  // All pairs that concern each other.
+  function pairs(cell) {
+    return Data.robots.flatMap((_, robot) => targets.map((target) => pair(cell, robot, target)).filter((d) => d.state !== 'none'));
   }
 
-  return { targets, at, tcp, distances, isActive };
+  return { targets, at, tcp, pair, pairs };
 })();

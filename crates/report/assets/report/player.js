@@ -3,7 +3,7 @@
   const [play, scrub, clock, speed, runSelect, readout, moveButton] = ['play', 'scrub', 'clock', 'speed', 'run', 'readout', 'move'].map(byId);
   // While playing, all distances are measured at most this often, ms.
   const MEASURE_EVERY = 100;
-  let run = 0, t = 0, playing = false, last = 0, measured = 0, pairs = [];
+  let run = 0, t = 0, playing = false, last = 0, measured = 0, pairs = [], nearest = [];
 
   byId('run-label').hidden = Data.runs.length < 2;
   const rows = [];
@@ -32,14 +32,28 @@
     });
   }
 
-  // The pair to draw for a robot: that of the region which governs, or of the object which it evades, else the nearest.
-  function lineOf(cell, robot) {
-    const own = pairs.filter((pair) => pair.robot === robot && pair.distance !== undefined && !pair.state);
-    const least = own.reduce((best, pair) => (!best || pair.distance < best.distance ? pair : best), null);
-    if (cell.moved) return least;
+  const isMeasured = (pair) => pair.distance !== undefined && !pair.state;
+
+  // What the line of a robot leads to: the region that governs, or the object that it evades, else what was nearest.
+  function targetOf(cell, robot) {
     const track = cell.run.robots[robot], { frame } = cell.frame;
-    const of = (kind, index) => own.find((pair) => pair.target.kind === kind && pair.target.index === index);
-    return of('region', track.region[frame]) || of('object', track.obstacle[frame]) || least;
+    const of = (kind, index) => Cell.targets.find((target) => target.kind === kind && target.index === index);
+    return (!cell.moved && (of('region', track.region[frame]) || of('object', track.obstacle[frame]))) || nearest[robot];
+  }
+
+  function measure(cell) {
+    pairs = Cell.pairs(cell);
+    nearest = Data.robots.map((_, robot) => {
+      const own = pairs.filter((pair) => pair.robot === robot && isMeasured(pair));
+      return own.reduce((best, pair) => (!best || pair.distance < best.distance ? pair : best), null)?.target;
+    });
+    Panel.show(pairs);
+  }
+
+  function lineOf(cell, robot) {
+    const target = targetOf(cell, robot);
+    const pair = target && Cell.pair(cell, robot, target);
+    return pair && isMeasured(pair) ? pair : null;
   }
 
   function update() {
@@ -47,14 +61,11 @@
     if (!track || !track.t.length) return;
     const cell = Cell.at(run, t, Panel.moved());
     const now = performance.now();
-    const isStale = playing && now - measured < MEASURE_EVERY;
-    if (!isStale) {
-      pairs = Cell.distances(cell);
+    if (!playing || now - measured > MEASURE_EVERY) {
       measured = now;
-      Panel.show(pairs);
+      measure(cell);
     }
-    // Between measurements the lines would lag behind the robots.
-    Stage.show(run, cell, Data.robots.map((_, i) => (isStale ? null : lineOf(cell, i))));
+    Stage.show(run, cell, Data.robots.map((_, i) => lineOf(cell, i)));
     Figures.setTime(t);
     scrub.value = t;
     clock.textContent = `${t.toFixed(3)} s`;
