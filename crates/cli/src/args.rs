@@ -97,7 +97,7 @@ pub(crate) struct RunArgs {
     /// Disable obstacle avoidance: all robots follow their programs
     #[arg(long)]
     pub(crate) no_avoidance: bool,
-    /// Also run without the monitor, and compare both runs in the report
+    /// Show all of the run without the monitor in the report, not only its distances
     #[arg(long, requires = "out", conflicts_with = "no_monitor")]
     pub(crate) compare: bool,
     /// Run the programs this many times in a row

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
-use elbowroom::report::{self, ReportScene};
+use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::run::{RunProgress, simulate_with};
 use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, csv};
@@ -31,12 +31,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(dir) = &args.out {
-        let without = if args.compare {
-            Some(with_progress(&cell, &RunOptions { apply_override: false, ..options.clone() })?.recording)
-        } else {
-            None
-        };
-        write_files(dir, &cell, &outcome.recording, without.as_ref())?;
+        let without = if options.apply_override { planned(&cell, &options)? } else { None };
+        write_files(dir, &cell, &outcome.recording, without.as_ref(), args.compare)?;
     }
     if args.json {
         print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
@@ -50,6 +46,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
     }
     Ok(if outcome.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
+}
+
+/// The run without the monitor, whose distances the report shows beside those of the run with it. Its robots may meet where
+/// the monitor keeps them apart: where a program cannot continue then, there is nothing to compare with.
+fn planned(cell: &Cell, options: &RunOptions) -> Result<Option<Recording>, Failure> {
+    match with_progress(cell, &RunOptions { apply_override: false, ..options.clone() }) {
+        Ok(outcome) => Ok(Some(outcome.recording)),
+        Err(Failure::Wrong(why)) => {
+            note(format_args!("warning: no comparison with the run without the monitor: {why}"));
+            Ok(None)
+        }
+        Err(closed) => Err(closed),
+    }
 }
 
 /// Warns before a run of borders that a robot can reach faster than it can stop.
@@ -85,12 +94,14 @@ pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutc
     Ok(outcome?)
 }
 
-/// Writes trace, events and the report; `without` is the run without the monitor, for comparison.
+/// Writes trace, events and the report. `without` is the run without the monitor: its distances are shown, and all of it with
+/// `compare`.
 pub(crate) fn write_files(
     dir: &Path,
     cell: &Cell,
     run: &Recording,
     without: Option<&Recording>,
+    compare: bool,
 ) -> Result<(), Failure> {
     std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
     let create = |name: &str| {
@@ -101,7 +112,11 @@ pub(crate) fn write_files(
     csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
     let scene = ReportScene::of_cell(cell);
     let label = if run.monitored { "monitor on" } else { "monitor off" };
-    let runs: Vec<(&str, &Recording)> =
-        std::iter::once((label, run)).chain(without.map(|w| ("monitor off", w))).collect();
-    report::write_html(create("report.html")?, &scene, &runs).map_err(cannot_write(dir))
+    let second = without.filter(|_| compare).map(|w| ("monitor off", w));
+    let runs: Vec<(&str, &Recording)> = std::iter::once((label, run)).chain(second).collect();
+    let mut page = HtmlReport::new(&scene, &runs);
+    if let Some(without) = without {
+        page = page.planned(without);
+    }
+    page.write(create("report.html")?).map_err(cannot_write(dir))
 }

@@ -2,6 +2,7 @@
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_monitor::Volume;
 use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_scene::Object;
@@ -10,7 +11,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::palette;
 
 /// Largest chord error of curved surfaces, m.
-const CHORD_ERROR_M: f64 = 1e-3;
+pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
 
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +39,8 @@ pub struct ReportRobot {
     pub tcp_in_flange: Pose,
     /// The link that carries the tool.
     pub flange: LinkId,
+    /// The guarded volumes, whose distances the page shows.
+    pub volumes: Vec<Volume>,
 }
 
 /// A triangle mesh of one colour.
@@ -58,11 +61,9 @@ pub struct ReportMesh {
 pub struct ReportObject {
     /// Its name in the cell.
     pub name: String,
-    /// Vertices, m.
-    pub vertices: Vec<Vec3>,
-    /// Vertex indices.
-    pub triangles: Vec<[u32; 3]>,
-    /// Pose of the mesh.
+    /// Its solid.
+    pub shape: Shape,
+    /// Pose of the solid.
     pub in_world: Pose,
 }
 
@@ -76,7 +77,9 @@ impl ReportScene {
     pub fn of_cell(cell: &Cell) -> Self {
         let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
             let payload: Vec<Collider> = r.payload().cloned().collect();
-            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+            scene
+                .robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+                .guarded_by(r.guarded_volumes())
         });
         cell.objects.iter().fold(scene, Self::object)
     }
@@ -103,15 +106,25 @@ impl ReportScene {
             tool: meshes(tool, rgb(palette::TOOL)),
             tcp_in_flange,
             flange,
+            volumes: Vec::new(),
         });
+        self
+    }
+
+    /// The guarded volumes of the robot added last.
+    #[must_use]
+    pub fn guarded_by(mut self, volumes: Vec<Volume>) -> Self {
+        if let Some(robot) = self.robots.last_mut() {
+            robot.volumes = volumes;
+        }
         self
     }
 
     /// Adds an object.
     #[must_use]
     pub fn object(mut self, object: &Object) -> Self {
-        let (vertices, triangles) = tessellate(&object.shape, CHORD_ERROR_M);
-        self.objects.push(ReportObject { name: object.name.clone(), vertices, triangles, in_world: object.in_world });
+        let Object { name, shape, in_world } = object.clone();
+        self.objects.push(ReportObject { name, shape, in_world });
         self
     }
 }

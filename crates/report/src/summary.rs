@@ -3,7 +3,7 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd,
+    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, Stop,
 };
 
 use crate::explanation::explanation;
@@ -11,6 +11,8 @@ use crate::sparkline::sparkline;
 
 /// Largest number of listed regions; the rest is counted.
 const MAX_REGIONS: usize = 12;
+/// Largest number of listed stops of a robot that finished.
+const MAX_STOPS: usize = 3;
 /// Below this speed (m/s) a TCP counts as stationary.
 const STATIONARY_M_S: f64 = 1e-4;
 
@@ -197,7 +199,16 @@ fn detail_texts(robot: &RobotTrack) -> Vec<String> {
     // A line for each way, so that none is cut.
     let ways = release.iter().flat_map(|ways| ways.split(", or ")).enumerate();
     let ways = ways.map(|(i, way)| format!("{} when {way}", if i == 0 { "continues" } else { "or" }));
-    place.into_iter().chain(ways).collect()
+    let stops = robot.stops.iter().filter(|_| robot.finished).take(MAX_STOPS).map(stop_text);
+    place.into_iter().chain(ways).chain(stops).collect()
+}
+
+/// A stop after which the robot went on.
+fn stop_text(stop: &Stop) -> String {
+    let by = stop.by.as_ref();
+    let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clip(by, 20)));
+    let part = stop.part.as_ref().map_or_else(String::new, |part| format!(", closest {part}"));
+    format!("stood {:.2} to {:.2} s{place}{part}", stop.from_s, stop.to_s)
 }
 
 /// Summary of avoidance.
@@ -219,9 +230,7 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
 pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(last) = robot.samples.last() else { return "no samples".into() };
     if robot.finished {
-        let moving = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S);
-        let t = moving.map_or(last.t_s, |i| robot.samples[i].t_s);
-        return format!("finished at {t:.2} s");
+        return format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(last.t_s));
     }
     let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
@@ -238,6 +247,11 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         _ if last.tcp_speed > STATIONARY_M_S => format!("still moving at {:.2} s", last.t_s),
         _ => format!("stopped {place}: {}", explanation(robot, robot.samples.len() - 1, rec)),
     }
+}
+
+/// When the TCP moved last, s; `None` where it never did.
+pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
+    robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }
 
 /// Two lines, for narrow screens.

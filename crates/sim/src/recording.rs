@@ -62,8 +62,12 @@ pub struct RobotTrack {
     pub flange: String,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
+    /// Names of the guarded volumes: links, `tool`, `load`, `tcp`. [`GoverningPoint::part`] is an index in this list.
+    pub parts: Vec<String>,
     /// One per tick, first to last of the run.
     pub samples: Vec<Sample>,
+    /// When the monitor stopped it although its program was not complete, in order of time.
+    pub stops: Vec<Stop>,
     /// True where the program was completed.
     pub finished: bool,
     /// Time (s) in which the robot was stopped although its program was not.
@@ -78,6 +82,23 @@ pub struct RobotTrack {
     pub ending: RobotEnding,
 }
 
+/// A time during which the monitor stopped a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// Start, s.
+    pub from_s: f64,
+    /// When it moved on, or the end of the run, s.
+    pub to_s: f64,
+    /// The region that governed at the start; `None` for a stop by invalid input.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to that region.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+    /// Its distance to the region, m.
+    pub distance_m: Option<f64>,
+}
+
 /// How a robot's run ended.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RobotEnding {
@@ -85,7 +106,7 @@ pub struct RobotEnding {
     pub outcome: Outcome,
     /// Since when (s) it is stopped at its final configuration; `None` for one that finished or was still moving.
     pub stopped_at_s: Option<f64>,
-    /// The region that stopped it, or what it collided with first: an object, or `robot/link`.
+    /// The region or obstacle that stopped it, or what it collided with first: an object, or `robot/link`.
     pub by: Option<String>,
     /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
@@ -141,6 +162,8 @@ pub struct Deadlock {
 pub struct AvoidanceTrack {
     /// One per tick, as the samples are.
     pub samples: Vec<AvoidanceSample>,
+    /// Names of what may be in the way: objects, then `robot/link`.
+    pub obstacles: Vec<String>,
     /// Wall-clock time of its steps: sensing, correction, check, command.
     pub step_ns: TickTimes,
     /// Replanning attempts, in order of time.
@@ -171,6 +194,8 @@ pub struct AvoidanceSample {
     pub path_deviation_s: f64,
     /// How fast the path may advance, 0..1.
     pub rate: f64,
+    /// The dynamic obstacle that requested the largest correction, an index in [`AvoidanceTrack::obstacles`].
+    pub governed_by: Option<usize>,
 }
 
 /// State of a robot at one tick.
@@ -192,8 +217,19 @@ pub struct Sample {
     pub region: Option<CellRegionId>,
     /// Distance (m) from the governing point to its region.
     pub distance_m: Option<f64>,
+    /// The point of the robot closest to the governing region.
+    pub governing: Option<GoverningPoint>,
     /// Why the override has this value; its region is an index in [`Recording::regions`].
     pub reason: OverrideReason,
+}
+
+/// The point of a robot that is closest to the region which governs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoverningPoint {
+    /// The guarded volume, an index in [`RobotTrack::parts`].
+    pub part: usize,
+    /// In the world, m.
+    pub point: Vec3,
 }
 
 /// Poses of one object that moves or is gripped.
@@ -227,6 +263,8 @@ pub struct RegionTrack {
     pub life: Life,
     /// Which parts of the robots it guards.
     pub guards: Guards,
+    /// The robots that it applies to.
+    pub robots: Vec<RobotId>,
     /// Thickness of the warning zone, m.
     pub warning_m: f64,
     /// Its shape.
@@ -355,6 +393,19 @@ impl From<RegionKind> for RecordedRegionKind {
             RegionKind::Monitored { .. } => Self::Monitored,
             RegionKind::Exchange { .. } => Self::Exchange,
         }
+    }
+}
+
+impl RobotTrack {
+    /// The part that governs in a sample: a link, `tool`, `load` or `tcp`.
+    pub fn governing_part(&self, sample: &Sample) -> Option<&str> {
+        self.parts.get(sample.governing?.part).map(String::as_str)
+    }
+
+    /// The obstacle that the robot evades, or stands before, at the tick with this index.
+    pub fn governing_obstacle(&self, tick: usize) -> Option<&str> {
+        let track = self.avoidance.as_ref()?;
+        track.obstacles.get(track.samples.get(tick)?.governed_by?).map(String::as_str)
     }
 }
 

@@ -111,7 +111,7 @@ impl<'s> AvoidingRobot<'s> {
             not_before_s: 0.0,
             failed: 0,
             step_ns: Vec::new(),
-            track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
+            track: AvoidanceTrack { surfaces: surfaces(spec), obstacles: obstacles(cell), ..AvoidanceTrack::default() },
             fault: None,
         })
     }
@@ -146,6 +146,7 @@ impl<'s> AvoidingRobot<'s> {
             size: a.reaction.size,
             path_deviation_s: a.path_deviation_s,
             rate: a.rate,
+            governed_by: a.governed_by,
         });
     }
 
@@ -284,6 +285,13 @@ impl<'s> AvoidingRobot<'s> {
             clock.skip_move();
         }
     }
+}
+
+/// Names in the order of the keys in [`AvoiderOutput::governed_by`]: objects, then the links of all robots.
+fn obstacles(cell: &Cell) -> Vec<String> {
+    let objects = cell.objects.iter().map(|o| o.name.clone());
+    let links = cell.robots.iter().flat_map(|r| r.robot.chain.links().iter().map(|link| format!("{}/{link}", r.name)));
+    objects.chain(links).collect()
 }
 
 fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {

@@ -30,8 +30,8 @@ use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
-    Collision, EventRow, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample,
-    TickTimes,
+    Collision, EventRow, GoverningPoint, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd,
+    RunEvent, Sample, Stop, TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
 use carried_parts::CarriedParts;
@@ -223,11 +223,13 @@ impl<'a> Simulation<'a> {
         let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
         let gripped: Vec<ObjectId> = CarriedParts::gripped_by_programs(cell).collect();
         let moved = cell.moving_objects.iter().map(|m| m.object).chain(gripped.iter().copied());
-        let track = |r: &elbowroom_cell::CellRobot| RobotTrack {
+        let track = |(r, setup): (&elbowroom_cell::CellRobot, &MonitorSetup)| RobotTrack {
             name: r.name.clone(),
             flange: r.robot.chain.links()[r.flange.0].clone(),
             joints: r.joint_names(),
+            parts: setup.configuration.volumes().iter().map(|v| v.name.clone()).collect(),
             samples: Vec::new(),
+            stops: Vec::new(),
             finished: false,
             stopped_s: 0.0,
             min_override: 1.0,
@@ -252,7 +254,7 @@ impl<'a> Simulation<'a> {
                 &cell.objects,
             )
             .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>()),
-            tracks: cell.robots.iter().map(track).collect(),
+            tracks: cell.robots.iter().zip(setups).map(track).collect(),
             objects: moved.map(|o| object_track(cell, o)).collect(),
             parts: CarriedParts::new(cell),
             gripped,
@@ -428,19 +430,37 @@ impl<'a> Simulation<'a> {
         let governs = self.options.apply_override.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
-        let distance_m = region.and(report.governing).map(|g| g.distance_m);
+        let governing = region.and(report.governing);
         // The monitor counts its own regions, a recording those of the cell.
         let in_cell = |r: RegionId| RegionId(self.setups[i].regions[r.0].0);
         let reason =
             if self.options.apply_override { report.reason.with_region(in_cell) } else { OverrideReason::Free };
-        self.record(i, t_s, applied, region, distance_m, reason);
+        self.record(i, t_s, applied, region, governing, reason);
         if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
             let region = region.map_or("", |r| self.cell.regions[r.0].region.name.as_str());
             self.event(t_s, i, region, event);
+            self.record_stop(i, t_s, region, governing, event == RunEvent::Stop);
         }
         if self.stop_states[i].stopped {
             self.tracks[i].stopped_s += self.cell.tick_s;
         }
+    }
+
+    /// Begins a stop at the region with this name (empty: at none), or ends the one that goes on.
+    fn record_stop(&mut self, i: usize, t_s: f64, region: &str, governing: Option<VirtualTcp>, begins: bool) {
+        let stops = &mut self.tracks[i].stops;
+        if !begins {
+            stops.last_mut().into_iter().for_each(|stop| stop.to_s = t_s);
+            return;
+        }
+        stops.push(Stop {
+            from_s: t_s,
+            to_s: f64::INFINITY,
+            by: (!region.is_empty()).then(|| region.to_owned()),
+            part: governing.and_then(|g| outcome::part_name(&self.setups[i].configuration, g.volume)),
+            point: governing.map(|g| g.position),
+            distance_m: governing.map(|g| g.distance_m),
+        });
     }
 
     fn log_events(&mut self, i: usize, t_s: f64) {
@@ -475,7 +495,7 @@ impl<'a> Simulation<'a> {
         t_s: f64,
         speed_override: f64,
         region: Option<CellRegionId>,
-        distance_m: Option<f64>,
+        governing: Option<VirtualTcp>,
         reason: OverrideReason,
     ) {
         let (tcp, tcp_speed) = self.frames.tcp(RobotId(i), &self.states[i]);
@@ -505,7 +525,8 @@ impl<'a> Simulation<'a> {
             programmed_speed,
             speed_override,
             region,
-            distance_m,
+            distance_m: governing.map(|g| g.distance_m),
+            governing: governing.map(|g| GoverningPoint { part: g.volume.0, point: g.position }),
             reason,
         });
     }
@@ -622,6 +643,7 @@ impl<'a> Simulation<'a> {
         let mut robots = std::mem::take(&mut self.tracks);
         for (i, track) in robots.iter_mut().enumerate() {
             track.finished = self.finished(i);
+            track.stops.iter_mut().for_each(|stop| stop.to_s = stop.to_s.min(t_s));
         }
         let mut deadlocks = self.arbiter.as_ref().map_or_else(Vec::new, |arbiter| {
             self.deadlocks.finish(t_s, arbiter, self.cell, self.setups, &self.monitors)
@@ -630,6 +652,9 @@ impl<'a> Simulation<'a> {
             WaitForGraph::new(self.cell, self.setups, self.arbiter.as_deref(), &self.stop_states, &robots)
                 .cycles(&deadlocks),
         );
+        for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
+            track.avoidance = avoiding.map(AvoidingRobot::finish);
+        }
         for (i, track) in robots.iter_mut().enumerate() {
             // Collisions within one tick are found in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
@@ -639,9 +664,6 @@ impl<'a> Simulation<'a> {
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
             track.ending.release = release::release(self.cell, &self.setups[i], self.arbiter.as_deref(), i, track);
-        }
-        for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
-            track.avoidance = avoiding.map(AvoidingRobot::finish);
         }
         Recording {
             cell: self.cell.name.clone(),

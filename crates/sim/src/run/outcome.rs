@@ -1,6 +1,6 @@
 //! Outcome of each robot's run.
 
-use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp};
+use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp, VolumeId};
 
 use crate::recording::{Outcome, RobotEnding, RobotTrack};
 
@@ -38,14 +38,20 @@ pub(super) fn ending(
         (false, false) => Outcome::Stopped,
     };
     let point = governing.filter(|_| region.is_some());
+    let obstacle = track.samples.len().checked_sub(1).and_then(|last| track.governing_obstacle(last));
     RobotEnding {
         outcome,
         stopped_at_s: stopped_at(track),
-        by: region.map(str::to_owned),
-        part: point.and_then(|p| configuration.volumes().get(p.volume.0)).map(|v| v.name.clone()),
+        by: region.or(obstacle).map(str::to_owned),
+        part: point.and_then(|p| part_name(configuration, p.volume)),
         point: point.map(|p| p.position),
         release: None,
     }
+}
+
+/// The name of a guarded volume: that of a link, or `tool`, `load`, `tcp`.
+pub(super) fn part_name(configuration: &Configuration, volume: VolumeId) -> Option<String> {
+    configuration.volumes().get(volume.0).map(|v| v.name.clone())
 }
 
 /// Since when the robot is at its final configuration, s; `None` where it was still moving.

@@ -2,7 +2,7 @@
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::trajectory::volume_motion_bounds;
-use elbowroom_cell::{Cell, CellRegionId, Frames};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep};
 use elbowroom_robot::RobotId;
@@ -61,7 +61,7 @@ struct TickDistances {
 
 impl<'a> RegionRecorder<'a> {
     pub fn new(cell: &'a Cell, setups: &'a [MonitorSetup]) -> Self {
-        let tracks = cell.regions.iter().map(|r| track(&r.region, r.follow.is_some())).collect();
+        let tracks = cell.regions.iter().map(track).collect();
         let observers = setups
             .iter()
             .enumerate()
@@ -209,13 +209,15 @@ pub(super) fn motion_bounds(setup: &MonitorSetup) -> Vec<(usize, f64)> {
     motion_bounds.into_iter().enumerate().filter(|(_, bound)| *bound != 0.0).collect()
 }
 
-fn track(r: &elbowroom_monitor::Region, moves: bool) -> RegionTrack {
+fn track(region: &CellRegion) -> RegionTrack {
+    let (r, moves) = (&region.region, region.follow.is_some());
     let pose: Pose = r.anchor * r.shape_in_anchor;
     RegionTrack {
         name: r.name.clone(),
         kind: r.kind.into(),
         life: r.life,
         guards: r.guards,
+        robots: region.robots.clone(),
         warning_m: r.warning_m,
         shape: r.shape.clone(),
         poses: if moves { RegionPoses::Moving(Vec::new()) } else { RegionPoses::Fixed(pose) },
