@@ -9,7 +9,7 @@
 //! vertex and triangle.
 //!
 //! [`write_perception_html`] writes the page of a run with a camera, [`map_pictures`] images of slices of a joint-space
-//! map, [`model_picture`] an image of a robot model with its joint axes.
+//! map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
 //!
 //! ```
 //! use elbowroom_cell::Cell;
@@ -35,6 +35,7 @@
 mod downsample;
 mod explanation;
 mod html;
+pub mod map_page;
 pub mod map_pictures;
 pub mod model_picture;
 mod palette;
