@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use elbowroom::analysis::map::MapModel;
 use elbowroom::analysis::query::{Level, QueryKind};
-use elbowroom::cspace::ObstacleModel;
 
 /// Collision awareness for industrial robot cells.
 ///
@@ -233,9 +233,11 @@ pub(crate) enum Written {
 #[command(after_help = "Examples:
   elbowroom map cell.toml                       a table of the blocked cells per object
   elbowroom map cell.toml --out map.npy --json  the cells as NumPy reads them, 0 free, 1 blocked
+  elbowroom map cell.toml --page map.html       the slices in a browser, with a slider
   elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
   elbowroom map cell.toml --exact               fewer cells blocked needlessly, tenths of a second per object
-  elbowroom map cell.toml --model spheres=8     the obstacle model of the paper, for comparison
+  elbowroom map cell.toml --model slices        the quickest obstacle model of the paper; blocks more
+  elbowroom map cell.toml --model spheres=64 --deadline 5   as many spheres as five milliseconds allow
 
 Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees
 (docs/map.md).
@@ -246,18 +248,25 @@ pub(crate) struct MapArgs {
     /// The robot; optional if there is only one, or only one [map.ROBOT]
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// Obstacle model: exact, slices, sphere, spheres=N or box
+    /// Obstacle model: exact, slices, sphere, spheres=N or box; or seeds, the paper's expansion, which misses cells
     #[arg(long, default_value = "exact")]
-    pub(crate) model: ObstacleModel,
+    pub(crate) model: MapModel,
     /// The robot's own solids decide at the border, not sphere covers of its links (always so unless there are three joints)
     #[arg(long)]
     pub(crate) exact: bool,
+    /// With --model spheres=N: one sphere around each object first, then 2, 4, 8 … up to N until so many milliseconds have
+    /// passed; any number of spheres blocks all that an object does
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true, conflicts_with = "exact")]
+    pub(crate) deadline: Option<f64>,
     /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) out: Option<PathBuf>,
     /// Write pictures of slices, and an HTML page with them, to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) png: Option<PathBuf>,
+    /// Write one page with the slices and a slider, which opens offline
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) page: Option<PathBuf>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
@@ -335,6 +344,7 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0   millimetres and degrees, as in the cell
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
+  elbowroom plan cell.toml --robot left --to reach --robot right --to home --out both.csv   both at the same time
   elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
   elbowroom plan --urdf arm.urdf --problems problems.json --only shelf --limit 10 --paths paths
 
@@ -348,16 +358,17 @@ pub(crate) struct PlanArgs {
     /// The cell file; or --urdf with --problems
     #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
     pub(crate) cell: Option<PathBuf>,
-    /// Name of the robot; optional if there is only one
+    /// Name of the robot; optional if there is only one. Several robots move at the same time: --robot, --from and --to for
+    /// each, in the same order
     #[arg(long, value_name = "NAME")]
-    pub(crate) robot: Option<String>,
+    pub(crate) robot: Vec<String>,
     /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints), or the name
-    /// of one of the robot's `states`; default: its `start`
+    /// of one of the robot's `states`, or `start`; default: its `start`
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
-    pub(crate) from: Option<Configuration>,
+    pub(crate) from: Vec<Configuration>,
     /// Goal configuration, likewise
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
-    pub(crate) to: Option<Configuration>,
+    pub(crate) to: Vec<Configuration>,
     /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
     pub(crate) to_pose: Option<Numbers>,
@@ -367,6 +378,9 @@ pub(crate) struct PlanArgs {
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
+    /// Write a page that plays the path in the 3-D scene, with the distances from regions, and opens offline
+    #[arg(long, value_name = "FILE.html", conflicts_with = "urdf")]
+    pub(crate) report: Option<PathBuf>,
     /// Sampling period in seconds; default: the cell's control period, 0.002 with --problems
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) period: Option<f64>,
@@ -436,6 +450,12 @@ fn margin(text: &str) -> Result<f64, String> {
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
     value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
+}
+
+/// A duration in milliseconds.
+fn milliseconds(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1e9);
+    value.ok_or_else(|| "write a number of milliseconds above 0, as 5".into())
 }
 
 #[derive(Debug, Args)]

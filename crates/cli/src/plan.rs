@@ -13,7 +13,7 @@ use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
-use crate::plan_problems;
+use crate::{plan_problems, plan_report, plan_several};
 
 pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     if let (Some(urdf), Some(file)) = (&args.problems.urdf, &args.problems.problems) {
@@ -22,17 +22,17 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     // clap requires a cell and a goal where there are no problems.
     let cell = Cell::load(args.cell.as_deref().unwrap_or(Path::new("")))?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    if args.robot.len() > 1 {
+        return plan_several::plan(&cell, args);
+    }
     let request = PathRequest {
-        robot: args.robot.clone(),
-        from: args.from.as_ref().map(|from| configuration(args, &cell, from)).transpose()?,
+        robot: args.robot.first().cloned(),
+        from: at_most_one(args, "--from", &args.from)?
+            .map(|from| configuration(args, &cell, None, from))
+            .transpose()?,
         to: goal(args, &cell)?,
         speed: 1.0,
-        options: RrtConnectSettings {
-            time_limit: Duration::from_secs_f64(args.time_limit),
-            clearance_m: args.clearance,
-            seed: args.seed,
-            ..RrtConnectSettings::default()
-        },
+        options: settings(args),
         period_s: args.period,
         optimize: args.optimize,
         ..PathRequest::default()
@@ -41,6 +41,10 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
         let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
         motion.write_csv(&answer.joints, file).map_err(cannot_write(path))?;
+    }
+    if let (Some(path), Some(motion)) = (&args.report, &answer.motion) {
+        let (id, _) = plan::select_robot(&cell, request.robot.as_deref())?;
+        plan_report::write(path, &cell, vec![(id, motion.rows.clone())])?;
     }
     if args.json {
         print_json(&answer)?;
@@ -53,29 +57,58 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
+pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
+    RrtConnectSettings {
+        time_limit: Duration::from_secs_f64(args.time_limit),
+        clearance_m: args.clearance,
+        seed: args.seed,
+        ..RrtConnectSettings::default()
+    }
+}
+
+/// The only value of an option that has one per robot.
+fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<Option<&'a T>, Failure> {
+    if given.len() > 1 {
+        let (count, robots) = (given.len(), args.robot.len());
+        let what =
+            format!("{option} is given {count} times, --robot {robots} times: for several robots name each of them");
+        return Err(Failure::Wrong(format!("{what}\n  write: --robot a --to q,… --robot b --to q,…")));
+    }
+    Ok(given.first())
+}
+
 fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
     if let Some(Numbers(numbers)) = &args.to_pose {
         return pose(cell, numbers).map(PathGoal::Tcp);
     }
     // clap requires a goal.
     let none = Configuration::Values(Vec::new());
-    configuration(args, cell, args.to.as_ref().unwrap_or(&none)).map(PathGoal::Joints)
+    let to = at_most_one(args, "--to", &args.to)?.unwrap_or(&none);
+    configuration(args, cell, None, to).map(PathGoal::Joints)
 }
 
-/// The values of a configuration, rad or m.
-fn configuration(args: &PlanArgs, cell: &Cell, given: &Configuration) -> Result<Vec<f64>, Failure> {
-    let (_, robot) = plan::select_robot(cell, args.robot.as_deref())?;
+/// The values of a configuration of a robot, or of the only one that was named, rad or m.
+pub(crate) fn configuration(
+    args: &PlanArgs,
+    cell: &Cell,
+    robot: Option<&str>,
+    given: &Configuration,
+) -> Result<Vec<f64>, Failure> {
+    let (_, robot) = plan::select_robot(cell, robot.or(args.robot.first().map(String::as_str)))?;
     match given {
         Configuration::Values(q) if args.cell_units => Ok(robot.joint_values_from_units(q, cell.units)),
         Configuration::Values(q) => Ok(q.clone()),
-        Configuration::Named(name) => robot.state(name).map(<[f64]>::to_vec).ok_or_else(|| {
-            let known = robot.states.iter().map(|(name, _)| name.as_str());
-            let hint = suggest::hint(name, known);
-            Failure::Wrong(format!(
-                "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
-                robot.name, robot.name
-            ))
-        }),
+        Configuration::Named(name) => {
+            let start = (name == "start").then_some(&robot.start[..]);
+            robot.state(name).or(start).map(<[f64]>::to_vec).ok_or_else(|| {
+                let known = robot.states.iter().map(|(name, _)| name.as_str());
+                let hint = suggest::hint(name, known);
+                Failure::Wrong(format!(
+                    "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
+                    robot.name, robot.name
+                ))
+            })
+        }
     }
 }
 

@@ -1,8 +1,6 @@
 //! `elbowroom query`: collision, distance or tolerance, one row per state.
 
-use std::io::IsTerminal;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use elbowroom::analysis::query::{
     Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_query,
@@ -11,10 +9,10 @@ use elbowroom::cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::QueryArgs;
 use crate::output::{ExitStatus, Failure, note, print};
+use crate::progress::Progress;
 use crate::states;
 
 /// From this number of states on, pairs out of reach of each other are excluded first.
@@ -111,17 +109,13 @@ struct Writer<'a> {
     done: usize,
     is_first: bool,
     colliding: usize,
-    begin: Instant,
-    bar: ProgressBar,
+    progress: Progress,
 }
 
 impl<'a> Writer<'a> {
     fn new(args: &'a QueryArgs, model: &'a QueryModel, states: usize) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
-            bar.set_style(style);
-        }
-        Self { args, model, states, done: 0, is_first: true, colliding: 0, begin: Instant::now(), bar }
+        let progress = Progress::of(states, "states");
+        Self { args, model, states, done: 0, is_first: true, colliding: 0, progress }
     }
 
     fn begin(&self) -> Result<(), Failure> {
@@ -157,26 +151,13 @@ impl<'a> Writer<'a> {
             self.done = row.index + 1;
             self.colliding += usize::from(row.collides);
         }
-        self.show_progress();
+        self.progress.count(self.done, &format!("{} in contact", self.colliding));
         print(&text)
     }
 
     fn end(&self) -> Result<(), Failure> {
-        self.bar.finish_and_clear();
+        self.progress.end();
         if self.args.json { print(&format!("\n],\n\"colliding\": {}\n}}\n", self.colliding)) } else { Ok(()) }
-    }
-
-    fn show_progress(&self) {
-        let elapsed = self.begin.elapsed();
-        if elapsed < Duration::from_secs(2) || !std::io::stderr().is_terminal() {
-            return;
-        }
-        if self.bar.is_hidden() {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        let left = elapsed.mul_f64(self.states.saturating_sub(self.done) as f64 / self.done.max(1) as f64);
-        self.bar.set_message(format!("{} in contact, {} left", self.colliding, HumanDuration(left)));
-        self.bar.set_position(self.done as u64);
     }
 }
 

@@ -1,9 +1,8 @@
 //! `elbowroom run`: a cell's programs in simulated time.
 
 use std::fs::File;
-use std::io::{BufWriter, IsTerminal};
+use std::io::BufWriter;
 use std::path::Path;
-use std::time::Duration;
 
 use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
@@ -11,10 +10,10 @@ use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::run::{RunProgress, simulate_with};
 use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, csv};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::RunArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
+use crate::progress::Progress;
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
@@ -78,19 +77,11 @@ struct Document<'a> {
 
 /// Runs the cell with a progress bar that appears after 0.7 s.
 pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} [{elapsed_precise}]") {
-        bar.set_style(style);
-    }
-    let begin = std::time::Instant::now();
+    let progress = Progress::unknown();
     let outcome = simulate_with(cell, options, &mut |p: RunProgress| {
-        if bar.is_hidden() && std::io::stderr().is_terminal() && begin.elapsed() > Duration::from_millis(700) {
-            bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        bar.set_message(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
-        bar.tick();
+        progress.go_on(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
     });
-    bar.finish_and_clear();
+    progress.end();
     Ok(outcome?)
 }
 

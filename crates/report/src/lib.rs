@@ -11,7 +11,7 @@
 //! (all since 2023); result and tables need no script.
 //!
 //! [`write_perception_html`] writes the page of a run with a camera, [`map_pictures`] images of slices of a joint-space
-//! map, [`model_picture`] an image of a robot model with its joint axes.
+//! map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
 //!
 //! ```
 //! use elbowroom_cell::Cell;
@@ -37,6 +37,7 @@
 mod downsample;
 mod explanation;
 mod html;
+pub mod map_page;
 pub mod map_pictures;
 pub mod model_picture;
 mod packing;

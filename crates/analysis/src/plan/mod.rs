@@ -5,6 +5,7 @@
 
 mod answer;
 pub(crate) mod request_validation;
+mod several;
 
 use std::time::Instant;
 
@@ -24,6 +25,7 @@ use crate::cover_cache::CoverCache;
 
 pub use answer::{PathAnswer, TimedPath};
 pub use request_validation::select_robot;
+pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 
 /// Where a path ends.
 #[derive(Debug, Clone, PartialEq)]
