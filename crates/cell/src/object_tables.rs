@@ -48,10 +48,10 @@ fn table(object: &Object, folder: &str, tables: &mut ObjectTables) -> std::fmt::
         Shape::Cuboid(c) => writeln!(toml, "\"box\"\nsize = {:?}", (c.half_extents * 2.0).to_array())?,
         Shape::Sphere(s) => writeln!(toml, "\"sphere\"\nradius = {:?}", s.radius)?,
         Shape::Cylinder(c) => {
-            writeln!(toml, "\"cylinder\"\nradius = {:?}\nheight = {:?}", c.radius, 2.0 * c.half_length)?
+            writeln!(toml, "\"cylinder\"\nradius = {:?}\nheight = {:?}", c.radius, 2.0 * c.half_length)?;
         }
         Shape::Capsule(c) => {
-            writeln!(toml, "\"capsule\"\nradius = {:?}\nheight = {:?}", c.radius, 2.0 * c.half_length)?
+            writeln!(toml, "\"capsule\"\nradius = {:?}\nheight = {:?}", c.radius, 2.0 * c.half_length)?;
         }
         Shape::HalfSpace(_) => writeln!(toml, "\"plane\"")?,
         Shape::Hull(_) | Shape::Mesh(_) => {

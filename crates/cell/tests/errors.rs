@@ -334,7 +334,7 @@ fn errors_of_trajectories_name_the_line() {
 }
 
 /// Replaces line `number` (from 1) of `text` and expects an error there: number, replacement, line, message, hint. All cases are
-/// tried before the first failure is told.
+/// tried before failures are reported.
 fn refused(file: &std::path::Path, text: &str, cases: &[(usize, &str, usize, &str, &str)]) {
     assert!(Cell::parse(file, text).is_ok(), "{}", Cell::parse(file, text).unwrap_err());
     let mut wrong = Vec::new();

@@ -1,6 +1,7 @@
 //! YAML documents as values of JSON, and the lines of their fields.
 
 use std::collections::HashMap;
+use std::fmt::Write;
 use std::path::Path;
 
 use base64::Engine;
@@ -45,7 +46,10 @@ fn path_of(open: &[Open]) -> String {
     let mut path = String::new();
     for Open { container, .. } in open {
         match container {
-            Container::List(list) => path += &format!("[{}]", list.len()),
+            // Writing to a String cannot fail.
+            Container::List(list) => {
+                let _ = write!(path, "[{}]", list.len());
+            }
             Container::Mapping(_, key) => {
                 if !path.is_empty() {
                     path.push('.');
@@ -272,7 +276,7 @@ mod tests {
         assert_eq!(read("a: &x {b: [1]}\nc: *x\n").unwrap(), json!({"a": {"b": [1]}, "c": {"b": [1]}}));
         let mut bomb = String::from("a0: &a0 [x, x, x, x, x, x, x, x, x]\n");
         for i in 1..9 {
-            bomb += &format!("a{i}: &a{i} [{}]\n", vec![format!("*a{}", i - 1); 9].join(", "));
+            writeln!(bomb, "a{i}: &a{i} [{}]", vec![format!("*a{}", i - 1); 9].join(", ")).unwrap();
         }
         assert!(read(&bomb).unwrap_err().what.contains("aliases that repeat"));
         assert!(read("a: &x [*x]\n").unwrap_err().what.contains("within its own value"));
@@ -280,7 +284,7 @@ mod tests {
 
     #[test]
     fn what_is_no_document_is_refused_with_its_line() {
-        let deep: String = (0..150).map(|i| format!("{}a:\n", " ".repeat(i))).collect();
+        let deep = (0..150).map(|i| " ".repeat(i) + "a:").collect::<Vec<_>>().join("\n");
         let cases = [
             ("a: 1\nb: [1, 2\nc: 3\n", "not YAML"),
             ("a: 1\na: 2\n", "`a` occurs twice"),

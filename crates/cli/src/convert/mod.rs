@@ -31,12 +31,3 @@ fn wrong_output(args: &ConvertArgs, is_scene: bool) -> Failure {
     };
     Failure::Wrong(format!("{} cannot become {}\n  write: {write}", args.model.display(), output.display()))
 }
-
-/// Refuses to overwrite a file.
-fn refuse_existing(path: &Path) -> Result<(), Failure> {
-    if path.exists() {
-        let what = format!("{}: is there already\n  write: the name of a new file", path.display());
-        return Err(Failure::Wrong(what));
-    }
-    Ok(())
-}

@@ -6,9 +6,8 @@ use elbowroom::cell::{self, Cell, ObjectTables};
 use elbowroom::formats::planning_scene::{self, FixedFrame};
 use elbowroom::formats::stl;
 
-use super::refuse_existing;
 use crate::args::ConvertArgs;
-use crate::output::{ExitStatus, Failure, cannot_write, note};
+use crate::output::{ExitStatus, Failure, cannot_write, note, refuse_existing};
 
 /// Writes the objects of the scene as tables of the cell file `file`, and its meshes to a folder beside it.
 pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Failure> {

@@ -7,10 +7,9 @@ use elbowroom::inspect;
 use elbowroom::kinematics::{Chain, LinkId};
 use elbowroom::robot::Robot;
 
-use super::refuse_existing;
 use super::robot::{has_extension, of_cell, of_model};
 use crate::args::ConvertArgs;
-use crate::output::{ExitStatus, Failure, cannot_write, note};
+use crate::output::{ExitStatus, Failure, cannot_write, note, refuse_existing};
 
 /// The group of all moving joints, named as in ROS-Industrial, where no SRDF has groups.
 const GROUP: &str = "manipulator";

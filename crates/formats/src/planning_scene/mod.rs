@@ -10,44 +10,21 @@
 //! All else is ignored, except for what would be an obstacle that is not seen, which is refused: an octomap with data, an object
 //! that is not added.
 
+mod scene;
 #[cfg(test)]
 mod tests;
 mod text;
 mod yaml_form;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use elbowroom_spatial::Pose;
-
-use crate::{FormatError, Warning, input};
+use crate::{FormatError, input};
 
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
+pub use scene::PlanningScene;
 
 /// Larger files are refused: a parsed document takes several times the memory of its text.
 const MAX_BYTES: u64 = 64 << 20;
-
-/// The content of a planning scene.
-#[derive(Debug, Clone, Default)]
-pub struct PlanningScene {
-    /// The file, for messages.
-    pub file: PathBuf,
-    /// Its name; empty where it has none.
-    pub name: String,
-    /// Objects of the world; no name twice.
-    pub objects: Vec<CollisionObject>,
-    /// Frames that objects may refer to, besides the links of a robot.
-    pub frames: Vec<FixedFrame>,
-    /// Objects that a robot holds.
-    pub attached: Vec<AttachedObject>,
-    /// Pairs that may touch.
-    pub allowed: AllowedCollisions,
-    /// Joint values of the robot.
-    pub joints: Vec<JointValue>,
-    /// Pose of the robot's root link, where the scene has one.
-    pub base_in_world: Option<Pose>,
-    /// What the user should know.
-    pub warnings: Vec<Warning>,
-}
 
 /// Reads a file of at most 64 MiB.
 ///

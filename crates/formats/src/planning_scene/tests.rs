@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
 use super::*;
 

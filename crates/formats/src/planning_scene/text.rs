@@ -8,7 +8,7 @@ use std::sync::Arc;
 use elbowroom_proximity::{Cuboid, Cylinder, Shape, Sphere, TriMesh};
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::PlanningScene;
+use super::scene::PlanningScene;
 use crate::error::WarningList;
 use crate::moveit_msgs::types::CollisionObject;
 use crate::moveit_msgs::{object, pose, solid};

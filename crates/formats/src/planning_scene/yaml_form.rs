@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::PlanningScene;
+use super::scene::PlanningScene;
 use crate::moveit_msgs::field::{Field, Location, Reading};
 use crate::moveit_msgs::{collision_matrix, object, pose, robot_state};
 use crate::{FormatError, yaml};

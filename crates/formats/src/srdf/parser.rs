@@ -5,7 +5,7 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::{DisabledPair, EndEffector, Group, GroupState, Srdf, VirtualJoint};
+use super::model::{DisabledPair, EndEffector, Group, GroupState, Srdf, VirtualJoint};
 use crate::error::WarningList;
 use crate::tokens::{LineIndex, show};
 use crate::{FormatError, Warning, input, xml};

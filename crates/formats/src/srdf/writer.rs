@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use super::Srdf;
+use super::model::Srdf;
 use crate::xml::escaped;
 
 impl Srdf {
