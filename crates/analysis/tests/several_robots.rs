@@ -13,7 +13,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepMove, SweepOptions};
 
 /// Arms in one plane that face each other and sweep through the same middle.
-const ARMS: &str = r#"
+const ARMS: &str = r"
 [robot.left]
 dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
 links = [{ capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
@@ -24,7 +24,7 @@ dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max
 links = [{ capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
 base = { at = [450, 0, 0], rpy = [0, 0, 180] }
 start = [-60, 0]
-"#;
+";
 
 /// In the way of the left arm's tip, 30 degrees from its start of the sweep's end.
 const REGION: &str =
@@ -128,8 +128,9 @@ fn wrong_requests_are_refused_with_a_hint() {
     assert!(refused(&cell, &[("left", THERE), ("left", THERE)]).contains("two goals"));
     assert!(refused(&cell, &[("left", THERE), ("middle", THERE)]).contains("middle"));
     assert!(refused(&cell, &[("left", THERE), ("right", [9.0, 0.0])]).contains("the goal of robot \"right\""));
-    // The goal of the left arm in its region.
-    let inside = refused(&cell, &[("left", [0.5236, 0.0]), ("right", [-1.2, 0.0])]);
+    // The goal of the left arm in its region, away from the right arm.
+    let below = parse(&format!("{HEAD}{ARMS}{}", REGION.replace("350", "-350")));
+    let inside = refused(&below, &[("left", [-30_f64.to_radians(), 0.0]), ("right", [-1.2, 0.0])]);
     assert!(inside.contains("region `post`") && inside.contains("left"), "{inside}");
     // A region that the right arm carries.
     let carried = REGION.replace("centre = [156, 350, 0]", "centre = [0, 0, 400]\nfollow = { robot = \"right\" }");

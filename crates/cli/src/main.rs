@@ -13,6 +13,7 @@ mod output;
 mod plan;
 mod plan_problems;
 mod plan_report;
+mod plan_request;
 mod plan_several;
 mod progress;
 mod query;

@@ -4,15 +4,14 @@ use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use std::time::Duration;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
-use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, suggest};
-use elbowroom::planner::RrtConnectSettings;
+use elbowroom::cell::{Cell, QUATERNION_TOLERANCE};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::plan_request::{configuration, settings};
 use crate::{plan_problems, plan_report, plan_several};
 
 pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
@@ -57,15 +56,6 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
-pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
-    RrtConnectSettings {
-        time_limit: Duration::from_secs_f64(args.time_limit),
-        clearance_m: args.clearance,
-        seed: args.seed,
-        ..RrtConnectSettings::default()
-    }
-}
-
 /// The only value of an option that has one per robot.
 fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<Option<&'a T>, Failure> {
     if given.len() > 1 {
@@ -85,31 +75,6 @@ fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
     let none = Configuration::Values(Vec::new());
     let to = at_most_one(args, "--to", &args.to)?.unwrap_or(&none);
     configuration(args, cell, None, to).map(PathGoal::Joints)
-}
-
-/// The values of a configuration of a robot, or of the only one that was named, rad or m.
-pub(crate) fn configuration(
-    args: &PlanArgs,
-    cell: &Cell,
-    robot: Option<&str>,
-    given: &Configuration,
-) -> Result<Vec<f64>, Failure> {
-    let (_, robot) = plan::select_robot(cell, robot.or(args.robot.first().map(String::as_str)))?;
-    match given {
-        Configuration::Values(q) if args.cell_units => Ok(robot.joint_values_from_units(q, cell.units)),
-        Configuration::Values(q) => Ok(q.clone()),
-        Configuration::Named(name) => {
-            let start = (name == "start").then_some(&robot.start[..]);
-            robot.state(name).or(start).map(<[f64]>::to_vec).ok_or_else(|| {
-                let known = robot.states.iter().map(|(name, _)| name.as_str());
-                let hint = suggest::hint(name, known);
-                Failure::Wrong(format!(
-                    "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
-                    robot.name, robot.name
-                ))
-            })
-        }
-    }
 }
 
 /// x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.

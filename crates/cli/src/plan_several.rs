@@ -11,8 +11,8 @@ use elbowroom::cell::Cell;
 
 use crate::args::PlanArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, print, print_json};
-use crate::plan::{configuration, settings};
 use crate::plan_report::{self, PlayedPath};
+use crate::plan_request::{configuration, settings};
 
 pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let request = SeveralPathsRequest { robots: robots(cell, args)?, options: settings(args), period_s: args.period };

@@ -353,3 +353,70 @@ fn tables_and_poses_of_an_arm() {
     let answer = type_command(&dir, &format!("inspect {arm} --states q.csv"), 0);
     assert!(rows(&answer.stdout).iter().any(|row| row[1] == "tool0"));
 }
+
+/// 18: the obstacles of a planning scene, around an unseen arm.
+#[test]
+fn a_planning_scene_around_an_arm() {
+    let Some(data) = data() else { return };
+    let (arm, scene) =
+        (urdf(&data, "panda"), data.join("problems/mbm_scene_configs/scenes/bookshelf/scene_small.yaml"));
+    let cell = |frame: &str| {
+        format!(
+            "{HEAD}[robot.arm]\nmodel = \"{arm}\"\nsrdf = \"{}\"\nflange = \"panda_hand\"\nstart = \"ready\"\n\
+             [scene.shelf]\nfile = \"{}\"\n{frame}",
+            arm.replace(".urdf", ".srdf"),
+            scene.display()
+        )
+    };
+    let refused = type_command(&with_cell(&cell("")), "query cell.toml --ask distance", 2);
+    assert!(refused.stderr.contains("frame = \"base_link\""), "{}", refused.stderr);
+    let dir = with_cell(&cell("frame = \"base_link\"\n"));
+    let answer = type_command(&dir, "query cell.toml --ask distance --no-self --all-pairs 1", 0);
+    assert!(rows(&answer.stdout).iter().any(|row| row[4].starts_with("shelf") || row[4].starts_with("Can")));
+    type_command(&dir, "plan cell.toml --to extended --json", 0);
+}
+
+/// 19: the joint-space map of an arm, as a page.
+#[test]
+fn the_map_of_an_arm_as_a_page() {
+    let Some(data) = data() else { return };
+    let dir = with_cell(&format!(
+        "{HEAD}[robot.kr]\nmodel = \"{}\"\nstart = [0, -90, 90, 0, 0, 0]\n\
+         [object.post]\nshape = \"box\"\nat = [1800, 300, 700]\nsize = [300, 300, 1400]\n",
+        urdf(&data, "kuka_kr150_2")
+    ));
+    let slices = type_command(&dir, "map cell.toml --model slices --page map.html --json", 0).json();
+    let exact = type_command(&dir, "map cell.toml --json", 0).json();
+    let blocked = |map: &serde_json::Value| map["blocked"].as_u64().unwrap();
+    assert!(blocked(&slices) >= blocked(&exact) && blocked(&exact) > 0);
+    let page = std::fs::read_to_string(dir.path().join("map.html")).unwrap();
+    assert!(page.contains("type=\"range\"") && page.len() < 1_000_000);
+}
+
+/// 20: two arms planned in one call.
+#[test]
+fn two_arms_planned_in_one_call() {
+    let Some(data) = data() else { return };
+    let dir = with_cell(&format!(
+        r#"{HEAD}[robot.left]
+model = "{}"
+states = {{ home = [60, -90, 90, 0, 30, 0], across = [-60, -60, 80, 0, 30, 0] }}
+start = "home"
+[robot.right]
+model = "{}"
+base = {{ at = [1600, 0, 0], rpy = [0, 0, 180] }}
+states = {{ home = [90, -90, 90, 0, 30, 0], across = [-90, -60, 60, 0, 30, 0] }}
+start = "home"
+"#,
+        urdf(&data, "kuka_kr16_2"),
+        urdf(&data, "kuka_kr6r700sixx")
+    ));
+    let line = "plan cell.toml --robot left --to across --robot right --to across --out both.csv --report plan.html";
+    type_command(&dir, line, 0);
+    let csv = std::fs::read_to_string(dir.path().join("both.csv")).unwrap();
+    assert!(csv.starts_with("t_s,left.joint_a1,") && rows(&csv).len() > 100);
+    assert!(dir.path().join("plan.html").is_file());
+    // At no row do they touch.
+    let answer = type_command(&dir, "query cell.toml --ask collision --between left,right --states both.csv", 0);
+    assert!(rows(&answer.stdout).iter().all(|row| row[1] == "0"));
+}

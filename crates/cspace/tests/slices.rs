@@ -143,6 +143,26 @@ fn turned(robot: &Robot, random: &mut Random) -> Robot {
 }
 
 #[test]
+fn slices_of_axes_of_more_than_a_turn() {
+    let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.2, 0.1, 0.3])]);
+    let mut joints = case.robot.chain.joints().to_vec();
+    for joint in &mut joints {
+        (joint.limits.lower, joint.limits.upper) = (-6.0, 6.6);
+    }
+    // The other way round.
+    joints[0].axis = -Vec3::Z;
+    let chain = elbowroom_kinematics::Chain::new("turns", case.robot.chain.links().to_vec(), joints).unwrap();
+    let colliders = case.robot.colliders.clone();
+    case.robot = Robot::new(chain);
+    case.robot.colliders = colliders;
+    case.step = 10.0;
+    check(&case, 5000);
+    // Cells that are no share of a turn.
+    case.step = 11.0;
+    check(&case, 5000);
+}
+
+#[test]
 fn the_oracle_detects_a_smaller_obstacle() {
     let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.1, 0.05, 0.2])]);
     case.step = 5.0;

@@ -53,7 +53,7 @@ impl SolidsMap {
         RobotMapBuilder::new(model, base, axes, joints, others).map(|builder| Self::Exact(Box::new(builder)))
     }
 
-    /// The cells that a model of some obstacles blocks; `progress` is told the share that is done.
+    /// The cells that a model of some obstacles blocks; `progress` is given the share that is done.
     pub fn fill(
         &self,
         model: ObstacleModel,
@@ -162,6 +162,8 @@ fn add_layers(
 fn table(builder: &CoverMapBuilder, layers: &[Layer]) -> BlockedCells {
     let grid = builder.grid().clone();
     let mut table = OccupancyBitmap::new(grid.shape());
-    layers.iter().for_each(|layer| table.add(layer));
+    for layer in layers {
+        table.add(layer);
+    }
     BlockedCells::Table { grid: Box::new(grid), table }
 }

@@ -63,8 +63,8 @@ impl<'b> SphereRefinement<'b> {
         Ok(first)
     }
 
-    /// Twice as many spheres, unless there would be too many or the deadline passes. Only between two spheres is the time
-    /// looked at: one that is begun is finished. False where nothing changed.
+    /// Twice as many spheres, unless there would be too many or the deadline passes. The time is
+    /// checked between two spheres only: one that is begun is finished. False where nothing changed.
     ///
     /// # Errors
     /// As [`CoverMapBuilder::layer`].
