@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
-use elbowroom_proximity::Shape;
+use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
@@ -354,14 +353,11 @@ impl CellRobot {
     /// Guarded volumes: the TCP, tool and load, and the links. The TCP is the first.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
-        let parts = [("tool", &self.tool), ("load", &self.load)];
-        volumes.extend(parts.into_iter().filter_map(|(name, collider)| {
+        let parts = [("tool", Part::Tool, &self.tool), ("load", Part::Load, &self.load)];
+        volumes.extend(parts.into_iter().filter_map(|(name, part, collider)| {
             let collider = collider.as_ref()?;
-            let (shape, in_link) = match collider.shape {
-                Shape::Mesh(_) => self.volumes.of(&collider.shape, collider.in_link),
-                _ => (collider.shape.clone(), collider.in_link),
-            };
-            Some(Volume { name: name.into(), part: Part::Tool, link: self.flange, shape, in_link })
+            let (shape, in_link) = self.volumes.of_solid(&collider.shape, collider.in_link);
+            Some(Volume { name: name.into(), part, link: self.flange, shape, in_link, presence: Presence::Always })
         }));
         volumes.extend(arm_volumes(&self.without_payload(), self.volumes));
         if !self.encloses(&volumes[1..], &volumes[0]) {

@@ -31,6 +31,7 @@ mod cell;
 pub mod configure;
 mod file;
 mod frames;
+mod gripped_objects;
 mod ik_message;
 mod moving_object;
 mod poses;

@@ -4,7 +4,8 @@ use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
 use elbowroom_planner::PathConstraint;
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 
 use crate::frames::Frames;
 use crate::{Cell, configure};
@@ -75,7 +76,7 @@ impl PathConstraint for RegionConstraint<'_> {
 }
 
 /// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions. All robots are at their
-/// start, this one at `q`.
+/// start, this one at `q`; the objects that it holds count as its tool.
 ///
 /// # Errors
 /// Errors of the monitors' configurations, and those of `plan`.
@@ -83,10 +84,11 @@ pub fn at_start<T>(
     cell: &Cell,
     robot: RobotId,
     q: &[f64],
+    held: &[(ObjectId, Attachment)],
     least_m: f64,
     plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
 ) -> Result<T, FormatError> {
-    let setups = configure::setups(cell)?;
+    let setups = configure::setups_holding(cell, held)?;
     let monitors = configure::monitors(cell, &setups)?;
     let state = |(i, r): (usize, &crate::CellRobot)| {
         let mut state = ChainState::new(&r.robot.chain);

@@ -12,6 +12,7 @@ use elbowroom::planner::RrtConnectSettings;
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
+use crate::carry;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 use crate::plan_problems;
 
@@ -35,6 +36,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         },
         period_s: args.period,
         optimize: args.optimize,
+        carried: carry::attachments(&cell, &args.carry)?,
         ..PathRequest::default()
     };
     let answer = plan::plan(&cell, &request)?;

@@ -1,6 +1,6 @@
 //! The hand of a robot: its flange and tool, as far as they grip.
 
-use elbowroom_cell::{Cell, CellRobot, ProgramBody, StepAction};
+use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_kinematics::{ChainState, JointId, LinkId};
 use elbowroom_proximity::{Shape, Sphere, collides, separation};
 use elbowroom_robot::{ObjectId, RobotId};
@@ -81,11 +81,4 @@ pub(crate) fn grip(
         ));
     }
     Ok(hand.attachment(id, state, &part.shape, part_in_world))
-}
-
-/// True where a step of the robot's program grips the object.
-pub(crate) fn program_grips(cell: &Cell, robot: RobotId, object: ObjectId) -> bool {
-    let program = cell.programs.get(robot.0).and_then(Option::as_ref);
-    let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return false };
-    steps.iter().any(|s| matches!(s.action, StepAction::Grip(o) if o == object))
 }

@@ -3,7 +3,7 @@
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_cell::CellRegionId;
-use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
+use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, Part, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::{Pose, Vec3};
@@ -89,10 +89,37 @@ pub struct RobotEnding {
     pub by: Option<String>,
     /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
+    /// What that part is.
+    pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point: Option<Vec3>,
     /// What would let a stopped robot continue, in words; `None` where nothing is known to.
     pub release: Option<String>,
+}
+
+/// What a part of a robot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PartKind {
+    /// The tool centre point.
+    Tcp,
+    /// The tool.
+    Tool,
+    /// The load, or an object that it has gripped.
+    Load,
+    /// A link.
+    Link,
+}
+
+impl From<Part> for PartKind {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Tcp | Part::TcpOutside => Self::Tcp,
+            Part::Tool => Self::Tool,
+            Part::Load => Self::Load,
+            Part::Arm => Self::Link,
+        }
+    }
 }
 
 /// Outcome of a robot's run.

@@ -268,7 +268,7 @@ impl ProgramClock {
                     self.switches.push(RegionSwitch { region: *region, active: *active });
                 }
                 Some(PlanStep::Override(o)) => self.programmed = *o,
-                Some(PlanStep::Grip(action)) => self.grips.push(*action),
+                Some(PlanStep::Grip(action)) => self.grips.push(action.clone()),
                 Some(PlanStep::Move(m)) if m.duration() <= 0.0 => {}
                 Some(PlanStep::Wait(s)) if *s <= 0.0 => {}
                 _ => return,

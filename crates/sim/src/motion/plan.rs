@@ -3,14 +3,15 @@
 use std::rc::Rc;
 
 use elbowroom_analysis::plan::{PathGoal, PathRequest};
-use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings};
+use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
 use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
 };
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 
 use super::planned_parts::{PartError, PlannedParts};
 use super::{Geometry, GripAction, Segment, TcpLine};
@@ -51,6 +52,17 @@ pub enum PlanStep {
     Override(f64),
 }
 
+impl PlanStep {
+    /// Joint values at its end; `None` where it is no move.
+    pub fn end(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Move(segment) => Some(segment.end()),
+            Self::Play(play) => Some(play.q(play.duration())),
+            _ => None,
+        }
+    }
+}
+
 /// Plans the program of one robot, run `repeat` times (times the program's own `repeat`).
 ///
 /// # Errors
@@ -61,15 +73,7 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
-    let mut planner = ProgramPlanner {
-        cell,
-        robot: at,
-        q: at.start.clone(),
-        notes,
-        planned_moves: Vec::new(),
-        planned_paths: Vec::new(),
-        parts: PlannedParts::new(cell, robot),
-    };
+    let mut planner = ProgramPlanner::new(cell, robot, notes);
     match &program.body {
         ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
         ProgramBody::Trajectory(rows) => {
@@ -79,8 +83,27 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
     }
 }
 
+/// The step in which the program of a robot first grips an object, planned; `None` where it never does.
+///
+/// # Errors
+/// [`FormatError`] at the line of an infeasible step before it, or of the grip.
+pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, FormatError> {
+    let Some(program) = &cell.programs[robot.0] else { return Ok(None) };
+    let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
+    let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
+    let Some(index) = steps.iter().position(grips) else { return Ok(None) };
+    let mut notes = Vec::new();
+    let plan = ProgramPlanner::new(cell, robot, &mut notes).steps(program, &steps[..=index], 1)?;
+    Ok(plan
+        .steps
+        .into_iter()
+        .next_back()
+        .and_then(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None }))
+}
+
 struct ProgramPlanner<'a> {
     cell: &'a Cell,
+    id: RobotId,
     robot: &'a CellRobot,
     /// Joint values after the steps so far.
     q: Vec<f64>,
@@ -101,7 +124,21 @@ struct PlannedPathEntry<'a> {
     play: Rc<Playback>,
 }
 
-impl ProgramPlanner<'_> {
+impl<'a> ProgramPlanner<'a> {
+    fn new(cell: &'a Cell, id: RobotId, notes: &'a mut Vec<Warning>) -> Self {
+        let robot = &cell.robots[id.0];
+        Self {
+            cell,
+            id,
+            robot,
+            q: robot.start.clone(),
+            notes,
+            planned_moves: Vec::new(),
+            planned_paths: Vec::new(),
+            parts: PlannedParts::new(cell, id),
+        }
+    }
+
     fn steps(&mut self, program: &Program, steps: &[ProgramStep], passes: u64) -> Result<ProgramPlan, FormatError> {
         let mut plan = ProgramPlan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
         for pass in 0..passes {
@@ -115,18 +152,29 @@ impl ProgramPlanner<'_> {
                     StepAction::Override(o) => PlanStep::Override(*o),
                     StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
                     StepAction::Grip(object) => {
-                        self.parts.grip(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(GripAction { object: *object, grips: true, line: step.line })
+                        let gripped = self.parts.grip(*object, &self.q);
+                        let attachment = gripped.map_err(|e| self.part_error(i, step, e))?;
+                        PlanStep::Grip(self.grip_action(*object, true, attachment, step))
                     }
                     StepAction::Release(object) => {
                         self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(GripAction { object: *object, grips: false, line: step.line })
+                        PlanStep::Grip(self.grip_action(*object, false, None, step))
                     }
                     StepAction::Planned { to, speed } => PlanStep::Play(self.planned(i, step, to, *speed)?),
                 });
             }
         }
         Ok(plan)
+    }
+
+    fn grip_action(
+        &self,
+        object: ObjectId,
+        grips: bool,
+        attachment: Option<Attachment>,
+        step: &ProgramStep,
+    ) -> GripAction {
+        GripAction { object, grips, link: self.robot.flange, attachment, line: step.line }
     }
 
     fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Rc<Segment>, FormatError> {
@@ -155,6 +203,8 @@ impl ProgramPlanner<'_> {
         let play = if let Some(play) = known {
             play
         } else {
+            let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
+            let volumes = self.cell.volumes_holding(self.id, &carried);
             let request = PathRequest {
                 robot: Some(self.robot.name.clone()),
                 from: Some(self.q.clone()),
@@ -164,7 +214,7 @@ impl ProgramPlanner<'_> {
                 },
                 speed,
                 placed: self.parts.placed(),
-                carried: self.parts.carried().map_err(|e| self.part_error(index, step, e))?,
+                carried,
                 ..PathRequest::default()
             };
             let answer = elbowroom_analysis::plan::plan(self.cell, &request)
@@ -174,7 +224,8 @@ impl ProgramPlanner<'_> {
                 return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
             };
             let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-            let play = Rc::new(Playback::new(rows, &motion_bounds(self.robot)));
+            let bounds = volume_motion_bounds(&self.robot.robot.chain, &volumes);
+            let play = Rc::new(Playback::new(rows, &bounds));
             let (from, parts) = (self.q.clone(), self.parts.clone());
             self.planned_paths.push(PlannedPathEntry { step: index, from, parts, play: play.clone() });
             play

@@ -6,7 +6,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 use elbowroom_spatial::Pose;
 
-use crate::hand::{grip, program_grips};
+use crate::hand::grip;
 
 /// An object during planning. Poses and attachments are unknown where the object moves or another program grips it.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,13 +47,14 @@ impl<'a> PlannedParts<'a> {
     pub(super) fn new(cell: &'a Cell, id: RobotId) -> Self {
         let is_known = |o: ObjectId| {
             let moves = cell.moving_objects.iter().any(|m| m.object == o);
-            !moves && (0..cell.robots.len()).map(RobotId).all(|r| r == id || !program_grips(cell, r, o))
+            !moves && (0..cell.robots.len()).map(RobotId).all(|r| r == id || !cell.gripped_objects(r).contains(&o))
         };
         let place = |o: usize| PlannedPart::Placed(is_known(ObjectId(o)).then_some(cell.objects[o].in_world));
         Self { cell, id, parts: (0..cell.objects.len()).map(place).collect() }
     }
 
-    pub(super) fn grip(&mut self, object: ObjectId, q: &[f64]) -> Result<(), PartError> {
+    /// How the object is attached, as far as that is known.
+    pub(super) fn grip(&mut self, object: ObjectId, q: &[f64]) -> Result<Option<Attachment>, PartError> {
         let name = &self.cell.objects[object.0].name;
         let followed = self.cell.regions.iter().find(|r| r.follow == Some(Follow::Object(object)));
         if let Some(region) = followed {
@@ -67,8 +68,8 @@ impl<'a> PlannedParts<'a> {
         let attachment = pose.map(|pose| grip(self.cell, self.id, object, &pose, &self.state(q))).transpose();
         let closer = "a move to the part before it, or the tool and its `tcp` in the robot's table";
         let attachment = attachment.map_err(|what| PartError::new(what, closer))?;
-        self.parts[object.0] = PlannedPart::Carried(attachment);
-        Ok(())
+        self.parts[object.0] = PlannedPart::Carried(attachment.clone());
+        Ok(attachment)
     }
 
     pub(super) fn release(&mut self, object: ObjectId, q: &[f64]) -> Result<(), PartError> {

@@ -22,11 +22,12 @@ use elbowroom_cell::{Cell, CellRegionId, Frames, ObjectMotion, OutOfReachProofs,
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
-    AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp,
+    AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp, VolumeId,
     ZoneArbiter,
 };
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
+use elbowroom_spatial::Pose;
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
@@ -144,10 +145,9 @@ pub fn simulate_with(
         let keeps_to_plan =
             options.apply_override && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
         let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
-        claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(i, &setups[i], &plan, arbiter)));
+        claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(cell, RobotId(i), &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
-    notes.extend(carried_parts::warnings(cell, options.avoidance));
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
     let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
@@ -194,6 +194,8 @@ struct Simulation<'a> {
     regions: RegionRecorder<'a>,
     checker: FirstContacts<'a>,
     parts: CarriedParts<'a>,
+    /// Robots and their volumes that were released at this instant.
+    released: Vec<(usize, VolumeId)>,
     /// The objects of the last tracks, which move only in a robot's hand.
     gripped: Vec<ObjectId>,
     tracks: Vec<RobotTrack>,
@@ -255,6 +257,7 @@ impl<'a> Simulation<'a> {
             tracks: cell.robots.iter().map(track).collect(),
             objects: moved.map(|o| object_track(cell, o)).collect(),
             parts: CarriedParts::new(cell),
+            released: Vec::new(),
             gripped,
             checked_s: 0.0,
             stop_states: vec![StopState::default(); cell.robots.len()],
@@ -316,6 +319,9 @@ impl<'a> Simulation<'a> {
         self.apply_switches(t_s);
         self.update_states(t_s);
         self.declare_claims();
+        self.check_collisions(t_s);
+        // Before the monitors' ticks: these decide how fast the robot moves with what it grips.
+        self.apply_grips(t_s)?;
         for i in 0..self.clocks.len() {
             if self.is_silent(i, t_s) { self.record_silent(i, t_s) } else { self.tick_monitor(i, t_s) }
         }
@@ -323,8 +329,16 @@ impl<'a> Simulation<'a> {
         if let Some(arbiter) = &self.arbiter {
             self.deadlocks.observe(t_s, arbiter, &self.stop_states);
         }
-        self.check_collisions(t_s);
-        self.apply_grips(t_s)
+        self.detach_released()
+    }
+
+    /// What a robot releases counts up to the instant of the release.
+    fn detach_released(&mut self) -> Result<(), FormatError> {
+        for (robot, volume) in std::mem::take(&mut self.released) {
+            let detached = self.monitors[robot].detach(volume).and_then(|()| self.regions.detach(robot, volume));
+            detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[robot].line, e.to_string()))?;
+        }
+        Ok(())
     }
 
     /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this
@@ -339,18 +353,42 @@ impl<'a> Simulation<'a> {
                     late.extend(std::iter::once(action).chain(actions).map(|a| (robot, a)));
                     break;
                 }
-                self.apply_grip(robot, action, t_s)?;
+                self.apply_grip(robot, &action, t_s)?;
             }
         }
-        late.into_iter().try_for_each(|(robot, action)| self.apply_grip(robot, action, t_s))
+        late.into_iter().try_for_each(|(robot, action)| self.apply_grip(robot, &action, t_s))
     }
 
-    fn apply_grip(&mut self, robot: usize, action: GripAction, t_s: f64) -> Result<(), FormatError> {
+    fn apply_grip(&mut self, robot: usize, action: &GripAction, t_s: f64) -> Result<(), FormatError> {
         let states: Vec<&ChainState> = self.states.iter().collect();
         self.parts.apply(RobotId(robot), action, t_s, &mut self.checker, &states)?;
         let (cell, event) = (self.cell, if action.grips { RunEvent::Grip } else { RunEvent::Release });
         self.event(t_s, robot, &cell.objects[action.object.0].name, event);
-        Ok(())
+        self.guard(robot, action)
+    }
+
+    /// Attaches what a robot grips to its volumes and in the avoidance of all robots, and notes which volumes are to be
+    /// detached.
+    fn guard(&mut self, robot: usize, action: &GripAction) -> Result<(), FormatError> {
+        let attachment = self.checker.attachment(action.object).cloned();
+        let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
+        for avoiding in self.avoiding.iter_mut().flatten() {
+            let applied = match &attachment {
+                Some(attachment) => avoiding.attach(action.object, attachment.clone()),
+                None => avoiding.detach(action.object),
+            };
+            applied.map_err(|e| FormatError::new(&self.cell.file, action.line, e.to_string()))?;
+        }
+        let error = |what: String| FormatError::new(&self.cell.file, action.line, what);
+        let slot = self.setups[robot].gripped_volume(action.object, action.link, &in_link);
+        let (volume, in_link) = slot.ok_or_else(|| error("grips what its monitor has no volume for".into()))?;
+        if !action.grips {
+            self.released.push((robot, volume));
+            return Ok(());
+        }
+        self.released.retain(|released| *released != (robot, volume));
+        let attached = self.monitors[robot].attach(volume, &in_link);
+        attached.and_then(|()| self.regions.attach(robot, volume, &in_link)).map_err(|e| error(e.to_string()))
     }
 
     fn declare_claims(&mut self) {
