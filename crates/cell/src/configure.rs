@@ -6,8 +6,8 @@ use std::sync::Arc;
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    ConfigError, Configuration, ConfigurationParts, Monitor, Region, RegionKind, RobotSlot, SlotId, SourceId,
-    SourceLimits, SourceSpec, StoppingSettings, Volume, VolumeId, ZoneArbiter, group_overlapping,
+    ConfigError, Configuration, ConfigurationParts, Monitor, Part, Presence, Region, RegionKind, RobotSlot, SlotId,
+    SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume, VolumeId, ZoneArbiter, group_overlapping,
 };
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -33,6 +33,13 @@ pub struct MonitorSetup {
 }
 
 impl MonitorSetup {
+    /// The volumes of a changed tool: those that are attached and detached with its link.
+    pub fn tool_volumes(&self, link: LinkId) -> impl Iterator<Item = (VolumeId, &Volume)> {
+        let volumes = self.configuration.volumes().iter().enumerate();
+        let is_of_tool = move |v: &Volume| v.link == link && v.presence != Presence::Always && v.part != Part::Load;
+        volumes.filter(move |(_, v)| is_of_tool(v)).map(|(i, v)| (VolumeId(i), v))
+    }
+
     /// The volume of an object that this link grips, and the pose in the link at which a monitor attaches it where the object is
     /// at `object_in_link`. `None` where the program does not grip it with this link.
     pub fn gripped_volume(&self, object: ObjectId, link: LinkId, object_in_link: &Pose) -> Option<(VolumeId, Pose)> {
@@ -142,9 +149,9 @@ fn setup(
 ) -> Result<MonitorSetup, FormatError> {
     let robot = &cell.robots[id.0];
     let mut gripped = Vec::new();
-    for object in cell.gripped_objects(id) {
+    for (object, link) in cell.grips(id) {
         gripped.push((object, VolumeId(volumes.len())));
-        volumes.push(cell.gripped_volume(id, object, robot.flange));
+        volumes.push(cell.gripped_volume(id, object, link));
     }
     let mut regions = Vec::new();
     let mut region_ids = Vec::new();

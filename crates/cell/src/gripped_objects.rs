@@ -9,19 +9,26 @@ use elbowroom_spatial::Pose;
 use crate::{Cell, ProgramBody, StepAction};
 
 impl Cell {
-    /// The objects that the program of a robot grips, each once, in the order of the program.
+    /// The objects that the program of a robot grips.
     pub fn gripped_objects(&self, robot: RobotId) -> Vec<ObjectId> {
+        self.grips(robot).into_iter().map(|(object, _)| object).collect()
+    }
+
+    /// The objects that the program of a robot grips and the links that grip them, each pair once, in the order of the program.
+    pub(crate) fn grips(&self, robot: RobotId) -> Vec<(ObjectId, LinkId)> {
         let program = self.programs.get(robot.0).and_then(Option::as_ref);
         let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return Vec::new() };
-        let mut objects = Vec::new();
-        for step in steps {
-            if let StepAction::Grip(object) = step.action
-                && !objects.contains(&object)
-            {
-                objects.push(object);
+        let at = &self.robots[robot.0];
+        let (mut grips, mut link) = (Vec::new(), at.flange);
+        // Where a program repeats, it begins with the tool that it ended with.
+        for step in steps.iter().chain(steps) {
+            match step.action {
+                StepAction::Tool(tool) => link = at.tools.get(tool).map_or(link, |t| t.link),
+                StepAction::Grip(object) if !grips.contains(&(object, link)) => grips.push((object, link)),
+                _ => {}
             }
         }
-        objects
+        grips
     }
 
     /// An object as a guarded volume that a link of the robot will grip: its shape, or the volume that replaces its mesh, at its
@@ -39,6 +46,7 @@ impl Cell {
         held: impl IntoIterator<Item = &'a (ObjectId, Attachment)>,
     ) -> Vec<Volume> {
         let mut volumes = self.robots[robot.0].guarded_volumes();
+        volumes.retain(|v| v.presence != Presence::Detached);
         volumes.extend(held.into_iter().filter(|(_, a)| a.robot == robot).map(|(object, attachment)| {
             let volume = self.gripped_volume(robot, *object, attachment.link);
             Volume { in_link: attachment.in_link * volume.in_link, presence: Presence::Always, ..volume }

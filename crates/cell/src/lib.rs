@@ -40,6 +40,8 @@ pub mod region_constraint;
 mod rest_pose_contacts;
 pub mod seal;
 pub mod suggest;
+mod tool;
+mod tool_change;
 pub mod trajectory;
 
 pub use cell::{
@@ -51,3 +53,4 @@ pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
+pub use tool::CellTool;

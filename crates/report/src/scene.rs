@@ -76,7 +76,8 @@ impl ReportScene {
     pub fn of_cell(cell: &Cell) -> Self {
         let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
             let payload: Vec<Collider> = r.payload().cloned().collect();
-            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+            let model = if r.tools.is_empty() { r.without_payload() } else { r.with_all_tools() };
+            scene.robot(&r.name, &model, r.base_in_world, r.flange, r.tcp_in_flange, &payload)
         });
         cell.objects.iter().fold(scene, Self::object)
     }

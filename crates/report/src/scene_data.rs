@@ -146,7 +146,17 @@ fn frames_of(robot: Option<&ReportRobot>, track: &RobotTrack, rec: &Recording, f
         "reasons": reasons,
         "reason": reason_at,
         "outcome": summary::outcome(track, rec),
+        "absent": robot.map_or_else(Vec::new, |r| absent(r, track)),
     })
+}
+
+/// Since when which of the shown links are absent.
+fn absent(robot: &ReportRobot, track: &RobotTrack) -> Vec<Value> {
+    let links = shown_links(robot);
+    let rows = |absent: &[LinkId]| -> Vec<usize> {
+        absent.iter().filter_map(|l| links.iter().position(|shown| *shown == l.0)).collect()
+    };
+    track.absent_links.iter().map(|(t_s, absent)| json!([t_s, rows(absent)])).collect()
 }
 
 fn link_poses(robot: &ReportRobot, track: &RobotTrack, frames: &[usize]) -> Vec<f64> {

@@ -59,18 +59,19 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// How a robot grips a part that is at `part_in_world`.
+/// How a robot, with its present tool, grips a part that is at `part_in_world`.
 ///
 /// # Errors
 /// What is wrong, with the distance: the part is too far from the hand.
 pub(crate) fn grip(
     cell: &Cell,
     id: RobotId,
+    robot: &CellRobot,
     object: ObjectId,
     part_in_world: &Pose,
     state: &ChainState,
 ) -> Result<Attachment, String> {
-    let (hand, part) = (Hand::of(&cell.robots[id.0]), &cell.objects[object.0]);
+    let (hand, part) = (Hand::of(robot), &cell.objects[object.0]);
     let distance_m = hand.distance_m(state, &part.shape, part_in_world);
     if distance_m > MAX_GRIP_DISTANCE_M {
         let [distance, limit] =

@@ -3,6 +3,7 @@
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_cell::CellRegionId;
+use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, Part, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
@@ -62,6 +63,8 @@ pub struct RobotTrack {
     pub flange: String,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
+    /// The links of tools that are not mounted, each list from its time (s) on; empty for a robot without such tools.
+    pub absent_links: Vec<(f64, Vec<LinkId>)>,
     /// One per tick, first to last of the run.
     pub samples: Vec<Sample>,
     /// True where the program was completed.
@@ -324,6 +327,8 @@ pub enum RunEvent {
     Grip,
     /// A robot released an object, which is named in place of the region.
     Release,
+    /// A robot made a tool active, which is named in place of the region.
+    Tool,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
 }
@@ -339,6 +344,7 @@ impl RunEvent {
             Self::Resume => "resume",
             Self::Grip => "grip",
             Self::Release => "release",
+            Self::Tool => "tool",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",

@@ -17,6 +17,7 @@ pub(crate) mod read;
 mod region;
 mod renamed;
 mod robot;
+mod tools;
 mod units;
 
 use std::path::Path;

@@ -219,6 +219,9 @@ const Stage = (() => {
     if (!track || !pointers[i]) return;
     const links = robots[i] || [];
     if (track.poses.length) links.forEach((link, k) => place(link, track.poses, 7 * links.length, 7 * k, at.frame, at.next, at.part));
+    // Tools that are not mounted.
+    const absent = track.absent.reduce((now, [time, rows]) => (time <= run.t[at.frame] + 1e-6 ? rows : now), []);
+    links.forEach((link, k) => { link.visible = !absent.includes(k); });
     const { needle, dot } = pointers[i];
     const mix = (k) => track.tcp[3 * at.frame + k] + at.part * (track.tcp[3 * at.next + k] - track.tcp[3 * at.frame + k]);
     dot.position.set(mix(0), mix(1), mix(2));

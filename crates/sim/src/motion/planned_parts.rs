@@ -1,7 +1,7 @@
 //! Where the objects of a cell are during the planning of one robot's program.
 
 use elbowroom_cell::{Cell, CellRobot, Follow};
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 use elbowroom_spatial::Pose;
@@ -54,7 +54,12 @@ impl<'a> PlannedParts<'a> {
     }
 
     /// How the object is attached, as far as that is known.
-    pub(super) fn grip(&mut self, object: ObjectId, q: &[f64]) -> Result<Option<Attachment>, PartError> {
+    pub(super) fn grip(
+        &mut self,
+        object: ObjectId,
+        robot: &CellRobot,
+        q: &[f64],
+    ) -> Result<Option<Attachment>, PartError> {
         let name = &self.cell.objects[object.0].name;
         let followed = self.cell.regions.iter().find(|r| r.follow == Some(Follow::Object(object)));
         if let Some(region) = followed {
@@ -65,7 +70,7 @@ impl<'a> PlannedParts<'a> {
             let hint = format!("{{ release = \"{name}\" }} before it (or at the end of a program that repeats)");
             return Err(PartError::new(format!("grips \"{name}\", which it has gripped already"), hint));
         };
-        let attachment = pose.map(|pose| grip(self.cell, self.id, object, &pose, &self.state(q))).transpose();
+        let attachment = pose.map(|pose| grip(self.cell, self.id, robot, object, &pose, &self.state(q))).transpose();
         let closer = "a move to the part before it, or the tool and its `tcp` in the robot's table";
         let attachment = attachment.map_err(|what| PartError::new(what, closer))?;
         self.parts[object.0] = PlannedPart::Carried(attachment.clone());
@@ -84,6 +89,16 @@ impl<'a> PlannedParts<'a> {
         });
         self.parts[object.0] = PlannedPart::Placed(pose);
         Ok(())
+    }
+
+    /// Name of an object that one of these links holds.
+    pub(super) fn held_by(&self, is_holding: impl Fn(LinkId) -> bool) -> Option<&'a str> {
+        let held = self.parts.iter().zip(&self.cell.objects).find(|(part, _)| match part {
+            PlannedPart::Carried(Some(attachment)) => is_holding(attachment.link),
+            PlannedPart::Carried(None) => true,
+            PlannedPart::Placed(_) => false,
+        });
+        held.map(|(_, object)| object.name.as_str())
     }
 
     /// The objects elsewhere than at the start.

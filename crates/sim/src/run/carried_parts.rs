@@ -1,6 +1,6 @@
 //! Gripping and releasing of objects during a run.
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
@@ -49,7 +49,7 @@ impl<'a> CarriedParts<'a> {
         self.carriers[object.0]
     }
 
-    /// Grips or releases an object.
+    /// Grips or releases an object; `at` is the robot with its present tool.
     ///
     /// # Errors
     /// At the line of the step: another robot holds the object, it moves, or it is too far away.
@@ -58,6 +58,7 @@ impl<'a> CarriedParts<'a> {
         robot: RobotId,
         action: &GripAction,
         t_s: f64,
+        at: &CellRobot,
         checker: &mut FirstContacts<'_>,
         states: &[&ChainState],
     ) -> Result<(), FormatError> {
@@ -84,7 +85,7 @@ impl<'a> CarriedParts<'a> {
             return Err(error(&format!("grips \"{name}\", which moves")).hint(hint));
         }
         let pose = checker.object_in_world(object);
-        let attachment = hand::grip(cell, robot, object, &pose, states[robot.0]).map_err(|what| {
+        let attachment = hand::grip(cell, robot, at, object, &pose, states[robot.0]).map_err(|what| {
             error(&what).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
         })?;
         checker.attach(object, attachment, states);

@@ -1,12 +1,13 @@
 //! Claims of exchange regions: the regions that a program occupies without leaving all of them in between. They are
 //! computed before the run and declared to the zone arbiter during it, so that it grants in an order without deadlocks.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::trajectory::{Playback, volume_motion_bounds};
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Region, RegionKind, RobotSlot, SlotId, Volume, ZoneArbiter};
 use elbowroom_proximity::within;
 use elbowroom_robot::RobotId;
@@ -65,7 +66,9 @@ impl ZoneClaims {
             return None;
         }
         let mut held = HeldObjects::default();
-        let mut zones = ZoneTester::new(setup, cell.robots[robot.0].guarded_volumes());
+        let mut now = Cow::Borrowed(cell);
+        let mut flange = cell.robots[robot.0].flange;
+        let mut zones = ZoneTester::new(setup, cell.volumes_holding(robot, &[]));
         let mut here = plan.start.clone();
         let mut occupied: Vec<ClaimStage> = Vec::new();
         let mut slots = zones.slots(&plan.start, 0.0);
@@ -75,19 +78,26 @@ impl ZoneClaims {
                 PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
                 PlanStep::Play(p) => (Rc::as_ptr(p).cast(), p.duration()),
                 _ => {
-                    if let PlanStep::Grip(action) = what {
-                        held.apply(action);
-                        zones.set_volumes(cell.volumes_holding(robot, &held.attachments()?));
+                    match what {
+                        PlanStep::Grip(action) => held.apply(action),
+                        PlanStep::Tool(tool) => {
+                            now = Cow::Owned(now.with_tool(robot, *tool));
+                            flange = now.robots[robot.0].flange;
+                        }
+                        _ => {}
+                    }
+                    if let PlanStep::Grip(_) | PlanStep::Tool(_) = what {
+                        zones.set_volumes(now.volumes_holding(robot, &held.attachments()?));
                         slots |= zones.slots(&here, 0.0);
                     }
                     occupied.push(ClaimStage { step, from_s: 0.0, slots });
                     continue;
                 }
             };
-            let is_same = |k: &EvaluatedMove| k.key == key && k.before == slots && k.held == held;
+            let is_same = |k: &EvaluatedMove| k.key == key && k.before == slots && k.held == held && k.flange == flange;
             let index = evaluated.iter().position(is_same).unwrap_or_else(|| {
                 let (occupations, after) = zones.occupations(duration, slots, &|t| at(what, t));
-                evaluated.push(EvaluatedMove { key, before: slots, held: held.clone(), occupations, after });
+                evaluated.push(EvaluatedMove { key, before: slots, held: held.clone(), flange, occupations, after });
                 evaluated.len() - 1
             });
             let EvaluatedMove { occupations, after, .. } = &evaluated[index];
@@ -145,6 +155,8 @@ struct EvaluatedMove {
     /// Slots at its start.
     before: u64,
     held: HeldObjects,
+    /// Link of the active tool.
+    flange: LinkId,
     occupations: Vec<Occupation>,
     /// Slots at its end.
     after: u64,
