@@ -130,7 +130,9 @@ impl<'s> ProximityQuery<'s> {
     pub(crate) fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
         let robot = self.state.attachment(object).map(|a| a.robot);
         self.state.detach(self.scene, object)?;
-        robot.into_iter().for_each(|robot| self.update_motion_bounds(robot));
+        if let Some(robot) = robot {
+            self.update_motion_bounds(robot);
+        }
         Ok(())
     }
 

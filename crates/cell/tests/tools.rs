@@ -49,9 +49,10 @@ fn a_change_mounts_one_and_takes_off_the_other() {
 
 #[test]
 fn a_robot_with_one_tool_has_no_other_links() {
-    let one = format!("{HEAD}[robot.c]\n{ARM}\n[robot.c.tool]\ntcp = {{ at = [0, 0, 200] }}\n");
-    let cell = parse(&one);
-    assert!(cell.robots[0].tools.is_empty() && cell.robots[0].robot.chain.links().len() == 7);
+    let none = format!("{HEAD}[robot.c]\n{ARM}\n");
+    let one = parse(&format!("{none}[robot.c.tool]\ntcp = {{ at = [0, 0, 200] }}\n"));
+    assert!(one.robots[0].tools.is_empty());
+    assert_eq!(one.robots[0].robot.chain.links(), parse(&none).robots[0].robot.chain.links());
 }
 
 #[test]

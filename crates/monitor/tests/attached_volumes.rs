@@ -163,7 +163,7 @@ fn a_part_gripped_inside_a_region_holds_the_robot_until_its_program_leads_out() 
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         // The hand is 0.1 m above the bin, the part reaches down into it.
         let q = [1.4, 0.0, 1.0, 0.0, 0.0, 0.0];
-        let mut tick = |m: &mut Monitor, i: u32, up: f64| {
+        let tick = |m: &mut Monitor, i: u32, up: f64| {
             let intent = [0.0, 0.0, up, 0.0, 0.0, 0.0];
             let at = Snapshot::stationary(0.002 * f64::from(i), &q);
             m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..at })

@@ -63,7 +63,7 @@ fn poses(values: &[f64], count: usize, index: usize) -> Vec<Pose> {
 }
 
 #[test]
-fn a_part_rides_along_with_the_tool_and_stays_where_it_is_released() {
+fn a_part_moves_with_the_tool_and_stays_where_it_is_released() {
     let data = data();
     let run = &data["runs"][0];
     let links = data["robots"][0]["links"].as_array().unwrap().len();

@@ -144,7 +144,7 @@ fn random_bars_and_posts_are_never_entered_and_measured_as_by_brute_force() {
 
 #[test]
 fn a_released_bar_does_not_count() {
-    // The way back at 30 degrees leads past the post only without the bar: it was left at 20 degrees.
+    // The bar is left at 15 degrees; without it the arm moves past the post.
     let text = cell(700.0, &post(STOPPING), true)
         .replace("{ move = \"joint\", to = [60, 0, -100] },", "{ move = \"joint\", to = [15, 0, -100] },")
         .replace("{ release = \"bar\" },", "{ release = \"bar\" },\n{ move = \"joint\", to = [60, 0, -100] },");
