@@ -61,12 +61,15 @@ fn a_carried_part_moves_with_the_hand_in_every_row() {
     assert_eq!(with[1].0, 0.0);
     assert!(with[1].1 == "bar" || with[1].2 == "bar", "{:?}", with[1]);
     let corner = |turn: f64| {
-        let (angle, (x, y)) = (0.5236_f64 - turn, (0.866_f64, 0.5_f64));
+        let (angle, (x, y)) = (std::f64::consts::FRAC_PI_6 - turn, (0.866_f64, 0.5_f64));
         let r = x.hypot(y);
         let (x, y): (f64, f64) = (r * angle.cos(), r * angle.sin());
         (x - x.clamp(0.35, 1.05)).hypot(y - y.clamp(-0.03, 0.03)) - 0.04
     };
-    assert!((with[0].0 - corner(0.0)).abs() < 1e-3 && (with[2].0 - corner(1.0472)).abs() < 1e-3, "{with:?}");
+    assert!(
+        (with[0].0 - corner(0.0)).abs() < 1e-3 && (with[2].0 - corner(std::f64::consts::FRAC_PI_3)).abs() < 1e-3,
+        "{with:?}"
+    );
     // Where the part lies at the start it touches nothing.
     let without = distances(&query(&text, &["--between", "arm,post"]).expect(0));
     assert!(without.iter().all(|(metres, ..)| *metres > 0.2), "{without:?}");

@@ -9,7 +9,7 @@ use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::separation;
 use elbowroom_sim::check::check;
-use elbowroom_sim::{Outcome, PartKind, Recording, RegionPoses, RunOutcome};
+use elbowroom_sim::{Outcome, PartKind, Recording, RegionPoses, RunOptions, RunOutcome, simulate};
 use random::Random;
 
 /// An arm with a slide at its end, which carries a bar of this length (mm) from 0 to 60 degrees, 420 mm above the floor.
@@ -182,4 +182,25 @@ fn check_knows_the_lever_of_the_bar_and_where_it_is_gripped() {
     let inside = of(&cell(700.0, &format!("{bin}{STOPPING}"), true));
     assert!(!inside.excluded && inside.reason.contains("grips \"bar\" inside"), "{}", inside.reason);
     assert!(of(&cell(700.0, &format!("{bin}{STOPPING}"), false)).excluded);
+}
+
+#[test]
+fn avoidance_keeps_what_is_held_clear_of_obstacles() {
+    let (y, x) = 30.0_f64.to_radians().sin_cos();
+    let post = format!(
+        "[object.post]\nshape = \"cylinder\"\nat = [{:.3}, {:.3}, 500]\nradius = 60\nheight = 1000\n\
+         [avoidance.arm]\nobjects = [\"post\"]\n",
+        1000.0 * x,
+        1000.0 * y
+    );
+    let text = cell(700.0, &post, true);
+    let evaded = run(&text);
+    let robot = &evaded.recording.robots[0];
+    assert!(robot.finished && robot.collisions.is_empty(), "{:?}", robot.collisions);
+    let without = RunOptions { avoidance: false, ..RunOptions::default() };
+    let hit = simulate(&parse(&text), &without).unwrap();
+    let collision = &hit.recording.robots[0].collisions[0];
+    assert_eq!((collision.a.as_str(), collision.b.as_str()), ("arm/bar", "post"));
+    // The empty hand needs no evasion.
+    assert!(!simulate(&parse(&cell(700.0, &post, false)), &without).unwrap().has_violation());
 }
