@@ -31,6 +31,7 @@ mod cell;
 pub mod configure;
 mod file;
 mod frames;
+mod gripped_objects;
 mod ik_message;
 mod moving_object;
 mod object_tables;
@@ -40,6 +41,8 @@ pub mod region_constraint;
 mod rest_pose_contacts;
 pub mod seal;
 pub mod suggest;
+mod tool;
+mod tool_change;
 pub mod trajectory;
 
 pub use cell::{
@@ -52,3 +55,4 @@ pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, 
 pub use object_tables::{ObjectTables, object_tables};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
+pub use tool::CellTool;

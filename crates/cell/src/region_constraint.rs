@@ -4,7 +4,8 @@ use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
 use elbowroom_planner::{PathConstraint, PathConstraintSource};
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 
 use crate::Cell;
 use crate::configure::{self, MonitorSetup};
@@ -93,7 +94,15 @@ impl<'c> RegionConstraints<'c> {
     /// # Errors
     /// Errors of the monitors' configurations.
     pub fn new<'q>(cell: &'c Cell, q: impl IntoIterator<Item = &'q [f64]>, least_m: f64) -> Result<Self, FormatError> {
-        let setups = configure::setups(cell)?;
+        Self::of_setups(cell, configure::setups(cell)?, q, least_m)
+    }
+
+    fn of_setups<'q>(
+        cell: &'c Cell,
+        setups: Vec<MonitorSetup>,
+        q: impl IntoIterator<Item = &'q [f64]>,
+        least_m: f64,
+    ) -> Result<Self, FormatError> {
         let monitors = configure::monitors(cell, &setups)?;
         let state = |(r, q): (&crate::CellRobot, &[f64])| {
             let mut state = ChainState::new(&r.robot.chain);
@@ -119,7 +128,7 @@ impl PathConstraintSource for RegionConstraints<'_> {
 }
 
 /// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions. All robots are at their
-/// start, this one at `q`.
+/// start, this one at `q`; the objects that it holds count as its tool.
 ///
 /// # Errors
 /// Errors of the monitors' configurations, and those of `plan`.
@@ -127,12 +136,14 @@ pub fn at_start<T>(
     cell: &Cell,
     robot: RobotId,
     q: &[f64],
+    held: &[(ObjectId, Attachment)],
     least_m: f64,
     plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
 ) -> Result<T, FormatError> {
     let at = |(i, r): (usize, &'_ crate::CellRobot)| if RobotId(i) == robot { q.to_vec() } else { r.start.clone() };
     let all: Vec<Vec<f64>> = cell.robots.iter().enumerate().map(at).collect();
-    let constraints = RegionConstraints::new(cell, all.iter().map(Vec::as_slice), least_m)?;
+    let setups = configure::setups_holding(cell, held)?;
+    let constraints = RegionConstraints::of_setups(cell, setups, all.iter().map(Vec::as_slice), least_m)?;
     plan(constraints.of_robot(robot))
 }
 

@@ -166,6 +166,9 @@ pub(crate) struct QueryArgs {
     /// Leave out pairs within one robot
     #[arg(long)]
     pub(crate) no_self: bool,
+    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
+    pub(crate) carry: Vec<String>,
     /// A row for each pair no farther apart than this (metres), the nearest first, instead of one row per state
     #[arg(long, value_name = "METRES", value_parser = margin, allow_negative_numbers = true)]
     pub(crate) all_pairs: Option<f64>,
@@ -375,6 +378,9 @@ pub(crate) struct PlanArgs {
     /// --from and --to are in the cell file's units, as in a program
     #[arg(long, conflicts_with = "urdf")]
     pub(crate) cell_units: bool,
+    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
+    pub(crate) carry: Vec<String>,
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,

@@ -10,6 +10,7 @@ use elbowroom::cell::{Cell, QUATERNION_TOLERANCE};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
+use crate::carry;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 use crate::plan_request::{configuration, settings};
 use crate::{plan_problems, plan_report, plan_several};
@@ -34,6 +35,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         options: settings(args),
         period_s: args.period,
         optimize: args.optimize,
+        carried: carry::attachments(&cell, &args.carry)?,
         ..PathRequest::default()
     };
     let answer = plan::plan(&cell, &request)?;

@@ -11,6 +11,7 @@ use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::QueryArgs;
+use crate::carry;
 use crate::output::{ExitStatus, Failure, note, print};
 use crate::progress::Progress;
 use crate::states;
@@ -23,6 +24,9 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
     }
     let (mut model, cell) = query_model(args)?;
+    if let Some(cell) = &cell {
+        model.carried.extend(carry::attachments(cell, &args.carry)?);
+    }
     let pairs = query_pairs(args, &mut model, cell.as_ref())?;
     let states = match &args.states {
         Some(path) => states::read(path, &model)?,

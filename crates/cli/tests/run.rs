@@ -108,8 +108,8 @@ fn json_has_the_documented_keys_and_types() {
     assert_eq!(keys(&json["tick_ns"]), ["max", "p50", "p99"]);
     assert!(json["tick_ns"]["p50"].as_u64() <= json["tick_ns"]["max"].as_u64());
     let robot = &json["robots"][0];
-    let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "point_m"];
-    assert_eq!(keys(robot), [&what[..], &["release", "stopped_at_s", "stopped_s", "stops"]].concat());
+    let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "part_kind"];
+    assert_eq!(keys(robot), [&what[..], &["point_m", "release", "stopped_at_s", "stopped_s", "stops"]].concat());
     assert_eq!((json["end"].as_str(), robot["flange"].as_str()), (Some("rest"), Some("link_2")));
     assert_eq!(robot["release"], "the program moves away (direction_aware = true)");
     assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));

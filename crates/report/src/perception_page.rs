@@ -91,6 +91,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
     let waiting = log.ticks.iter().filter(|t| matches!(t.step.state, ExecutorState::Waiting(_))).count();
     let chain = &arm.robot.chain;
     let robot = RobotTrack {
+        absent_links: Vec::new(),
         name: "arm".into(),
         flange: chain.links()[flange.0].clone(),
         joints: chain.active_joints().iter().map(|id| chain.joints()[id.0].name.clone()).collect(),

@@ -1,5 +1,6 @@
 //! Data of runs for the scripts of the page: values per frame.
 
+use elbowroom_kinematics::LinkId;
 use elbowroom_sim::{Recording, RegionPoses, RobotTrack, RunEvent, Sample, Span};
 use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
@@ -7,7 +8,7 @@ use serde_json::{Value, json};
 use crate::downsample::every;
 use crate::explanation::explanation;
 use crate::packing::{ArrayPacker, pose_values};
-use crate::scene::ReportScene;
+use crate::scene::{ReportRobot, ReportScene};
 use crate::summary;
 
 /// Largest number of evenly spaced frames.
@@ -67,31 +68,47 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
             json!({ "poses": poses, "held": held(rec, &o.name) })
         })
         .collect();
-    let robots: Vec<Value> = rec.robots.iter().map(|track| robot(scene, track, rec, &frames, packer)).collect();
+    let robots: Vec<Value> =
+        rec.robots.iter().enumerate().map(|(i, track)| robot(scene, i, track, rec, &frames, packer)).collect();
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
         "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
     })
 }
 
-/// When a robot holds the object: (start, end) in seconds.
-fn held(rec: &Recording, object: &str) -> Vec<(f64, f64)> {
-    let grips = rec.events.iter().filter(|e| e.region == object);
-    let edges = grips.filter_map(|e| match e.event {
-        RunEvent::Grip => Some((e.t_s, true)),
-        RunEvent::Release => Some((e.t_s, false)),
-        _ => None,
+/// When which robot holds the object: (robot, start, end), the times in seconds.
+fn held(rec: &Recording, object: &str) -> Vec<(usize, f64, f64)> {
+    let by = |(r, robot): (usize, &RobotTrack)| {
+        let grips = rec.events.iter().filter(|e| e.region == object && e.robot == robot.name);
+        let edges = grips.filter_map(|e| match e.event {
+            RunEvent::Grip => Some((e.t_s, true)),
+            RunEvent::Release => Some((e.t_s, false)),
+            _ => None,
+        });
+        crate::spans::pair(edges, rec.duration_s).into_iter().map(move |(from, to)| (r, from, to)).collect::<Vec<_>>()
+    };
+    rec.robots.iter().enumerate().flat_map(by).collect()
+}
+
+/// From when on which link carries the tool centre point, and where: (time in seconds, link, pose in the link).
+fn tool_centre_points(robot: &ReportRobot, track: &RobotTrack, rec: &Recording) -> Vec<Value> {
+    let value = |t_s: f64, link: LinkId, tcp: &Pose| json!([t_s, link.0, pose_values(tcp)]);
+    let changes = rec.events.iter().filter(|e| e.event == RunEvent::Tool && e.robot == track.name).filter_map(|e| {
+        let (_, link, tcp) = robot.tools.iter().find(|(name, ..)| *name == e.region)?;
+        Some(value(e.t_s, *link, tcp))
     });
-    crate::spans::pair(edges, rec.duration_s)
+    std::iter::once(value(0.0, robot.flange, &robot.tcp_in_flange)).chain(changes).collect()
 }
 
 fn robot(
     scene: &ReportScene,
+    index: usize,
     track: &RobotTrack,
     rec: &Recording,
     frames: &[usize],
     packer: &mut ArrayPacker,
 ) -> Value {
+    let model = scene.robots.get(index);
     let mut reasons: Vec<String> = Vec::new();
     let mut reason_at = Vec::with_capacity(frames.len());
     for &i in frames {
@@ -126,5 +143,7 @@ fn robot(
         "reasons": reasons,
         "stops": track.stops.iter().map(|s| (s.from_s, s.to_s)).collect::<Vec<_>>(),
         "outcome": summary::outcome(track, rec),
+        "tcps": model.map(|model| tool_centre_points(model, track, rec)),
+        "absent": track.absent_links.iter().map(|(t_s, links)| (t_s, links.iter().map(|l| l.0).collect())).collect::<Vec<(_, Vec<_>)>>(),
     })
 }

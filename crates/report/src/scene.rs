@@ -4,7 +4,7 @@ use elbowroom_cell::Cell;
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::Volume;
 use elbowroom_proximity::{Shape, tessellate::tessellate};
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -41,6 +41,10 @@ pub struct ReportRobot {
     pub flange: LinkId,
     /// The guarded volumes, whose distances the page shows.
     pub volumes: Vec<Volume>,
+    /// The objects that it grips, with the volumes that are guarded while it holds them, each with one of its links.
+    pub gripped: Vec<(ObjectId, Volume)>,
+    /// The named tools: name, link, and tool centre point in the link. Empty for a robot with one tool.
+    pub tools: Vec<(String, LinkId, Pose)>,
 }
 
 /// A triangle mesh of one colour.
@@ -75,12 +79,18 @@ impl ReportScene {
 
     /// The geometry of a cell.
     pub fn of_cell(cell: &Cell) -> Self {
-        let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
+        let mut scene = cell.robots.iter().fold(Self::new(), |scene, r| {
             let payload: Vec<Collider> = r.payload().cloned().collect();
+            let model = if r.tools.is_empty() { r.without_payload() } else { r.with_all_tools() };
             scene
-                .robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+                .robot(&r.name, &model, r.base_in_world, r.flange, r.tcp_in_flange, &payload)
                 .guarded_by(r.guarded_volumes())
+                .with_tools(r.tools.iter().map(|t| (t.name.clone(), t.link, t.tcp_in_link)).collect())
         });
+        for (r, robot) in scene.robots.iter_mut().enumerate() {
+            let volume = |(object, link)| (object, cell.gripped_volume(RobotId(r), object, link));
+            robot.gripped = cell.grips(RobotId(r)).into_iter().map(volume).collect();
+        }
         cell.objects.iter().fold(scene, Self::object)
     }
 
@@ -107,7 +117,18 @@ impl ReportScene {
             tcp_in_flange,
             flange,
             volumes: Vec::new(),
+            gripped: Vec::new(),
+            tools: Vec::new(),
         });
+        self
+    }
+
+    /// The named tools of the robot added last.
+    #[must_use]
+    pub fn with_tools(mut self, tools: Vec<(String, LinkId, Pose)>) -> Self {
+        if let Some(robot) = self.robots.last_mut() {
+            robot.tools = tools;
+        }
         self
     }
 

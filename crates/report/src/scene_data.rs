@@ -1,7 +1,7 @@
 //! Data of the 3-D scene and of its distances for the scripts of the page: models once, joint values per frame.
 
 use elbowroom_kinematics::{Chain, JointKind};
-use elbowroom_monitor::{Guards, Volume};
+use elbowroom_monitor::{Guards, Part, Presence, Volume};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::RobotId;
 use elbowroom_sim::{Recording, RegionTrack};
@@ -77,12 +77,19 @@ fn robot(robot: &ReportRobot, pack: &mut Pack<'_>) -> Value {
         solids.extend(meshes.iter().map(|m| solid(link, m, pack)));
     }
     solids.extend(robot.tool.iter().map(|m| solid(robot.flange.0, m, pack)));
-    let volume = |v: &Volume, pack: &mut Pack<'_>| json!({ "name": v.name, "link": v.link.0, "pose": pose_values(&v.in_link), "shape": pack.shape(&v.shape) });
+    let volume = |v: &Volume, pack: &mut Pack<'_>| {
+        json!({
+            "name": v.name, "link": v.link.0, "pose": pose_values(&v.in_link), "shape": pack.shape(&v.shape),
+            // Of a tool that is exchanged: there while its link is.
+            "exchanged": v.presence != Presence::Always,
+        })
+    };
     json!({
         "name": robot.name, "base": pose_values(&robot.base_in_world), "links": robot.chain.links().len(),
         "joints": joints(&robot.chain), "sliders": sliders(&robot.chain), "solids": solids,
-        "flange": robot.flange.0, "tcp": pose_values(&robot.tcp_in_flange),
         "volumes": robot.volumes.iter().map(|v| volume(v, pack)).collect::<Vec<_>>(),
+        // The volumes of objects while it holds them, at their poses in the objects.
+        "gripped": robot.gripped.iter().map(|(o, v)| json!({ "object": o.0, "volume": volume(v, pack) })).collect::<Vec<_>>(),
         // What counts for an object: the links with tool and load, as for a region with default guards.
         "measured": volumes_for(robot, Guards::default()),
     })
@@ -146,6 +153,7 @@ fn region(scene: &ReportScene, index: usize, region: &RegionTrack, pack: &mut Pa
         "shell": shell.map(|s| pack.mesh(&s, MeshUse::Drawn)),
         "shape": pack.shape(&region.shape),
         "measured": scene.robots.iter().enumerate().map(of_robot).collect::<Vec<_>>(),
+        "guards_load": Part::Load.counts_for(region.guards),
     })
 }
 

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, Stop,
+    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, PartKind, Recording, RegionTrack, RobotEnding, RobotTrack,
+    RunEnd, Stop,
 };
 
 use crate::explanation::explanation;
@@ -186,14 +187,15 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
 
 /// Where the TCP is, the part that was closest to the region that stopped the robot, and what would release it.
 fn detail_texts(robot: &RobotTrack) -> Vec<String> {
-    let RobotEnding { part, point, release, .. } = &robot.ending;
+    let RobotEnding { part, part_kind, point, release, .. } = &robot.ending;
     let mut parts = Vec::new();
     if !robot.flange.is_empty() {
         parts.push(format!("TCP on {}", robot.flange));
     }
     // Where the TCP itself is guarded, the line above has its place.
     if let (Some(part), Some(p)) = (part.as_ref().filter(|part| *part != "tcp"), point) {
-        parts.push(format!("closest {part} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
+        let load = if *part_kind == Some(PartKind::Load) && part != "load" { " (load)" } else { "" };
+        parts.push(format!("closest {part}{load} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
     }
     let place = (!parts.is_empty()).then(|| parts.join(", "));
     // A line for each way, so that none is cut.

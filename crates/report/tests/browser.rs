@@ -348,3 +348,66 @@ fn a_narrow_screen_does_not_scroll_sideways() {
     assert_eq!(seen["wide"], json!([]), "reaches beyond {} px", seen["width"]);
     assert!(seen["scroll"].as_u64() <= seen["width"].as_u64(), "{} > {}", seen["scroll"], seen["width"]);
 }
+
+/// An arm that takes a part and comes to rest with it near a wall.
+const CARRY: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+tick_ms = 4
+[robot.arm]
+dh = [{ a = 500, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
+links = [{ capsule = { from = [-500, 0, 0], to = [0, 0, 0], radius = 30 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 20 } }]
+[object.part]
+shape = "box"
+at = [870, 0, 0]
+size = [80, 60, 60]
+rpy = [0, 0, 10]
+[region.wall]
+shape = "box"
+from = [-1000, 950, -500]
+to = [1000, 1100, 500]
+warning = 300
+[program.arm]
+steps = [{ grip = "part" }, { move = "joint", to = [80, 0], speed = 30 }]
+"#;
+
+#[test]
+fn what_a_robot_holds_counts_in_the_page_as_in_the_monitor() {
+    let Some(chromium) = chromium() else { return };
+    let folder = folder("held");
+    let cell = Cell::parse("carry.toml", CARRY).unwrap_or_else(|e| panic!("{e}"));
+    let (run, planned) = (recording(&cell, true), recording(&cell, false));
+    let q = vec![vec![0.3, -0.4], vec![1.2, 0.5], vec![-2.0, 1.0]];
+    let scene = ReportScene::of_cell(&cell);
+    let seen = visit(&chromium, &folder, &Visit { scene: &scene, run: &run, planned: &planned, q: &q, width: 1280 });
+    let steps = seen["steps"].as_array().unwrap();
+    let robot = &run.robots[0];
+    let last = robot.samples.last().unwrap();
+    let wall = |step: &Value| step["state"]["distances"][0].clone();
+    assert_eq!(wall(&steps[0])["part"], "part");
+    assert_eq!(robot.governing_part(last), Some("part"));
+    assert!((wall(&steps[0])["distance_m"].as_f64().unwrap() - last.distance_m.unwrap()).abs() < AGREED_M);
+
+    let at = &cell.robots[0];
+    let link = |q: &[f64], link| {
+        let mut state = ChainState::new(&at.robot.chain);
+        state.q.copy_from_slice(q);
+        at.robot.chain.forward(&mut state);
+        at.base_in_world * state.link_in_root(link)
+    };
+    let part = &cell.objects[0];
+    let part_in_link = link(&at.start, at.flange).inverse_mul(&part.in_world);
+    let region = &cell.regions[0].region;
+    let region_in_world = region.anchor * region.shape_in_anchor;
+    for (step, q) in steps[2..].iter().zip(&q) {
+        let mut volumes: Vec<_> = at.guarded_volumes();
+        volumes.retain(|v| v.part.counts_for(region.guards));
+        let own = volumes.iter().map(|v| (v.shape.clone(), link(q, v.link) * v.in_link));
+        let held = (part.shape.clone(), link(q, at.flange) * part_in_link);
+        let each =
+            own.chain([held]).map(|(shape, pose)| separation(&shape, &pose, &region.shape, &region_in_world).distance);
+        let metres = each.fold(f64::INFINITY, f64::min);
+        let page = wall(step)["distance_m"].as_f64().unwrap();
+        assert!((page - metres).abs() < AGREED_M, "{q:?}: the page says {page}, the engine {metres}");
+    }
+}

@@ -1,15 +1,13 @@
 //! The report is one well-formed, offline page for any names; the summary fits its width.
 
-use std::io::Read as _;
-
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use elbowroom_report::{HtmlReport, TextSummary, summary, write_html};
 use elbowroom_sim::Recording;
-use flate2::read::DeflateDecoder;
 use serde_json::Value;
 
+mod page_data;
 mod report_demo;
+
+use page_data::block;
 
 const HOSTILE: &str = "</script><script>alert(1)</script><img src=x onerror=alert(2)>&\"'\u{2028}\u{1b}[31m";
 
@@ -17,22 +15,6 @@ fn page(on: &Recording, off: &Recording) -> String {
     let mut out = Vec::new();
     write_html(&mut out, &report_demo::scene(), &[("monitor on", on), ("monitor off", off)]).unwrap();
     String::from_utf8(out).unwrap()
-}
-
-/// A block of the page with this id, inflated.
-fn inflated(html: &str, id: &str) -> String {
-    let open = format!("<script type=\"text/plain\" id=\"{id}\">");
-    let from = html.find(&open).unwrap() + open.len();
-    let to = from + html[from..].find("</script>").unwrap();
-    let mut text = String::new();
-    let bytes = STANDARD.decode(&html[from..to]).unwrap();
-    DeflateDecoder::new(&bytes[..]).read_to_string(&mut text).unwrap();
-    text
-}
-
-/// The JSON block with this id.
-fn block(html: &str, id: &str) -> Value {
-    serde_json::from_str(&inflated(html, id)).unwrap()
 }
 
 /// What is written above the scene.
@@ -221,6 +203,7 @@ fn the_result_comes_first_and_names_what_governs() {
         stopped_at_s: Some(stop.from_s),
         by: stop.by.clone(),
         part: stop.part.clone(),
+        part_kind: None,
         point: stop.point,
         release: Some("the program moves away".into()),
     };

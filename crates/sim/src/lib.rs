@@ -32,13 +32,15 @@
 pub mod check;
 pub mod csv;
 mod hand;
+mod held_object;
 pub mod motion;
 mod recording;
 pub mod run;
 mod summary;
 
+pub use held_object::held_object;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, ObjectTrack, Outcome,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, ObjectTrack, Outcome, PartKind,
     RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent,
     Sample, Span, Stop, TickTimes,
 };

@@ -3,7 +3,8 @@
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_cell::CellRegionId;
-use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, Part, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::{Pose, Vec3};
@@ -64,6 +65,8 @@ pub struct RobotTrack {
     pub joints: Vec<String>,
     /// Names of the guarded volumes: links, `tool`, `load`, `tcp`. [`GoverningPoint::part`] is an index in this list.
     pub parts: Vec<String>,
+    /// The links of tools that are not mounted, each list from its time (s) on; empty for a robot without such tools.
+    pub absent_links: Vec<(f64, Vec<LinkId>)>,
     /// One per tick, first to last of the run.
     pub samples: Vec<Sample>,
     /// When the monitor stopped it although its program was not complete, in order of time.
@@ -110,10 +113,37 @@ pub struct RobotEnding {
     pub by: Option<String>,
     /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
+    /// What that part is.
+    pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point: Option<Vec3>,
     /// What would let a stopped robot continue, in words; `None` where nothing is known to.
     pub release: Option<String>,
+}
+
+/// What a part of a robot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PartKind {
+    /// The tool centre point.
+    Tcp,
+    /// The tool.
+    Tool,
+    /// The load, or an object that it has gripped.
+    Load,
+    /// A link.
+    Link,
+}
+
+impl From<Part> for PartKind {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Tcp | Part::TcpOutside => Self::Tcp,
+            Part::Tool => Self::Tool,
+            Part::Load => Self::Load,
+            Part::Arm => Self::Link,
+        }
+    }
 }
 
 /// Outcome of a robot's run.
@@ -335,6 +365,8 @@ pub enum RunEvent {
     Grip,
     /// A robot released an object, which is named in place of the region.
     Release,
+    /// A robot made a tool active, which is named in place of the region.
+    Tool,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
 }
@@ -350,6 +382,7 @@ impl RunEvent {
             Self::Resume => "resume",
             Self::Grip => "grip",
             Self::Release => "release",
+            Self::Tool => "tool",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",

@@ -4,7 +4,7 @@ use elbowroom_avoidance::AvoiderState;
 use serde::Serialize;
 
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, RecordedRegionKind, Recording, RunEnd, Stop,
+    AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, PartKind, RecordedRegionKind, Recording, RunEnd, Stop,
 };
 
 /// Figures of a run, in SI units.
@@ -80,6 +80,8 @@ pub struct RobotSummary {
     pub by: Option<String>,
     /// The link, tool or load concerned.
     pub part: Option<String>,
+    /// What that part is: `tcp`, `tool`, `load` or `link`.
+    pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point_m: Option<[f64; 3]>,
     /// What would let it continue, in words; null where nothing is known to.
@@ -206,6 +208,7 @@ impl From<&Recording> for RunSummary {
             stopped_at_s: t.ending.stopped_at_s,
             by: t.ending.by.clone(),
             part: t.ending.part.clone(),
+            part_kind: t.ending.part_kind,
             point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
             release: t.ending.release.clone(),
             stopped_s: t.stopped_s,

@@ -129,7 +129,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &CoverCache::of_user()).ok();
     let obstacles = model.as_ref().map(|model| CoverObstacles::new(model, &scene, &state, clearance_m));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
-    region_constraint::at_start(cell, id, from, clearance_m, |constraint| {
+    region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
         let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
         if let Some(constraint) = constraint {

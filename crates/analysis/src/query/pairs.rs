@@ -61,12 +61,17 @@ impl QueryPairs {
         Self { sides: vec![[Selection::All; 2]] }
     }
 
-    /// All but those within one robot.
+    /// All but those within one robot; what a robot holds is a part of it.
     pub fn without_self(model: &QueryModel) -> Self {
         let robots = model.robots.len();
         let of_robots =
             (0..robots).flat_map(|a| (a + 1..robots).map(move |b| [a, b].map(|r| Selection::Robot(RobotId(r)))));
-        Self { sides: of_robots.chain([[Selection::Robots, Selection::Objects]]).collect() }
+        if model.carried.is_empty() {
+            return Self { sides: of_robots.chain([[Selection::Robots, Selection::Objects]]).collect() };
+        }
+        let is_free = |o: &ObjectId| model.carried.iter().all(|(carried, _)| carried != o);
+        let free = (0..model.objects.len()).map(ObjectId).filter(is_free);
+        Self { sides: of_robots.chain(free.map(|o| [Selection::Robots, Selection::Object(o)])).collect() }
     }
 
     /// The pairs of a text: `A,B;C,D`. Each side is a robot (with tool and load), a link (`robot/link`; for a single robot its

@@ -18,6 +18,7 @@ pub(crate) mod read;
 mod region;
 mod renamed;
 mod robot;
+mod tools;
 mod units;
 
 use std::path::Path;
@@ -31,7 +32,7 @@ use read::{Table, Value};
 use robot::robot_of;
 pub use units::QUATERNION_TOLERANCE;
 
-use crate::{Cell, CellLaws, MapSpec, Units, configure, seal, suggest};
+use crate::{Cell, CellLaws, CellRegionId, MapSpec, Units, configure, seal, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -99,6 +100,10 @@ impl CellFile {
         let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
+        // Programs grip what regions guard.
+        for ((_, t), index) in root.named("region")?.into_iter().zip(0..) {
+            guarding::check(&t, &cell, CellRegionId(index), &mut warnings)?;
+        }
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
         cell.cameras = camera::read(&root, &cell)?;
@@ -236,9 +241,7 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     };
     let mut regions = Vec::new();
     for (name, t) in root.named("region")? {
-        let region = region::read(name, &t, cell.units, &mut known, warnings)?;
-        guarding::check(&t, &region, &cell.robots, warnings)?;
-        regions.push(region);
+        regions.push(region::read(name, &t, cell.units, &mut known, warnings)?);
     }
     cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;

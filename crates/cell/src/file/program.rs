@@ -40,9 +40,9 @@ pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut
 }
 
 fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
-    const KINDS: [&str; 6] = ["move", "region", "wait", "override", "grip", "release"];
+    const KINDS: [&str; 7] = ["move", "region", "wait", "override", "grip", "release", "tool"];
     const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 }, \
-                           { override = 50 }, { grip = \"part\" } or { release = \"part\" }";
+                           { override = 50 }, { grip = \"part\" }, { release = \"part\" } or { tool = \"gripper\" }";
     let t = v.table(EXAMPLE)?;
     let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
     let action = match given.as_slice() {
@@ -50,6 +50,7 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
         ["region"] => switch(&t, &cell.regions)?,
         ["grip"] => StepAction::Grip(part(&t, "grip", cell)?),
         ["release"] => StepAction::Release(part(&t, "release", cell)?),
+        ["tool"] => StepAction::Tool(tool(&t, robot)?),
         ["wait"] => {
             t.only(&["wait"])?;
             StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
@@ -59,11 +60,11 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
             StepAction::Override(t.need("override", "override = 50")?.percent()?)
         }
         [] => {
-            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release"])?;
+            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release", "tool"])?;
             return Err(v.error("is not a step").hint(EXAMPLE));
         }
         _ => {
-            let hint = "one of move, region, wait, override, grip, release per step";
+            let hint = "one of move, region, wait, override, grip, release, tool per step";
             return Err(v.error("is several steps in one").hint(hint));
         }
     };
@@ -85,6 +86,22 @@ fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
             .hint("an object of another shape"));
     }
     Ok(ObjectId(index))
+}
+
+/// The tool that a step makes active.
+fn tool(t: &Table<'_>, robot: &CellRobot) -> Result<usize> {
+    t.only(&["tool"])?;
+    let v = t.need("tool", "tool = \"gripper\"")?;
+    let name = v.text()?;
+    robot.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
+        let what = format!("names the tool \"{name}\", which robot \"{}\" does not have", robot.name);
+        let hint = if robot.tools.is_empty() {
+            format!("[robot.{}.tools.{name}] with its tcp and box", robot.name)
+        } else {
+            suggest::hint(name, robot.tools.iter().map(|tool| tool.name.as_str()))
+        };
+        v.error(what).hint(hint)
+    })
 }
 
 /// Kinds of moves.

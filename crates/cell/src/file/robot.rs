@@ -9,7 +9,7 @@ use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
 use super::read::{Table, Value};
-use super::{flange, models};
+use super::{flange, models, tools};
 use crate::{CellRobot, JointLimits, Units, rest_pose_contacts, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -28,6 +28,7 @@ const KEYS: &[&str] = &[
     "start",
     "states",
     "tool",
+    "tools",
     "load",
     "volumes",
     "speed",
@@ -68,11 +69,16 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
-    let flange = flange::read(name, t, &robot.chain, warnings)?;
+    let mut flange = flange::read(name, t, &robot.chain, warnings)?;
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
-    let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
+    let (mut tcp_in_flange, tool) =
+        t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v.table(TOOL)?, units))?;
     let load = t.get("load").map(|v| solid(&v, units, "load")).transpose()?;
     robot.colliders[flange.0].extend(tool.iter().chain(&load).cloned());
+    let tools = tools::read(t, &mut robot, flange, units, self::tool)?;
+    if let Some(active) = tools.iter().find(|t| t.mounted) {
+        (flange, tcp_in_flange) = (active.link, active.tcp_in_link);
+    }
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
     let states = states(t, &robot.chain, &start, units)?;
@@ -90,6 +96,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
         flange,
         tcp_in_flange,
         tool,
+        tools,
         load,
         start,
         start_given: t.get("start").is_some(),
@@ -258,8 +265,9 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
     }
 }
 
-fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
-    let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
+const TOOL: &str = "tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }";
+
+fn tool(t: &Table<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "quaternion"])?;
     if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "quaternion", "mesh_unit"].iter().find_map(|k| t.get(k))) {
         return Err(v
@@ -270,8 +278,8 @@ fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     let collider = |(shape, in_link)| Some(Collider { name: "tool".into(), shape, in_link });
     match (t.get("box"), t.get("mesh")) {
         (Some(_), Some(mesh)) => Err(mesh.error("contradicts `box`").hint("one of the two: box or mesh")),
-        (Some(cuboid), None) => Ok((tcp, collider(named_solid("box", &cuboid, &t, units)?))),
-        (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, &t, units)?))),
+        (Some(cuboid), None) => Ok((tcp, collider(named_solid("box", &cuboid, t, units)?))),
+        (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, t, units)?))),
         (None, None) => Ok((tcp, None)),
     }
 }

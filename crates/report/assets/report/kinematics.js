@@ -59,9 +59,8 @@ const Kinematics = (() => {
 
   for (const robot of Data.robots) {
     robot.base = fromValues(robot.base);
-    robot.tcp = fromValues(robot.tcp);
     for (const joint of robot.joints) joint.origin = fromValues(joint.origin);
-    for (const part of [...robot.solids, ...robot.volumes]) part.pose = fromValues(part.pose);
+    for (const part of [...robot.solids, ...robot.volumes, ...robot.gripped.map((g) => g.volume)]) part.pose = fromValues(part.pose);
   }
   for (const object of Data.objects) object.pose = fromValues(object.pose);
 

@@ -123,7 +123,7 @@ const Stage = (() => {
       const points = new Float32Array(3 * run.t.length), colors = new Float32Array(3 * run.t.length);
       for (let frame = 0; frame < run.t.length; frame++) {
         const q = track.q.subarray(dof * frame, dof * frame + dof);
-        points.set(Cell.tcp(robot, Kinematics.links(robot, q)).slice(9), 3 * frame);
+        points.set(Cell.tcp(track, Kinematics.links(robot, q), run.t[frame]).slice(9), 3 * frame);
         overrideColor(track.override[frame]).toArray(colors, 3 * frame);
       }
       const line = new THREE.BufferGeometry();
@@ -263,8 +263,11 @@ const Stage = (() => {
     shown = { cell, lines: pairs };
     paths.forEach((path, i) => { path.visible = i === runIndex; });
     robots.forEach((solids, i) => {
-      solids.forEach(({ mesh, solid }) => setPose(mesh, Kinematics.multiply(cell.links[i][solid.link], solid.pose)));
-      tcpDots[i].position.set(...Cell.tcp(Data.robots[i], cell.links[i]).slice(9));
+      solids.forEach(({ mesh, solid }) => {
+        mesh.visible = !cell.absent[i].includes(solid.link);
+        setPose(mesh, Kinematics.multiply(cell.links[i][solid.link], solid.pose));
+      });
+      tcpDots[i].position.set(...Cell.tcp(cell.run.robots[i], cell.links[i], cell.t).slice(9));
       overrideColor(cell.moved ? 1 : cell.run.robots[i].override[cell.frame.frame], tcpDots[i].material.color);
       showLine(i, pairs[i]);
     });

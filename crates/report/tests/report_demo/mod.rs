@@ -171,6 +171,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
         end: elbowroom_sim::RunEnd::Finished,
         monitored,
         robots: vec![RobotTrack {
+            absent_links: Vec::new(),
             name: "ns16".into(),
             flange: "tool0".into(),
             joints: ["waist", "shoulder", "elbow"].map(String::from).to_vec(),

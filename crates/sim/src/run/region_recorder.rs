@@ -1,10 +1,9 @@
 //! Recording of the regions during a run.
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::trajectory::volume_motion_bounds;
 use elbowroom_cell::{Cell, CellRegion, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep};
+use elbowroom_monitor::{AttachError, Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
@@ -91,6 +90,23 @@ impl<'a> RegionRecorder<'a> {
         let of_region = self.observers.iter_mut().filter(|o| o.region == region);
         of_region.for_each(|o| (o.measured, o.before_m) = (None, None));
         true
+    }
+
+    /// Attaches a volume of a robot, as its monitor does.
+    pub fn attach(&mut self, robot: usize, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
+        self.forget(robot);
+        self.sweeps[robot].attach(&self.setups[robot].configuration, volume, in_link)
+    }
+
+    /// Detaches a volume of a robot.
+    pub fn detach(&mut self, robot: usize, volume: VolumeId) -> Result<(), AttachError> {
+        self.forget(robot);
+        self.sweeps[robot].detach(&self.setups[robot].configuration, volume)
+    }
+
+    /// Measured distances are those of the volumes that were attached.
+    fn forget(&mut self, robot: usize) {
+        self.observers.iter_mut().filter(|o| o.robot.0 == robot).for_each(|o| o.measured = None);
     }
 
     /// Observes one tick and the motion to it, after the monitors' ticks.
@@ -201,12 +217,6 @@ fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: RobotId, spans: &mu
         }
         _ => {}
     }
-}
-
-/// Per joint the motion bound of all guarded volumes; joints without influence are left out.
-pub(super) fn motion_bounds(setup: &MonitorSetup) -> Vec<(usize, f64)> {
-    let motion_bounds = volume_motion_bounds(setup.configuration.chain(), setup.configuration.volumes());
-    motion_bounds.into_iter().enumerate().filter(|(_, bound)| *bound != 0.0).collect()
 }
 
 fn track(region: &CellRegion) -> RegionTrack {
