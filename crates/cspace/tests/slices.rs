@@ -162,6 +162,18 @@ fn slices_of_axes_of_more_than_a_turn() {
     check(&case, 5000);
 }
 
+/// Around the arm there is no hole, beside the axis there may be.
+#[test]
+fn a_solid_around_the_arm_blocks_everything() {
+    let mut case = Case::new(vec![(Shape::Mesh(Arc::new(box_mesh(6.0))), Pose::IDENTITY)]);
+    case.step = 12.0;
+    let map = slices(&case);
+    assert_eq!(map.blocked(), grid(&case).cells());
+    case.obstacles = vec![cuboid([0.45, 0.0, 0.3], [0.0; 3], [0.1, 0.1, 0.1])];
+    check(&case, 2000);
+    assert!(slices(&case).blocked() < grid(&case).cells());
+}
+
 #[test]
 fn the_oracle_detects_a_smaller_obstacle() {
     let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.1, 0.05, 0.2])]);
@@ -222,7 +234,7 @@ fn spheres_are_refined_until_the_deadline_and_never_miss_a_cell() {
     let mut before = occupancy(&grid, &[late.into_layer()]);
     for most in [1, 2, 8, 20] {
         let mut spheres = SphereRefinement::new(&builder, shape, *at, most).unwrap();
-        while spheres.refine(Instant::now() + Duration::from_secs(60)).unwrap() {}
+        while spheres.refine(Instant::now() + Duration::from_mins(1)).unwrap() {}
         assert_eq!(spheres.spheres(), 1 << most.ilog2());
         let map = occupancy(&grid, &[spheres.into_layer()]);
         assert_eq!(exact_and_missed(&case, &map).1, 0);

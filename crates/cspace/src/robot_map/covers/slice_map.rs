@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
-use elbowroom_validity::lanes::{LANES, Row, detected_simd_level};
+use elbowroom_validity::lanes::{Row, detected_simd_level};
 use fearless_simd::{Level as SimdLevel, Simd, dispatch};
 
 use super::super::sector_bounds::SectorBounds;
@@ -135,7 +135,12 @@ impl<'a> SliceDivision<'a> {
     fn divide(&mut self, class: usize, at: SliceBox, from: usize, probes: u32) {
         let end = self.open.len();
         let angle_level = ANGLE_LEVEL.min(self.classes[class].levels.len() - 1);
-        let found = self.assess(class, at, from, probes, at.level.cmp(&angle_level));
+        let wants = match at.level.cmp(&angle_level) {
+            Ordering::Greater => Wants::Division,
+            Ordering::Equal => Wants::Angles,
+            Ordering::Less => Wants::Contact,
+        };
+        let found = self.assess(class, at, from, probes, wants);
         if found.is_near && at.level == angle_level {
             self.find_lanes(&found.angles);
         }
@@ -175,14 +180,7 @@ impl<'a> SliceDivision<'a> {
     }
 
     /// Tests the balls in question; adds what is left to `open`.
-    fn assess(
-        &mut self,
-        class: usize,
-        at: SliceBox,
-        from: usize,
-        probes: u32,
-        beside_angle_level: Ordering,
-    ) -> SliceState {
+    fn assess(&mut self, class: usize, at: SliceBox, from: usize, probes: u32, wants: Wants) -> SliceState {
         let covers = &self.classes[class];
         let level = &covers.levels[at.level];
         let motions = &self.motions[class];
@@ -205,11 +203,7 @@ impl<'a> SliceDivision<'a> {
                 level => Some(Stays::Within(&motions[level])),
             },
             half,
-            wants: match beside_angle_level {
-                Ordering::Greater => Wants::Division,
-                Ordering::Equal => Wants::Angles,
-                Ordering::Less => Wants::Contact,
-            },
+            wants,
             is_cell: at.level == 0,
         };
         let (open, work) = (&mut self.open, &mut self.work);
@@ -417,6 +411,3 @@ impl SliceState {
         (*low, *high) = (low.min(angles.low[ball]), high.max(angles.high[ball]));
     }
 }
-
-/// Lanes of a ball group are one bit each.
-const _: () = assert!(LANES == 16);
