@@ -8,8 +8,11 @@ use std::time::Duration;
 use elbowroom_cell::{Cell, CellRobot, MapSpec};
 use elbowroom_cspace::{GridAxis, GridAxisError, ObstacleModel, OccupancyArray, RemainingJoints, RobotMapError};
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::JointKind;
-use elbowroom_robot::ObjectId;
+use elbowroom_kinematics::{JointKind, LinkId};
+use elbowroom_proximity::Shape;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_scene::Object;
+use elbowroom_spatial::Pose;
 
 pub use self::blocked_cells::BlockedCells;
 use self::solids_map::SolidsMap;
@@ -104,12 +107,26 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         };
         wrong(format!("robot \"{}\": {e}", robot.name), hint)
     };
-    let solids_map = SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
-    let base = solids_map.base_in_world();
-    let solids = |o: &elbowroom_scene::Object| request.model.solids(&o.shape, &o.in_world, &base);
+    let links_map = |left_out: Vec<LinkId>| {
+        let robot = without_colliders(robot, &left_out);
+        let solids = SolidsMap::new(&robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
+        Ok::<_, FormatError>(LinksMap { left_out, solids })
+    };
+    let mut maps = vec![links_map(Vec::new())?];
     let mut obstacles = Vec::with_capacity(cell.objects.len());
-    for object in &cell.objects {
-        let (blocks, time) = solids_map.fill(&solids(object)).map_err(refuse)?;
+    for (i, object) in cell.objects.iter().enumerate() {
+        let (blocks, time) = match links_that_may_touch(cell, spec.robot, ObjectId(i)) {
+            // All of them: the object blocks nothing.
+            None => maps[0].solids.fill(&[]).map_err(refuse)?,
+            Some(links) => {
+                let known = maps.iter().position(|map| map.left_out == links);
+                if known.is_none() {
+                    maps.push(links_map(links)?);
+                }
+                let map = &maps[known.unwrap_or(maps.len() - 1)];
+                map.solids.fill(&map.solids_of(object, request.model)).map_err(refuse)?
+            }
+        };
         obstacles.push(MapObstacle { name: object.name.clone(), model: request.model, blocks, time });
     }
     let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
@@ -117,9 +134,17 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         if let Some(dense) = dense {
             return Ok(dense.blocked());
         }
-        let all: Vec<_> =
-            cell.objects.iter().enumerate().filter(|o| which(ObjectId(o.0))).flat_map(|o| solids(o.1)).collect();
-        solids_map.fill(&all).map(|(cells, _)| cells.blocked()).map_err(refuse)
+        let chosen: Vec<ObjectId> = (0..cell.objects.len()).map(ObjectId).filter(|o| which(*o)).collect();
+        let of_map = |map: &LinksMap| {
+            let links = |o: ObjectId| links_that_may_touch(cell, spec.robot, o);
+            let is_of_map = |o: &&ObjectId| links(**o).is_some_and(|links| links == map.left_out);
+            let objects = chosen.iter().filter(is_of_map).map(|o| &cell.objects[o.0]);
+            let all: Vec<_> = objects.flat_map(|o| map.solids_of(o, request.model)).collect();
+            map.solids.fill(&all).map(|(cells, _)| cells.blocked()).map_err(refuse)
+        };
+        // Where links may touch only some objects, cells that several maps block count several times.
+        let counts = maps.iter().map(of_map).collect::<Result<Vec<u64>, FormatError>>()?;
+        Ok(counts.into_iter().fold(0, u64::saturating_add))
     };
     let dense = blocked_cells::union(&axes, obstacles.iter().map(|o| &o.blocks));
     let blocked = count(dense.as_ref(), &|_| true)?;
@@ -138,6 +163,37 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
     Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
+}
+
+/// What fills the map of a robot without the colliders of some links, for the objects that these may touch.
+struct LinksMap {
+    left_out: Vec<LinkId>,
+    solids: SolidsMap,
+}
+
+impl LinksMap {
+    fn solids_of(&self, object: &Object, model: ObstacleModel) -> Vec<(Shape, Pose)> {
+        model.solids(&object.shape, &object.in_world, &self.solids.base_in_world())
+    }
+}
+
+/// The links that may touch an object by the cell's file of pairs; `None` where all of them may.
+fn links_that_may_touch(cell: &Cell, robot: RobotId, object: ObjectId) -> Option<Vec<LinkId>> {
+    let may_touch = |link: &LinkId| {
+        let link = GeometryId::Link { robot, link: *link };
+        cell.pair_rules.skipped(link, GeometryId::Object(object)).is_some()
+    };
+    let all: Vec<LinkId> = cell.robots[robot.0].robot.links_with_colliders().collect();
+    let some: Vec<LinkId> = all.iter().copied().filter(may_touch).collect();
+    (some.is_empty() || some.len() < all.len()).then_some(some)
+}
+
+fn without_colliders(robot: &CellRobot, links: &[LinkId]) -> CellRobot {
+    let mut robot = robot.clone();
+    for link in links {
+        robot.robot.colliders[link.0].clear();
+    }
+    robot
 }
 
 impl CellMap {

@@ -32,7 +32,9 @@ pub mod configure;
 mod file;
 mod frames;
 mod ik_message;
+mod joint_contacts;
 mod moving_object;
+mod pair_file;
 mod poses;
 mod query_model;
 pub mod region_constraint;
@@ -48,5 +50,6 @@ pub use cell::{
 pub use file::CellFile;
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
+pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};

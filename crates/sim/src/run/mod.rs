@@ -26,7 +26,7 @@ use elbowroom_monitor::{
     ZoneArbiter,
 };
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
-use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
+use elbowroom_scene::{FirstContact, FirstContacts, MovedObject, Scene};
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
@@ -148,9 +148,9 @@ pub fn simulate_with(
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
     notes.extend(carried_parts::warnings(cell, options.avoidance));
-    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
-    let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
+    let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding, &scene);
     (run.arbiter, run.claims) = (arbiter, claims);
     let mut tick = 0_u64;
     loop {
@@ -218,6 +218,7 @@ impl<'a> Simulation<'a> {
         monitors: Vec<Monitor>,
         clocks: Vec<ProgramClock>,
         mut avoiding: Vec<Option<AvoidingRobot<'a>>>,
+        scene: &'a Scene,
     ) -> Self {
         avoiding.resize_with(cell.robots.len(), || None);
         let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
@@ -248,9 +249,10 @@ impl<'a> Simulation<'a> {
             fault_injector: fault_injection::FaultInjector::new(&options.faults, cell.robots.len()),
             regions: RegionRecorder::new(cell, setups),
             checker: FirstContacts::new(
-                cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
+                scene.robots().iter().map(|r| (&r.robot, r.base_in_world)).collect(),
                 &cell.objects,
             )
+            .skipping(cell.motion_pair_rules())
             .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>()),
             tracks: cell.robots.iter().map(track).collect(),
             objects: moved.map(|o| object_track(cell, o)).collect(),
