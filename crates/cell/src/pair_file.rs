@@ -1,5 +1,6 @@
 //! The file of pairs: what may touch, and which pairs are likely to (`pairs = "FILE"` in a cell, `--pairs FILE`).
 
+mod counts;
 mod read;
 mod survey;
 
@@ -12,7 +13,7 @@ use elbowroom_scene::{PairEdit, PairRule, PairRules, PairState, Selection};
 
 use crate::{QueryModel, suggest};
 
-pub use survey::PairCounts;
+pub use counts::PairCounts;
 
 /// The side of a pair that is anything.
 const ANYTHING: &str = "*";

@@ -21,6 +21,12 @@ const MOST_SPREAD: f64 = 0.25;
 /// Error of the triangles of round shapes, as a share of the diagonal of their boxes: some twenty segments around.
 const CHORD_ERROR: f64 = 0.005;
 
+/// Links that reach farther from their own origin, or are farther from the root link, are not looked at, m: by rounding all their
+/// triangles would touch.
+const LARGEST_M: f64 = 1e4;
+/// A pair with more contacts in all configurations together is given up, so that the search ends soon.
+const MOST_CONTACTS: usize = 2_000_000;
+
 /// Two links of one robot that touch in every sampled configuration, and nowhere but at a joint between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointContact {
@@ -45,7 +51,7 @@ pub struct JointContact {
 ///
 /// - It is tested ([`Robot::links_can_meet`]). At most two moving joints lie between the links, or one joint value alone moves all
 ///   joints between them (mimic joints follow it), as for a balancing cylinder.
-/// - Their surfaces touch at `start` and in each of 1000 configurations over the joint limits.
+/// - Their surfaces touch at `start` and in each of 1000 configurations over the joint limits, with two million contacts in all at most.
 /// - For one of the joints between them, the same in all configurations, no contact is farther from its origin than the diagonal of the
 ///   smaller link's box.
 /// - Unless one joint value alone moves them, the farthest contacts of any two configurations differ in that distance by no more
@@ -112,6 +118,8 @@ struct Candidate<'r> {
     size_m: f64,
     /// The largest difference between the farthest contacts of two configurations, m.
     most_spread_m: f64,
+    /// Number of contacts so far.
+    contacts: usize,
 }
 
 /// How far from a joint two links touch.
@@ -122,8 +130,11 @@ struct JointRegion {
 }
 
 impl<'r> Candidate<'r> {
-    /// `None` where a link has a surface without triangles.
+    /// `None` where a link has a surface without triangles, or is too large.
     fn new(robot: &'r Robot, a: LinkId, b: LinkId) -> Option<Self> {
+        if ![a, b].iter().all(|l| robot.link_radius(*l) <= LARGEST_M) {
+            return None;
+        }
         let region = |joint| JointRegion { joint, farthest_m: (f64::INFINITY, 0.0) };
         let joints = moving_joints(robot, a, b);
         let follow_one_value = follow_one_value(robot, &joints);
@@ -137,12 +148,20 @@ impl<'r> Candidate<'r> {
         };
         let size_m = diagonal_m(a).min(diagonal_m(b));
         let most_spread_m = if follow_one_value { f64::INFINITY } else { MOST_SPREAD * size_m };
-        Some(Self { robot, links: [a, b], surfaces: [of_link(a)?, of_link(b)?], joints, size_m, most_spread_m })
+        let surfaces = [of_link(a)?, of_link(b)?];
+        Some(Self { robot, links: [a, b], surfaces, joints, size_m, most_spread_m, contacts: 0 })
     }
 
     /// Takes the contacts of a configuration; false where there is none, or one away from the joints.
     fn measure(&mut self, state: &ChainState, workspace: &mut Workspace) -> bool {
+        if !self.links.iter().all(|l| state.link_in_root(*l).translation.length() <= LARGEST_M) {
+            return false;
+        }
         let contacts = self.contacts(state, workspace);
+        self.contacts += contacts.len();
+        if self.contacts > MOST_CONTACTS {
+            return false;
+        }
         let (chain, size_m, most_spread_m) = (&self.robot.chain, self.size_m, self.most_spread_m);
         self.joints.retain_mut(|region| {
             let joint = &chain.joints()[region.joint.0];

@@ -81,7 +81,7 @@ impl<'s> ContactSurfaces<'s> {
                 let mut contacts = Vec::new();
                 if let (Some(m), Some(n)) = (&self.meshes[&a][i], &self.meshes[&b][k]) {
                     for_each_triangle_contact(m, &x_in_world, n, &y_in_world, &mut self.workspace, |c| {
-                        contacts.push(c)
+                        contacts.push(c);
                     });
                 }
                 contacts.sort_by_key(|c| (c.triangle_a, c.triangle_b));

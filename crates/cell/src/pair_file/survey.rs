@@ -5,30 +5,12 @@ use std::path::Path;
 use elbowroom_formats::FormatError;
 use elbowroom_scene::{PairEntry, PairState, Reason};
 
+use super::counts::PairCounts;
 use super::{Note, PairFile, PairRow};
 use crate::{OutOfReachProofs, QueryModel};
 
 /// Configurations that are sampled: as many as the default of `MoveIt`'s Setup Assistant.
 const SAMPLES: u64 = 10_000;
-
-/// How many pairs of each kind a survey found.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct PairCounts {
-    /// Adjacent, without a joint between, or disabled in the SRDF: never tested.
-    pub excluded: usize,
-    /// Proven to be out of reach of each other.
-    pub out_of_reach: usize,
-    /// In contact in all samples.
-    pub always: usize,
-    /// In contact in no sample.
-    pub never: usize,
-    /// In contact at rest, and apart in some samples.
-    pub at_rest: usize,
-    /// Decided by rows of the file before.
-    pub by_hand: usize,
-    /// All others.
-    pub others: usize,
-}
 
 impl PairFile {
     /// The pairs of a model, with what 10,000 configurations of its joint space and its geometry tell of each; for the file
@@ -76,7 +58,7 @@ impl PairFile {
                 found(PairState::Skipped, None, entry.reason.to_string());
                 counts.excluded += 1;
             }
-            // No rows: an object that is attached to a robot later meets the robot's base, and proofs are made anew.
+            // No rows: an object that is attached to a robot later meets the robot's base, and every scene makes its own proofs.
             (reason @ Reason::NoJointBetween, _) => {
                 self.comment(&sides, reason);
                 counts.excluded += 1;
