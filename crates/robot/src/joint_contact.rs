@@ -21,7 +21,7 @@ const MOST_SPREAD: f64 = 0.25;
 /// Error of the triangles of round shapes, as a share of the diagonal of their boxes: some twenty segments around.
 const CHORD_ERROR: f64 = 0.005;
 
-/// Links that reach farther from their own origin, or are farther from the root link, are not looked at, m: by rounding all their
+/// Links that reach farther from their own origin, or are farther from the root link, are not compared, m: by rounding all their
 /// triangles would touch.
 const LARGEST_M: f64 = 1e4;
 /// A pair with more contacts in all configurations together is given up, so that the search ends soon.
