@@ -15,11 +15,13 @@ use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 
 pub use self::blocked_cells::BlockedCells;
+use self::link_maps::LinkMaps;
 pub use self::model::MapModel;
 use self::solids_map::{FilledCells, SolidsMap};
 use crate::plan::request_validation::select_robot;
 
 mod blocked_cells;
+mod link_maps;
 mod model;
 mod solids_map;
 
@@ -137,11 +139,19 @@ pub fn map_with(
         wrong(format!("robot \"{}\": {e}", robot.name), hint)
     };
     progress(MapProgress { share: 0.0, what: &robot.name });
-    let solids_map = SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
+    let maps = LinkMaps::new(cell, spec.robot, |robot| {
+        SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)
+    })?;
+    let every_link = || {
+        maps.of_every_link().ok_or_else(|| {
+            let what = "the file of pairs lets links touch objects: such maps have neither a deadline nor seeds";
+            wrong(what.into(), "--model exact, without --deadline")
+        })
+    };
     let filled = match (request.model, request.deadline) {
-        (MapModel::Solids(model), None) => fill_each(cell, &solids_map, model, progress).map_err(refuse)?,
-        (MapModel::Seeds, None) => expand_each(cell, &solids_map, progress, &wrong)?.map_err(refuse)?,
-        (model, Some(limit)) => fill_until(cell, &solids_map, model, limit, &wrong)?.map_err(refuse)?,
+        (MapModel::Solids(model), None) => fill_each(cell, &maps, model, progress).map_err(refuse)?,
+        (MapModel::Seeds, None) => expand_each(cell, every_link()?, progress, &wrong)?.map_err(refuse)?,
+        (model, Some(limit)) => fill_until(cell, every_link()?, model, limit, &wrong)?.map_err(refuse)?,
     };
     let obstacle = |(object, filled): (&Object, FilledCells)| {
         let FilledCells { blocks, time, spheres } = filled;
@@ -153,12 +163,16 @@ pub fn map_with(
         if let Some(dense) = dense {
             return Ok(dense.blocked());
         }
-        let all: Vec<_> =
-            cell.objects.iter().enumerate().filter(|o| which(ObjectId(o.0))).map(|o| placed(o.1)).collect();
         let report = |share: f64| progress(MapProgress { share, what: "all objects together" });
         // Only maps with the robot's own solids have so many cells, and these know no other models.
         let MapModel::Solids(model) = request.model else { return Ok(0) };
-        solids_map.fill(model, &all, &report).map(|all| all.blocks.blocked()).map_err(refuse)
+        let of_map = |(map, objects): (&SolidsMap, Vec<ObjectId>)| {
+            let solids: Vec<_> = objects.iter().filter(|o| which(**o)).map(|o| placed(&cell.objects[o.0])).collect();
+            map.fill(model, &solids, &report).map(|all| all.blocks.blocked()).map_err(refuse)
+        };
+        // Where links may touch only some objects, cells that several maps block count several times.
+        let counts = maps.each().map(of_map).collect::<Result<Vec<u64>, FormatError>>()?;
+        Ok(counts.into_iter().fold(0, u64::saturating_add))
     };
     let dense = blocked_cells::union(&axes, obstacles.iter().map(|o| &o.blocks));
     let blocked = count(dense.as_ref(), &|_| true)?;
@@ -190,7 +204,7 @@ fn placed(object: &Object) -> (&Shape, Pose) {
 /// The cells that each object blocks.
 fn fill_each(
     cell: &Cell,
-    solids_map: &SolidsMap,
+    maps: &LinkMaps,
     model: ObstacleModel,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
 ) -> Result<Vec<FilledCells>, RobotMapError> {
@@ -198,7 +212,10 @@ fn fill_each(
     let fill = |(number, object): (usize, &Object)| {
         let report = |share: f64| progress(MapProgress { share: (number as f64 + share) / count, what: &object.name });
         report(0.0);
-        solids_map.fill(model, &[placed(object)], &report)
+        match maps.of(ObjectId(number)) {
+            Some(map) => map.fill(model, &[placed(object)], &report),
+            None => maps.first().fill(model, &[], &report),
+        }
     };
     cell.objects.iter().enumerate().map(fill).collect()
 }

@@ -7,7 +7,7 @@ use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
-use elbowroom_scene::Object;
+use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_vision::{Camera, CameraTrackerSettings};
@@ -54,12 +54,26 @@ pub struct Cell {
     pub cameras: Vec<CellCamera>,
     /// Joint-space maps.
     pub maps: Vec<MapSpec>,
+    /// What the file of pairs says. [`Self::robots`] are as in their models.
+    pub pair_rules: PairRules,
+    /// Links that always touch where they are joined: see [`Self::motion_pair_rules`].
+    pub joint_contacts: PairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// The last seal; `None` where the cell is not sealed.
     pub seal: Option<Seal>,
     /// Warnings about the file, none of them fatal.
     pub warnings: Vec<Warning>,
+}
+
+impl Cell {
+    /// The rules for what moves robots: those of the file of pairs, and before them
+    /// [links that always touch where they are joined](elbowroom_robot::joint_contacts).
+    pub fn motion_pair_rules(&self) -> PairRules {
+        let mut rules = self.joint_contacts.clone();
+        rules.extend(self.pair_rules.clone());
+        rules
+    }
 }
 
 /// Avoidance settings of a robot.

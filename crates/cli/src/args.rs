@@ -132,8 +132,9 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
   elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
   elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
+  elbowroom query cell.toml --ask contacts --pairs pairs.toml       all triangles that touch, but for what may touch
 
-Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (see docs/query.md).
+Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level; those of contacts are in docs/query.md.
 Exit status: 1 if --ask collision finds a collision.")]
 pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
@@ -150,7 +151,8 @@ pub(crate) struct QueryArgs {
     /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
-    /// The query: collision, distance, or tolerance=METRES
+    /// The query: collision, distance, tolerance=METRES, point (the collision point and its link) or contacts (all triangles
+    /// that touch)
     #[arg(long, value_name = "WHAT")]
     pub(crate) ask: QueryKind,
     /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input);
@@ -160,6 +162,9 @@ pub(crate) struct QueryArgs {
     /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
+    /// A file of pairs that may touch, and of weights (docs/query.md); beside the cell's own
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) pairs: Option<PathBuf>,
     /// Only these pairs: robots, links as robot/link, objects or regions; with --urdf links, or `robot` for all of them
     #[arg(long, value_name = "A,B;C,D…")]
     pub(crate) between: Option<String>,
@@ -280,10 +285,11 @@ pub(crate) struct MapArgs {
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
   elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
   elbowroom inspect arm.urdf --write-srdf arm.srdf   the pairs that need not be tested
+  elbowroom inspect cell.toml --pairs pairs.toml     all pairs of a cell, to decide on
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {
-    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF)
+    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF); with --pairs also a cell file
     pub(crate) model: PathBuf,
     /// The SRDF of the URDF
     #[arg(long, value_name = "FILE")]
@@ -312,6 +318,13 @@ pub(crate) struct InspectArgs {
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
+    /// Write what sampling and geometry tell of all pairs to this file (docs/query.md); rows with a `reason` stay in it. MODEL may
+    /// be a cell file then
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["states", "brief"])]
+    pub(crate) pairs: Option<PathBuf>,
+    /// With --pairs: skip the pairs that are in contact in all samples
+    #[arg(long, requires = "pairs")]
+    pub(crate) accept: bool,
     /// Write an SRDF for the robot to this file: pairs of links that need not be tested, each with its reason
     #[arg(long, value_name = "FILE.srdf", conflicts_with_all = ["states", "brief"])]
     pub(crate) write_srdf: Option<PathBuf>,

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, PartKind, Recording, RegionTrack, RobotEnding, RobotTrack,
-    RunEnd, Stop,
+    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, Recording, RegionTrack, RobotEnding,
+    RobotTrack, RunEnd, Stop,
 };
 
 use crate::explanation::explanation;
@@ -175,14 +175,19 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
-    lines.extend(
-        robot
-            .collisions
-            .iter()
-            .take(3)
-            .map(|c| vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]),
-    );
+    for c in robot.collisions.iter().take(3) {
+        lines.push(vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]);
+        lines.extend(key_to_ignore(robot, c).map(|key| vec![(format!("{indent}  {key}"), Style::Dim)]));
+    }
     lines
+}
+
+/// What to write where links that are in contact at the start always are.
+fn key_to_ignore(robot: &RobotTrack, collision: &Collision) -> Option<String> {
+    let link = |name: &str| Some(name.strip_prefix(&robot.name)?.strip_prefix('/')?.to_owned());
+    let (a, b) = (link(&collision.a)?, link(&collision.b)?);
+    let at_start = collision.t_s <= 0.0;
+    at_start.then(|| format!("if they always touch: ignore = [[\"{a}\", \"{b}\"]] in [robot.{}]", robot.name))
 }
 
 /// Where the TCP is, the part that was closest to the region that stopped the robot, and what would release it.

@@ -10,7 +10,7 @@ use elbowroom_proximity::{Shape, collides, penetration, separation_within};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-use crate::Object;
+use crate::{Object, PairRules};
 use held_object::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
@@ -38,6 +38,8 @@ pub struct FirstContacts<'a> {
     held: Vec<Option<HeldObject>>,
     /// Links that are not there, such as tools in their stands.
     absent: Vec<(RobotId, LinkId)>,
+    /// Which pairs may touch.
+    rules: PairRules,
 }
 
 /// A pair that touches for the first time.
@@ -117,8 +119,26 @@ impl<'a> FirstContacts<'a> {
         let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, &held, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&Pose::IDENTITY)).collect();
         let placed = objects.iter().map(|o| (o.in_world, o.shape.aabb(&o.in_world))).collect();
-        let absent = Vec::new();
-        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs, held, absent }
+        Self {
+            robots,
+            objects,
+            boxes,
+            object_boxes,
+            placed,
+            last: Vec::new(),
+            pairs,
+            held,
+            absent: Vec::new(),
+            rules: PairRules::default(),
+        }
+    }
+
+    /// Leaves out the pairs that the rules skip, those of carried objects too.
+    #[must_use]
+    pub fn skipping(mut self, rules: PairRules) -> Self {
+        self.rules = rules;
+        self.pairs.retain(|p| self.rules.skipped(p.a, p.b).is_none());
+        self
     }
 
     /// Whether a link is there, from the last [`check`](Self::check) on; at first all are. What touches a link when it comes does
@@ -141,8 +161,10 @@ impl<'a> FirstContacts<'a> {
         for &o in objects {
             for (r, (robot, _)) in self.robots.iter().enumerate() {
                 for link in robot.links_with_colliders().filter(|l| !robot.chain.is_movable(*l)) {
-                    let link = GeometryId::Link { robot: RobotId(r), link };
-                    self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, GeometryId::Object(o)));
+                    let (link, object) = (GeometryId::Link { robot: RobotId(r), link }, GeometryId::Object(o));
+                    if self.rules.skipped(link, object).is_none() {
+                        self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, object));
+                    }
                 }
             }
             let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.max_distance(Vec3::ZERO));
@@ -185,7 +207,7 @@ impl<'a> FirstContacts<'a> {
             self.placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         self.place_held(states);
-        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held, absent } = self;
+        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held, absent, .. } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
         let interval = Interval { now: &now, object_boxes, last, moved_objects, held };
         let is_absent =

@@ -25,14 +25,18 @@ use std::path::Path;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::PairRules;
 
 pub use document::CellFile;
 use read::{Table, Value};
 use robot::robot_of;
 pub use units::QUATERNION_TOLERANCE;
 
-use crate::{Cell, CellLaws, CellRegionId, MapSpec, Units, configure, seal, suggest};
+use crate::{
+    Cell, CellLaws, CellRegionId, CellRobot, MapSpec, PairFile, QueryModel, Units, configure, joint_contacts,
+    rest_pose_contacts, seal, suggest,
+};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -51,6 +55,7 @@ const KEYS: &[&str] = &[
     "camera",
     "monitor",
     "map",
+    "pairs",
     "avoidance",
     "program",
 ];
@@ -86,6 +91,8 @@ impl CellFile {
             avoidance: Vec::new(),
             cameras: Vec::new(),
             maps: Vec::new(),
+            pair_rules: PairRules::default(),
+            joint_contacts: PairRules::default(),
             checksum: String::new(),
             seal: None,
             warnings: Vec::new(),
@@ -98,6 +105,11 @@ impl CellFile {
         }
         object::read(&root, &mut cell)?;
         let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
+        pairs(&root, &mut cell)?;
+        let (rules, found) = joint_contacts::of_cell(&cell);
+        cell.joint_contacts = rules;
+        warnings.extend(found);
+        warnings.extend(contacts_at_start(&cell));
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         // Programs grip what regions guard.
@@ -163,6 +175,25 @@ impl Cell {
     pub fn robot(&self, name: &str) -> Option<RobotId> {
         self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
+}
+
+/// The file of pairs that the cell names.
+fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    let Some(v) = root.get("pairs") else { return Ok(()) };
+    cell.pair_rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
+    Ok(())
+}
+
+/// Warnings of links that touch at the start, with no link with collision geometry between them.
+fn contacts_at_start(cell: &Cell) -> Vec<Warning> {
+    let of_robot = |(i, r): (usize, &CellRobot)| {
+        let link = |link| GeometryId::Link { robot: RobotId(i), link };
+        let rules = cell.motion_pair_rules();
+        let is_new = move |a, b| rules.skipped(link(a), link(b)).is_none();
+        let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, Some(&r.name), is_new);
+        warnings.map(|(what, hint)| Warning::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()
+    };
+    cell.robots.iter().enumerate().flat_map(of_robot).collect()
 }
 
 fn version(root: &Table<'_>) -> Result<()> {

@@ -10,7 +10,7 @@ use elbowroom_spatial::Pose;
 
 use super::read::{Table, Value};
 use super::{flange, models, tools};
-use crate::{CellRobot, JointLimits, Units, rest_pose_contacts, suggest};
+use crate::{CellRobot, JointLimits, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -82,10 +82,6 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
     let states = states(t, &robot.chain, &start, units)?;
-    warnings.extend(
-        rest_pose_contacts::warnings(&robot, &start, Some(name))
-            .map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
-    );
     if t.get("speed").is_some() {
         robot.chain = with_speeds(t, &robot.chain, &limits)?;
     }

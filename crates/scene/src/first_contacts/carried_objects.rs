@@ -56,6 +56,7 @@ impl FirstContacts<'_> {
         let is_held = |o: usize| self.held[o].is_some();
         let others = (0..self.objects.len()).filter(|o| *o != object.0 && (is_held(*o) || is_held(object.0)));
         partners.extend(others.map(|o| GeometryId::Object(ObjectId(o))));
+        partners.retain(|other| self.rules.skipped(id, *other).is_none());
         let Self { robots, objects, boxes, placed, held, .. } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
         let pairs = partners.into_iter().map(|other| {
