@@ -33,6 +33,12 @@ impl ReversalLimiter {
         }
     }
 
+    /// Time until the joint may move in a direction (±1), s.
+    pub(crate) fn wait_s(&self, joint: usize, direction: f64) -> f64 {
+        let reverses = self.sign[joint] * direction < 0.0;
+        if reverses { (self.min_interval_s - self.since_s[joint]).max(0.0) } else { 0.0 }
+    }
+
     /// True where a motion from rest reverses no joint that reversed recently.
     pub(crate) fn allows(&self, velocity: impl Iterator<Item = f64>) -> bool {
         let mut joints = velocity.zip(&self.sign).zip(&self.since_s);

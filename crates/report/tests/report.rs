@@ -166,6 +166,7 @@ fn after_a_collision_the_report_shows_it_instead_of_free() {
         size: 0.0,
         path_deviation_s: 0.1,
         rate: 0.0,
+        escape: elbowroom_avoidance::EscapeState::Free,
     };
     let samples = vec![evading; run.robots[0].samples.len()];
     run.robots[0].avoidance = Some(elbowroom_sim::AvoidanceTrack { samples, ..Default::default() });

@@ -1,7 +1,7 @@
 //! Recording of a run, for the report and the CSV writers.
 
-use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_avoidance::{AvoiderState, EscapeState};
 use elbowroom_cell::CellRegionId;
 use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
 use elbowroom_proximity::Shape;
@@ -171,6 +171,8 @@ pub struct AvoidanceSample {
     pub path_deviation_s: f64,
     /// How fast the path may advance, 0..1.
     pub rate: f64,
+    /// What the search for escapes did.
+    pub escape: EscapeState,
 }
 
 /// State of a robot at one tick.

@@ -34,6 +34,7 @@ use crate::recording::{
     TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
+pub use avoiding_robot::evasion_limits;
 use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
