@@ -6,6 +6,7 @@ use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SweepOptions};
 
+use crate::border::BorderQuery;
 use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
 use crate::escape_check::EscapeClearance;
 use crate::escape_search::{EscapeSearch, EscapeTick};
@@ -53,6 +54,7 @@ pub struct Avoider<'s> {
     controller: ReactiveController,
     sweep: SweepCheck,
     escapes: EscapeSearch<'s>,
+    border: BorderQuery,
     reversals: ReversalLimiter,
     limits: Vec<JointLimit>,
     settings: AvoiderSettings,
@@ -115,6 +117,7 @@ impl<'s> Avoider<'s> {
             controller: ReactiveController::new(chain, &speeds, rules, settings.reactive),
             sweep: SweepCheck::new(scene),
             escapes: EscapeSearch::new(scene, robot, q, settings.escape),
+            border: BorderQuery::new(n),
             query,
             reversals: ReversalLimiter::new(n, settings.min_reversal_interval_s),
             machine: StateMachine::new(settings.stall_timeout_s),
@@ -178,7 +181,8 @@ impl<'s> Avoider<'s> {
         self.tick_constrained(dt, reference, obstacles, speed_override, None)
     }
 
-    /// As [`tick`](Self::tick), with a constraint on escapes, such as regions in which a monitor stops the robot.
+    /// As [`tick`](Self::tick), with a constraint on what leaves the path, such as regions in which a monitor
+    /// stops the robot: its border is a row of the least squares, and escapes keep it.
     ///
     /// # Errors
     /// As [`tick`](Self::tick).
@@ -188,7 +192,7 @@ impl<'s> Avoider<'s> {
         reference: &Reference<'_>,
         obstacles: &DynamicObstacles<'_>,
         speed_override: f64,
-        constraint: Option<&mut dyn PathConstraint>,
+        mut constraint: Option<&mut dyn PathConstraint>,
     ) -> Result<AvoiderOutput, AvoidanceError> {
         let valid = self.check_call(dt, reference);
         let begin = Instant::now();
@@ -202,7 +206,8 @@ impl<'s> Avoider<'s> {
         let sensed = Instant::now();
         let allowed = if speed_override >= MIN_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
         let objective = Objective::of(self.machine.state());
-        let mut correction = self.correct(dt, reference, allowed, objective);
+        let border = constraint.as_mut().map(|c| &mut **c as &mut dyn PathConstraint);
+        let mut correction = self.correct(dt, reference, allowed, objective, border);
         let corrected = Instant::now();
         let braked = !correction.is_reference && self.check(dt, reference, obstacles, objective, &mut correction);
         let checked = Instant::now();
@@ -284,7 +289,14 @@ impl<'s> Avoider<'s> {
     }
 
     /// Writes the next velocity to the workspace.
-    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, objective: Objective) -> Correction {
+    fn correct(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        allowed: f64,
+        objective: Objective,
+        constraint: Option<&mut dyn PathConstraint>,
+    ) -> Correction {
         self.update_bounds(dt);
         self.update_desired(dt, reference, allowed, objective);
         if allowed == 0.0 {
@@ -306,7 +318,14 @@ impl<'s> Avoider<'s> {
         let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
         let (chain, state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
         let task = VelocityTask { desired, bounds, mode: objective.mode(reference) };
-        let reaction = self.controller.react(chain, state, &task, pairs, next);
+        let s = &self.settings.reactive;
+        let reach_m = FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
+        let border = match constraint {
+            // Without an obstacle the robot follows what was planned with the border.
+            Some(c) if pairs.iter().any(|p| p.obstacle.may_move()) => self.border.near(c, &self.command.q, reach_m),
+            _ => None,
+        };
+        let reaction = self.controller.react_within(chain, state, &task, pairs, border, next);
         let progress = progress(next, desired, &self.limits);
         self.command.intent.copy_from_slice(next);
         let is_trapped = self.is_stalled() && progress < MIN_PROGRESS && reaction.overrun_m_s <= 0.0;

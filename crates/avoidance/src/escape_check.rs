@@ -11,12 +11,16 @@ use crate::motion_bounds::MotionBounds;
 use crate::prediction::{motion_between, pose_after, q_after};
 use crate::{DynamicObstacles, Neighbour, ObservedObject};
 
-/// Longest stretch that is swept as a straight joint motion at constant rates, s: at 20 rad/s² the chord is off by 6 mrad.
-const STRETCH_S: f64 = 0.05;
+/// Longest stretch that is swept as a straight joint motion at constant rates, s.
+const STRETCH_S: f64 = 0.2;
+/// Share of the clearance by which the motion may deviate from the straight one: the rest is what a proof guarantees.
+const CHORD_SHARE: f64 = 0.5;
 /// Longest stretch of a robot at rest, s: a predicted curve is a chord in it.
 const REST_STRETCH_S: f64 = 0.25;
+/// Shortest stretch of a proof, s.
+const MIN_STRETCH_S: f64 = 0.04;
 /// Shortest stretch of a proof against a constraint, s.
-const MIN_STRETCH_S: f64 = 1e-3;
+const MIN_CONSTRAINT_STRETCH_S: f64 = 1e-3;
 /// Speed below which an obstacle is stationary, m/s and rad/s.
 const STATIONARY: f64 = 0.02;
 
@@ -67,12 +71,15 @@ pub(crate) struct MotionCheck {
 pub(crate) struct EscapeCheck<'s> {
     scene: &'s Scene,
     robot: RobotId,
+    tip: LinkId,
     checker: Checker<'s>,
     state: SceneState,
     bounds: MotionBounds,
     /// Ends of a stretch.
     from: Vec<f64>,
     to: Vec<f64>,
+    /// Deviation of each joint from a straight motion.
+    deviation: Vec<f64>,
     /// Per robot: the end of its stretch.
     robots_to: Vec<Vec<f64>>,
     /// Largest distance of a point of an object from its origin, m.
@@ -95,11 +102,13 @@ impl<'s> EscapeCheck<'s> {
         Self {
             scene,
             robot,
+            tip: scene.robots()[robot.0].robot.chain.tip(),
             checker: Checker::new(scene, CheckerOptions::default()),
             state: SceneState::new(scene),
             bounds: MotionBounds::new(&scene.robots()[robot.0].robot),
             from: vec![0.0; dof],
             to: vec![0.0; dof],
+            deviation: vec![0.0; dof],
             robots_to: scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect(),
             object_radii: scene
                 .objects()
@@ -133,7 +142,7 @@ impl<'s> EscapeCheck<'s> {
                 first.gap_m = first.gap_m.min(distance.metres);
                 let by_robot = if resting { 0.0 } else { self.bounds.max_travel(&motion.trajectory.max_speeds, 1.0) };
                 let free_s = (distance.lower_bound - clearance_m) / (speed + by_robot);
-                let stretch_s = if resting { REST_STRETCH_S } else { STRETCH_S };
+                let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
                 if free_s > stretch_s {
                     t += free_s;
                     continue;
@@ -151,8 +160,7 @@ impl<'s> EscapeCheck<'s> {
                     let (id, point) =
                         if hit.a == GeometryId::Object(object.object) { (hit.b, hit.on_b) } else { (hit.a, hit.on_a) };
                     // A carried object is moved by the last link.
-                    let tip = self.scene.robots()[self.robot.0].robot.chain.tip();
-                    let link = if let GeometryId::Link { link, .. } = id { link } else { tip };
+                    let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
                     until_s = t + hit.time * (end - t);
                     let velocity = object.motion.velocity_at(point - path.start.translation);
                     first.hit = Some(PredictedHit { time_s: until_s, link, point, velocity });
@@ -183,7 +191,8 @@ impl<'s> EscapeCheck<'s> {
         let (own, mut t) = (self.robot, 0.0);
         while t < until_s {
             let resting = self.set_time(motion, t)?;
-            let end = (t + if resting { REST_STRETCH_S } else { STRETCH_S }).min(until_s);
+            let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
+            let end = (t + stretch_s).min(until_s);
             motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
             let to = &mut self.robots_to[other.robot.0];
             q_after(other, motion.begins_s + t, to);
@@ -195,8 +204,7 @@ impl<'s> EscapeCheck<'s> {
             if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
                 let is_own = |id: GeometryId| matches!(id, GeometryId::Link { robot, .. } if robot == own);
                 let (id, point) = if is_own(hit.a) { (hit.a, hit.on_a) } else { (hit.b, hit.on_b) };
-                let tip = self.scene.robots()[own.0].robot.chain.tip();
-                let link = if let GeometryId::Link { link, .. } = id { link } else { tip };
+                let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
                 // The direction from which it comes: from its point to ours.
                 let from = if is_own(hit.a) { hit.on_b } else { hit.on_a };
                 return Ok(Some(PredictedHit {
@@ -225,7 +233,7 @@ impl<'s> EscapeCheck<'s> {
         while t < end_s {
             self.set_time(motion, t)?;
             self.set_moving(obstacles, motion.begins_s + t)?;
-            let end = (t + STRETCH_S).min(end_s);
+            let end = (t + self.stretch_s(motion, t, clearance_m)).min(end_s);
             motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
             let moved = [SweepMove::Robot { robot: self.robot, to: &self.to }];
             let mut pairs = self.checker.between(Selection::Robot(self.robot), Selection::All);
@@ -253,13 +261,26 @@ impl<'s> EscapeCheck<'s> {
             // Comparisons with NaN are false.
             if left_m >= bound_m {
                 (t, step_s) = (end, (2.0 * step_s).min(STRETCH_S));
-            } else if left_m >= 0.0 && step_s > MIN_STRETCH_S {
+            } else if left_m >= 0.0 && step_s > MIN_CONSTRAINT_STRETCH_S {
                 step_s *= 0.5;
             } else {
                 return false;
             }
         }
         true
+    }
+
+    /// Duration of the stretch from `t_s` on in which the motion is straight, but for a share of the clearance.
+    fn stretch_s(&mut self, motion: &TimedMotion<'_>, t_s: f64, clearance_m: f64) -> f64 {
+        let (from, mut stretch_s) = (motion.elapsed_s + t_s, STRETCH_S);
+        while stretch_s > MIN_STRETCH_S {
+            motion.trajectory.chord_deviation(from, from + stretch_s, &mut self.deviation);
+            if self.bounds.max_travel(&self.deviation, 1.0) <= CHORD_SHARE * clearance_m {
+                break;
+            }
+            stretch_s *= 0.5;
+        }
+        stretch_s.max(MIN_STRETCH_S)
     }
 
     /// Moves the robot to its configuration after `t_s` seconds; true where it rests from then on.

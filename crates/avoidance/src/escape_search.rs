@@ -24,6 +24,12 @@ const ENOUGH_GAP_M: f64 = 0.15;
 const BETTER_GAP_M: f64 = 0.02;
 /// Difference of durations by which another escape is better at the same gap, s.
 const BETTER_DURATION_S: f64 = 0.2;
+/// Where a stop is free for longer than this (s), the search pauses …
+const UNHURRIED_S: f64 = 1.5;
+/// … for so many ticks.
+const PAUSE_TICKS: usize = 3;
+/// A better escape than the known one is looked for in every so many examined ticks.
+const IMPROVE_TICKS: usize = 4;
 /// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
 const OFF_ESCAPE: f64 = 1e-3;
 
@@ -93,10 +99,17 @@ pub(crate) struct EscapeSearch<'s> {
     known: EscapeTrajectory,
     known_target: Vec<f64>,
     is_known: bool,
+    /// The known escape begins at the present state.
+    is_fresh: bool,
+    /// What the last examined tick found, and the ticks until the next one.
+    state: EscapeState,
+    pause: usize,
     /// Time since the robot follows it, s; `None` where it does not.
     followed_s: Option<f64>,
     /// Number of the next target.
     index: usize,
+    /// Number of ticks in which the known escape was examined.
+    examined: usize,
     chain: ChainState,
     columns: Vec<[f64; 6]>,
     point: Vec<Vec3>,
@@ -138,8 +151,12 @@ impl<'s> EscapeSearch<'s> {
             known: trajectory(),
             known_target: q.to_vec(),
             is_known: false,
+            is_fresh: false,
+            state: EscapeState::Free,
+            pause: 0,
             followed_s: None,
             index: 0,
+            examined: 0,
             chain: ChainState::new(&scene.robots()[robot.0].robot.chain),
             columns: vec![[0.0; 6]; n],
             point: vec![Vec3::ZERO; n],
@@ -150,6 +167,7 @@ impl<'s> EscapeSearch<'s> {
     /// Forgets the known escape.
     pub(crate) fn reset(&mut self) {
         (self.is_known, self.followed_s) = (false, None);
+        (self.state, self.pause) = (EscapeState::Free, 0);
     }
 
     /// Replaces the next command (rad/s or m/s) by that of the known escape where no escape would be left after it.
@@ -165,11 +183,19 @@ impl<'s> EscapeSearch<'s> {
             self.reset();
             return EscapeState::Free;
         }
+        if self.pause > 0 && self.followed_s.is_none() {
+            self.pause -= 1;
+            self.is_fresh = false;
+            return self.state;
+        }
         // A scene that cannot be checked has no escape: the rules remain.
         let state = self.examine(tick, &mut constraint, next).unwrap_or(EscapeState::Unknown);
         if state == EscapeState::Free {
+            let pause = self.pause;
             self.reset();
+            self.pause = pause;
         }
+        self.state = state;
         // An error was reported above: poses that can be placed can be placed again.
         let _ = self.check.reset(tick.obstacles);
         state
@@ -187,6 +213,8 @@ impl<'s> EscapeSearch<'s> {
         };
         self.set_next(tick, next);
         let stop = self.check_stop(tick, clearance.moving_m)?;
+        let is_unhurried = stop.hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
+        self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
         let Some(hit) = stop.hit else { return Ok(EscapeState::Free) };
         self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
         if let Some(followed_s) = self.followed_s {
@@ -195,11 +223,27 @@ impl<'s> EscapeSearch<'s> {
         if self.find(tick, &hit, clearance, constraint)? {
             return Ok(EscapeState::Known);
         }
+        // The command would lose the last escape: the robot takes it.
+        self.is_known = self.is_known && (self.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
         if self.is_known {
-            // The command would lose the last escape: the robot takes it.
             return self.follow(tick, 0.0, &hit, clearance, constraint, next);
         }
         Ok(EscapeState::Unknown)
+    }
+
+    /// Moves the beginning of the known escape to the present state; true where it is still free.
+    fn is_free_from_now(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        clearance: EscapeClearance,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+    ) -> Result<bool, SceneError> {
+        self.known.set_target(&self.known_target, &tick.start);
+        let horizon_s = self.settings.horizon_s;
+        let motion = TimedMotion { trajectory: &self.known, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
+        Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.hit.is_none()
+            && self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
+            && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
     }
 
     /// The robot after a command.
@@ -263,7 +307,9 @@ impl<'s> EscapeSearch<'s> {
             self.examine_trial(tick, clearance, constraint)?;
             // One other, in case it is better.
             if self.best.is_some() {
-                attempts = usize::from(self.best.is_some_and(|b| b.gap_m < ENOUGH_GAP_M));
+                self.examined += 1;
+                let may_improve = self.best.is_some_and(|b| b.gap_m < ENOUGH_GAP_M);
+                attempts = usize::from(may_improve && self.examined % IMPROVE_TICKS == 0);
             }
         }
         if attempts > 0 {
@@ -298,7 +344,7 @@ impl<'s> EscapeSearch<'s> {
             return Ok(());
         }
         self.best = Some(escape);
-        self.is_known = true;
+        (self.is_known, self.is_fresh) = (true, true);
         std::mem::swap(&mut self.known, &mut self.trial);
         self.known_target.copy_from_slice(&self.trial_target);
         Ok(())

@@ -11,8 +11,8 @@ pub(crate) const ROUND: usize = 50;
 const SIZES_S: [f64; 3] = [0.4, 0.8, 1.4];
 /// Joints that move alone: the first three move the most.
 const SINGLE_JOINTS: usize = 3;
-/// Reserve to the position limits, rad or m.
-const LIMIT_RESERVE: f64 = 1e-3;
+/// Reserve to the position limits, rad or m: a tick at full speed, so that a stop at the limit is never harder than others.
+const LIMIT_RESERVE: f64 = 0.02;
 
 /// What the targets evade, in the frame of the robot's root.
 #[derive(Debug, Clone, Copy)]

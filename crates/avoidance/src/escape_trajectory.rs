@@ -37,7 +37,7 @@ impl EscapeTrajectory {
         for (j, profile) in self.profiles.iter_mut().enumerate() {
             let full = &start.limits[j];
             let limit = JointLimit { speed: full.speed * start.speed_share, ..*full };
-            let wait_s = |direction| start.reversals.wait_s(j, direction);
+            let wait_s = |direction| start.reversals.wait_s(j, start.qd[j], full.speed, direction);
             *profile = JointProfile::to_rest_at(target[j], start.q[j], start.qd[j], &limit, wait_s);
         }
         self.update_summary();
@@ -60,6 +60,12 @@ impl EscapeTrajectory {
     /// True where all joints are within `tolerance` of their values after `t_s` seconds.
     pub(crate) fn is_near(&self, t_s: f64, q: &[f64], tolerance: f64) -> bool {
         q.iter().zip(&self.profiles).all(|(q, p)| (p.at(t_s).0 - q).abs() <= tolerance)
+    }
+
+    /// Writes a bound of the deviation from the straight motion between two times to `out`, rad or m per joint.
+    pub(crate) fn chord_deviation(&self, from_s: f64, to_s: f64, out: &mut [f64]) {
+        let square = (to_s - from_s) * (to_s - from_s);
+        out.iter_mut().zip(&self.profiles).for_each(|(d, p)| *d = p.max_acceleration(from_s, to_s) * square / 8.0);
     }
 
     /// Writes the joint values and velocities after `t_s` seconds.

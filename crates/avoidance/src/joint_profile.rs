@@ -76,6 +76,19 @@ impl JointProfile {
         self.phases.iter().map(|p| p.duration_s).sum()
     }
 
+    /// Largest acceleration from `from_s` to `to_s`, rad/s² or m/s².
+    pub(crate) fn max_acceleration(&self, from_s: f64, to_s: f64) -> f64 {
+        let (mut begin, mut max) = (0.0, 0.0_f64);
+        for phase in &self.phases {
+            let end = begin + phase.duration_s;
+            if begin < to_s && end > from_s {
+                max = max.max(phase.acceleration.abs());
+            }
+            begin = end;
+        }
+        max
+    }
+
     /// Joint value and velocity after `t_s` seconds.
     pub(crate) fn at(&self, t_s: f64) -> (f64, f64) {
         let (mut q, mut qd, mut left) = (self.q, self.qd, t_s);

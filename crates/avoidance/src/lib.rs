@@ -11,6 +11,7 @@
 //! crate.
 
 mod avoider;
+mod border;
 mod detour;
 mod dynamic_obstacles;
 mod error;
@@ -43,6 +44,7 @@ mod sweep_check;
 mod velocity_bounds;
 
 pub use avoider::Avoider;
+pub use border::Border;
 pub use dynamic_obstacles::{DynamicObstacles, Neighbour, ObservedObject};
 pub use error::AvoidanceError;
 pub use escape_search::{EscapeSettings, EscapeState};

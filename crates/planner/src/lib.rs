@@ -41,7 +41,7 @@ pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 pub use prioritized_planner::{PrioritizedMotion, PrioritizedPlanner, RobotGoal};
 pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
-    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting,
+    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
     RrtConnectSettings, ShortcuttingSettings,
 };
 pub use task_space_region::TaskSpaceRegion;

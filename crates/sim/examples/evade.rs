@@ -1,7 +1,7 @@
 //! Statistics of many runs with and without avoidance, with an obstacle that crosses the workspace at random.
 //! Collisions are detected by continuous sweeps of the exact scene from tick to tick.
 //!
-//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL]`
+//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N]`
 //!
 //! Environment: `EVADE_ONLY=135,301` makes these runs only, and prints what the arm did; `EVADE_EXPLAIN=5000` searches an escape
 //! with so many motions from several instants before each hit, against the true path of the obstacle.
@@ -35,13 +35,20 @@ const AFTER_HIT_S: f64 = 1.5;
 const STATIONARY_SHARE: f64 = 1e-4;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1);
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let noise_mm = option(&mut arguments, "--noise-mm")?;
+    let delay_ms = option(&mut arguments, "--delay-ms")?;
+    let mut arguments = arguments.into_iter();
     let runs: usize = arguments.next().map_or(Ok(100), |n| n.parse())?;
     let file = arguments.next().map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pallet/cell.toml")),
         PathBuf::from,
     );
-    let cell = Cell::load(file)?;
+    let mut cell = Cell::load(file)?;
+    for spec in cell.avoidance.iter_mut().flatten() {
+        spec.noise_m = noise_mm.map_or(spec.noise_m, |mm| 1e-3 * mm);
+        spec.delay_s = delay_ms.map_or(spec.delay_s, |ms| 1e-3 * ms);
+    }
     let seen =
         cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();
     let moves = |o: &&ObjectId| cell.moving_objects.iter().any(|m| m.object == **o);
@@ -78,6 +85,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     statistics.print();
     Ok(())
+}
+
+/// Takes an option and its number from the arguments.
+fn option(arguments: &mut Vec<String>, name: &str) -> Result<Option<f64>, Box<dyn std::error::Error>> {
+    let Some(at) = arguments.iter().position(|a| a == name) else { return Ok(None) };
+    let number = arguments.get(at + 1).ok_or_else(|| format!("{name} needs a number"))?.parse()?;
+    arguments.drain(at..=at + 1);
+    Ok(Some(number))
 }
 
 /// The runs of one object path, without avoidance and with it.

@@ -14,6 +14,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Scene;
 use elbowroom_spatial::FrameMotion;
 
+use super::observation::ObservationModel;
 use crate::motion::ProgramClock;
 use crate::recording::{AvoidanceSample, AvoidanceTrack, ReplanRecord, RunEvent, TickTimes};
 
@@ -221,11 +222,13 @@ impl<'s> AvoidingRobot<'s> {
         constraint: Option<&mut dyn PathConstraint>,
     ) {
         let evaded = |object: ObjectId| self.spec.objects.contains(&object);
-        let moving = cell.moving_objects.iter().map(|m| ObservedObject {
-            object: m.object,
-            in_world: m.pose(t_s),
-            motion: m.motion(t_s),
-            known: !evaded(m.object),
+        let AvoidanceSpec { noise_m, delay_s, .. } = *self.spec;
+        let exact = ObservationModel { noise_m: 0.0, delay_s: 0.0 };
+        // What the program knows is not observed.
+        let model = |known: bool| if known { exact } else { ObservationModel { noise_m, delay_s } };
+        let moving = cell.moving_objects.iter().map(|m| {
+            let known = !evaded(m.object);
+            model(known).observe(m, t_s, known)
         });
         let is_fixed = |o: &&ObjectId| !cell.moving_objects.iter().any(|m| m.object == **o);
         let fixed = self.spec.objects.iter().filter(is_fixed).map(|&object| ObservedObject {

@@ -5,6 +5,7 @@ mod carried_parts;
 mod deadlock_detector;
 mod fault_injection;
 mod idle_detector;
+mod observation;
 mod outcome;
 mod override_delay;
 mod region_recorder;
