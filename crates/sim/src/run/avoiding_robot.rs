@@ -2,8 +2,8 @@
 
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{
-    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
-    PathKind, Reference,
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
+    ObservedObject, PathKind, Reference,
 };
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
@@ -196,7 +196,10 @@ impl<'s> AvoidingRobot<'s> {
         if !(clock.waiting() && self.output.rate == 0.0) {
             clock.advance(cell.tick_s, allowed * self.output.rate);
         }
-        let mut constraint = regions(REPLANNING.escape_warning_share);
+        // Only what may leave the path needs the regions.
+        let is_near = self.output.nearest_m.is_finite() || self.output.escape != EscapeState::Free;
+        let may_leave = allowed > 0.0 && (is_near || !self.is_on_path());
+        let mut constraint = may_leave.then(|| regions(REPLANNING.escape_warning_share)).flatten();
         let constraint = constraint.as_mut().map(|c| c as &mut dyn PathConstraint);
         self.step(cell, clock, states, t_s, allowed, constraint);
         let now = self.output.state;
