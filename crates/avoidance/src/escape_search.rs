@@ -93,7 +93,7 @@ pub(crate) struct EscapeSearch<'s> {
     next_qd: Vec<f64>,
     stop: EscapeTrajectory,
     trial: EscapeTrajectory,
-    best: Option<Escape>,
+    best: Option<EscapeCandidate>,
     trial_target: Vec<f64>,
     /// The escape that is known: it begins after the last command.
     known: EscapeTrajectory,
@@ -118,12 +118,12 @@ pub(crate) struct EscapeSearch<'s> {
 
 /// Quality of an escape.
 #[derive(Debug, Clone, Copy)]
-struct Escape {
+struct EscapeCandidate {
     gap_m: f64,
     duration_s: f64,
 }
 
-impl Escape {
+impl EscapeCandidate {
     /// Largest gap first, as far as it matters, then the least time.
     fn is_better_than(&self, other: &Self) -> bool {
         let [own, others] = [self, other].map(|e| e.gap_m.min(ENOUGH_GAP_M));
@@ -334,7 +334,7 @@ impl<'s> EscapeSearch<'s> {
         let horizon_s = self.settings.horizon_s;
         let motion = TimedMotion { trajectory: &self.trial, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
         let moving = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
-        let escape = Escape { gap_m: moving.gap_m, duration_s: self.trial.duration_s };
+        let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.duration_s };
         let is_worse = self.best.is_some_and(|best| !escape.is_better_than(&best));
         if moving.hit.is_some()
             || is_worse

@@ -1,4 +1,4 @@
-//! Escapes from fast obstacles, and borders that are kept.
+//! Fast obstacles that are escaped from, and borders that are kept.
 
 mod common;
 
