@@ -141,7 +141,8 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// As [`SceneState::attach_at`](elbowroom_scene::SceneState::attach_at).
     pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
-        self.query.attach(object, attachment)
+        self.query.attach(object, attachment.clone())?;
+        Ok(self.escapes.attach(object, attachment)?)
     }
 
     /// Detaches an object: it is an obstacle again, where it is now.
@@ -149,7 +150,8 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// It is not attached.
     pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
-        self.query.detach(object)
+        let in_world = self.query.detach(object)?;
+        Ok(self.escapes.detach(object, in_world)?)
     }
 
     /// The commanded joint values, rad or m.

@@ -2,9 +2,11 @@
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_planner::PathConstraint;
-use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, SceneState, Selection, SweepMove, SweepOptions};
-use elbowroom_spatial::Vec3;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_scene::{
+    Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection, SweepMove, SweepOptions,
+};
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::escape_trajectory::EscapeTrajectory;
 use crate::motion_bounds::MotionBounds;
@@ -99,13 +101,14 @@ pub(crate) fn robot_moves(robot: &Neighbour<'_>) -> bool {
 impl<'s> EscapeCheck<'s> {
     pub(crate) fn new(scene: &'s Scene, robot: RobotId) -> Self {
         let dof = scene.robots()[robot.0].robot.chain.dof();
+        let state = SceneState::new(scene);
         Self {
             scene,
             robot,
             tip: scene.robots()[robot.0].robot.chain.tip(),
             checker: Checker::new(scene, CheckerOptions::default()),
-            state: SceneState::new(scene),
-            bounds: MotionBounds::new(&scene.robots()[robot.0].robot),
+            bounds: MotionBounds::of_state(scene, &state, robot),
+            state,
             from: vec![0.0; dof],
             to: vec![0.0; dof],
             deviation: vec![0.0; dof],
@@ -113,9 +116,24 @@ impl<'s> EscapeCheck<'s> {
             object_radii: scene
                 .objects()
                 .iter()
-                .map(|o| o.shape.aabb(&elbowroom_spatial::Pose::IDENTITY).max_distance(Vec3::ZERO))
+                .map(|o| o.shape.aabb(&Pose::IDENTITY).max_distance(Vec3::ZERO))
                 .collect(),
         }
+    }
+
+    /// Attaches an object to a link of any robot.
+    pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), SceneError> {
+        self.state.attach_at(self.scene, object, attachment)?;
+        self.bounds = MotionBounds::of_state(self.scene, &self.state, self.robot);
+        Ok(())
+    }
+
+    /// Detaches an object, which is there now.
+    pub(crate) fn detach(&mut self, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
+        self.state.detach(self.scene, object)?;
+        self.state.place(self.scene, object, in_world)?;
+        self.bounds = MotionBounds::of_state(self.scene, &self.state, self.robot);
+        Ok(())
     }
 
     /// Where a motion first comes nearer than `clearance_m` to something that moves and that `counts`: objects by their

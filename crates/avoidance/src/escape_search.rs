@@ -9,9 +9,9 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::PathConstraint;
-use elbowroom_robot::RobotId;
-use elbowroom_scene::{Scene, SceneError};
-use elbowroom_spatial::Vec3;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Attachment, Scene, SceneError};
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::DynamicObstacles;
 use crate::escape_check::{EscapeCheck, EscapeClearance, MotionCheck, PredictedHit, TimedMotion, moves, robot_moves};
@@ -162,6 +162,18 @@ impl<'s> EscapeSearch<'s> {
             point: vec![Vec3::ZERO; n],
             rest_q: q.to_vec(),
         }
+    }
+
+    /// Attaches an object to a link of any robot. The known escape was proven without it.
+    pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), SceneError> {
+        self.reset();
+        self.check.attach(object, attachment)
+    }
+
+    /// Detaches an object, which is there now.
+    pub(crate) fn detach(&mut self, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
+        self.reset();
+        self.check.detach(object, in_world)
     }
 
     /// Forgets the known escape.
