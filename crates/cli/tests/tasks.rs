@@ -420,3 +420,86 @@ start = "home"
     let answer = type_command(&dir, "query cell.toml --ask collision --between left,right --states both.csv", 0);
     assert!(rows(&answer.stdout).iter().all(|row| row[1] == "0"));
 }
+
+/// 21: which triangles touch; 22: one file of pairs for all verbs.
+#[test]
+fn contacts_of_an_arm_and_a_file_of_pairs() {
+    let Some(data) = data() else { return };
+    let cell = |pairs: &str| {
+        format!(
+            "{HEAD}{pairs}[robot.arm]\nmodel = \"{}\"\nstart = [0, 0, 0, 0, 0, 0]\n\
+             [object.rack]\nshape = \"box\"\nat = [1000, 0, 1500]\nsize = [500, 400, 500]\n",
+            urdf(&data, "fanuc_m10ia")
+        )
+    };
+    let dir = with_cell(&cell(""));
+    let ask = "query cell.toml --ask collision --between arm,rack";
+    let collides = type_command(&dir, ask, 1);
+    assert_eq!(rows(&collides.stdout)[0][1], "1");
+    let triangles = type_command(&dir, "query cell.toml --ask contacts --between arm,rack", 1);
+    assert!(rows(&triangles.stdout).iter().all(|row| row[1].starts_with("arm/") && row[2] == "rack"));
+    type_command(&dir, "query cell.toml --ask point --between arm,rack", 1);
+    let arm = urdf(&data, "fanuc_m10ia");
+    type_command(&dir, &format!("inspect {arm} --brief --pairs found.toml"), 0);
+    let rule = "version = 1\npairs = [{ a = \"arm\", b = \"rack\", reason = \"a soft cover\" }]\n";
+    std::fs::write(dir.path().join("pairs.toml"), rule).unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell("pairs = \"pairs.toml\"\n")).unwrap();
+    type_command(&dir, "run cell.toml", 0);
+    type_command(&dir, ask, 0);
+}
+
+/// 23: a tool is exchanged; 24: a region counts what the hand holds.
+#[test]
+fn a_tool_change_and_a_part_that_a_region_counts() {
+    let Some(data) = data() else { return };
+    let cell = |program: &str| {
+        format!(
+            r#"{HEAD}[robot.kr]
+model = "{}"
+start = [0, -90, 90, 0, 90, 0]
+[robot.kr.tools.gripper]
+tcp = {{ at = [0, 0, 150] }}
+box = {{ at = [0, 0, 75], size = [60, 60, 148] }}
+[robot.kr.tools.torch]
+tcp = {{ at = [0, 0, 300] }}
+box = {{ at = [0, 0, 150], size = [40, 40, 296] }}
+mounted = false
+[object.bar]
+shape = "box"
+at = [1000, 0, 500]
+size = [60, 1200, 60]
+[region.aisle]
+shape = "box"
+from = [-2000, 800, 0]
+to = [2500, 900, 2500]
+kind = "forbidden"
+warning = 150
+guards = ["tool"]
+[program.kr]
+steps = [
+  {{ move = "planned", to = {{ at = [1000, 0, 531], rpy = [180, 0, 0] }} }},
+  {program}
+]
+"#,
+            urdf(&data, "kuka_kr16_2")
+        )
+    };
+    // Moved to the side by 400 mm: the bar would be 200 mm inside, the hand is 400 mm away.
+    let aside = "{ move = \"linear\", to = { at = [1000, 400, 700], rpy = [180, 0, 0] }, speed = 200 },";
+    let empty = type_command(&with_cell(&cell(aside)), "run cell.toml --json", 0).json();
+    assert_eq!(empty["robots"][0]["outcome"], "finished");
+    let held = type_command(&with_cell(&cell(&format!("{{ grip = \"bar\" }},\n  {aside}"))), "run cell.toml --json", 0);
+    let (robot, region) = (&held.json()["robots"][0], &held.json()["regions"][0]);
+    assert_eq!((robot["outcome"].as_str(), robot["by"].as_str()), (Some("stopped"), Some("aisle")));
+    assert_eq!((robot["part"].as_str(), robot["part_kind"].as_str()), (Some("bar"), Some("load")));
+    assert_eq!(region["entered"], false);
+    let exchange = "{ move = \"linear\", to = { at = [1000, 0, 700], rpy = [180, 0, 0] }, speed = 200 },\n  { tool = \"torch\" },\n  \
+                    { move = \"linear\", to = { at = [1000, 0, 700], rpy = [180, 0, 0] }, speed = 200 },";
+    let dir = with_cell(&cell(exchange));
+    let json = type_command(&dir, "run cell.toml --json --out out", 0).json();
+    assert_eq!(json["robots"][0]["outcome"], "finished");
+    let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+    let last = rows(&trace).pop().unwrap();
+    // The torch's tip is now where the gripper's was: the arm has moved back by 150 mm.
+    assert!((last[10].parse::<f64>().unwrap() - 0.7).abs() < 1e-4, "{last:?}");
+}
