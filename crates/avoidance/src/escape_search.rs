@@ -321,7 +321,7 @@ impl<'s> EscapeSearch<'s> {
             if self.best.is_some() {
                 self.examined += 1;
                 let may_improve = self.best.is_some_and(|b| b.gap_m < ENOUGH_GAP_M);
-                attempts = usize::from(may_improve && self.examined % IMPROVE_TICKS == 0);
+                attempts = usize::from(may_improve && self.examined.is_multiple_of(IMPROVE_TICKS));
             }
         }
         if attempts > 0 {

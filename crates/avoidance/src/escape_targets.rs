@@ -54,7 +54,7 @@ pub(crate) fn target(
         n if n < 2 + by_direction + single => {
             let n = n - 2 - by_direction;
             out.copy_from_slice(rest_q);
-            let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
             let (joint, size) = ((n / 2) % joints, SIZES_S[n / (2 * joints)]);
             out[joint] += sign * size * start.limits[joint].speed;
         }

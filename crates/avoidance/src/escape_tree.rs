@@ -1,7 +1,7 @@
 //! Offline search in configuration, velocity and time: is there any escape?
 //!
 //! A tree of states is grown by random time-optimal joint motions from random states of the tree, each kept as long as it is
-//! free (a kinodynamic RRT, LaValle and Kuffner 2001, "Randomized kinodynamic planning"). It answers whether a hit could
+//! free (a kinodynamic RRT, `LaValle` and Kuffner 2001, "Randomized kinodynamic planning"). It answers whether a hit could
 //! have been evaded, given the motion of all that moves; a controller has no time for it.
 
 use elbowroom_robot::RobotId;

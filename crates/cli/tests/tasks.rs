@@ -1,6 +1,8 @@
 //! What users do in their second hour, as typed commands on robots that the project does not have. Each test prints the command
 //! and what it answered: `cargo test -p elbowroom-cli --test tasks -- --nocapture`.
 
+#![allow(clippy::print_stdout, reason = "shows what users type and see")]
+
 mod common;
 
 use std::fmt::Write as _;
@@ -203,8 +205,8 @@ fn replay_a_recording_in_degrees() {
     let dir = tempfile::tempdir().unwrap();
     // The first 20 s, as another program would have written them.
     let text = std::fs::read_to_string(recording).unwrap();
-    let text: String = text.lines().take(5_000).map(|row| format!("{}\n", row.replace(',', ";"))).collect();
-    std::fs::write(dir.path().join("recorded.csv"), text).unwrap();
+    let rows_of_20_s: Vec<String> = text.lines().take(5_000).map(|row| row.replace(',', ";")).collect();
+    std::fs::write(dir.path().join("recorded.csv"), rows_of_20_s.join("\n")).unwrap();
     let cell = format!(
         r#"{HEAD}[robot.tx40]
 model = "{}"

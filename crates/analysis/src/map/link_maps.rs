@@ -28,14 +28,14 @@ impl LinkMaps {
             let map = match links_that_may_touch(cell, robot, object) {
                 None => None,
                 Some(links) if links.is_empty() => Some(0),
-                Some(links) => Some(match maps.others.iter().position(|(known, _)| *known == links) {
-                    Some(known) => known + 1,
-                    None => {
+                Some(links) => {
+                    let known = maps.others.iter().position(|(known, _)| *known == links);
+                    if known.is_none() {
                         let solids = build(&without_colliders(at, &links))?;
                         maps.others.push((links, solids));
-                        maps.others.len()
                     }
-                }),
+                    Some(known.map_or(maps.others.len(), |known| known + 1))
+                }
             };
             maps.of_object.push(map);
         }

@@ -44,12 +44,10 @@ impl UrdfParser<'_> {
         let lacks = |j: &UrdfJoint| j.kind.moves() && j.mimic.is_none() && j.limits.velocity.is_none();
         let Some(first) = joints.iter().position(lacks) else { return };
         let names: Vec<_> = joints.iter().filter(|j| lacks(j)).map(|j| show_name(&j.name)).collect();
-        let what = match &names[..] {
-            [name] => format!("the joint `{name}` has no velocity limit, or 0"),
-            _ => {
-                let list = list_names(names.iter().map(String::as_str));
-                format!("{} joints have no velocity limit, or 0: {list}", names.len())
-            }
+        let list = list_names(names.iter().map(String::as_str));
+        let what = match names.len() {
+            1 => format!("the joint {list} has no velocity limit, or 0"),
+            n => format!("{n} joints have no velocity limit, or 0: {list}"),
         };
         let node = xml::child(nodes[first], "limit").unwrap_or(nodes[first]);
         self.warn(node, what, "<limit velocity=\"1.5\" …/>, in rad/s or m/s");

@@ -27,8 +27,8 @@ impl ObservationModel {
         let mut seen = object.pose(seen_s);
         if self.noise_m > 0.0 {
             let [now, before] = [seen_s, seen_s - VELOCITY_WINDOW_S].map(|t| self.error(object, t));
-            seen.translation = seen.translation + now;
-            motion.velocity = motion.velocity + (now - before) / VELOCITY_WINDOW_S;
+            seen.translation += now;
+            motion.velocity += (now - before) / VELOCITY_WINDOW_S;
         }
         let in_world =
             if t_s > seen_s { ConstantTwist::from_motion(seen, &motion, t_s - seen_s).pose(1.0) } else { seen };
