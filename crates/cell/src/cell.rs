@@ -11,10 +11,9 @@ use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
-use elbowroom_vision::{Camera, CameraTrackerSettings};
 
 use crate::seal::Seal;
-use crate::{Encoder, MovingObject, PoseTrack};
+use crate::{CellSensor, Encoder, MovingObject, PoseTrack};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -51,8 +50,8 @@ pub struct Cell {
     pub programs: Vec<Option<Program>>,
     /// One per robot; `None` for a robot without avoidance.
     pub avoidance: Vec<Option<AvoidanceSpec>>,
-    /// Cameras, in file order.
-    pub cameras: Vec<CellCamera>,
+    /// Cameras in file order, then sources of point clouds.
+    pub sensors: Vec<CellSensor>,
     /// Joint-space maps.
     pub maps: Vec<MapSpec>,
     /// SHA-256 of the monitors' configurations, hex.
@@ -76,29 +75,6 @@ pub struct AvoidanceSpec {
     pub robots: Vec<RobotId>,
     /// Whether another path is planned where an obstacle blocks the path.
     pub replan: bool,
-}
-
-/// A calibrated camera above the floor.
-#[derive(Debug, Clone)]
-pub struct CellCamera {
-    /// Its name.
-    pub name: String,
-    /// Line of its table.
-    pub line: usize,
-    /// Lens and pose in the world.
-    pub camera: Camera,
-    /// How obstacles are detected and tracked.
-    pub settings: CameraTrackerSettings,
-    /// The robot in whose map its obstacles are.
-    pub robot: RobotId,
-    /// How long a moving obstacle also blocks where it will be, s.
-    pub prediction_s: f64,
-    /// By how much the silhouette of the robots is dilated, m.
-    pub mask_margin_m: f64,
-    /// The folder of its pictures.
-    pub frames: Option<PathBuf>,
-    /// The joint values at the times of the pictures.
-    pub joints: Option<PathBuf>,
 }
 
 /// The units of a cell file.

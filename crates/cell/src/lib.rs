@@ -38,15 +38,17 @@ mod query_model;
 pub mod region_constraint;
 mod rest_pose_contacts;
 pub mod seal;
+mod sensor;
 pub mod suggest;
 pub mod trajectory;
 
 pub use cell::{
-    AvoidanceSpec, Cell, CellCamera, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec,
-    MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
+    AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
+    Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
 pub use file::CellFile;
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
+pub use sensor::{CellSensor, SensorKind};

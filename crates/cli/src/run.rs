@@ -1,7 +1,7 @@
 //! `elbowroom run`: a cell's programs in simulated time.
 
 use std::fs::File;
-use std::io::{BufWriter, IsTerminal};
+use std::io::{BufWriter, IsTerminal, Write};
 use std::path::Path;
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use elbowroom::cell::seal::Seal;
 use elbowroom::report::{self, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::run::{RunProgress, simulate_with};
-use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, csv};
+use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::RunArgs;
@@ -99,9 +99,22 @@ pub(crate) fn write_files(
     };
     csv::write_trace(run, create("trace.csv")?).map_err(cannot_write(dir))?;
     csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
+    for sensor in &run.sensors {
+        write_records(&dir.join(format!("{}-{}.jsonl", sensor.kind, sensor.name)), sensor)?;
+    }
     let scene = ReportScene::of_cell(cell);
     let label = if run.monitored { "monitor on" } else { "monitor off" };
     let runs: Vec<(&str, &Recording)> =
         std::iter::once((label, run)).chain(without.map(|w| ("monitor off", w))).collect();
     report::write_html(create("report.html")?, &scene, &runs).map_err(cannot_write(dir))
+}
+
+/// Writes what a sensor saw: a JSON document per picture or cloud, a line each, as `watch --json` prints it.
+fn write_records(path: &Path, sensor: &SensorTrack) -> Result<(), Failure> {
+    let mut out = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+    for record in &sensor.records {
+        let line = serde_json::to_string(record).map_err(|e| Failure::Wrong(e.to_string()))?;
+        writeln!(out, "{line}").map_err(cannot_write(path))?;
+    }
+    out.flush().map_err(cannot_write(path))
 }

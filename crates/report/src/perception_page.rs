@@ -97,6 +97,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
         stopped_s: waiting as f64 * log.tick_s,
         collisions: Vec::new(),
         avoidance: None,
+        perception: None,
         ending: elbowroom_sim::RobotEnding::default(),
     };
     Recording {
@@ -109,6 +110,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
         robots: vec![robot],
         regions: log.ground_truth.iter().map(region).collect(),
         objects: Vec::new(),
+        sensors: Vec::new(),
         deadlocks: Vec::new(),
         events: Vec::new(),
         tick_ns: TickTimes::default(),

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd,
+    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, PerceptionSummary, PerceptionTrack, Recording, RegionTrack,
+    RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack,
 };
 
 use crate::explanation::explanation;
@@ -22,7 +23,7 @@ const STATIONARY_M_S: f64 = 1e-4;
 /// let recording = Recording {
 ///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, end: RunEnd::Finished,
 ///     monitored: true,
-///     robots: vec![], regions: vec![], objects: vec![], deadlocks: vec![], events: vec![],
+///     robots: vec![], regions: vec![], objects: vec![], sensors: vec![], deadlocks: vec![], events: vec![],
 ///     tick_ns: TickTimes::default(),
 /// };
 /// assert!(elbowroom_report::summary(&recording, 80, false).contains("welding column"));
@@ -112,6 +113,7 @@ impl fmt::Display for TextSummary<'_> {
             let why = "  ended   robots at override 0 for 10 s, only endless belts moved";
             lines.push(vec![(why.into(), Style::Warn)]);
         }
+        lines.extend(rec.sensors.iter().map(sensor_line));
         lines.push(ticks(rec));
         for line in &lines {
             self.write_line(f, line)?;
@@ -172,6 +174,9 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
+    if let Some(track) = &robot.perception {
+        lines.push(vec![(format!("{indent}{}", kept_clear(track)), Style::Dim)]);
+    }
     lines.extend(
         robot
             .collisions
@@ -213,6 +218,28 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
+}
+
+/// Summary of what a robot did about the obstacles that sensors see.
+fn kept_clear(track: &PerceptionTrack) -> String {
+    let p = PerceptionSummary::from(track);
+    let blind = if p.stale_s > 0.0 { format!(", {:.2} s without a picture", p.stale_s) } else { String::new() };
+    let [in_motion, from_rest] = [p.replans_in_motion, p.replans_from_rest];
+    format!("new paths: {in_motion} in motion, {from_rest} from rest; waited {:.2} s for obstacles{blind}", p.waited_s)
+}
+
+/// What a sensor sent and saw.
+fn sensor_line(track: &SensorTrack) -> Line {
+    let s = SensorSummary::from(track);
+    let what = if track.kind == "cloud" { "clouds" } else { "pictures" };
+    let rejected = if s.rejected > 0 { format!(", {} rejected", s.rejected) } else { String::new() };
+    let obstacles = match s.obstacles.len() {
+        1 => "1 obstacle".to_owned(),
+        n => format!("{n} obstacles"),
+    };
+    let time = duration(s.processing_ns.p50);
+    let text = format!("  {} {}: {} {what}{rejected}, {obstacles}", pad(track.kind, 7), s.name, s.frames);
+    vec![(text, Style::Plain), (format!(", {time} to motion"), Style::Dim)]
 }
 
 /// Description of the outcome of a robot's program.

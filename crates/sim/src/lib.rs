@@ -38,9 +38,9 @@ pub mod run;
 mod summary;
 
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ObjectTrack, Outcome, RecordedRegionKind,
-    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, Span,
-    TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, Hold, HoldReason, ObjectTrack, Outcome, PathReplan,
+    PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack,
+    RunEnd, RunEvent, Sample, SensorTrack, Span, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
-pub use summary::{AvoidanceSummary, RunSummary};
+pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

@@ -35,6 +35,11 @@ impl JointTrack {
         Ok(Self { start, states: Some(states) })
     }
 
+    /// True where the values are those of a file.
+    pub fn is_read(&self) -> bool {
+        self.states.is_some()
+    }
+
     /// The values of each robot at a time; an error where they are not known.
     pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, String> {
         let Some(states) = &self.states else { return Ok(self.start.clone()) };

@@ -2,6 +2,7 @@
 
 mod avoidance;
 mod camera;
+mod cloud;
 mod definitions;
 mod document;
 mod flange;
@@ -17,6 +18,7 @@ pub(crate) mod read;
 mod region;
 mod renamed;
 mod robot;
+mod sensor;
 mod units;
 
 use std::path::Path;
@@ -29,7 +31,7 @@ pub use document::CellFile;
 use read::{Table, Value};
 use robot::robot_of;
 
-use crate::{Cell, CellLaws, MapSpec, Units, configure, seal, suggest};
+use crate::{Cell, CellLaws, CellSensor, MapSpec, Units, configure, seal, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -45,6 +47,7 @@ const KEYS: &[&str] = &[
     "region",
     "encoder",
     "camera",
+    "cloud",
     "monitor",
     "map",
     "avoidance",
@@ -80,7 +83,7 @@ impl CellFile {
             laws: laws(&root, &mut warnings)?,
             programs: Vec::new(),
             avoidance: Vec::new(),
-            cameras: Vec::new(),
+            sensors: Vec::new(),
             maps: Vec::new(),
             checksum: String::new(),
             seal: None,
@@ -97,7 +100,7 @@ impl CellFile {
         programs(&root, &mut cell, &mut warnings)?;
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
-        cell.cameras = camera::read(&root, &cell)?;
+        cell.sensors = sensors(&root, &cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
         if self.on_disk {
@@ -239,6 +242,13 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;
     Ok(())
+}
+
+/// Cameras, then sources of point clouds.
+fn sensors(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellSensor>> {
+    let cameras = root.named("camera")?.into_iter().map(|(name, t)| camera::read(name, &t, cell));
+    let clouds = root.named("cloud")?.into_iter().map(|(name, t)| cloud::read(name, &t, cell));
+    cameras.chain(clouds).collect()
 }
 
 fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {

@@ -36,6 +36,13 @@ pub enum PlanStep {
     Move(Rc<Segment>),
     /// A recording.
     Play(Rc<Playback>),
+    /// A planned move, which may be replaced by another one with the same end.
+    Planned {
+        /// The path in time.
+        play: Rc<Playback>,
+        /// Share of the joints' speeds that it uses.
+        speed: f64,
+    },
     /// Switches a region.
     Switch {
         /// The region.
@@ -49,6 +56,13 @@ pub enum PlanStep {
     Wait(f64),
     /// Sets the programmed override, 0..1.
     Override(f64),
+}
+
+impl ProgramPlan {
+    /// True where it has a planned move.
+    pub fn has_planned_moves(&self) -> bool {
+        self.steps.iter().any(|s| matches!(s, PlanStep::Planned { .. }))
+    }
 }
 
 /// Plans the program of one robot, run `repeat` times (times the program's own `repeat`).
@@ -122,7 +136,9 @@ impl ProgramPlanner<'_> {
                         self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
                         PlanStep::Grip(GripAction { object: *object, grips: false, line: step.line })
                     }
-                    StepAction::Planned { to, speed } => PlanStep::Play(self.planned(i, step, to, *speed)?),
+                    StepAction::Planned { to, speed } => {
+                        PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
+                    }
                 });
             }
         }

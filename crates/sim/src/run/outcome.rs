@@ -38,10 +38,11 @@ pub(super) fn ending(
         (false, false) => Outcome::Stopped,
     };
     let point = governing.filter(|_| region.is_some());
+    let held_by = track.perception.as_ref().and_then(|p| p.ends_held.as_ref()).map(|(_, by)| by.as_str());
     RobotEnding {
         outcome,
         stopped_at_s: stopped_at(track),
-        by: region.map(str::to_owned),
+        by: region.or(held_by).map(str::to_owned),
         part: point.and_then(|p| configuration.volumes().get(p.volume.0)).map(|v| v.name.clone()),
         point: point.map(|p| p.position),
         release: None,
