@@ -11,6 +11,7 @@ use elbowroom::formats::image::{ImageHeader, PixelFormat};
 use elbowroom::formats::png;
 use elbowroom::formats::robot::{LoadOptions, load};
 use elbowroom::kinematics::{ChainState, LinkId};
+use elbowroom::perception::MappedArm;
 use elbowroom::proximity::Shape;
 use elbowroom::robot::Robot;
 use elbowroom::spatial::{Pose, Vec3};
@@ -19,15 +20,15 @@ use elbowroom::vision::{Camera, Channels, Frame, Intrinsics, Point2, encode_png,
 use serde_json::Value;
 
 const PERIOD_S: f64 = 0.04;
-const FRAMES: usize = 140;
+const FRAMES: usize = 170;
 /// Pictures before the start of the run, of the empty cell.
 const LEARNING: usize = 30;
 /// Length, width and height of the crate, m.
 const SIZE: [f64; 3] = [0.6, 0.4, 0.9];
 /// Radius of the noise of points of a cloud, m.
 const NOISE_M: f64 = 0.004;
-/// Distance between the points at which the judge measures, m.
-const JUDGE_STEP_M: f64 = 0.02;
+/// Distance between the points at which the test measures the clearance, m.
+const SURFACE_STEP_M: f64 = 0.02;
 
 const CAMERA: &str = r#"
 [camera.above]
@@ -38,6 +39,7 @@ area = [[750, -3000], [4800, -3000], [4800, 3000], [750, 3000]]
 uncertainty = 60
 templates = [{ name = "crate", size = [600, 400], height = 900 }]
 frames = "pictures"
+joints = "learning.csv"
 latency_ms = 60
 "#;
 
@@ -74,7 +76,7 @@ direction_aware = true
 stopping_distance = true
 
 [program.kr]
-steps = [{ wait = 0.6 }, { move = "KIND", to = [-60, -31.1, 76.6, 0, 44.5, 0], speed = 50 }]
+steps = [{ wait = 0.6 }, { move = "KIND", to = [-60, -31.1, 76.6, 0, 44.5, 0], speed = 30 }]
 "#;
 
 fn model() -> std::path::PathBuf {
@@ -100,10 +102,10 @@ fn cell(sensor: &str, kind: &str) -> String {
     head + &sensor.replace("FOCAL", &lens) + &REST.replace("KIND", kind)
 }
 
-/// Where the crate is: it comes from outside, and stands in the way of the arm from 2 s on, until `leaves_s`.
+/// Where the crate is: it comes from outside, and stands in the way of the arm from 1.5 s on, until `leaves_s`.
 fn crate_at(t_s: f64, leaves_s: f64) -> Point2 {
-    let arrived = (1.2 * t_s).min(2.4);
-    Point2::new(4.5 - arrived + (1.5 * (t_s - leaves_s)).max(0.0), 0.0)
+    let arrived = (1.2 * t_s).min(1.8);
+    Point2::new(3.9 - arrived + (1.5 * (t_s - leaves_s)).max(0.0), 0.0)
 }
 
 /// When each picture is taken: those of the empty cell before the run.
@@ -111,10 +113,25 @@ fn stamp_s(i: usize) -> f64 {
     (i as f64 - LEARNING as f64) * PERIOD_S
 }
 
-/// Pictures of the crate and their times, as files.
+/// While the empty cell is learnt the arm swings to and fro, so that every part of the floor is seen.
+fn learning_joints(t_s: f64) -> [f64; 6] {
+    [60.0 * (t_s * 5.0).cos(), -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians)
+}
+
+/// Pictures of the crate and their times, as files. In those of the empty cell the arm is seen, and its joint values are known;
+/// later it goes where it wants, and the pictures do not show it.
 fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
+    let arm = MappedArm::kr125(load(&model(), &LoadOptions::default()).unwrap().robot, Pose::IDENTITY);
+    let (mut state, mut parts) = (ChainState::new(&arm.robot.chain), Vec::new());
+    let mut joints = "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n".to_owned();
+    for i in 0..=136 {
+        let t_s = stamp_s(0) - 0.2 + 0.01 * f64::from(i);
+        let q = learning_joints(t_s).map(|v| format!("{v:.9}"));
+        writeln!(joints, "{t_s:.3},{}", q.join(",")).unwrap();
+    }
+    std::fs::write(dir.join("learning.csv"), joints).unwrap();
     let mut renderer = Renderer::new(camera(), Channels::Grey, 5);
     let (mut frame, mut times) = (Frame::default(), "file,t_s\n".to_owned());
     for i in 0..frames {
@@ -124,7 +141,12 @@ fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
         let solids: Vec<_> =
             (t_s >= 0.0).then(|| RenderedSolid::cuboid(at, Vec3::new(x, y, z), 0.0, 40)).into_iter().collect();
         let conditions = RenderConditions { seed: i as u64, ..RenderConditions::default() };
-        renderer.render(&solids, &[], &conditions, &mut frame).unwrap();
+        parts.clear();
+        if t_s < 0.0 {
+            arm.parts_in_world(&mut state, &learning_joints(t_s), &mut parts);
+        }
+        let drawn: Vec<_> = parts.iter().map(|part| (part.clone(), 200)).collect();
+        renderer.render(&solids, &drawn, &conditions, &mut frame).unwrap();
         let name = format!("frame_{i:04}.png");
         std::fs::write(folder.join(&name), encode_png(&frame).unwrap()).unwrap();
         writeln!(times, "{name},{t_s:.3}").unwrap();
@@ -191,7 +213,7 @@ fn grid_of_box(at: Point2, [length, width, height]: [f64; 3], step: f64) -> Vec<
     points
 }
 
-/// Points on the surface of the arm, each in the frame of its link: a naive judge, which shares no distance code with the product.
+/// Points on the surface of the arm, each in the frame of its link: a naive measurement, which shares no distance code with the product.
 fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
     let mut points = Vec::new();
     for (link, colliders) in robot.colliders.iter().enumerate() {
@@ -199,15 +221,15 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
             let local: Vec<Vec3> = match &c.shape {
                 Shape::Cuboid(b) => {
                     let h = b.half_extents;
-                    let closed = grid_of_box(Point2::default(), [2.0 * h.x, 2.0 * h.y, 2.0 * h.z], JUDGE_STEP_M);
+                    let closed = grid_of_box(Point2::default(), [2.0 * h.x, 2.0 * h.y, 2.0 * h.z], SURFACE_STEP_M);
                     let lowered = closed.iter().map(|p| *p - Vec3::Z * h.z);
                     // The bottom is the top turned over.
                     lowered.flat_map(|p| [p, Vec3::new(p.x, p.y, -p.z)]).collect()
                 }
                 Shape::Cylinder(c) => {
-                    let rings = (c.radius / JUDGE_STEP_M).ceil() as usize;
-                    let turns = (c.radius * std::f64::consts::TAU / JUDGE_STEP_M).ceil() as usize;
-                    let floors = (2.0 * c.half_length / JUDGE_STEP_M).ceil() as usize;
+                    let rings = (c.radius / SURFACE_STEP_M).ceil() as usize;
+                    let turns = (c.radius * std::f64::consts::TAU / SURFACE_STEP_M).ceil() as usize;
+                    let floors = (2.0 * c.half_length / SURFACE_STEP_M).ceil() as usize;
                     let at = |radius: f64, turn: usize, z: f64| {
                         let angle = std::f64::consts::TAU * turn as f64 / turns as f64;
                         Vec3::new(radius * angle.cos(), radius * angle.sin(), z)
@@ -220,7 +242,7 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
                     });
                     side.chain(caps).map(|(r, t, f)| at(r, t, z(f.min(floors)))).collect()
                 }
-                other => panic!("the judge knows no {other:?}"),
+                other => panic!("the measurement knows no {other:?}"),
             };
             points.extend(local.into_iter().map(|p| (LinkId(link), c.in_link.transform_point(p))));
         }
@@ -310,7 +332,7 @@ fn events(dir: &Path) -> String {
 }
 
 /// Prints the figures of a run and checks them.
-fn judge(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
+fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     let json = answer.json();
     let (robot, sensor) = (&json["robots"][0], &json[sensors][0]);
     let robot_model = load(&model(), &LoadOptions::default()).unwrap().robot;
@@ -336,7 +358,7 @@ fn judge(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     assert!(score.false_alarms == 0 && centre(1.0) < 150.0, "{score:?}");
     assert!(p["replans_in_motion"].as_u64().unwrap() + p["replans_from_rest"].as_u64().unwrap() > 0, "{p}");
     assert!(events(dir).contains(",kr,,replan"), "{}", events(dir));
-    // The judge's points are 20 mm apart: no point of the surface is farther from one of them than 15 mm.
+    // The points are 20 mm apart: no point of the surface is farther from one of them than 15 mm.
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");
     assert!(hoist["entered"] == false, "{hoist}");
 }
@@ -347,7 +369,7 @@ fn the_arm_goes_around_a_crate_that_only_the_camera_knows() {
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
     write_pictures(dir.path(), FRAMES, f64::INFINITY);
     let answer = run(dir.path()).expect(0);
-    judge(dir.path(), &answer, "cameras", "camera-above.jsonl");
+    check_run(dir.path(), &answer, "cameras", "camera-above.jsonl");
     assert_eq!(answer.json()["cameras"][0]["learned"], LEARNING);
     // Without the camera the same program hits the crate: the test would notice a run that does not look.
     let blind = cell("", "planned");
@@ -364,7 +386,7 @@ fn the_arm_goes_around_a_crate_that_only_point_clouds_know() {
     std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned")).unwrap();
     write_clouds(dir.path(), FRAMES, f64::INFINITY);
     let answer = run(dir.path()).expect(0);
-    judge(dir.path(), &answer, "clouds", "cloud-mast.jsonl");
+    check_run(dir.path(), &answer, "clouds", "cloud-mast.jsonl");
     // Perception alone gives the same obstacles; the arm hides none of them.
     let watched = elbowroom(dir.path(), &["watch", "cell.toml", "--clouds", "clouds", "--json"]).expect(0);
     let lines: Vec<Value> = watched.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -480,6 +502,7 @@ fn keys_of_sensors_are_checked() {
         std::fs::write(dir.path().join("cell.toml"), cell).unwrap();
         run(dir.path()).expect(2).stderr
     };
+    std::fs::write(dir.path().join("learning.csv"), "t_s\n").unwrap();
     let (camera, cloud) = (cell(CAMERA, "planned"), cell(CLOUD, "planned"));
     assert!(of(&camera).contains("a folder of pictures"));
     assert!(of(&cloud).contains("a folder of point clouds"));

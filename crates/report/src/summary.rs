@@ -175,7 +175,7 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
     if let Some(track) = &robot.perception {
-        lines.push(vec![(format!("{indent}{}", kept_clear(track)), Style::Dim)]);
+        lines.extend(kept_clear(track).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     }
     lines.extend(
         robot
@@ -221,11 +221,12 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
 }
 
 /// Summary of what a robot did about the obstacles that sensors see.
-fn kept_clear(track: &PerceptionTrack) -> String {
+fn kept_clear(track: &PerceptionTrack) -> Vec<String> {
     let p = PerceptionSummary::from(track);
-    let blind = if p.stale_s > 0.0 { format!(", {:.2} s without a picture", p.stale_s) } else { String::new() };
     let [in_motion, from_rest] = [p.replans_in_motion, p.replans_from_rest];
-    format!("new paths: {in_motion} in motion, {from_rest} from rest; waited {:.2} s for obstacles{blind}", p.waited_s)
+    let blind = (p.stale_s > 0.0).then(|| format!("waited {:.2} s for pictures", p.stale_s));
+    let paths = format!("new paths: {in_motion} in motion, {from_rest} from rest; waited {:.2} s", p.waited_s);
+    std::iter::once(paths).chain(blind).collect()
 }
 
 /// What a sensor sent and saw.

@@ -35,9 +35,10 @@ impl JointTrack {
         Ok(Self { start, states: Some(states) })
     }
 
-    /// True where the values are those of a file.
-    pub fn is_read(&self) -> bool {
-        self.states.is_some()
+    /// The values of each robot at a time that the file covers; `None` at other times, and without a file.
+    pub fn recorded_at(&self, t_s: f64) -> Option<Vec<Vec<f64>>> {
+        self.states.as_ref()?;
+        self.at(t_s).ok()
     }
 
     /// The values of each robot at a time; an error where they are not known.

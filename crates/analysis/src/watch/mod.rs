@@ -173,9 +173,11 @@ impl SensorWatch {
         self.record_with(index, None)
     }
 
-    /// As [`record`](Self::record); where no file of joint values is named, each robot is where it was in a run (rad or m).
+    /// As [`record`](Self::record); at times that the file of joint values does not cover, and without one, each robot is where
+    /// it was in a run (rad or m).
     pub fn record_in_run(&mut self, index: usize, q: &[Vec<f64>]) -> WatchRecord {
-        self.record_with(index, Some(q).filter(|_| !self.joints.is_read()))
+        let recorded = self.joints.recorded_at(self.files[index].t_s);
+        self.record_with(index, Some(recorded.as_deref().unwrap_or(q)))
     }
 
     fn record_with(&mut self, index: usize, q: Option<&[Vec<f64>]>) -> WatchRecord {

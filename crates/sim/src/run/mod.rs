@@ -521,13 +521,16 @@ impl<'a> Simulation<'a> {
         let sources = self.frames.sources(&self.setups[i].sources, &self.states, t_s);
         let clock = &self.clocks[i];
         let state = &self.states[i];
+        let held_by = self.holds[i].as_ref().map(|(_, by)| by.clone());
+        // A robot that is held is not commanded to move: its constant joint values are no frozen reading.
+        let programmed_override = if held_by.is_some() { 0.0 } else { clock.programmed_override() };
         let snapshot = Snapshot {
             now_s: t_s,
             stamp_s: t_s,
             q: &state.q,
             qd: &state.qd,
             qdd: &state.qdd,
-            programmed_override: clock.programmed_override(),
+            programmed_override,
             intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |a| a.intent(clock))),
             sources: &sources,
         };
@@ -537,9 +540,8 @@ impl<'a> Simulation<'a> {
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
-        let allowed = if self.options.apply_override { report.speed_override } else { clock.programmed_override() };
-        let held_by = self.holds[i].as_ref().map(|(_, by)| by.clone());
-        let applied = if held_by.is_some() { 0.0 } else { allowed };
+        let applied = if self.options.apply_override { report.speed_override } else { programmed_override };
+        let applied = applied.min(programmed_override);
         self.applied[i] = applied;
         self.log_events(i, t_s);
         // A region governs where it makes the robot slower than programmed.

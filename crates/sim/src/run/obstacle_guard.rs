@@ -9,7 +9,7 @@ use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, SweepOptions};
 
 use super::path_ahead::PathAhead;
-use super::path_replanner::PathReplanner;
+use super::path_replanner::{self, PathReplanner};
 use super::perceived_obstacles::PerceivedObstacles;
 use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
@@ -120,14 +120,15 @@ impl<'a> ObstacleGuard<'a> {
         false
     }
 
-    /// The solid of each obstacle: where it is and will be. One whose predicted positions the robot is in already counts where
+    /// The solid of each obstacle: where it is and will be. One whose predicted positions the robot is at already counts where
     /// it was seen: the prediction must not trap the robot.
     fn solids(&self, surroundings: &Surroundings<'_>) -> Result<Vec<Shape>, SceneError> {
         let mut solids: Vec<Shape> = surroundings.perceived.iter().map(|o| o.predicted.clone()).collect();
         let placed = surroundings.obstacles_only(&self.base, self.robot, &solids)?;
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());
         let mut pairs = checker.between(Selection::Robot(self.robot), Selection::Objects);
-        pairs.distances_within(&placed.state, CLEARANCE_M, |near| {
+        // The search for a path refuses a start nearer than its clearance.
+        pairs.distances_within(&placed.state, path_replanner::CLEARANCE_M + CLEARANCE_M, |near| {
             for id in [near.a, near.b] {
                 if let GeometryId::Object(o) = id
                     && let Some(i) = placed.perceived(o)

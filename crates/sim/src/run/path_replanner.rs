@@ -21,15 +21,18 @@ use super::surroundings::{PlacedScene, Surroundings};
 use crate::motion::ProgramClock;
 
 /// Largest number of validated states per search: it bounds the planning time independently of the machine.
-const MAX_STATES: u64 = 20_000;
+const MAX_STATES: u64 = 1_000_000;
 /// Wall-clock limit per search, s; rarely reached.
-const TIME_LIMIT_S: u64 = 4;
+const TIME_LIMIT_S: u64 = 1;
 /// Paths keep this distance from everything, m: more than the check of paths asks for, so that noise of the outlines does not
 /// block them at once.
-const CLEARANCE_M: f64 = 0.02;
+pub(super) const CLEARANCE_M: f64 = 0.02;
 /// Shares of each warning zone that paths keep from a region, in the order in which they are tried: so much of the override
 /// remains.
 const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
+/// A new path leaves the present one so many stopping distances ahead: its corner is rounded over at most half of the stretch
+/// from one stopping distance behind the robot, so that the robot could still stop before the rounding.
+const LEAVE_AFTER: f64 = 3.0;
 /// A slower robot has no direction of motion, rad/s or m/s.
 const MIN_SPEED: f64 = 1e-6;
 /// The robot enters a new path where that passes its configuration within this distance, rad or m.
@@ -94,7 +97,7 @@ impl<'a> PathReplanner<'a> {
         let departure = if is_moving {
             let along: Vec<f64> = velocity.iter().map(|v| v / speed).collect();
             let length = acceleration_distance(speed, &along, &limits);
-            let (passed_s, from) = ahead.straight_ahead(&along, length)?;
+            let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length)?;
             if passed_s >= free_until_s {
                 return None;
             }
