@@ -1,6 +1,7 @@
 //! What the programs of a developer share: [`Failure`], options, other programs, the Python of the references.
 #![allow(clippy::print_stdout, reason = "for programs that talk to the person who started them")]
 
+pub mod browser;
 pub mod call;
 pub mod python;
 pub mod shell;

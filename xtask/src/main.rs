@@ -77,7 +77,7 @@ Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
 
 /// The parsers that `fuzz` throws files at, besides the cell file's.
-const PARSERS: [&str; 9] = ["urdf", "srdf", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
+const PARSERS: [&str; 11] = ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
 
 /// Commands of `elbowroom-devtools` that measure, or run long: as a release build.
 const MEASURING: [&str; 5] = ["cross-validate", "contacts", "paths", "rpq", "scaling"];

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use xtask::{Failure, python, shell};
+use xtask::{Failure, browser, python, shell};
 
 use crate::{layers, snippets, terms};
 
@@ -29,7 +29,7 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first.
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step { name: "layers", what: "who may depend on whom, and no circles of files", check: |c| layers::run(c.root) },
     Step {
@@ -50,6 +50,7 @@ const STEPS: [Step; 11] = [
     Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
+    Step { name: "browser", what: "the report in headless Chromium: controls, distances, console", check: open_report },
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
@@ -162,6 +163,19 @@ fn tests(context: &Context) -> Result<(), String> {
     Err(format!("all that ran passed, but without the comparison with Pinocchio: {first}, or say --offline"))
 }
 
+/// The tests of the page, which pass without a browser, with one.
+fn open_report(context: &Context) -> Result<(), String> {
+    let found = if context.offline { browser::find(context.root) } else { Some(browser::install(context.root)?) };
+    let Some(browser) = found else {
+        println!("--offline: no Chromium is there, and none is installed: the report is not opened in a browser");
+        return Ok(());
+    };
+    let path = browser.to_string_lossy();
+    let mut env = network(context);
+    env.push(("ELBOWROOM_CHROMIUM", &path));
+    shell::cargo(context.root, &["test", "--workspace", "--test", "browser"], &env)
+}
+
 /// Tests on real robots pass where their data are missing: the log must show which run it was.
 fn announce_data(root: &Path) {
     let folder = xtask::call::data_folder(root, None);
@@ -182,7 +196,7 @@ fn docs(context: &Context) -> Result<(), String> {
     shell::cargo(context.root, &["doc", "--workspace", "--no-deps"], &env)
 }
 
-fn network(context: &Context) -> Vec<(&'static str, &'static str)> {
+fn network<'a>(context: &Context) -> Vec<(&'static str, &'a str)> {
     if context.offline { vec![("CARGO_NET_OFFLINE", "true")] } else { Vec::new() }
 }
 

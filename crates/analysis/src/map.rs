@@ -3,19 +3,26 @@
 //! Every object is an obstacle, moving ones at their initial poses. Self-collisions, other robots, and links that none
 //! of the map's joints moves are left out.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, CellRobot, MapSpec};
 use elbowroom_cspace::{GridAxis, GridAxisError, ObstacleModel, OccupancyArray, RemainingJoints, RobotMapError};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::JointKind;
+use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
+use elbowroom_scene::Object;
+use elbowroom_spatial::Pose;
 
 pub use self::blocked_cells::BlockedCells;
-use self::solids_map::SolidsMap;
+use self::link_maps::LinkMaps;
+pub use self::model::MapModel;
+use self::solids_map::{FilledCells, SolidsMap};
 use crate::plan::request_validation::select_robot;
 
 mod blocked_cells;
+mod link_maps;
+mod model;
 mod solids_map;
 
 /// A request for the map of a robot.
@@ -24,10 +31,22 @@ pub struct MapRequest {
     /// Name of the robot; optional where there is only one, or only one map.
     pub robot: Option<String>,
     /// Obstacle model of the objects.
-    pub model: ObstacleModel,
+    pub model: MapModel,
     /// True: the robot's own solids decide at the border, which takes tenths of a second per object. False: sphere covers
     /// of its links, in milliseconds, for maps of three joints that hang on one of them; others are exact.
     pub exact: bool,
+    /// With the model of spheres: one sphere around each object first, then more and smaller ones until so much time has passed
+    /// since the robot was prepared, at most as many as the model says.
+    pub deadline: Option<Duration>,
+}
+
+/// How far a map is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapProgress<'a> {
+    /// From 0 to 1.
+    pub share: f64,
+    /// What is in work: the robot, or the name of an object.
+    pub what: &'a str,
 }
 
 /// The map of a robot, and the cells that each object blocks.
@@ -57,7 +76,9 @@ pub struct MapObstacle {
     /// Its name.
     pub name: String,
     /// Its obstacle model.
-    pub model: ObstacleModel,
+    pub model: MapModel,
+    /// The number of spheres that was reached by the deadline.
+    pub spheres: Option<u32>,
     /// The blocked cells.
     pub blocks: BlockedCells,
     /// Time of the computation, without what is done once for the robot or the object's shape.
@@ -89,8 +110,21 @@ pub struct MapObstacle {
 /// ```
 ///
 /// # Errors
-/// An unknown or ambiguous robot, a joint without limits, too many cells for the memory.
+/// An unknown or ambiguous robot, a joint without limits, too many cells for the memory; a deadline with another model than
+/// spheres, or for a map that is not on sphere covers.
 pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
+    map_with(cell, request, &|_| ())
+}
+
+/// The same; `progress` is called from any thread.
+///
+/// # Errors
+/// As [`map`].
+pub fn map_with(
+    cell: &Cell,
+    request: &MapRequest,
+    progress: &(dyn Fn(MapProgress<'_>) + Sync),
+) -> Result<CellMap, FormatError> {
     let (robot, spec) = select_map(cell, request.robot.as_deref())?;
     let wrong = |what: String, hint: &str| FormatError::new(&cell.file, spec.line, what).hint(hint);
     let mut warnings = Vec::new();
@@ -104,22 +138,41 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         };
         wrong(format!("robot \"{}\": {e}", robot.name), hint)
     };
-    let solids_map = SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)?;
-    let base = solids_map.base_in_world();
-    let solids = |o: &elbowroom_scene::Object| request.model.solids(&o.shape, &o.in_world, &base);
-    let mut obstacles = Vec::with_capacity(cell.objects.len());
-    for object in &cell.objects {
-        let (blocks, time) = solids_map.fill(&solids(object)).map_err(refuse)?;
-        obstacles.push(MapObstacle { name: object.name.clone(), model: request.model, blocks, time });
-    }
+    progress(MapProgress { share: 0.0, what: &robot.name });
+    let maps = LinkMaps::new(cell, spec.robot, |robot| {
+        SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)
+    })?;
+    let every_link = || {
+        maps.of_every_link().ok_or_else(|| {
+            let what = "the file of pairs lets links touch objects: such maps have neither a deadline nor seeds";
+            wrong(what.into(), "--model exact, without --deadline")
+        })
+    };
+    let filled = match (request.model, request.deadline) {
+        (MapModel::Solids(model), None) => fill_each(cell, &maps, model, progress).map_err(refuse)?,
+        (MapModel::Seeds, None) => expand_each(cell, every_link()?, progress, &wrong)?.map_err(refuse)?,
+        (model, Some(limit)) => fill_until(cell, every_link()?, model, limit, &wrong)?.map_err(refuse)?,
+    };
+    let obstacle = |(object, filled): (&Object, FilledCells)| {
+        let FilledCells { blocks, time, spheres } = filled;
+        MapObstacle { name: object.name.clone(), model: request.model, spheres, blocks, time }
+    };
+    let obstacles: Vec<MapObstacle> = cell.objects.iter().zip(filled).map(obstacle).collect();
     let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
     let count = |dense: Option<&OccupancyArray>, which: &dyn Fn(ObjectId) -> bool| {
         if let Some(dense) = dense {
             return Ok(dense.blocked());
         }
-        let all: Vec<_> =
-            cell.objects.iter().enumerate().filter(|o| which(ObjectId(o.0))).flat_map(|o| solids(o.1)).collect();
-        solids_map.fill(&all).map(|(cells, _)| cells.blocked()).map_err(refuse)
+        let report = |share: f64| progress(MapProgress { share, what: "all objects together" });
+        // Only maps with the robot's own solids have so many cells, and these know no other models.
+        let MapModel::Solids(model) = request.model else { return Ok(0) };
+        let of_map = |(map, objects): (&SolidsMap, Vec<ObjectId>)| {
+            let solids: Vec<_> = objects.iter().filter(|o| which(**o)).map(|o| placed(&cell.objects[o.0])).collect();
+            map.fill(model, &solids, &report).map(|all| all.blocks.blocked()).map_err(refuse)
+        };
+        // Where links may touch only some objects, cells that several maps block count several times.
+        let counts = maps.each().map(of_map).collect::<Result<Vec<u64>, FormatError>>()?;
+        Ok(counts.into_iter().fold(0, u64::saturating_add))
     };
     let dense = blocked_cells::union(&axes, obstacles.iter().map(|o| &o.blocks));
     let blocked = count(dense.as_ref(), &|_| true)?;
@@ -133,11 +186,80 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
         let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object.0].name);
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
+    if !request.model.is_conservative() {
+        let what = "the model `seeds` misses blocked cells that no seed leads to: for comparison only, no robot may rely on it";
+        warnings.push(Warning::new(&cell.file, spec.line, what));
+    }
     if cell.robots.len() > 1 {
         let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
         warnings.push(Warning::new(&cell.file, spec.line, what));
     }
     Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
+}
+
+fn placed(object: &Object) -> (&Shape, Pose) {
+    (&object.shape, object.in_world)
+}
+
+/// The cells that each object blocks.
+fn fill_each(
+    cell: &Cell,
+    maps: &LinkMaps,
+    model: ObstacleModel,
+    progress: &(dyn Fn(MapProgress<'_>) + Sync),
+) -> Result<Vec<FilledCells>, RobotMapError> {
+    let count = cell.objects.len() as f64;
+    let fill = |(number, object): (usize, &Object)| {
+        let report = |share: f64| progress(MapProgress { share: (number as f64 + share) / count, what: &object.name });
+        report(0.0);
+        match maps.of(ObjectId(number)) {
+            Some(map) => map.fill(model, &[placed(object)], &report),
+            None => maps.first().fill(model, &[], &report),
+        }
+    };
+    cell.objects.iter().enumerate().map(fill).collect()
+}
+
+/// The same around seeds; the outer error is that this map is not on sphere covers.
+fn expand_each(
+    cell: &Cell,
+    solids_map: &SolidsMap,
+    progress: &(dyn Fn(MapProgress<'_>) + Sync),
+    wrong: &dyn Fn(String, &str) -> FormatError,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    let mut filled = Vec::with_capacity(cell.objects.len());
+    for (number, object) in cell.objects.iter().enumerate() {
+        progress(MapProgress { share: number as f64 / cell.objects.len() as f64, what: &object.name });
+        let (shape, in_world) = placed(object);
+        let Some(found) = solids_map.expand(shape, &in_world) else {
+            let what = "expansion from seeds is for maps on sphere covers: three joints that hang on one of them, without --exact";
+            return Err(wrong(what.into(), "--model exact, or three joints and no --exact"));
+        };
+        match found {
+            Ok(cells) => filled.push(cells),
+            Err(e) => return Ok(Err(e)),
+        }
+    }
+    Ok(Ok(filled))
+}
+
+/// The same, refined until a deadline; the outer error is that this model, or this map, is not.
+fn fill_until(
+    cell: &Cell,
+    solids_map: &SolidsMap,
+    model: MapModel,
+    limit: Duration,
+    wrong: &dyn Fn(String, &str) -> FormatError,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    let MapModel::Solids(ObstacleModel::Spheres(most)) = model else {
+        let what = format!("a deadline is for the model of spheres, which is refined until then, not for `{model}`");
+        return Err(wrong(what, "--model spheres=64 --deadline 5"));
+    };
+    let objects: Vec<_> = cell.objects.iter().map(placed).collect();
+    solids_map.fill_until(Instant::now() + limit, most, &objects).ok_or_else(|| {
+        let what = "a deadline is for maps on sphere covers: three joints that hang on one of them, without --exact";
+        wrong(what.into(), "no --deadline, or three joints and no --exact")
+    })
 }
 
 impl CellMap {

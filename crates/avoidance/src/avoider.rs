@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
-use elbowroom_robot::RobotId;
-use elbowroom_scene::{Scene, SceneError, SweepOptions};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Attachment, Scene, SceneError, SweepOptions};
 
 use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
 use crate::joint_command::JointCommand;
@@ -125,6 +125,23 @@ impl<'s> Avoider<'s> {
                 columns: vec![[0.0; 6]; n],
             },
         })
+    }
+
+    /// Attaches an object of the scene to a link of this robot or of another one: it is kept clear of obstacles as the link is,
+    /// in detours too. Do not list it among the observed objects until it is detached.
+    ///
+    /// # Errors
+    /// As [`SceneState::attach_at`](elbowroom_scene::SceneState::attach_at).
+    pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
+        self.query.attach(object, attachment)
+    }
+
+    /// Detaches an object: it is an obstacle again, where it is now.
+    ///
+    /// # Errors
+    /// It is not attached.
+    pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
+        self.query.detach(object)
     }
 
     /// The commanded joint values, rad or m.

@@ -16,13 +16,14 @@ pub(crate) struct MotionBounds {
 }
 
 impl MotionBounds {
-    /// The bounds of a robot.
-    pub(crate) fn new(robot: &Robot) -> Self {
+    /// The bounds of a robot; no point of an object that is attached to a link is farther than `attached_radius_m` (per link, m)
+    /// from the link's origin.
+    pub(crate) fn new(robot: &Robot, attached_radius_m: impl Fn(LinkId) -> f64) -> Self {
         let chain = &robot.chain;
         let (links, joints) = (chain.links().len(), chain.dof());
         let mut bounds =
             Self { links, joints, of_link: vec![0.0; links * joints], of_pair: vec![0.0; links * links * joints] };
-        let radius = |l: usize| robot.link_radius(LinkId(l));
+        let radius = |l: usize| robot.link_radius(LinkId(l)).max(attached_radius_m(LinkId(l)));
         for a in 0..links {
             let path = chain.path(LinkId(a));
             for (joint, lever_arm) in motion_bound(chain, LinkId(a), radius(a), &path) {

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, Object, PairDistance, Scene, SceneState, Selection};
+use elbowroom_scene::{Attachment, Checker, CheckerOptions, Object, PairDistance, Scene, SceneState, Selection};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::motion_bounds::MotionBounds;
@@ -74,7 +74,7 @@ impl<'s> ProximityQuery<'s> {
             state: SceneState::new(scene),
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             object_radii: scene.objects().iter().map(object_radius).collect(),
-            motion_bounds: scene.robots().iter().map(|r| MotionBounds::new(&r.robot)).collect(),
+            motion_bounds: scene.robots().iter().map(|r| MotionBounds::new(&r.robot, |_| 0.0)).collect(),
             excluded: [None; 2],
             observed: vec![None; scene.objects().len()],
             known_robots: vec![false; scene.robots().len()],
@@ -117,6 +117,40 @@ impl<'s> ProximityQuery<'s> {
         Ok(())
     }
 
+    /// Attaches an object to a link of any robot: it is a part of that robot from now on.
+    pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
+        let robot = attachment.robot;
+        self.state.attach_at(self.scene, object, attachment)?;
+        self.observed[object.0] = None;
+        self.update_motion_bounds(robot);
+        Ok(())
+    }
+
+    /// Detaches an object: it stays where it is.
+    pub(crate) fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
+        let robot = self.state.attachment(object).map(|a| a.robot);
+        self.state.detach(self.scene, object)?;
+        if let Some(robot) = robot {
+            self.update_motion_bounds(robot);
+        }
+        Ok(())
+    }
+
+    fn update_motion_bounds(&mut self, robot: RobotId) {
+        let attached = (0..self.scene.objects().len()).filter_map(|o| {
+            let a = self.state.attachment(ObjectId(o)).filter(|a| a.robot == robot)?;
+            Some((a.link, self.scene.objects()[o].shape.aabb(&a.in_link).max_distance(Vec3::ZERO)))
+        });
+        let attached: Vec<(LinkId, f64)> = attached.collect();
+        let radius = |link| attached.iter().filter(|(l, _)| *l == link).map(|(_, r)| *r).fold(0.0, f64::max);
+        self.motion_bounds[robot.0] = MotionBounds::new(&self.scene.robots()[robot.0].robot, radius);
+    }
+
+    /// The link that an attached object moves with; any other geometry itself.
+    pub(crate) fn carrier(&self, geometry: GeometryId) -> GeometryId {
+        carrier(&self.state, geometry)
+    }
+
     /// Motion bounds of the controlled robot.
     pub(crate) fn own_motion_bounds(&self) -> &MotionBounds {
         &self.motion_bounds[self.robot.0]
@@ -127,7 +161,7 @@ impl<'s> ProximityQuery<'s> {
         let speed = |o: &ObservedObject| {
             o.motion.velocity.length() + o.motion.angular_velocity.length() * self.object_radii[o.object.0]
         };
-        match geometry {
+        match self.carrier(geometry) {
             GeometryId::Object(o) => {
                 let same = obstacles.objects.iter().filter(|observed| observed.object == o);
                 same.map(|observed| speed(observed) * duration_s).fold(0.0, f64::max)
@@ -190,6 +224,11 @@ impl<'s> ProximityQuery<'s> {
     }
 }
 
+fn carrier(state: &SceneState, geometry: GeometryId) -> GeometryId {
+    let GeometryId::Object(object) = geometry else { return geometry };
+    state.attachment(object).map_or(geometry, |a| GeometryId::Link { robot: a.robot, link: a.link })
+}
+
 /// Converts distances of the scene to proximity pairs of the robot.
 struct PairConverter<'a> {
     scene: &'a Scene,
@@ -206,7 +245,7 @@ struct PairConverter<'a> {
 impl PairConverter<'_> {
     /// `None` for a pair that the robot's joints do not change.
     fn convert(&self, d: &PairDistance) -> Option<ProximityPair> {
-        let own_link = |m: GeometryId| match m {
+        let own_link = |m: GeometryId| match carrier(self.state, m) {
             GeometryId::Link { robot, link } if robot == self.robot => Some(link),
             _ => None,
         };
@@ -242,7 +281,7 @@ impl PairConverter<'_> {
     }
 
     fn obstacle(&self, other: GeometryId, on_other: Vec3) -> ObstacleKind {
-        match other {
+        match carrier(self.state, other) {
             GeometryId::Object(o) => {
                 let Some(Observation { motion, known }) = self.observed[o.0] else { return ObstacleKind::Fixed };
                 let Some(pose) = self.state.pose(self.scene, other) else { return ObstacleKind::Fixed };

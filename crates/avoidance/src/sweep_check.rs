@@ -33,12 +33,14 @@ pub(crate) struct SweepCheck {
     to: Vec<Vec<f64>>,
     /// Indices of the pairs that can close within the duration.
     near: Vec<usize>,
+    /// Per pair what its geometries move with: themselves, or the links that attached objects are attached to.
+    carriers: Vec<[GeometryId; 2]>,
 }
 
 impl SweepCheck {
     pub(crate) fn new(scene: &Scene) -> Self {
         let to = scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect();
-        Self { to, near: Vec::with_capacity(MAX_PAIRS) }
+        Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS) }
     }
 
     /// The time at which the segment first hits one of the pairs accepted by `filter`, as a fraction of its duration. All
@@ -65,11 +67,13 @@ impl SweepCheck {
         let pairs = query.scene_pairs.iter().enumerate();
         let near = pairs.filter(|(_, p)| filter(&p.pair) && p.pair.distance_m <= max_closing(&p.pair, p.a, p.b));
         self.near.extend(near.map(|(n, _)| n));
+        self.carriers.clear();
+        self.carriers.extend(query.scene_pairs.iter().map(|p| [p.a, p.b].map(|m| query.carrier(m))));
         let ProximityQuery { robot, checker, state, scene_pairs, .. } = query;
         let own = SweepMove::Robot { robot: *robot, to: &self.to[robot.0] };
         for &n in &self.near {
             let near = &scene_pairs[n];
-            let geometries = [near.a, near.b];
+            let geometries = self.carriers[n];
             let clearance_m = SECURITY_MARGIN_M.min(0.5 * near.pair.distance_m);
             let options = SweepOptions { clearance_m, ..SweepOptions::default() };
             let mut pair = checker.between(near.a.into(), near.b.into());

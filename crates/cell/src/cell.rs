@@ -5,15 +5,14 @@ use std::path::PathBuf;
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_monitor::{Laws, Part, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
-use elbowroom_proximity::Shape;
+use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
-use elbowroom_scene::Object;
+use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, Encoder, MovingObject, PoseTrack};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -54,12 +53,26 @@ pub struct Cell {
     pub sensors: Vec<CellSensor>,
     /// Joint-space maps.
     pub maps: Vec<MapSpec>,
+    /// What the file of pairs says. [`Self::robots`] are as in their models.
+    pub pair_rules: PairRules,
+    /// Links that always touch where they are joined: see [`Self::motion_pair_rules`].
+    pub joint_contacts: PairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// The last seal; `None` where the cell is not sealed.
     pub seal: Option<Seal>,
     /// Warnings about the file, none of them fatal.
     pub warnings: Vec<Warning>,
+}
+
+impl Cell {
+    /// The rules for what moves robots: those of the file of pairs, and before them
+    /// [links that always touch where they are joined](elbowroom_robot::joint_contacts).
+    pub fn motion_pair_rules(&self) -> PairRules {
+        let mut rules = self.joint_contacts.clone();
+        rules.extend(self.pair_rules.clone());
+        rules
+    }
 }
 
 /// Avoidance settings of a robot.
@@ -103,6 +116,9 @@ pub struct CellRobot {
     pub tcp_in_flange: Pose,
     /// The tool's collider, in the flange link.
     pub tool: Option<Collider>,
+    /// The named tools, in file order; empty for a robot with one `tool`. Where there are any, `flange` is the link of the
+    /// active one and `tool` is empty. The colliders of mounted tools are in `robot`.
+    pub tools: Vec<CellTool>,
     /// The load's collider, in the flange link.
     pub load: Option<Collider>,
     /// Joint values at the start, rad or m.
@@ -258,6 +274,8 @@ pub enum StepAction {
     Grip(ObjectId),
     /// Detaches an object from the flange: it stays where it is.
     Release(ObjectId),
+    /// Makes one of the robot's [tools](CellRobot::tools) the active one.
+    Tool(usize),
     /// Waits, s.
     Wait(f64),
     /// Sets the programmed override, 0..1.
@@ -327,23 +345,53 @@ impl CellRobot {
         chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
     }
 
-    /// Guarded volumes: the TCP, tool and load, and the links. The TCP is the first.
+    /// Guarded volumes: the TCP, tool and load, and the links. The TCP is the first. Of a robot with named tools: their TCPs, the
+    /// tools, and the links.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
+        if !self.tools.is_empty() {
+            return self.volumes_of_tools();
+        }
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
-        let parts = [("tool", &self.tool), ("load", &self.load)];
-        volumes.extend(parts.into_iter().filter_map(|(name, collider)| {
+        let parts = [("tool", Part::Tool, &self.tool), ("load", Part::Load, &self.load)];
+        volumes.extend(parts.into_iter().filter_map(|(name, part, collider)| {
             let collider = collider.as_ref()?;
-            let (shape, in_link) = match collider.shape {
-                Shape::Mesh(_) => self.volumes.of(&collider.shape, collider.in_link),
-                _ => (collider.shape.clone(), collider.in_link),
-            };
-            Some(Volume { name: name.into(), part: Part::Tool, link: self.flange, shape, in_link })
+            let (shape, in_link) = self.volumes.of_solid(&collider.shape, collider.in_link);
+            Some(Volume { name: name.into(), part, link: self.flange, shape, in_link, presence: Presence::Always })
         }));
         volumes.extend(arm_volumes(&self.without_payload(), self.volumes));
         if !self.encloses(&volumes[1..], &volumes[0]) {
             volumes[0].part = Part::TcpOutside;
         }
         volumes
+    }
+
+    fn volumes_of_tools(&self) -> Vec<Volume> {
+        let mut links = arm_volumes(&self.robot, self.volumes);
+        links.retain(|v| self.tools.iter().all(|t| t.link != v.link));
+        let tool = |t: &CellTool| {
+            let c = t.collider.as_ref()?;
+            let (shape, in_link) = self.volumes.of_solid(&c.shape, c.in_link);
+            Some(Volume {
+                name: t.name.clone(),
+                part: Part::Tool,
+                link: t.link,
+                shape,
+                in_link,
+                presence: self.presence(t),
+            })
+        };
+        let tcp = |t: &CellTool| {
+            let name = format!("{} tcp", t.name);
+            let mut tcp = Volume { name, presence: self.presence(t), ..Volume::tcp(t.link, t.tcp_in_link.translation) };
+            // Another tool may not be there.
+            let solids: Vec<Volume> = tool(t).into_iter().chain(links.iter().cloned()).collect();
+            if !self.encloses(&solids, &tcp) {
+                tcp.part = Part::TcpOutside;
+            }
+            tcp
+        };
+        let tcps: Vec<Volume> = self.tools.iter().map(tcp).collect();
+        tcps.into_iter().chain(self.tools.iter().filter_map(tool)).chain(links.iter().cloned()).collect()
     }
 
     /// True where a solid that is fixed relative to the flange contains the point.

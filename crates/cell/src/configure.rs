@@ -4,11 +4,14 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use elbowroom_formats::FormatError;
+use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    ConfigError, Configuration, ConfigurationParts, Monitor, Region, RegionKind, RobotSlot, SlotId, SourceId,
-    SourceLimits, SourceSpec, StoppingSettings, ZoneArbiter, group_overlapping,
+    ConfigError, Configuration, ConfigurationParts, Monitor, Part, Presence, Region, RegionKind, RobotSlot, SlotId,
+    SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume, VolumeId, ZoneArbiter, group_overlapping,
 };
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
+use elbowroom_spatial::Pose;
 use sha2::{Digest, Sha256};
 
 use crate::{Cell, CellRegionId, CellRobot, Follow};
@@ -25,6 +28,26 @@ pub struct MonitorSetup {
     pub regions: Vec<CellRegionId>,
     /// Per source of the configuration, what it follows.
     pub sources: Vec<Follow>,
+    /// The objects that the robot's program grips, and their volumes.
+    pub gripped: Vec<(ObjectId, VolumeId)>,
+}
+
+impl MonitorSetup {
+    /// The volumes of a changed tool: those that are attached and detached with its link.
+    pub fn tool_volumes(&self, link: LinkId) -> impl Iterator<Item = (VolumeId, &Volume)> {
+        let volumes = self.configuration.volumes().iter().enumerate();
+        let is_of_tool = move |v: &Volume| v.link == link && v.presence != Presence::Always && v.part != Part::Load;
+        volumes.filter(move |(_, v)| is_of_tool(v)).map(|(i, v)| (VolumeId(i), v))
+    }
+
+    /// The volume of an object that this link grips, and the pose in the link at which a monitor attaches it where the object is
+    /// at `object_in_link`. `None` where the program does not grip it with this link.
+    pub fn gripped_volume(&self, object: ObjectId, link: LinkId, object_in_link: &Pose) -> Option<(VolumeId, Pose)> {
+        let volumes = self.configuration.volumes();
+        let of_link = |(o, v): &&(ObjectId, VolumeId)| *o == object && volumes[v.0].link == link;
+        let (_, volume) = self.gripped.iter().find(of_link)?;
+        Some((*volume, *object_in_link * volumes[volume.0].in_link))
+    }
 }
 
 /// One setup per robot, in order.
@@ -33,7 +56,18 @@ pub struct MonitorSetup {
 /// [`FormatError`] at the line of the region or robot that a monitor would refuse.
 pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
     let slots = slots(cell);
-    cell.robots.iter().enumerate().map(|(i, robot)| setup(cell, RobotId(i), robot, &slots)).collect()
+    let setup = |i: usize| setup(cell, RobotId(i), cell.robots[i].guarded_volumes(), &slots);
+    (0..cell.robots.len()).map(setup).collect()
+}
+
+/// As [`setups`], where objects are attached to robots all the time: for planning.
+///
+/// # Errors
+/// As for [`setups`].
+pub fn setups_holding(cell: &Cell, held: &[(ObjectId, Attachment)]) -> Result<Vec<MonitorSetup>, FormatError> {
+    let slots = slots(cell);
+    let setup = |i: usize| setup(cell, RobotId(i), cell.volumes_holding(RobotId(i), held), &slots);
+    (0..cell.robots.len()).map(setup).collect()
 }
 
 /// The monitors, connected by a zone arbiter where there are exchange regions.
@@ -107,7 +141,18 @@ pub fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     slots
 }
 
-fn setup(cell: &Cell, id: RobotId, robot: &CellRobot, slots: &[Option<SlotId>]) -> Result<MonitorSetup, FormatError> {
+fn setup(
+    cell: &Cell,
+    id: RobotId,
+    mut volumes: Vec<Volume>,
+    slots: &[Option<SlotId>],
+) -> Result<MonitorSetup, FormatError> {
+    let robot = &cell.robots[id.0];
+    let mut gripped = Vec::new();
+    for (object, link) in cell.grips(id) {
+        gripped.push((object, VolumeId(volumes.len())));
+        volumes.push(cell.gripped_volume(id, object, link));
+    }
     let mut regions = Vec::new();
     let mut region_ids = Vec::new();
     let mut sources: Vec<(Follow, SourceLimits)> = Vec::new();
@@ -138,13 +183,18 @@ fn setup(cell: &Cell, id: RobotId, robot: &CellRobot, slots: &[Option<SlotId>]) 
         robot: robot.name.clone(),
         base_in_world: robot.base_in_world,
         chain: robot.robot.chain.clone(),
-        volumes: robot.guarded_volumes(),
+        volumes,
         regions,
         sources: sources.iter().map(|(s, limits)| SourceSpec { name: source_name(cell, s), limits: *limits }).collect(),
         laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
-    Ok(MonitorSetup { configuration, regions: region_ids, sources: sources.into_iter().map(|s| s.0).collect() })
+    Ok(MonitorSetup {
+        configuration,
+        regions: region_ids,
+        sources: sources.into_iter().map(|s| s.0).collect(),
+        gripped,
+    })
 }
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {

@@ -62,12 +62,7 @@ impl<'a> Frames<'a> {
 
     /// Tool centre point of a robot in the world (m) and its speed (m/s).
     pub fn tcp(&self, robot: RobotId, state: &ChainState) -> (Vec3, f64) {
-        let r = &self.cell.robots[robot.0];
-        let flange_in_root = state.link_in_root(r.flange);
-        let offset = flange_in_root.transform_vector(r.tcp_in_flange.translation);
-        let tcp_in_root = flange_in_root * r.tcp_in_flange;
-        let speed = state.link_motion(r.flange).velocity_at(offset).length();
-        ((r.base_in_world * tcp_in_root).translation, speed)
+        self.cell.robots[robot.0].tcp(state)
     }
 
     /// True where an encoder or a pose file that a region follows moves, or an object moves.

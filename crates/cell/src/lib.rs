@@ -31,8 +31,12 @@ mod cell;
 pub mod configure;
 mod file;
 mod frames;
+mod gripped_objects;
 mod ik_message;
+mod joint_contacts;
 mod moving_object;
+mod object_tables;
+mod pair_file;
 mod poses;
 mod query_model;
 pub mod region_constraint;
@@ -40,15 +44,20 @@ mod rest_pose_contacts;
 pub mod seal;
 mod sensor;
 pub mod suggest;
+mod tool;
+mod tool_change;
 pub mod trajectory;
 
 pub use cell::{
     AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
     Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
-pub use file::CellFile;
+pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
+pub use object_tables::{ObjectTables, object_tables};
+pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use sensor::{CellSensor, SensorKind};
+pub use tool::CellTool;

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_robot::{GeometryId, ObjectId, Robot};
-use elbowroom_scene::{Attachment, Object, Scene, SceneState};
+use elbowroom_robot::{GeometryId, JointContact, ObjectId, Robot, RobotId, joint_contacts};
+use elbowroom_scene::{Attachment, Object, PairRules, Scene, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
+use crate::joint_contacts::reason;
 use crate::{Cell, Follow, Frames, rest_pose_contacts};
 
 /// Robots and objects with their default states.
@@ -21,6 +22,8 @@ pub struct QueryModel {
     pub objects: Vec<Object>,
     /// Objects that a link carries: regions that follow a robot.
     pub carried: Vec<(ObjectId, Attachment)>,
+    /// What the files of pairs say.
+    pub rules: PairRules,
     /// True for a single robot: its links are named without prefix, and its states must have all joints.
     pub is_single_robot: bool,
 }
@@ -49,8 +52,15 @@ pub enum OutOfReachProofs {
 }
 
 impl QueryModel {
-    /// The model of a cell; tools and loads are colliders of the links that carry them.
+    /// The model of a cell, with the rules of its file of pairs; tools and loads are colliders of the links that carry them.
     pub fn of_cell(cell: &Cell) -> Self {
+        let mut model = Self::without_rules(cell);
+        model.add_rules(cell.pair_rules.clone());
+        model
+    }
+
+    /// The model of a cell without its file of pairs.
+    pub fn without_rules(cell: &Cell) -> Self {
         let robot = |r: &crate::CellRobot| QueryRobot {
             name: r.name.clone(),
             robot: r.robot.clone(),
@@ -62,8 +72,17 @@ impl QueryModel {
             robots: cell.robots.iter().map(robot).collect(),
             objects: cell.objects.clone(),
             carried: Vec::new(),
+            rules: PairRules::default(),
             is_single_robot: false,
         }
+    }
+
+    /// As [`Self::of_cell`], for what moves robots: without links that always touch where they are joined
+    /// ([`Cell::motion_pair_rules`]).
+    pub fn for_motion(cell: &Cell) -> Self {
+        let mut model = Self::without_rules(cell);
+        model.add_rules(cell.motion_pair_rules());
+        model
     }
 
     /// A single robot whose root link is the world frame. Its default state is zero, or the limits nearest to zero.
@@ -76,6 +95,7 @@ impl QueryModel {
             robots: vec![only],
             objects: Vec::new(),
             carried: Vec::new(),
+            rules: PairRules::default(),
             is_single_robot: true,
         }
     }
@@ -93,8 +113,17 @@ impl QueryModel {
             robots: vec![only],
             objects: Vec::new(),
             carried: Vec::new(),
+            rules: PairRules::default(),
             is_single_robot: true,
         }
+    }
+
+    /// Adds the rules of a file of pairs, which override those before.
+    pub fn add_rules(&mut self, rules: PairRules) {
+        for (i, r) in self.robots.iter_mut().enumerate() {
+            rules.edit_robot(RobotId(i), &mut r.robot);
+        }
+        self.rules.extend(rules);
     }
 
     /// Adds a region of the cell as an object, where it is at the start; one that follows a robot is carried by it. False where
@@ -147,10 +176,11 @@ impl QueryModel {
         for o in &self.objects {
             builder.object(o.clone());
         }
+        builder.rules(self.rules.clone());
         builder.build().map_err(|e| FormatError::new(&self.file, None, e.to_string()))
     }
 
-    /// Warnings for links that touch in the default state without a collider in between, with the SRDF entry for robots
+    /// Warnings for links that always touch where they are joined, and for links that touch in the default state without a collider in between, with the SRDF entry for robots
     /// that are built so. Reading a cell gives the same warnings.
     ///
     /// ```
@@ -171,8 +201,14 @@ impl QueryModel {
     pub fn touching_at_rest(&self) -> Vec<Warning> {
         let of_robot = |r: &QueryRobot| {
             let name = (!self.is_single_robot).then_some(r.name.as_str());
-            let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, name);
-            warnings.map(|(what, hint)| Warning::new(&self.file, None, what).hint(hint)).collect::<Vec<_>>()
+            let at_joints = joint_contacts(&r.robot, &r.start);
+            let is_new = |a, b| !at_joints.iter().any(|found| (found.a, found.b) == (a, b));
+            let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, name, is_new);
+            let at_joints = at_joints.iter().map(|found| joint_contact_warning(&r.robot, found));
+            at_joints
+                .chain(warnings)
+                .map(|(what, hint)| Warning::new(&self.file, None, what).hint(hint))
+                .collect::<Vec<_>>()
         };
         self.robots.iter().flat_map(of_robot).collect()
     }
@@ -188,8 +224,44 @@ impl QueryModel {
         }
     }
 
+    /// What a name selects: a robot, a link (`robot/link`; of a single robot its name alone, and `robot` for all), or an object.
+    pub fn selection(&self, name: &str) -> Option<Selection> {
+        let link = |robot: usize, link: &str| {
+            let link = self.robots.get(robot)?.robot.chain.link(link)?;
+            Some(Selection::Link { robot: RobotId(robot), link })
+        };
+        let robot = if self.is_single_robot {
+            link(0, name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))))
+        } else if let Some((robot, of_robot)) = name.split_once('/') {
+            self.robots.iter().position(|r| r.name == robot).and_then(|robot| link(robot, of_robot))
+        } else {
+            self.robots.iter().position(|r| r.name == name).map(|r| Selection::Robot(RobotId(r)))
+        };
+        let object = || self.objects.iter().position(|o| o.name == name).map(|o| Selection::Object(ObjectId(o)));
+        robot.or_else(object)
+    }
+
+    /// All names that [`Self::selection`] knows: robots, objects, links.
+    pub fn names(&self) -> Vec<String> {
+        let robots = self.robots.iter().map(|r| if self.is_single_robot { "robot".to_owned() } else { r.name.clone() });
+        let objects = self.objects.iter().map(|o| o.name.clone());
+        let links = self.robots.iter().flat_map(|r| {
+            let prefix = if self.is_single_robot { String::new() } else { format!("{}/", r.name) };
+            r.robot.chain.links().iter().map(move |link| format!("{prefix}{link}"))
+        });
+        robots.chain(objects).chain(links).collect()
+    }
+
     /// Number of joint values of one state, over all robots.
     pub fn values(&self) -> usize {
         self.robots.iter().map(|r| r.start.len()).sum()
     }
+}
+
+/// The warning and the hint for a single robot.
+fn joint_contact_warning(robot: &Robot, found: &JointContact) -> (String, String) {
+    let [a, b] = [found.a, found.b].map(|link| &robot.chain.links()[link.0]);
+    let what = format!("links `{a}` and `{b}` touch {}: every state counts as a collision", reason(robot, found));
+    let hint = "if they are built so: --pairs FILE, which `elbowroom inspect MODEL --pairs FILE --accept` writes";
+    (what, hint.to_owned())
 }

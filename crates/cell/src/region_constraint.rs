@@ -3,11 +3,13 @@
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
-use elbowroom_planner::PathConstraint;
-use elbowroom_robot::RobotId;
+use elbowroom_planner::{PathConstraint, PathConstraintSource};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 
+use crate::Cell;
+use crate::configure::{self, MonitorSetup};
 use crate::frames::Frames;
-use crate::{Cell, configure};
 
 /// Smallest distance (m) that paths keep from the border of a region: at the border the override is 0 and the robot
 /// would stop there. At 5 mm the override is 5 % where the warning zone is 100 mm thick.
@@ -74,8 +76,59 @@ impl PathConstraint for RegionConstraint<'_> {
     }
 }
 
+/// The regions closed to each robot before a run: permanent forbidden regions, at their poses with all robots at some
+/// configurations.
+#[derive(Debug)]
+pub struct RegionConstraints<'c> {
+    cell: &'c Cell,
+    setups: Vec<MonitorSetup>,
+    monitors: Vec<Monitor>,
+    states: Vec<ChainState>,
+    least_m: f64,
+}
+
+impl<'c> RegionConstraints<'c> {
+    /// With the robots at these joint values (rad or m), in the order of the cell. Paths keep `least_m` from regions, and never
+    /// less than 5 mm.
+    ///
+    /// # Errors
+    /// Errors of the monitors' configurations.
+    pub fn new<'q>(cell: &'c Cell, q: impl IntoIterator<Item = &'q [f64]>, least_m: f64) -> Result<Self, FormatError> {
+        Self::of_setups(cell, configure::setups(cell)?, q, least_m)
+    }
+
+    fn of_setups<'q>(
+        cell: &'c Cell,
+        setups: Vec<MonitorSetup>,
+        q: impl IntoIterator<Item = &'q [f64]>,
+        least_m: f64,
+    ) -> Result<Self, FormatError> {
+        let monitors = configure::monitors(cell, &setups)?;
+        let state = |(r, q): (&crate::CellRobot, &[f64])| {
+            let mut state = ChainState::new(&r.robot.chain);
+            state.q.copy_from_slice(q);
+            r.robot.chain.forward_motion(&mut state);
+            state
+        };
+        let states = cell.robots.iter().zip(q).map(state).collect();
+        Ok(Self { cell, setups, monitors, states, least_m })
+    }
+
+    /// The regions closed to a robot; `None` where there is none.
+    pub fn of_robot(&self, robot: RobotId) -> Option<RegionConstraint<'_>> {
+        let sources = Frames::new(self.cell).sources(&self.setups[robot.0].sources, &self.states, 0.0);
+        RegionConstraint::new(&self.monitors[robot.0], &sources, 0.0, self.least_m)
+    }
+}
+
+impl PathConstraintSource for RegionConstraints<'_> {
+    fn constraint_of(&self, robot: RobotId) -> Option<Box<dyn PathConstraint + '_>> {
+        Some(Box::new(self.of_robot(robot)?))
+    }
+}
+
 /// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions. All robots are at their
-/// start, this one at `q`.
+/// start, this one at `q`; the objects that it holds count as its tool.
 ///
 /// # Errors
 /// Errors of the monitors' configurations, and those of `plan`.
@@ -83,20 +136,15 @@ pub fn at_start<T>(
     cell: &Cell,
     robot: RobotId,
     q: &[f64],
+    held: &[(ObjectId, Attachment)],
     least_m: f64,
     plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
 ) -> Result<T, FormatError> {
-    let setups = configure::setups(cell)?;
-    let monitors = configure::monitors(cell, &setups)?;
-    let state = |(i, r): (usize, &crate::CellRobot)| {
-        let mut state = ChainState::new(&r.robot.chain);
-        state.q.copy_from_slice(if RobotId(i) == robot { q } else { &r.start });
-        r.robot.chain.forward_motion(&mut state);
-        state
-    };
-    let states: Vec<_> = cell.robots.iter().enumerate().map(state).collect();
-    let sources = Frames::new(cell).sources(&setups[robot.0].sources, &states, 0.0);
-    plan(RegionConstraint::new(&monitors[robot.0], &sources, 0.0, least_m))
+    let at = |(i, r): (usize, &'_ crate::CellRobot)| if RobotId(i) == robot { q.to_vec() } else { r.start.clone() };
+    let all: Vec<Vec<f64>> = cell.robots.iter().enumerate().map(at).collect();
+    let setups = configure::setups_holding(cell, held)?;
+    let constraints = RegionConstraints::of_setups(cell, setups, all.iter().map(Vec::as_slice), least_m)?;
+    plan(constraints.of_robot(robot))
 }
 
 /// The smaller value; NaN counts as smaller than any.

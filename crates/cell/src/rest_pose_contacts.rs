@@ -1,17 +1,23 @@
 //! Contacts in the rest pose: warnings of links that touch without a collider between them, with the SRDF entry that
 //! disables such a pair.
 
+use elbowroom_kinematics::LinkId;
 use elbowroom_robot::Robot;
 use elbowroom_robot::rest_pose_contacts;
 
 /// The warning and the hint for each such pair at the joint values `rest` (rad or m). `name` is the robot's name in its
-/// cell; `None` for a single model.
-pub(crate) fn warnings(robot: &Robot, rest: &[f64], name: Option<&str>) -> impl Iterator<Item = (String, String)> {
+/// cell; `None` for a single model. Only pairs that are new.
+pub(crate) fn warnings(
+    robot: &Robot,
+    rest: &[f64],
+    name: Option<&str>,
+    is_new: impl Fn(LinkId, LinkId) -> bool,
+) -> impl Iterator<Item = (String, String)> {
     let links = robot.chain.links().to_vec();
     let of_robot = name.map_or_else(String::new, |n| format!("robot \"{n}\": "));
     let in_cell = name.is_some();
     let whose = if in_cell { "at its `start`" } else { "at rest" };
-    rest_pose_contacts(robot, rest).into_iter().map(move |found| {
+    rest_pose_contacts(robot, rest).into_iter().filter(move |found| is_new(found.a, found.b)).map(move |found| {
         let (a, b) = (&links[found.a.0], &links[found.b.0]);
         let often = if found.always() {
             format!("in all {} states sampled in the joint space", found.samples)

@@ -60,6 +60,14 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("start = [0, 0, 0, 0, 40, 0]", "start = [0, 0, 0, 0, 40]", "5 values for the 6 joints", "joint_1, joint_2"),
     (
         "start = [0, 0, 0, 0, 40, 0]",
+        "start = \"hom\"\nstates = { home = [0, 0, 0, 0, 40, 0] }",
+        "names the state \"hom\"",
+        "home",
+    ),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = \"home\"", "which robot \"c\" does not have", "define it first"),
+    ("start = [0, 0, 0, 0, 40, 0]", "start = true", "must be a list", "[0, 0, 0, 0, 0, 0]"),
+    (
+        "start = [0, 0, 0, 0, 40, 0]",
         "start = [0, 0, 0, 0, 140, 0]",
         "joint \"joint_5\" to 140 deg",
         "-120 deg to 120 deg",
@@ -323,4 +331,234 @@ fn errors_of_trajectories_name_the_line() {
         assert_eq!(e.line, Some(line), "{e}");
         assert!(e.what.contains(what), "{e}");
     }
+}
+
+/// Replaces line `number` (from 1) of `text` and expects an error there: number, replacement, line, message, hint. All cases are
+/// tried before failures are reported.
+fn refused(file: &std::path::Path, text: &str, cases: &[(usize, &str, usize, &str, &str)]) {
+    assert!(Cell::parse(file, text).is_ok(), "{}", Cell::parse(file, text).unwrap_err());
+    let mut wrong = Vec::new();
+    for &(number, by, line, what, hint) in cases {
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[number - 1] = by;
+        match Cell::parse(file, &lines.join("\n")) {
+            Ok(_) => wrong.push(format!("`{by}` passed")),
+            Err(e) => {
+                let write = e.write_instead.as_deref().unwrap_or_default();
+                let is_taught = e.what.contains(what) && write.contains(hint) && !write.is_empty();
+                if e.line != Some(line) || !is_taught {
+                    wrong.push(format!("`{by}`, expected line {line}, `{what}`, `{hint}`:\n  {e}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+const CAMERA: &str = r#"[camera.above]
+size = [320, 240]
+focal_px = 300
+centre_px = [160, 120]
+distortion = [0, 0, 0]
+pose = { at = [0, 0, 5000], rpy = [180, 0, 0] }
+area = [[-1000, -1000], [1000, -1000], [1000, 1000], [-1000, 1000]]
+floor = 0
+learning_frames = 30
+uncertainty = 30
+max_speed = 2000
+shadows = false
+prediction = 0.5
+mask_margin = 30
+robot = "r"
+frames = "pictures"
+templates = [{ name = "crate", size = [600, 400], height = 300, tolerance = 50, height_tolerance = 10 }]
+"#;
+
+#[test]
+fn each_key_of_a_camera_is_refused_at_its_line() {
+    let template = |keys: &str| format!("templates = [{{ {keys} }}]");
+    let of_template: Vec<(String, &str, &str)> = [
+        ("size = [600, 400], height = 300", "needs the key `name`", "name = \"crate\""),
+        ("name = 3, size = [600, 400], height = 300", "must be a text", "name = "),
+        ("name = \"a\", size = [600], height = 300", "needs 2 numbers, not 1", "size = [600, 400]"),
+        ("name = \"a\", size = [600, 0], height = 300", "must be two lengths above 0", "size = [600, 400]"),
+        ("name = \"a\", size = 600, height = 300", "must be a list", "size = [600, 400]"),
+        ("name = \"a\", height = 300", "either `size` or `diameter`", "size = "),
+        ("name = \"a\", size = [600, 400], diameter = 9, height = 300", "either `size` or `diameter`", "size = "),
+        ("name = \"a\", diameter = 0, height = 300", "above 0", "diameter"),
+        ("name = \"a\", diameter = [9], height = 300", "must be a number", "diameter"),
+        ("name = \"a\", size = [600, 400]", "needs the key `height`", "height = 320"),
+        ("name = \"a\", size = [600, 400], height = -3", "above 0", "height"),
+        ("name = \"a\", size = [600, 400], height = nan", "is NaN", "finite"),
+        ("name = \"a\", size = [600, 400], height = 300, tolerance = -1", "0 or more", "tolerance"),
+        ("name = \"a\", size = [600, 400], height = 300, tolerance = \"9\"", "must be a number", "tolerance"),
+        ("name = \"a\", size = [600, 400], height = 300, tolerance = inf", "is inf", "finite"),
+        ("name = \"a\", size = [600, 400], height = 300, height_tolerance = -1", "0 or more", "height_tolerance"),
+        (
+            "name = \"a\", size = [600, 400], height = 300, height_tolerance = [1]",
+            "must be a number",
+            "height_tolerance",
+        ),
+        (
+            "name = \"a\", size = [600, 400], height = 300, hight_tolerance = 1",
+            "no key `hight_tolerance`",
+            "height_tolerance",
+        ),
+    ]
+    .map(|(keys, what, hint)| (template(keys), what, hint))
+    .into();
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("bad.csv"), "").unwrap();
+    let mut cases = vec![
+        (9, "", 8, "needs the key `size`", "size = [640, 480]"),
+        (9, "size = 320", 9, "must be a list", "size = [640, 480]"),
+        (9, "size = [320]", 9, "needs 2 numbers, not 1", "size = [640, 480]"),
+        (9, "size = [320, 4]", 9, "whole number from 8 to 16384", "= 8"),
+        (10, "", 8, "needs the key `focal_px`", "focal_px = [600, 600]"),
+        (10, "focal_px = 0", 10, "above 0", "focal_px"),
+        (10, "focal_px = [600]", 10, "needs 2 numbers, not 1", "focal_px = [600, 600]"),
+        (10, "focal_px = [600, -600]", 10, "focal lengths must be positive", "calibration"),
+        (11, "centre_px = 160", 11, "must be a list", "centre_px = [320, 240]"),
+        (11, "centre_px = [160, 120, 0]", 11, "needs 2 numbers, not 3", "centre_px = [320, 240]"),
+        (11, "centre_px = [160, nan]", 11, "is NaN", "finite"),
+        (12, "center_px = [160, 120]", 12, "contradicts `centre_px`", "one of the two"),
+        (12, "distortion = 0.1", 12, "must be a list", "k1, k2, k3"),
+        (12, "distortion = [0, 0, 0, 1]", 12, "has 4 coefficients", "k1, k2, k3"),
+        (12, "distortion = [-90]", 12, "folds the picture over", "calibration"),
+        (13, "", 8, "needs the key `pose`", "z looks along the view"),
+        (13, "pose = [0, 0, 5000]", 13, "must be a table", "at = "),
+        (13, "pose = { at = [0, 0, 5000], rpy = [90, 0, 0] }", 13, "does not show the floor", "rpy = [180, 0, 0]"),
+        (13, "pose = { at = [0, 5000], rpy = [180, 0, 0] }", 13, "needs 3 numbers, not 2", "at = "),
+        (14, "area = [[-1000, -1000], [1000, -1000]]", 14, "has 2 corners", "area = [["),
+        (14, "area = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]", 14, "needs 2 numbers, not 3", "area = [["),
+        (14, "area = \"all\"", 14, "must be a list", "area = [["),
+        (15, "floor = \"0\"", 15, "must be a number", "floor"),
+        (15, "floor = inf", 15, "is inf", "finite"),
+        (15, "floor = 6000", 13, "does not show the floor", "pose = "),
+        (16, "learning_frames = 1", 16, "whole number from 2 to 10000", "learning_frames"),
+        (16, "learning_frames = 2.5", 16, "whole number", "learning_frames"),
+        (16, "learning_frames = true", 16, "must be a number", "learning_frames"),
+        (17, "uncertainty = -1", 17, "0 or more", "uncertainty"),
+        (17, "uncertainty = 1e6", 17, "out of its range", "0 to 10 metres"),
+        (17, "uncertainty = \"30\"", 17, "must be a number", "uncertainty"),
+        (18, "max_speed = 0", 18, "above 0", "max_speed"),
+        (18, "max_speed = 1e9", 18, "out of its range", "metres per second"),
+        (18, "max_speed = [1]", 18, "must be a number", "max_speed"),
+        (19, "shadows = 1", 19, "must be true or false", "shadows = true"),
+        (19, "shadows = \"yes\"", 19, "must be true or false", "shadows = true"),
+        (19, "shadow = true", 19, "no key `shadow`", "shadows"),
+        (20, "prediction = -1", 20, "0 or more", "prediction"),
+        (20, "prediction = inf", 20, "is inf", "finite"),
+        (20, "prediction = {}", 20, "must be a number", "prediction"),
+        (21, "mask_margin = -1", 21, "0 or more", "mask_margin"),
+        (21, "mask_margin = \"a\"", 21, "must be a number", "mask_margin"),
+        (21, "mask_margin = nan", 21, "is NaN", "finite"),
+        (22, "robot = \"kuka\"", 22, "robot \"kuka\"", "r"),
+        (22, "robot = 1", 22, "must be a text", "robot"),
+        (22, "robot = [\"r\"]", 22, "must be a text", "robot"),
+        (23, "frames = 3", 23, "must be a text", "frames"),
+        (23, "frames = \"\"", 23, "names no folder", "frames = \"frames\""),
+        (23, "frames = [\"a.png\"]", 23, "must be a text", "frames"),
+        (23, "joints = \"none.csv\"", 23, "does not exist", "relative to"),
+        (23, "joints = \"\"", 23, "names no file", "relative to"),
+        (23, "joints = 3", 23, "must be a text", "joints"),
+        (24, "templates = {}", 24, "must be a list", "templates = [{"),
+        (24, "templates = [3]", 24, "must be a table", "templates = [{"),
+    ];
+    cases.extend(of_template.iter().map(|(by, what, hint)| (24, &by[..], 24, *what, *hint)));
+    refused(&dir.path().join("cell.toml"), &format!("{HEAD}{}{CAMERA}", rail("r", 0.0)), &cases);
+}
+
+#[test]
+fn each_key_of_a_recording_is_refused_at_its_line() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("log.csv"), "t;Joint_1\n0;0\n100;0,1\n").unwrap();
+    let keys = |keys: &str| format!("trajectory = {{ {keys} }}");
+    let cases = [
+        ("time = \"t\"", 9, "needs the key `file`", "file = \"log.csv\""),
+        ("file = 3", 9, "must be a text", "file"),
+        ("file = \"none.csv\", time = \"t\"", 9, "does not exist", "relative to"),
+        ("file = \"log.csv\", time = \"t\", angle = \"grad\"", 9, "cannot be \"grad\"", "rad"),
+        ("file = \"log.csv\", time = \"t\", angle = 3", 9, "must be one of", "angle = \"rad\""),
+        ("file = \"log.csv\", time = \"t\", angle = \"degrees\"", 9, "cannot be \"degrees\"", "deg"),
+        ("file = \"log.csv\", time = \"t\", length = \"ell\"", 9, "cannot be \"ell\"", "mm"),
+        ("file = \"log.csv\", time = \"t\", length = 1", 9, "must be one of", "length = \"m\""),
+        ("file = \"log.csv\", time = \"t\", length = \"km\"", 9, "cannot be \"km\"", "cm"),
+        ("file = \"log.csv\", time = 3", 9, "must be a text", "time"),
+        (
+            "file = \"log.csv\", time = \"zeit\"",
+            1,
+            "no column `zeit` of the time; its columns are t, Joint_1",
+            "time = \"COLUMN\"",
+        ),
+        ("file = \"log.csv\"", 1, "no column `t_s`", "period_ms = 4"),
+        ("file = \"log.csv\", time = \"t\", time_unit = \"min\"", 9, "cannot be \"min\"", "ms"),
+        ("file = \"log.csv\", time = \"t\", time_unit = 1", 9, "must be one of", "time_unit = \"s\""),
+        ("file = \"log.csv\", period_ms = 4, time_unit = \"ms\"", 9, "contradicts `period_ms`", "time = "),
+        ("file = \"log.csv\", period_ms = 0", 9, "above 0", "period_ms"),
+        ("file = \"log.csv\", period_ms = \"4\"", 9, "must be a number", "period_ms"),
+        ("file = \"log.csv\", period_ms = 4, time = \"t\"", 9, "contradicts `time`", "one of the two"),
+        ("file = \"log.csv\", time = \"t\", columns = { joint_9 = \"A\" }", 9, "no key `joint_9`", "joint_1"),
+        ("file = \"log.csv\", time = \"t\", columns = 3", 9, "must be a table", "columns = { joint_1 = \"A1\" }"),
+        ("file = \"log.csv\", time = \"t\", columns = { joint_1 = 3 }", 9, "must be a text", "joint_1"),
+        (
+            "file = \"log.csv\", time = \"t\", columns = { joint_1 = \"A9\" }",
+            1,
+            "no column `A9` for `joint_1`",
+            "a column of the file",
+        ),
+        ("file = \"log.csv\", time = \"t\", offset = -1", 9, "0 or more", "offset"),
+        ("file = \"log.csv\", time = \"t\", offset = \"1\"", 9, "must be a number", "offset"),
+        ("file = \"log.csv\", time = \"t\", offset = inf", 9, "is inf", "finite"),
+        ("file = \"log.csv\", time = \"t\", delay = 1", 9, "no key `delay`", "offset"),
+    ];
+    let cases = cases.map(|(by, line, what, hint)| (keys(by), line, what, hint));
+    let cases: Vec<_> = cases.iter().map(|(by, line, what, hint)| (9, &by[..], *line, *what, *hint)).collect();
+    let good = keys(
+        "file = \"log.csv\", time = \"t\", time_unit = \"ms\", length = \"m\", columns = { joint_1 = \"Joint_1\" }, offset = 1",
+    );
+    let text = format!("{HEAD}{}[program.r]\n{good}\n", rail("r", 0.0));
+    refused(&dir.path().join("cell.toml"), &text, &cases);
+}
+
+#[test]
+fn states_steps_quaternions_and_ignored_pairs_are_refused_at_their_line() {
+    let robot = rail("r", 0.0);
+    let text = format!(
+        "{HEAD}{robot}states = {{ left = [-1000] }}\nignore = [[\"base\", \"link_1\"]]\n[object.part]\nshape = \"sphere\"\nradius = 30\n\
+         quaternion = [0, 0, 0, 1]\n[object.floor]\nshape = \"plane\"\nat = [0, 0, -9000]\n[program.r]\nsteps = [\n\
+         {{ move = \"planned\", to = \"left\", speed = 50 }},\n{{ grip = \"part\" }},\n{{ release = \"part\" }},\n]\n"
+    );
+    let line = |number: usize| text.lines().nth(number - 1).unwrap();
+    assert!(line(13).starts_with("quaternion") && line(19).contains("planned") && line(21).contains("release"));
+    let cases = [
+        (8, "states = 3", 8, "must be a table", "states = { home = "),
+        (8, "states = { left = [1, 2] }", 8, "has 2 values for the 1 joints", "joint_1"),
+        (8, "states = { left = [5000] }", 8, "brings joint \"joint_1\" to 5000 mm", "-2000 mm to 2000 mm"),
+        (8, "states = { left = \"up\" }", 8, "must be a list", "[0]"),
+        (9, "ignore = \"base\"", 9, "must be a list", "ignore = [["),
+        (9, "ignore = [[\"base\"]]", 9, "names 1 links, not two", "ignore = [["),
+        (9, "ignore = [[\"base\", \"link_2\"]]", 9, "link \"link_2\"", "link_1"),
+        (9, "ignore = [[\"base\", \"base\"]]", 9, "names one link twice", "ignore = [["),
+        (13, "quaternion = [0, 0, 1]", 13, "needs 4 numbers, not 3", "x, y, z, w"),
+        (13, "quaternion = [0, 0, 0, 2]", 13, "has the length 2", "x, y, z, w"),
+        (13, "quaternion = [0, 0, nan, 1]", 13, "is NaN", "finite"),
+        (13, "quaternion = \"up\"", 13, "must be a list", "x, y, z, w"),
+        (13, "quaternion = [0, 0, 0, 1]\nrpy = [0, 0, 0]", 13, "contradicts `rpy`", "one of the two"),
+        (19, "{ move = \"planned\" },", 19, "needs the key `to`", "to = ["),
+        (19, "{ move = \"planned\", to = \"lefft\" },", 19, "names the state \"lefft\"", "left"),
+        (19, "{ move = \"planned\", to = \"left\", speed = 0 },", 19, "above 0", "speed"),
+        (19, "{ move = \"planned\", to = \"left\", speed = 120 },", 19, "0 to 100, not 120", "speed"),
+        (19, "{ move = \"planned\", to = 3 },", 19, "is neither joint values, a pose, nor the name", "to = ["),
+        (19, "{ move = \"planned\", to = \"left\", via = 1 },", 19, "no key `via`", "to"),
+        (20, "{ grip = 3 },", 20, "must be a text", "grip"),
+        (20, "{ grip = \"prat\" },", 20, "names the object \"prat\"", "part"),
+        (20, "{ grip = \"floor\" },", 20, "a plane, which is unbounded", "another shape"),
+        (20, "{ grip = \"part\", speed = 3 },", 20, "no key `speed`", "grip"),
+        (21, "{ release = [\"part\"] },", 21, "must be a text", "release"),
+        (21, "{ release = \"r\" },", 21, "names the object \"r\"", "part"),
+        (21, "{ release = \"part\", wait = 1 },", 21, "several steps in one", "one of"),
+        (21, "{ relase = \"part\" },", 21, "no key `relase`", "release"),
+    ];
+    refused("test.toml".as_ref(), &text, &cases);
 }

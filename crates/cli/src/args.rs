@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use elbowroom::analysis::map::MapModel;
 use elbowroom::analysis::query::{Level, QueryKind};
-use elbowroom::cspace::ObstacleModel;
 
 /// Collision awareness for industrial robot cells.
 ///
@@ -30,7 +30,7 @@ pub(crate) enum Command {
     Query(QueryArgs),
     /// Report the contents of a robot or mesh file
     Inspect(InspectArgs),
-    /// Write a robot as a URDF with STL meshes, or as 3DS
+    /// Write a robot as a URDF with STL meshes, as 3DS or SRDF; a planning scene as a cell file
     Convert(ConvertArgs),
     /// Compute the joint-space occupancy of a cell's objects for one robot
     Map(MapArgs),
@@ -97,7 +97,7 @@ pub(crate) struct RunArgs {
     /// Disable obstacle avoidance: all robots follow their programs
     #[arg(long)]
     pub(crate) no_avoidance: bool,
-    /// Also run without the monitor, and compare both runs in the report
+    /// Show all of the run without the monitor in the report, not only its distances
     #[arg(long, requires = "out", conflicts_with = "no_monitor")]
     pub(crate) compare: bool,
     /// Run the programs this many times in a row
@@ -132,8 +132,9 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
   elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
   elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
+  elbowroom query cell.toml --ask contacts --pairs pairs.toml       all triangles that touch, but for what may touch
 
-Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level (see docs/query.md).
+Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level; those of contacts are in docs/query.md.
 Exit status: 1 if --ask collision finds a collision.")]
 pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
@@ -150,7 +151,8 @@ pub(crate) struct QueryArgs {
     /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
-    /// The query: collision, distance, or tolerance=METRES
+    /// The query: collision, distance, tolerance=METRES, point (the collision point and its link) or contacts (all triangles
+    /// that touch)
     #[arg(long, value_name = "WHAT")]
     pub(crate) ask: QueryKind,
     /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input);
@@ -160,12 +162,18 @@ pub(crate) struct QueryArgs {
     /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
+    /// A file of pairs that may touch, and of weights (docs/query.md); beside the cell's own
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) pairs: Option<PathBuf>,
     /// Only these pairs: robots, links as robot/link, objects or regions; with --urdf links, or `robot` for all of them
     #[arg(long, value_name = "A,B;C,D…")]
     pub(crate) between: Option<String>,
     /// Leave out pairs within one robot
     #[arg(long)]
     pub(crate) no_self: bool,
+    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
+    pub(crate) carry: Vec<String>,
     /// A row for each pair no farther apart than this (metres), the nearest first, instead of one row per state
     #[arg(long, value_name = "METRES", value_parser = margin, allow_negative_numbers = true)]
     pub(crate) all_pairs: Option<f64>,
@@ -191,14 +199,19 @@ pub(crate) struct JointArgs {
   elbowroom convert arm.urdf --out arm --to 3ds        arm/arm.3ds and arm/arm.joints.toml
   elbowroom convert arm.glb --out arm --joint \"link_1: axis=z, min=-170, max=170, speed=100\"
   elbowroom convert cell.toml --robot ns16 --out ns16  the robot of a cell, with its tool and load
+  elbowroom convert arm.urdf arm.srdf                  its groups, states, and the pairs that need no test
+  elbowroom convert shelf.scene shelf.toml             a MoveIt planning scene (or .yaml) as objects of a cell file
 
 Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
-    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it (docs/models.md)
+    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it; or a planning scene (docs/models.md)
     pub(crate) model: PathBuf,
-    /// The output folder
+    /// The output, a new file: .srdf for a robot, .toml for a planning scene
+    #[arg(required_unless_present = "out", conflicts_with_all = ["out", "to"])]
+    pub(crate) output: Option<PathBuf>,
+    /// The output folder of --to
     #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    pub(crate) out: Option<PathBuf>,
     /// The output format; urdf,3ds for both
     #[arg(long, value_enum, value_delimiter = ',', default_value = "urdf")]
     pub(crate) to: Vec<Written>,
@@ -228,9 +241,11 @@ pub(crate) enum Written {
 #[command(after_help = "Examples:
   elbowroom map cell.toml                       a table of the blocked cells per object
   elbowroom map cell.toml --out map.npy --json  the cells as NumPy reads them, 0 free, 1 blocked
+  elbowroom map cell.toml --page map.html       the slices in a browser, with a slider
   elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
   elbowroom map cell.toml --exact               fewer cells blocked needlessly, tenths of a second per object
-  elbowroom map cell.toml --model spheres=8     the obstacle model of the paper, for comparison
+  elbowroom map cell.toml --model slices        the quickest obstacle model of the paper; blocks more
+  elbowroom map cell.toml --model spheres=64 --deadline 5   as many spheres as five milliseconds allow
 
 Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees
 (docs/map.md).
@@ -241,18 +256,25 @@ pub(crate) struct MapArgs {
     /// The robot; optional if there is only one, or only one [map.ROBOT]
     #[arg(long, value_name = "NAME")]
     pub(crate) robot: Option<String>,
-    /// Obstacle model: exact, slices, sphere, spheres=N or box
+    /// Obstacle model: exact, slices, sphere, spheres=N or box; or seeds, the paper's expansion, which misses cells
     #[arg(long, default_value = "exact")]
-    pub(crate) model: ObstacleModel,
+    pub(crate) model: MapModel,
     /// The robot's own solids decide at the border, not sphere covers of its links (always so unless there are three joints)
     #[arg(long)]
     pub(crate) exact: bool,
+    /// With --model spheres=N: one sphere around each object first, then 2, 4, 8 … up to N until so many milliseconds have
+    /// passed; any number of spheres blocks all that an object does
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true, conflicts_with = "exact")]
+    pub(crate) deadline: Option<f64>,
     /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) out: Option<PathBuf>,
     /// Write pictures of slices, and an HTML page with them, to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) png: Option<PathBuf>,
+    /// Write one page with the slices and a slider, which opens offline
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) page: Option<PathBuf>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
@@ -263,10 +285,11 @@ pub(crate) struct MapArgs {
   elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
   elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
   elbowroom inspect arm.urdf --write-srdf arm.srdf   the pairs that need not be tested
+  elbowroom inspect cell.toml --pairs pairs.toml     all pairs of a cell, to decide on
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
   elbowroom inspect table.stl --unit mm --json")]
 pub(crate) struct InspectArgs {
-    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF)
+    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF); with --pairs also a cell file
     pub(crate) model: PathBuf,
     /// The SRDF of the URDF
     #[arg(long, value_name = "FILE")]
@@ -295,6 +318,13 @@ pub(crate) struct InspectArgs {
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
+    /// Write what sampling and geometry tell of all pairs to this file (docs/query.md); rows with a `reason` stay in it. MODEL may
+    /// be a cell file then
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["states", "brief"])]
+    pub(crate) pairs: Option<PathBuf>,
+    /// With --pairs: skip the pairs that are in contact in all samples
+    #[arg(long, requires = "pairs")]
+    pub(crate) accept: bool,
     /// Write an SRDF for the robot to this file: pairs of links that need not be tested, each with its reason
     #[arg(long, value_name = "FILE.srdf", conflicts_with_all = ["states", "brief"])]
     pub(crate) write_srdf: Option<PathBuf>,
@@ -330,6 +360,7 @@ pub(crate) enum Unit {
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0   millimetres and degrees, as in the cell
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
+  elbowroom plan cell.toml --robot left --to reach --robot right --to home --out both.csv   both at the same time
   elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
   elbowroom plan --urdf arm.urdf --problems problems.json --only shelf --limit 10 --paths paths
 
@@ -343,25 +374,32 @@ pub(crate) struct PlanArgs {
     /// The cell file; or --urdf with --problems
     #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
     pub(crate) cell: Option<PathBuf>,
-    /// Name of the robot; optional if there is only one
+    /// Name of the robot; optional if there is only one. Several robots move at the same time: --robot, --from and --to for
+    /// each, in the same order
     #[arg(long, value_name = "NAME")]
-    pub(crate) robot: Option<String>,
+    pub(crate) robot: Vec<String>,
     /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints), or the name
-    /// of one of the robot's `states`; default: its `start`
+    /// of one of the robot's `states`, or `start`; default: its `start`
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
-    pub(crate) from: Option<Configuration>,
+    pub(crate) from: Vec<Configuration>,
     /// Goal configuration, likewise
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
-    pub(crate) to: Option<Configuration>,
+    pub(crate) to: Vec<Configuration>,
     /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
     pub(crate) to_pose: Option<Numbers>,
     /// --from and --to are in the cell file's units, as in a program
     #[arg(long, conflicts_with = "urdf")]
     pub(crate) cell_units: bool,
+    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
+    pub(crate) carry: Vec<String>,
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
+    /// Write a page that plays the path in the 3-D scene, with the distances from regions, and opens offline
+    #[arg(long, value_name = "FILE.html", conflicts_with = "urdf")]
+    pub(crate) report: Option<PathBuf>,
     /// Sampling period in seconds; default: the cell's control period, 0.002 with --problems
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) period: Option<f64>,
@@ -431,6 +469,12 @@ fn margin(text: &str) -> Result<f64, String> {
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
     value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
+}
+
+/// A duration in milliseconds.
+fn milliseconds(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1e9);
+    value.ok_or_else(|| "write a number of milliseconds above 0, as 5".into())
 }
 
 #[derive(Debug, Args)]

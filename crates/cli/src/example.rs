@@ -26,7 +26,7 @@ pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let on = with_progress(&cell, &RunOptions::default())?;
     let off = with_progress(&cell, &RunOptions { apply_override: false, ..RunOptions::default() })?;
     on.notes.iter().for_each(note);
-    write_files(&dir, &cell, &on.recording, Some(&off.recording))?;
+    write_files(&dir, &cell, &on.recording, Some(&off.recording), true)?;
     print(&report::summary(&on.recording, width(), color()))?;
     let passes =
         if off.recording.regions.iter().any(|r| r.entered) { "passes through it" } else { "stays out as well" };

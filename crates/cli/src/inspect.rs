@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use elbowroom::cell::QueryModel;
+use elbowroom::cell::{Cell, PairFile, QueryModel};
 use elbowroom::formats::stl::write_binary;
 use elbowroom::inspect::{DhConvention, InspectOptions, Inspection};
 use elbowroom::kinematics::{ChainState, LinkId};
@@ -16,6 +16,12 @@ use crate::args::{Dh, InspectArgs, Unit};
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
+    if let Some(path) = args.pairs.as_ref().filter(|_| is_cell(&args.model)) {
+        let cell = Cell::load(&args.model)?;
+        cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+        write_pairs(&QueryModel::without_rules(&cell), path, args.accept)?;
+        return Ok(ExitStatus::Success);
+    }
     let options = InspectOptions {
         srdf: args.srdf.clone(),
         unit: args.unit.map(LengthUnit::from),
@@ -46,6 +52,13 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         std::fs::write(path, inspection.srdf().ok_or_else(what)?).map_err(cannot_write(path))?;
         note(format_args!("wrote {}", path.display()));
     }
+    if let Some(path) = &args.pairs {
+        let robot = inspection.robot().ok_or_else(|| {
+            let model = args.model.display();
+            Failure::Wrong(format!("{model}: is a mesh; it has no pairs\n  write: a robot or a cell file"))
+        })?;
+        write_pairs(&QueryModel::of_robot(&args.model, robot.clone()), path, args.accept)?;
+    }
     if args.json {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         print_json(&inspection)?;
@@ -53,6 +66,31 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         print(&inspection.to_string())?;
     }
     Ok(ExitStatus::Success)
+}
+
+fn is_cell(model: &Path) -> bool {
+    model.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// Writes the file of pairs of a model; rows that a person wrote in it stay.
+fn write_pairs(model: &QueryModel, path: &Path, accept: bool) -> Result<(), Failure> {
+    let before = path.exists().then(|| PairFile::read(path)).transpose()?;
+    let (file, counts) = PairFile::survey(path, model, before.as_ref(), accept)?;
+    std::fs::write(path, file.to_string()).map_err(cannot_write(path))?;
+    let always = if accept { "skipped" } else { "tested" };
+    let counted = [
+        (counts.excluded, "never tested (adjacent, no joint between, SRDF)"),
+        (counts.out_of_reach, "out of reach of each other (proven)"),
+        (counts.always, &format!("always in contact ({always})")),
+        (counts.never, "never in contact in samples (tested last)"),
+        (counts.at_rest, "in contact at rest (tested)"),
+        (counts.by_hand, "by hand"),
+        (counts.others, "others (tested)"),
+    ];
+    let counted: Vec<String> =
+        counted.into_iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    note(format_args!("wrote {}: {}", path.display(), counted.join(", ")));
+    Ok(())
 }
 
 /// Writes a picture, or a page with four views.

@@ -3,6 +3,7 @@
 //! Exit status: 0 success; 1 negative result (a collision, a forbidden region entered, no path); 2 invalid input or call.
 
 mod args;
+mod carry;
 mod check;
 mod convert;
 mod example;
@@ -12,6 +13,10 @@ mod map;
 mod output;
 mod plan;
 mod plan_problems;
+mod plan_report;
+mod plan_request;
+mod plan_several;
+mod progress;
 mod query;
 mod region;
 mod rules;

@@ -4,20 +4,28 @@ use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
+use std::time::Duration;
 
-use elbowroom::analysis::map::{self, CellMap, MapObstacle, MapRequest};
+use elbowroom::analysis::map::{self, CellMap, MapObstacle, MapProgress, MapRequest};
 use elbowroom::cell::Cell;
-use elbowroom::cspace::GridAxis;
-use elbowroom::report::map_pictures;
+use elbowroom::cspace::{GridAxis, ObstacleModel};
+use elbowroom::report::{map_page, map_pictures};
 use serde::Serialize;
 
 use crate::args::MapArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::progress::Progress;
 
 pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let map = map::map(&cell, &MapRequest { robot: args.robot.clone(), model: args.model, exact: args.exact })?;
+    let request = request(args);
+    if args.out.is_some() && !request.model.is_conservative() {
+        let what =
+            "--out with --model seeds: cells that the model misses would be read as free\n  write: --model slices";
+        return Err(Failure::Wrong(what.to_owned()));
+    }
+    let map = with_progress(&cell, &request)?;
     map.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(path) = &args.out {
         write(&map, path)?;
@@ -26,6 +34,10 @@ pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
         Some(folder) => Some((map_pictures::write(&map, folder).map_err(cannot_write(folder))?, folder)),
         None => None,
     };
+    if let Some(path) = &args.page {
+        let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+        map_page::write(file, &map, cell.units).map_err(|e| cannot_write_page(&map, path, &e))?;
+    }
     if args.json {
         print_json(&Document::of(&map))?;
         return Ok(ExitStatus::Success);
@@ -37,7 +49,32 @@ pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
     if let Some((count, folder)) = pictures {
         print(&format!("\n{count} pictures: open {}\n", folder.join("index.html").display()))?;
     }
+    if let Some(path) = &args.page {
+        print(&format!("\nslices with a slider: open {}\n", path.display()))?;
+    }
     Ok(ExitStatus::Success)
+}
+
+fn cannot_write_page(map: &CellMap, path: &Path, e: &std::io::Error) -> Failure {
+    match e.kind() {
+        std::io::ErrorKind::InvalidInput => {
+            Failure::Wrong(format!("{}: {e}\n  write: a larger step in [map.{}]", path.display(), map.robot))
+        }
+        _ => cannot_write(path)(std::io::Error::new(e.kind(), e.to_string())),
+    }
+}
+
+fn request(args: &MapArgs) -> MapRequest {
+    let deadline = args.deadline.map(|ms| Duration::from_secs_f64(ms * 1e-3));
+    MapRequest { robot: args.robot.clone(), model: args.model, exact: args.exact, deadline }
+}
+
+/// Computes the map with a progress bar, where it takes long.
+fn with_progress(cell: &Cell, request: &MapRequest) -> Result<CellMap, Failure> {
+    let bar = Progress::share();
+    let map = map::map_with(cell, request, &|p: MapProgress<'_>| bar.reach(p.share, p.what));
+    bar.end();
+    Ok(map?)
 }
 
 fn write(map: &CellMap, path: &Path) -> Result<(), Failure> {
@@ -74,6 +111,8 @@ struct AxisRow<'a> {
 struct ObstacleRow<'a> {
     name: &'a str,
     model: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spheres: Option<u32>,
     blocked: u64,
     time_us: f64,
 }
@@ -90,6 +129,7 @@ impl<'a> Document<'a> {
         let obstacle = |o: &'a MapObstacle| ObstacleRow {
             name: &o.name,
             model: o.model.to_string(),
+            spheres: o.spheres,
             blocked: o.blocks.blocked(),
             time_us: o.time.as_secs_f64() * 1e6,
         };
@@ -117,7 +157,8 @@ fn text(map: &CellMap) -> String {
     let _ = write!(out, "\n  {:<24} {:<11} {:>14} {:>9} {:>10}", "object", "model", "blocked cells", "share", "time");
     for o in &map.obstacles {
         let blocked = o.blocks.blocked();
-        let (model, cells, percent) = (o.model.to_string(), grouped(blocked), share(blocked));
+        let model = o.spheres.map_or(o.model, |count| ObstacleModel::Spheres(count).into()).to_string();
+        let (cells, percent) = (grouped(blocked), share(blocked));
         let time = format!("{:.1} ms", o.time.as_secs_f64() * 1e3);
         let _ = write!(out, "\n  {:<24} {model:<11} {cells:>14} {percent:>7.2} % {time:>10}", o.name);
     }

@@ -72,3 +72,12 @@ pub(crate) fn width() -> usize {
 pub(crate) fn color() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
+
+/// Refuses to overwrite a file.
+pub(crate) fn refuse_existing(path: &Path) -> Result<(), Failure> {
+    if path.exists() {
+        let what = format!("{}: is there already\n  write: the name of a new file", path.display());
+        return Err(Failure::Wrong(what));
+    }
+    Ok(())
+}

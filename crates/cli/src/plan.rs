@@ -4,16 +4,16 @@ use std::fmt::Write;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use std::time::Duration;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
-use elbowroom::cell::{Cell, suggest};
-use elbowroom::planner::RrtConnectSettings;
+use elbowroom::cell::{Cell, QUATERNION_TOLERANCE};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
+use crate::carry;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
-use crate::plan_problems;
+use crate::plan_request::{configuration, settings};
+use crate::{plan_problems, plan_report, plan_several};
 
 pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     if let (Some(urdf), Some(file)) = (&args.problems.urdf, &args.problems.problems) {
@@ -22,25 +22,30 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     // clap requires a cell and a goal where there are no problems.
     let cell = Cell::load(args.cell.as_deref().unwrap_or(Path::new("")))?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    if args.robot.len() > 1 {
+        return plan_several::plan(&cell, args);
+    }
     let request = PathRequest {
-        robot: args.robot.clone(),
-        from: args.from.as_ref().map(|from| configuration(args, &cell, from)).transpose()?,
+        robot: args.robot.first().cloned(),
+        from: at_most_one(args, "--from", &args.from)?
+            .map(|from| configuration(args, &cell, None, from))
+            .transpose()?,
         to: goal(args, &cell)?,
         speed: 1.0,
-        options: RrtConnectSettings {
-            time_limit: Duration::from_secs_f64(args.time_limit),
-            clearance_m: args.clearance,
-            seed: args.seed,
-            ..RrtConnectSettings::default()
-        },
+        options: settings(args),
         period_s: args.period,
         optimize: args.optimize,
+        carried: carry::attachments(&cell, &args.carry)?,
         ..PathRequest::default()
     };
     let answer = plan::plan(&cell, &request)?;
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
         let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
         motion.write_csv(&answer.joints, file).map_err(cannot_write(path))?;
+    }
+    if let (Some(path), Some(motion)) = (&args.report, &answer.motion) {
+        let (id, _) = plan::select_robot(&cell, request.robot.as_deref())?;
+        plan_report::write(path, &cell, vec![(id, motion.rows.clone())])?;
     }
     if args.json {
         print_json(&answer)?;
@@ -53,30 +58,25 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
+/// The only value of an option that has one per robot.
+fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<Option<&'a T>, Failure> {
+    if given.len() > 1 {
+        let (count, robots) = (given.len(), args.robot.len());
+        let what =
+            format!("{option} is given {count} times, --robot {robots} times: for several robots name each of them");
+        return Err(Failure::Wrong(format!("{what}\n  write: --robot a --to q,… --robot b --to q,…")));
+    }
+    Ok(given.first())
+}
+
 fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
     if let Some(Numbers(numbers)) = &args.to_pose {
         return pose(cell, numbers).map(PathGoal::Tcp);
     }
     // clap requires a goal.
     let none = Configuration::Values(Vec::new());
-    configuration(args, cell, args.to.as_ref().unwrap_or(&none)).map(PathGoal::Joints)
-}
-
-/// The values of a configuration, rad or m.
-fn configuration(args: &PlanArgs, cell: &Cell, given: &Configuration) -> Result<Vec<f64>, Failure> {
-    let (_, robot) = plan::select_robot(cell, args.robot.as_deref())?;
-    match given {
-        Configuration::Values(q) if args.cell_units => Ok(robot.joint_values_from_units(q, cell.units)),
-        Configuration::Values(q) => Ok(q.clone()),
-        Configuration::Named(name) => robot.state(name).map(<[f64]>::to_vec).ok_or_else(|| {
-            let known = robot.states.iter().map(|(name, _)| name.as_str());
-            let hint = suggest::hint(name, known);
-            Failure::Wrong(format!(
-                "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
-                robot.name, robot.name
-            ))
-        }),
-    }
+    let to = at_most_one(args, "--to", &args.to)?.unwrap_or(&none);
+    configuration(args, cell, None, to).map(PathGoal::Joints)
 }
 
 /// x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
@@ -93,7 +93,11 @@ fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
             Rotation::from_rpy(roll, pitch, yaw)
         }
         [qx, qy, qz, qw] => {
-            Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).ok_or_else(|| wrong("a quaternion of length 0"))?
+            let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
+            // As in a cell file.
+            let is_unit = (length - 1.0).abs() <= QUATERNION_TOLERANCE;
+            let rotation = Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).filter(|_| is_unit);
+            rotation.ok_or_else(|| wrong(&format!("a quaternion of length {length}, and a rotation has 1")))?
         }
         _ => return Err(wrong(&format!("{} numbers", numbers.len()))),
     };

@@ -1,20 +1,20 @@
 //! `elbowroom query`: collision, distance or tolerance, one row per state.
 
-use std::io::IsTerminal;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use elbowroom::analysis::query::{
-    Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_query,
+    ContactRecord, ContactRow, Level, Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow,
+    QueryStates, evaluate_contacts, evaluate_query,
 };
-use elbowroom::cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::QueryArgs;
+use crate::carry;
 use crate::output::{ExitStatus, Failure, note, print};
+use crate::progress::Progress;
 use crate::states;
 
 /// From this number of states on, pairs out of reach of each other are excluded first.
@@ -24,7 +24,22 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     if args.all_pairs.is_some() && args.ask != QueryKind::Distance {
         return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
     }
+    let is_exact = matches!(args.level, Level::Auto | Level::L3);
+    if !is_exact && matches!(args.ask, QueryKind::Point | QueryKind::Contacts) {
+        let what = "points and contacts are those of the exact geometry\n  write: --level auto, or none";
+        return Err(Failure::Wrong(what.to_owned()));
+    }
     let (mut model, cell) = query_model(args)?;
+    if let Some(cell) = &cell {
+        model.carried.extend(carry::attachments(cell, &args.carry)?);
+    }
+    if let Some(path) = &args.pairs {
+        let rules = PairFile::read(path)?.rules(&model)?;
+        model.add_rules(rules);
+    }
+    if model.is_single_robot {
+        model.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
+    }
     let pairs = query_pairs(args, &mut model, cell.as_ref())?;
     let states = match &args.states {
         Some(path) => states::read(path, &model)?,
@@ -41,10 +56,17 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     writer.begin()?;
     let mut outcome = Ok(());
     let query = Query { kind: args.ask, level: args.level, pairs: &pairs, all_pairs_m: args.all_pairs, start: &start };
-    evaluate_query(&scene, &states, &query, &mut |rows| {
-        outcome = writer.rows(rows);
-        outcome.is_ok()
-    })?;
+    if args.ask == QueryKind::Contacts {
+        evaluate_contacts(&scene, &states, &query, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::contact(row, &model)));
+            outcome.is_ok()
+        })?;
+    } else {
+        evaluate_query(&scene, &states, &query, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::state(row, &model)));
+            outcome.is_ok()
+        })?;
+    }
     outcome?;
     writer.end()?;
     Ok(if args.ask == QueryKind::Collision && writer.colliding > 0 {
@@ -81,9 +103,7 @@ fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> 
         };
         let loaded = robot::load(urdf, &options)?;
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        let model = QueryModel::of_robot(urdf, loaded.robot);
-        model.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
-        return Ok((model, None));
+        return Ok((QueryModel::of_robot(urdf, loaded.robot), None));
     }
     // clap requires one of the two.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
@@ -102,6 +122,40 @@ fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> 
     Ok((QueryModel::of_cell(&cell), Some(cell)))
 }
 
+/// A row to print.
+struct WrittenRow {
+    index: usize,
+    collides: bool,
+    record: Record,
+}
+
+#[derive(serde::Serialize)]
+#[serde(untagged)]
+enum Record {
+    State(Box<QueryRecord>),
+    Contact(Box<ContactRecord>),
+}
+
+impl WrittenRow {
+    fn state(row: &QueryRow, model: &QueryModel) -> Self {
+        let record = Record::State(Box::new(QueryRecord::of(row, model)));
+        Self { index: row.index, collides: row.collides, record }
+    }
+
+    fn contact(row: &ContactRow, model: &QueryModel) -> Self {
+        Self { index: row.index, collides: true, record: Record::Contact(Box::new(ContactRecord::of(row, model))) }
+    }
+}
+
+impl Record {
+    fn csv(&self) -> String {
+        match self {
+            Self::State(record) => record.csv(),
+            Self::Contact(record) => record.csv(),
+        }
+    }
+}
+
 /// Prints rows in order, and the progress on a terminal.
 struct Writer<'a> {
     args: &'a QueryArgs,
@@ -111,27 +165,29 @@ struct Writer<'a> {
     done: usize,
     is_first: bool,
     colliding: usize,
-    begin: Instant,
-    bar: ProgressBar,
+    /// The last state that was counted as colliding.
+    last_colliding: Option<usize>,
+    progress: Progress,
 }
 
 impl<'a> Writer<'a> {
     fn new(args: &'a QueryArgs, model: &'a QueryModel, states: usize) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(states as u64), ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} states, {msg}") {
-            bar.set_style(style);
-        }
-        Self { args, model, states, done: 0, is_first: true, colliding: 0, begin: Instant::now(), bar }
+        let progress = Progress::of(states, "states");
+        Self { args, model, states, done: 0, is_first: true, colliding: 0, last_colliding: None, progress }
     }
 
     fn begin(&self) -> Result<(), Failure> {
         if !self.args.json {
-            return print(&format!("{}\n", QueryRecord::HEADER));
+            let is_contacts = self.args.ask == QueryKind::Contacts;
+            let header = if is_contacts { ContactRecord::HEADER } else { QueryRecord::HEADER };
+            return print(&format!("{header}\n"));
         }
         let (ask, tolerance) = match self.args.ask {
             QueryKind::Collision => ("collision", None),
             QueryKind::Distance => ("distance", None),
             QueryKind::Tolerance(t) => ("tolerance", Some(t)),
+            QueryKind::Point => ("point", None),
+            QueryKind::Contacts => ("contacts", None),
         };
         let file = json(&self.model.file.display().to_string())?;
         let level = self.args.level;
@@ -142,41 +198,32 @@ impl<'a> Writer<'a> {
         ))
     }
 
-    fn rows(&mut self, rows: &[QueryRow]) -> Result<(), Failure> {
+    fn rows(&mut self, rows: impl Iterator<Item = WrittenRow>) -> Result<(), Failure> {
         let mut text = String::new();
         for row in rows {
-            let written = QueryRecord::of(row, self.model);
             if self.args.json {
                 text.push_str(if self.is_first { "" } else { ",\n" });
                 self.is_first = false;
-                text.push_str(&json(&written)?);
+                text.push_str(&json(&row.record)?);
             } else {
-                text.push_str(&written.csv());
+                text.push_str(&row.record.csv());
                 text.push('\n');
             }
+            // Several contacts of a state are one state.
+            let is_new = self.args.ask != QueryKind::Contacts || self.last_colliding != Some(row.index);
+            if row.collides && is_new {
+                self.colliding += 1;
+                self.last_colliding = Some(row.index);
+            }
             self.done = row.index + 1;
-            self.colliding += usize::from(row.collides);
         }
-        self.show_progress();
+        self.progress.count(self.done, &format!("{} in contact", self.colliding));
         print(&text)
     }
 
     fn end(&self) -> Result<(), Failure> {
-        self.bar.finish_and_clear();
+        self.progress.end();
         if self.args.json { print(&format!("\n],\n\"colliding\": {}\n}}\n", self.colliding)) } else { Ok(()) }
-    }
-
-    fn show_progress(&self) {
-        let elapsed = self.begin.elapsed();
-        if elapsed < Duration::from_secs(2) || !std::io::stderr().is_terminal() {
-            return;
-        }
-        if self.bar.is_hidden() {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        let left = elapsed.mul_f64(self.states.saturating_sub(self.done) as f64 / self.done.max(1) as f64);
-        self.bar.set_message(format!("{} in contact, {} left", self.colliding, HumanDuration(left)));
-        self.bar.set_position(self.done as u64);
     }
 }
 

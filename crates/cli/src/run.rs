@@ -1,20 +1,19 @@
 //! `elbowroom run`: a cell's programs in simulated time.
 
 use std::fs::File;
-use std::io::{BufWriter, IsTerminal, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::time::Duration;
 
 use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
-use elbowroom::report::{self, ReportScene};
+use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::run::{RunProgress, simulate_with};
 use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args::RunArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
+use crate::progress::Progress;
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
@@ -31,12 +30,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let outcome = with_progress(&cell, &options)?;
     outcome.notes.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(dir) = &args.out {
-        let without = if args.compare {
-            Some(with_progress(&cell, &RunOptions { apply_override: false, ..options.clone() })?.recording)
-        } else {
-            None
-        };
-        write_files(dir, &cell, &outcome.recording, without.as_ref())?;
+        let without = if options.apply_override { planned(&cell, &options)? } else { None };
+        write_files(dir, &cell, &outcome.recording, without.as_ref(), args.compare)?;
     }
     if args.json {
         print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
@@ -50,6 +45,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
     }
     Ok(if outcome.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
+}
+
+/// The run without the monitor, whose distances the report shows beside those of the run with it. Its robots may meet where
+/// the monitor keeps them apart: where a program cannot continue then, there is nothing to compare with.
+fn planned(cell: &Cell, options: &RunOptions) -> Result<Option<Recording>, Failure> {
+    match with_progress(cell, &RunOptions { apply_override: false, ..options.clone() }) {
+        Ok(outcome) => Ok(Some(outcome.recording)),
+        Err(Failure::Wrong(why)) => {
+            note(format_args!("warning: no comparison with the run without the monitor: {why}"));
+            Ok(None)
+        }
+        Err(closed) => Err(closed),
+    }
 }
 
 /// Warns before a run of borders that a robot can reach faster than it can stop.
@@ -69,28 +77,22 @@ struct Document<'a> {
 
 /// Runs the cell with a progress bar that appears after 0.7 s.
 pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} [{elapsed_precise}]") {
-        bar.set_style(style);
-    }
-    let begin = std::time::Instant::now();
+    let progress = Progress::unknown();
     let outcome = simulate_with(cell, options, &mut |p: RunProgress| {
-        if bar.is_hidden() && std::io::stderr().is_terminal() && begin.elapsed() > Duration::from_millis(700) {
-            bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        bar.set_message(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
-        bar.tick();
+        progress.go_on(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
     });
-    bar.finish_and_clear();
+    progress.end();
     Ok(outcome?)
 }
 
-/// Writes trace, events and the report; `without` is the run without the monitor, for comparison.
+/// Writes trace, events and the report. `without` is the run without the monitor: its distances are shown, and all of it with
+/// `compare`.
 pub(crate) fn write_files(
     dir: &Path,
     cell: &Cell,
     run: &Recording,
     without: Option<&Recording>,
+    compare: bool,
 ) -> Result<(), Failure> {
     std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
     let create = |name: &str| {
@@ -104,9 +106,13 @@ pub(crate) fn write_files(
     }
     let scene = ReportScene::of_cell(cell);
     let label = if run.monitored { "monitor on" } else { "monitor off" };
-    let runs: Vec<(&str, &Recording)> =
-        std::iter::once((label, run)).chain(without.map(|w| ("monitor off", w))).collect();
-    report::write_html(create("report.html")?, &scene, &runs).map_err(cannot_write(dir))
+    let second = without.filter(|_| compare).map(|w| ("monitor off", w));
+    let runs: Vec<(&str, &Recording)> = std::iter::once((label, run)).chain(second).collect();
+    let mut page = HtmlReport::new(&scene, &runs);
+    if let Some(without) = without {
+        page = page.planned(without);
+    }
+    page.write(create("report.html")?).map_err(cannot_write(dir))
 }
 
 /// Writes what a sensor saw: a JSON document per picture or cloud, a line each, as `watch --json` prints it.

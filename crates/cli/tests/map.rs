@@ -113,6 +113,71 @@ fn models_hold_the_exact_one() {
 }
 
 #[test]
+fn a_deadline_says_how_many_spheres_were_reached() {
+    let spheres = |args: &[&str]| {
+        let answer = map(CELL, &[args, &["--json"]].concat()).expect(0).json();
+        let reached: Vec<u64> =
+            answer["obstacles"].as_array().unwrap().iter().map(|o| o["spheres"].as_u64().unwrap()).collect();
+        (reached, answer["blocked"].as_u64().unwrap())
+    };
+    let (soon, coarse) = spheres(&["--model", "spheres=64", "--deadline", "0.000001"]);
+    assert_eq!(soon, [1, 1, 1]);
+    // A sphere stays one.
+    let (late, fine) = spheres(&["--model", "spheres=8", "--deadline", "600000"]);
+    assert_eq!(late, [8, 8, 1]);
+    let exact = map(CELL, &["--json"]).expect(0).json()["blocked"].as_u64().unwrap();
+    assert!(exact < fine && fine < coarse, "{exact} {fine} {coarse}");
+    let text = map(CELL, &["--model", "spheres=8", "--deadline", "600000"]).expect(0).stdout;
+    assert!(text.contains("spheres=8") && text.contains("spheres=1"), "{text}");
+}
+
+#[test]
+fn deadlines_are_for_spheres_on_covers() {
+    let error = |args: &[&str]| map(CELL, args).expect(2).stderr;
+    let message = error(&["--deadline", "5"]);
+    assert!(message.contains("spheres") && message.contains("write: --model spheres=64"), "{message}");
+    let message = error(&["--model", "spheres=8", "--deadline", "-1"]);
+    assert!(message.contains("milliseconds"), "{message}");
+    let two = CELL.replace("step = [5, 5, 4]", "joints = [\"joint_1\", \"joint_2\"]\nstep = 5");
+    let message = map(&two, &["--model", "spheres=8", "--deadline", "5"]).expect(2).stderr;
+    assert!(message.contains("cell.toml:") && message.contains("three joints"), "{message}");
+    assert!(error(&["--model", "spheres=8", "--deadline", "5", "--exact"]).contains("--exact"));
+}
+
+#[test]
+fn seeds_are_for_comparison_only() {
+    let answer = map(CELL, &["--model", "seeds", "--json"]).expect(0);
+    assert!(answer.stderr.contains("misses"), "{}", answer.stderr);
+    let document = answer.json();
+    assert!(document["obstacles"][0]["model"] == "seeds" && document["blocked"].as_u64() > Some(0), "{document}");
+    let message = map(CELL, &["--model", "seeds", "--out", "map.npy"]).expect(2).stderr;
+    assert!(message.contains("free") && message.contains("write: --model slices"), "{message}");
+    let message = map(CELL, &["--model", "seeds", "--exact"]).expect(2).stderr;
+    assert!(message.contains("cell.toml:") && message.contains("sphere covers"), "{message}");
+    let message = map(CELL, &["--model", "seeds", "--deadline", "5"]).expect(2).stderr;
+    assert!(message.contains("not for `seeds`"), "{message}");
+}
+
+#[test]
+fn a_page_with_a_slider() {
+    let dir = with_cell(CELL);
+    let text = elbowroom(dir.path(), &["map", "cell.toml", "--page", "map.html"]).expect(0).stdout;
+    assert!(text.contains("map.html"), "{text}");
+    let page = std::fs::read_to_string(dir.path().join("map.html")).unwrap();
+    assert!(page.len() < 200_000 && !page.contains("http") && !page.contains("/*DATA*/"), "{} bytes", page.len());
+    for part in ["type=\"range\"", "aria-label", "joint_1", "\"unit\":\"deg\"", "table", "column", "ball"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let message = elbowroom(dir.path(), &["map", "cell.toml", "--page", "missing/map.html"]).expect(2).stderr;
+    assert!(message.contains("missing/map.html") && message.contains("write:"), "{message}");
+    let many = CELL.replace("step = [5, 5, 4]", "step = 0.3");
+    let message = map(&many, &["--page", "map.html"]).expect(2).stderr;
+    assert!(message.contains("too many for a page") && message.contains("larger step"), "{message}");
+    let bad = elbowroom(dir.path(), &["map", "cell.toml", "--page"]).expect(2).stderr;
+    assert!(bad.contains("--page"), "{bad}");
+}
+
+#[test]
 fn other_joints_anywhere_block_more() {
     let two = CELL.replace("step = [5, 5, 4]", "joints = [\"joint_1\", \"joint_2\"]\nstep = 5");
     let held = map(&two, &["--json"]).expect(0).json();

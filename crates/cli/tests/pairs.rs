@@ -151,7 +151,24 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
     elbowroom(dir.path(), &again).expect(0);
     let text = std::fs::read_to_string(dir.path().join("again.srdf")).unwrap();
     assert!(text.contains("link1=\"f1\" link2=\"f2\" reason=\"User\""), "{text}");
-    elbowroom(dir.path(), &["inspect", "ball.urdf", "--brief", "--write-srdf", "x.srdf"]).expect(2);
+    std::fs::write(dir.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(dir.path().join("bare.urdf"), "<robot name=\"bare\"><link name=\"a\"/></robot>").unwrap();
+    let cases: &[(&[&str], &str, &str)] = &[
+        (&["ball.urdf", "--brief", "--write-srdf", "x.srdf"], "cannot be used with", "--brief"),
+        (&["ball.urdf", "--states", "q.csv", "--write-srdf", "x.srdf"], "cannot be used with", "--states"),
+        (&["a.obj", "--write-srdf", "x.srdf"], "a.obj: has no pairs of links", "a robot with collision geometry"),
+        (
+            &["bare.urdf", "--write-srdf", "x.srdf"],
+            "bare.urdf: has no pairs of links",
+            "a robot with collision geometry",
+        ),
+        (&["ball.urdf", "--write-srdf", "nowhere/x.srdf"], "nowhere/x.srdf", "write: "),
+    ];
+    for (args, what, hint) in cases {
+        let refused = elbowroom(dir.path(), &[&["inspect"], *args].concat()).expect(2).stderr;
+        assert!(refused.contains(what) && refused.contains(hint), "{args:?}: {refused}");
+        assert!(!dir.path().join("x.srdf").exists());
+    }
 }
 
 #[test]

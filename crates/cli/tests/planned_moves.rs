@@ -56,15 +56,28 @@ fn goals_are_states_values_in_cell_units_or_poses() {
 }
 
 #[test]
+fn a_robot_starts_in_a_named_state() {
+    let cell = CELL.replace("start = [-60, 0, 0]", "start = \"left\"");
+    let answer = elbowroom(with_cell(&cell).path(), &["plan", "cell.toml", "--to", "right", "--json"]).expect(0);
+    let first = answer.json()["waypoints"][0][0].as_f64().unwrap();
+    assert!((first - 60.0_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
 fn wrong_goals_are_refused_with_what_to_write() {
     for (args, expected) in [
         (&["--to", "lefft"][..], "left"),
         (&["--to-pose", "1,2,3"][..], "x,y,z,roll,pitch,yaw"),
         (&["--to-pose", "1,2"][..], "x,y,z,roll,pitch,yaw"),
         (&["--to-pose", "1,2,3,0,0,0,0"][..], "length 0"),
+        (&["--to-pose", "1,2,3,0,0,1,1"][..], "length 1.41"),
+        (&["--to-pose", "1,2,3,4,5,6,7,8"][..], "x,y,z,qx,qy,qz,qw"),
         (&["--to-pose", "5000,0,0,0,0,0"][..], "the goal of robot \"arm\""),
         (&["--to-pose", "1,2,x,0,0,0"][..], "no finite number"),
         (&["--to", "60,0", "--cell-units"][..], "2 values for 3 joints"),
+        (&["--to", "200,0,0", "--cell-units"][..], "joint_1"),
+        (&["--to", "60,0,0", "--from", "0,0", "--cell-units"][..], "2 values for 3 joints"),
+        (&["--urdf", "arm.urdf", "--cell-units"][..], "cannot be used with"),
         (&["--to", "left", "--to-pose", "1,2,3,0,0,0"][..], "cannot be used with"),
         (&[][..], "--to"),
     ] {

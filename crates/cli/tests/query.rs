@@ -65,6 +65,16 @@ fn states_come_from_standard_input_too() {
     assert_eq!(with_input(dir.path(), &args, states).expect(0).stdout, file.stdout);
     let wrong = with_input(dir.path(), &args, "joint_1,joint_2\n0,x\n").expect(2);
     assert!(wrong.stderr.contains("standard input:2:"), "{}", wrong.stderr);
+    for (input, expected, hint) in [
+        ("", "standard input:1: is empty", "joint_1"),
+        ("joint_1\n0\n", "standard input:1: ", "joint_2"),
+        ("joint_1,joint_2\n0,0\n\n1\n", "standard input:4: ", "write: "),
+        ("joint_1,joint_2\n0,nan\n", "standard input:2: ", "write: "),
+    ] {
+        let refused = with_input(dir.path(), &args, input).expect(2);
+        assert!(refused.stderr.contains(expected) && refused.stderr.contains(hint), "{input:?}: {}", refused.stderr);
+        assert!(refused.stdout.is_empty(), "{}", refused.stdout);
+    }
     let ns16 = examples().join("models/ns16/ns16.urdf");
     let joints = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n";
     let poses = with_input(dir.path(), &["inspect", ns16.to_str().unwrap(), "--states", "-"], joints).expect(0);

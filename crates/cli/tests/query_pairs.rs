@@ -128,6 +128,9 @@ fn wrong_names_and_contradictions_are_refused_with_what_to_write() {
         (&["--between", "left/link_1,left", "--no-self"][..], "--no-self"),
         (&["--all-pairs", "-1"][..], "0 or more"),
         (&["--all-pairs", "near"][..], "0 or more"),
+        (&["--all-pairs", "nan"][..], "0 or more"),
+        (&["--between", "left,left", "--no-self"][..], "--no-self"),
+        (&["--no-self=1"][..], "unexpected value"),
     ] {
         let answer = query(&[&["--ask", "distance"], args].concat()).expect(2);
         assert!(answer.stderr.contains(expected) && answer.stdout.is_empty(), "{args:?}: {}", answer.stderr);

@@ -622,3 +622,16 @@ fn what_is_no_edit_changes_nothing_and_says_why() {
         assert!(!dir.path().join("cell.toml.new").exists(), "{args:?}");
     }
 }
+
+#[test]
+fn a_program_that_grips_needs_no_new_seal() {
+    let dir = sealed();
+    let before = read(dir.path(), "cell.toml");
+    let part = "[object.part]\nshape = \"sphere\"\nat = [0, 0, 3000]\nradius = 20\n\n[program.arm]";
+    let grips = before.replace("[program.arm]", part).replace("steps = [", "steps = [{ grip = \"part\" }, ");
+    assert!(grips.contains("grip") && grips.contains("[object.part]"), "{grips}");
+    write(dir.path(), "cell.toml", &grips);
+    // Programs and objects are not sealed, and so neither is what a program grips.
+    let answer = run_in(dir.path(), &["query", "cell.toml", "--ask", "distance"]).expect(0);
+    assert!(!answer.stderr.contains("seal"), "{}", answer.stderr);
+}

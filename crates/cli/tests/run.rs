@@ -108,12 +108,19 @@ fn json_has_the_documented_keys_and_types() {
     assert_eq!(keys(&json["tick_ns"]), ["max", "p50", "p99"]);
     assert!(json["tick_ns"]["p50"].as_u64() <= json["tick_ns"]["max"].as_u64());
     let robot = &json["robots"][0];
-    let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "point_m"];
-    assert_eq!(keys(robot), [&what[..], &["release", "stopped_at_s", "stopped_s"]].concat());
+    let what = ["by", "collisions", "finished", "flange", "min_override", "name", "outcome", "part", "part_kind"];
+    assert_eq!(keys(robot), [&what[..], &["point_m", "release", "stopped_at_s", "stopped_s", "stops"]].concat());
     assert_eq!((json["end"].as_str(), robot["flange"].as_str()), (Some("rest"), Some("link_2")));
     assert_eq!(robot["release"], "the program moves away (direction_aware = true)");
     assert_eq!((robot["name"].as_str(), robot["finished"].as_bool()), (Some("arm"), Some(false)));
     assert!(robot["stopped_s"].as_f64().unwrap() >= 1.0, "a run ends after a second of rest");
+    let stops = robot["stops"].as_array().unwrap();
+    assert_eq!(stops.len(), 1);
+    assert_eq!(keys(&stops[0]), ["by", "distance_m", "from_s", "part", "point_m", "to_s"]);
+    assert_eq!((stops[0]["by"].as_str(), stops[0]["part"].as_str()), (Some("post"), robot["part"].as_str()));
+    assert_eq!(stops[0]["to_s"], json["duration_s"]);
+    let stood = json["duration_s"].as_f64().unwrap() - stops[0]["from_s"].as_f64().unwrap();
+    assert!((stood - robot["stopped_s"].as_f64().unwrap()).abs() < 0.02, "{stood}");
     assert!(robot["min_override"].as_f64().unwrap() < 0.01);
     assert_eq!(robot["collisions"].as_array().map(Vec::len), Some(0));
     let region = &json["regions"][0];
@@ -153,10 +160,12 @@ fn files_have_the_documented_columns_and_a_row_per_tick() {
     let read = |name: &str| std::fs::read_to_string(dir.path().join("out").join(name)).unwrap();
     let trace = read("trace.csv");
     let mut rows = trace.lines();
-    assert_eq!(rows.next(), Some("t_s,robot,q1,q2,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m"));
+    let columns = "t_s,robot,q1,q2,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,part,object,\
+                   point_x_m,point_y_m,point_z_m";
+    assert_eq!(rows.next(), Some(columns));
     let rows: Vec<Vec<&str>> = rows.map(|r| r.split(',').collect()).collect();
     assert_eq!(rows.len() as u64, json["ticks"].as_u64().unwrap());
-    assert!(rows.iter().all(|r| r.len() == 11 && r[1] == "arm"));
+    assert!(rows.iter().all(|r| r.len() == 16 && r[1] == "arm" && r[12].is_empty()));
     let number = |text: &str| text.parse::<f64>().unwrap();
     assert_eq!(number(rows[0][0]), 0.0);
     let last = rows.last().unwrap();
@@ -170,8 +179,12 @@ fn files_have_the_documented_columns_and_a_row_per_tick() {
         if row[9] == "post" {
             let to_axis = (x - 0.495).hypot(y - 0.495);
             assert!((to_axis - 0.05 - number(row[10])).abs() < 1e-9, "{row:?}");
+            // The TCP is guarded: it is the part that governs, and its closest point.
+            assert_eq!(row[11], "tcp", "{row:?}");
+            assert!((x - number(row[13])).abs() < 1e-9 && (y - number(row[14])).abs() < 1e-9, "{row:?}");
         } else {
             assert_eq!((row[9], number(row[8])), ("", 1.0), "{row:?}");
+            assert!(row[11..].iter().all(|c| c.is_empty()), "{row:?}");
         }
     }
     let events = read("events.csv");
@@ -196,7 +209,19 @@ fn the_report_needs_no_network() {
             }
         }
     }
-    assert!(html.contains("monitor off"), "--compare shows the other run");
+    let second = "<option value=\"1\">monitor off</option>";
+    assert!(html.contains(second), "--compare shows the other run");
+    // Without --compare the other run gives its distances alone.
+    elbowroom(dir.path(), &["run", "cell.toml", "--out", "one"]).expect(0);
+    let one = std::fs::read_to_string(dir.path().join("one/report.html")).unwrap();
+    assert!(!one.contains(second) && one.contains("<th scope=\"col\">without monitor</th>"));
+    assert!(one.contains("arm stopped at ") && one.contains("before the forbidden region post; closest: tcp"));
+    elbowroom(dir.path(), &["run", "cell.toml", "--out", "off", "--no-monitor"]).expect(1);
+    let off = std::fs::read_to_string(dir.path().join("off/report.html")).unwrap();
+    assert!(
+        !off.contains("<th scope=\"col\">without monitor</th>")
+            && off.contains("The forbidden region post was entered: arm at ")
+    );
     assert!(html.contains("not a certified safety device"));
 }
 

@@ -265,3 +265,44 @@ fn what_is_missing_is_said() {
     }
     assert!(elbowroom(dir.path(), &["check", "cell.toml"]).stderr.contains("kuka"), "every verb reads the table");
 }
+
+#[test]
+fn wrong_flags_are_refused_with_what_to_write() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
+    for folder in ["empty", "times", "two", "good"] {
+        std::fs::create_dir(dir.path().join(folder)).unwrap();
+    }
+    for picture in ["times/a.png", "two/a.png", "two/b.png", "good/a.png"] {
+        write(picture, "");
+    }
+    write("two/times.csv", "file,t_s\na.png,1\nb.png,1\n");
+    write("good/times.csv", "file,t_s\na.png,0\n");
+    write("joints.csv", "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0,0\n");
+    write("no_time.csv", "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n");
+    write("five.csv", "t_s,joint_1,joint_2,joint_3,joint_4,joint_5\n0,0,0,0,0,0\n");
+    write("word.csv", "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0,0\n1,0,0,x,0,0,0\n");
+    let one = cell();
+    let two = one.clone() + &CAMERA.replace("above", "beside").replace("FOCAL", "300");
+    let none = one.split("[camera").next().unwrap().to_owned();
+    let good = ["--frames", "good"];
+    let cases: &[(&str, &[&str], &str, &str)] = &[
+        (&one, &["--camera", "abov"], "cell.toml: has no camera \"abov\"", "above"),
+        (&two, &[], "cell.toml: has several cameras", "--camera above"),
+        (&none, &["--camera", "above"], "cell.toml: has no camera", "[camera.NAME]"),
+        (&one, &["--frames", "nowhere"], "nowhere: cannot be read", "a folder of pictures"),
+        (&one, &["--frames", "empty"], "empty: has no picture", "with times.csv"),
+        (&one, &["--frames", "times"], "times.csv: cannot be read", "the header file,t_s"),
+        (&one, &["--frames", "two"], "times.csv:3: b.png has the time 1 after 1", "rise together"),
+        (&one, &[&good[..], &["--joints", "nowhere.csv"]].concat(), "nowhere.csv: cannot be read", "write: "),
+        (&one, &[&good[..], &["--joints", "no_time.csv"]].concat(), "no_time.csv:1: ", "t_s"),
+        (&one, &[&good[..], &["--joints", "five.csv"]].concat(), "five.csv:1: ", "joint_6"),
+        (&one, &[&good[..], &["--joints", "word.csv"]].concat(), "word.csv:3: ", "joint_3"),
+    ];
+    for (cell, args, what, hint) in cases {
+        write("cell.toml", cell);
+        let refused = watch(dir.path(), args).expect(2);
+        assert!(refused.stderr.contains(what) && refused.stderr.contains(hint), "{args:?}: {}", refused.stderr);
+        assert!(refused.stdout.is_empty(), "{args:?}: {}", refused.stdout);
+    }
+}

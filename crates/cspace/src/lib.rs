@@ -47,6 +47,6 @@ pub use planar_arm::{ArmDimension, ArmError, PlanarArm};
 pub use planar_map::{PlanarMapBuilder, PlanarMapError};
 pub use robot_map::{
     BoxTree, CellBox, CoverMapBuilder, CoverMapSettings, CoverObstacle, MAX_JOINTS, OccupancyArray, RemainingJoints,
-    RobotMapBuilder, RobotMapError, RobotMapSettings, RobotMapStats,
+    RobotMapBuilder, RobotMapError, RobotMapSettings, RobotMapStats, SphereRefinement,
 };
 pub use seed_expansion::{SeedExpansion, expand_from_seeds};

@@ -27,7 +27,8 @@ pub struct SeedExpansion {
 ///
 /// A cell is tested by comparing the distance at its centre with a bound of the displacement of each link within its half
 /// widths. The result is conservative *around a seed*; components of the blocked region without a seed are missed (joint
-/// limits can separate them), which is why the map does not use this method.
+/// limits can separate them), which is why the result is no [`Layer`](crate::Layer): no map that guards takes it.
+/// [`CoverMapBuilder::expand_from_seeds`](crate::CoverMapBuilder::expand_from_seeds) does the same for any robot.
 ///
 /// ```
 /// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, PlanarArm, expand_from_seeds};
@@ -40,25 +41,35 @@ pub struct SeedExpansion {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn expand_from_seeds(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> SeedExpansion {
+    let test = CellTest::new(arm, grid, obstacle);
+    expand(grid.shape(), seeds(arm, grid, obstacle), |cell| test.may_touch(cell))
+}
+
+/// Blocks the cells that a test finds around seeds, neighbour by neighbour.
+pub(crate) fn expand(
+    shape: [usize; 3],
+    seeds: impl IntoIterator<Item = CellIndex>,
+    may_touch: impl FnMut(CellIndex) -> bool,
+) -> SeedExpansion {
     let mut frontier = Frontier {
-        test: CellTest::new(arm, grid, obstacle),
-        shape: grid.shape(),
-        result: SeedExpansion { occupancy: OccupancyBitmap::new(grid.shape()), tested: 0, filled: 0, seeds: 0 },
-        visited: OccupancyBitmap::new(grid.shape()),
+        may_touch,
+        shape,
+        result: SeedExpansion { occupancy: OccupancyBitmap::new(shape), tested: 0, filled: 0, seeds: 0 },
+        visited: OccupancyBitmap::new(shape),
         list: VecDeque::new(),
     };
-    for seed in seeds(arm, grid, obstacle) {
+    for seed in seeds {
         frontier.result.seeds += 1;
         frontier.visit(seed);
     }
     while let Some(cell) = frontier.list.pop_front() {
-        neighbours(cell, frontier.shape).for_each(|beside| frontier.visit(beside));
+        neighbours(cell, shape).for_each(|beside| frontier.visit(beside));
     }
     frontier.result
 }
 
-struct Frontier {
-    test: CellTest,
+struct Frontier<T> {
+    may_touch: T,
     shape: [usize; 3],
     result: SeedExpansion,
     /// One flag per cell: it was visited.
@@ -67,7 +78,7 @@ struct Frontier {
     list: VecDeque<CellIndex>,
 }
 
-impl Frontier {
+impl<T: FnMut(CellIndex) -> bool> Frontier<T> {
     fn visit(&mut self, cell: CellIndex) {
         if self.visited.is_blocked(cell) {
             return;
@@ -77,7 +88,7 @@ impl Frontier {
             self.result.filled += 1;
         } else {
             self.result.tested += 1;
-            if !self.test.may_touch(cell) {
+            if !(self.may_touch)(cell) {
                 return;
             }
         }

@@ -11,6 +11,7 @@
 //! | [`scene`] | robots and objects together: collision and distance queries, allowed collision matrix |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS |
 //! | [`monitor`] | interference regions, checked in every control tick |
+//! | [`interlock`] | exchange regions between controllers on a network: arbiter, guards, messages |
 //! | [`cspace`] | obstacles as occupied cells of joint space |
 //! | [`planner`] | paths on the joint-space map or in the exact scene, replanning, time parametrization |
 //! | [`avoidance`] | reactive avoidance: fuzzy rules, least-squares evasion, return to the path |
@@ -140,6 +141,7 @@ pub use elbowroom_cell as cell;
 pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
 pub use elbowroom_inspect as inspect;
+pub use elbowroom_interlock as interlock;
 pub use elbowroom_kinematics as kinematics;
 pub use elbowroom_monitor as monitor;
 pub use elbowroom_perception as perception;

@@ -48,16 +48,40 @@ pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError
         return refuse("is a zip archive (.zae, .3mf and the like)", "unpack it and name the .dae or .stl inside");
     }
     if bytes.trim_ascii_start().starts_with(b"ISO-10303") {
-        let stl = file.with_extension("stl");
-        return refuse(
-            "is STEP, a CAD format without triangles",
-            &format!("run `gmsh {} -2 -o {}` and name its output, in mm", file.display(), stl.display()),
-        );
+        let mut stl = file.with_extension("stl");
+        // A STEP file may itself be called .stl.
+        if stl == file {
+            stl = file.with_extension("mesh.stl");
+        }
+        let [step, stl] = [file, stl.as_path()].map(shell_word);
+        let unit = "its unit is mm: --unit mm, or mesh_unit = \"mm\" in a cell file";
+        let hint = format!("run `gmsh {step} -2 -o {stl}` and name its output; {unit}");
+        return refuse("is STEP, a CAD format without triangles", &hint);
     }
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return refuse("is compressed with gzip", "unpack it first: gunzip FILE");
     }
     Ok(())
+}
+
+/// A path as a word of a command line.
+pub(crate) fn shell_word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}
+
+/// What to do with a file that, by its extension, is a planning scene of `MoveIt`; `None` for others.
+pub fn planning_scene_hint(file: &Path) -> Option<String> {
+    let is_scene = file.extension().is_some_and(|e| ["scene", "yaml", "yml"].iter().any(|s| e.eq_ignore_ascii_case(s)));
+    let command = || format!("elbowroom convert {} cell.toml", shell_word(file));
+    is_scene.then(|| {
+        format!(
+            "[scene.NAME] file = {:?} in a cell file, or run `{}`: it is a planning scene",
+            file.display().to_string(),
+            command()
+        )
+    })
 }
 
 /// The text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 where the XML declaration states it.

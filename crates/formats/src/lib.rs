@@ -14,6 +14,7 @@
 //! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
 //! | joint states, trajectories | [`joint_states`] | CSV; columns in any order, errors with file and line |
 //! | tables of numbers | [`number_table`] | CSV with a header |
+//! | planning scenes | [`planning_scene`] | of `MoveIt`: `.scene` text and YAML |
 //! | planning problems | [`problem_set`] | JSON in the layout of `MotionBenchMaker` |
 //! | PNG | [`png`] | grey, RGB, alpha, palettes, 8 and 16 bits, interlaced; written too |
 //! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
@@ -49,12 +50,14 @@ pub mod joint_states;
 pub mod joints;
 pub mod mesh;
 mod mesh_data;
+mod moveit_msgs;
 mod names;
 pub mod nodetree;
 pub mod number_table;
 pub mod obj;
 pub mod off;
 pub mod pcd;
+pub mod planning_scene;
 pub mod ply;
 pub mod png;
 mod png_stream;
@@ -70,9 +73,10 @@ pub mod tds;
 mod tokens;
 pub mod urdf;
 mod xml;
+mod yaml;
 
 pub use error::{FormatError, Warning};
-pub use input::read_file;
+pub use input::{planning_scene_hint, read_file};
 pub use joint_states::{JointStateOptions, JointStateRobot, JointStates};
 pub use mesh::{LoadedMeshes, MeshData, unit_warning};
 pub use nodetree::NodeTree;

@@ -167,7 +167,8 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
         };
     }
     by_extension(file).or_else(|| has_obj_vertices(head).then_some(MeshFormat::Obj)).ok_or_else(|| {
-        FormatError::new(file, None, "is of no kind that can be read, by content or by extension").hint(READABLE)
+        let hint = input::planning_scene_hint(file).unwrap_or_else(|| READABLE.to_owned());
+        FormatError::new(file, None, "is of no kind that can be read, by content or by extension").hint(hint)
     })
 }
 

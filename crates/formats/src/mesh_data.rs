@@ -49,6 +49,13 @@ impl MeshData {
         }
     }
 
+    /// Adds the triangles of another mesh.
+    pub(crate) fn append(&mut self, other: Self) {
+        let offset = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.triangles.extend(other.triangles.into_iter().map(|t| t.map(|i| i.saturating_add(offset))));
+    }
+
     pub(crate) fn flip(&mut self) {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
@@ -77,6 +84,16 @@ impl LoadedMeshes {
     /// The bounding box of all meshes.
     pub fn aabb(&self) -> Aabb {
         self.meshes.iter().fold(Aabb::EMPTY, |all, m| all.union(&m.aabb()))
+    }
+
+    /// All objects as one mesh, with the name of the first.
+    pub fn merged(self) -> MeshData {
+        let mut parts = self.meshes.into_iter();
+        let mut whole = parts.next().unwrap_or_default();
+        for part in parts {
+            whole.append(part);
+        }
+        whole
     }
 }
 

@@ -22,6 +22,7 @@ use crate::error::WarningList;
 use crate::joints;
 use crate::mesh::{self, MeshFormat};
 use crate::nodetree::NodeTree;
+use crate::srdf::Srdf;
 use crate::urdf::{Geometry, LinkGeometry, UrdfModel};
 use crate::{FormatError, Warning, gltf, input, srdf, tds, urdf};
 use mesh_cache::MeshCache;
@@ -51,6 +52,8 @@ pub struct LoadOptions {
 pub struct LoadedRobot {
     /// Links and joints in the order of the file.
     pub robot: Robot,
+    /// The SRDF of the options; its warnings are among those below.
+    pub srdf: Option<Srdf>,
     /// Warnings about the URDF, its meshes and the SRDF.
     pub warnings: Vec<Warning>,
 }
@@ -91,10 +94,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatErr
         Some(format) => load_tree(&bytes, format, path, options)?,
         None => load_urdf(&bytes, path, options)?,
     };
-    if let Some(srdf_path) = &options.srdf {
-        disable_pairs(&mut robot, srdf_path, &mut warnings)?;
-    }
-    Ok(LoadedRobot { robot, warnings: warnings.finish(path) })
+    let srdf = options.srdf.as_ref().map(|file| disable_pairs(&mut robot, file, &mut warnings)).transpose()?;
+    Ok(LoadedRobot { robot, srdf, warnings: warnings.finish(path) })
 }
 
 /// Adds the disabled pairs of an SRDF to a robot. Returns warnings.
@@ -315,14 +316,14 @@ impl Loader<'_> {
     }
 }
 
-fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> Result<(), FormatError> {
-    let srdf = srdf::parse(&input::read(path)?, path)?;
-    warnings.extend(srdf.warnings);
-    if let Some(name) = srdf.robot.filter(|name| name != robot.chain.name()) {
+fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> Result<Srdf, FormatError> {
+    let mut srdf = srdf::parse(&input::read(path)?, path)?;
+    warnings.extend(std::mem::take(&mut srdf.warnings));
+    if let Some(name) = srdf.robot.as_ref().filter(|name| *name != robot.chain.name()) {
         let what = format!("is for the robot `{name}`, but the URDF describes `{}`", robot.chain.name());
         warnings.push(Warning::new(path, None, what).hint("the same name in both files"));
     }
-    for pair in srdf.disabled {
+    for pair in &srdf.disabled {
         let mut link = |name: &str| {
             let found = robot.chain.link(name);
             if found.is_none() {
@@ -339,7 +340,7 @@ fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> 
             warnings.push_with(|| Warning::new(path, pair.line, what).hint("two different links"));
             continue;
         }
-        robot.disabled_pairs.push((a, b, pair.reason));
+        robot.disabled_pairs.push((a, b, pair.reason.clone()));
     }
-    Ok(())
+    Ok(srdf)
 }

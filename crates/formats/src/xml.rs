@@ -20,8 +20,9 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
     let at = |what: String| FormatError::new(file, line, what);
     if !text.trim_start().starts_with('<') {
         let first = text.trim_start().lines().next().unwrap_or_default();
+        let hint = input::planning_scene_hint(file);
         return FormatError::new(file, 1, format!("is not XML: it begins with `{}`", show(first.as_bytes())))
-            .hint("an XML file; a URDF begins with <robot name=\"…\">");
+            .hint(hint.unwrap_or_else(|| "an XML file; a URDF begins with <robot name=\"…\">".to_owned()));
     }
     match error {
         roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
@@ -100,5 +101,5 @@ pub(crate) fn xacro_hint(file: &Path) -> String {
     if urdf == file {
         urdf = file.with_file_name(format!("{stem}.expanded.urdf"));
     }
-    format!("run `xacro {} > {}` and name its output", file.display(), urdf.display())
+    format!("run `xacro {} > {}` and name its output", input::shell_word(file), input::shell_word(&urdf))
 }

@@ -44,11 +44,30 @@ fn formats_of_others_are_named_with_what_to_do() {
             "{message}"
         );
     }
+    for (file, command) in [
+        ("my part.STP", "`gmsh 'my part.STP' -2 -o 'my part.stl'`"),
+        ("part.stl", "`gmsh part.stl -2 -o part.mesh.stl`"),
+    ] {
+        for message in refused(file, "ISO-10303-21;\nHEADER;\n") {
+            assert!(message.contains(command) && message.contains("--unit mm"), "{message}");
+        }
+    }
+    for message in refused("shelf.scene", "shelf\n.\n") {
+        assert!(
+            message.contains("[scene.NAME] file = \"shelf.scene\"") && message.contains("convert shelf.scene"),
+            "{message}"
+        );
+    }
+    for text in [r#"{"asset":{"version":"1.0"}}"#, r#"{"asset":{"version":"1.1"},"nodes":{"a":{}}}"#] {
+        let error = mesh::parse(text.as_bytes(), Path::new("a.gltf"), None, mesh::UpAxis::ToZ).unwrap_err().to_string();
+        assert!(error.contains("is glTF of version 1.") && error.contains("exported as glTF 2.0"), "{error}");
+    }
     let xacro = "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:arm/></robot>";
     for (file, command) in [
         ("arm.urdf.xacro", "`xacro arm.urdf.xacro > arm.urdf`"),
         ("d/arm.xacro", "`xacro d/arm.xacro > d/arm.urdf`"),
         ("arm.urdf", "`xacro arm.urdf > arm.expanded.urdf`"),
+        ("my arm.xacro", "`xacro 'my arm.xacro' > 'my arm.urdf'`"),
     ] {
         let message = urdf::parse(xacro.as_bytes(), Path::new(file)).unwrap_err().to_string();
         assert!(message.contains("is a xacro file") && message.contains(command), "{message}");
@@ -157,4 +176,58 @@ fn srdf_errors_name_their_line() {
     assert_eq!((error.line, error.what.contains("link2")), (Some(2), true));
     assert_eq!(parse("<robot>\n<disable_collisions").unwrap_err().line, Some(2));
     assert!(parse("<sdf/>").unwrap_err().what.contains("<sdf>"));
+}
+
+#[test]
+fn an_srdf_has_groups_states_and_tools_and_is_written_back() {
+    let text = r#"<robot name="arm">
+<group name="arm"><chain base_link="base" tip_link="flange"/></group>
+<group name="hand"><link name="palm"/><joint name="grip"/></group>
+<group name="all"><group name="arm"/><group name="hand"/></group>
+<group_state name="home" group="arm"><joint name="j1" value="0.1"/><joint name="j2" value="-1e-7"/></group_state>
+<end_effector name="tool" parent_link="flange" group="hand" parent_group="arm"/>
+<virtual_joint name="world" type="fixed" parent_frame="map &amp; odom" child_link="base"/>
+<passive_joint name="spring"/>
+<link_sphere_approximation link="base"/>
+<disable_collisions link1="base" link2="palm" reason="Never"/>
+</robot>"#;
+    let read = |text: &str| srdf::parse(text.as_bytes(), Path::new("arm.srdf")).unwrap();
+    let first = read(text);
+    assert!(first.warnings.is_empty(), "{:?}", first.warnings);
+    assert_eq!(first.groups[0].chains, [["base".to_owned(), "flange".to_owned()]]);
+    assert_eq!(first.groups[2].subgroups, ["arm", "hand"]);
+    assert_eq!(first.end_effectors[0].parent_group.as_deref(), Some("arm"));
+    assert_eq!(
+        (first.virtual_joints[0].parent_frame.as_str(), first.passive_joints[0].as_str()),
+        ("map & odom", "spring")
+    );
+    let second = read(&first.text(&["one -- two".to_owned()]));
+    assert_eq!((&first.robot, &first.groups, &first.states), (&second.robot, &second.groups, &second.states));
+    assert_eq!((&first.end_effectors, &first.virtual_joints), (&second.end_effectors, &second.virtual_joints));
+    assert_eq!(
+        (first.passive_joints, first.disabled[0].reason.as_str()),
+        (second.passive_joints, second.disabled[0].reason.as_str())
+    );
+}
+
+#[test]
+fn incomplete_and_unknown_elements_of_an_srdf_are_left_out_with_their_line() {
+    let cases = [
+        ("<group/>", "<group> has no name: ignored", "tip_link"),
+        ("<group name=\"g\"><chain base_link=\"a\"/></group>", "<chain> has no tip_link", "base_link=\"base_link\""),
+        ("<end_effector name=\"e\" group=\"g\"/>", "<end_effector> has no parent_link", "parent_link=\"tool0\""),
+        ("<virtual_joint name=\"v\" type=\"fixed\" child_link=\"a\"/>", "<virtual_joint> has no parent_frame", "world"),
+        ("<passive_joint/>", "<passive_joint> has no name", "joint_7"),
+        ("<group_state group=\"g\"/>", "<group_state> has no name", "home"),
+        ("<group_tcps group=\"g\"/>", "<group_tcps> is ignored", "<virtual_joint>"),
+        ("<disable_default_collisions link=\"a\"/>", "<disable_default_collisions> is ignored", "for each pair"),
+    ];
+    for (element, what, hint) in cases {
+        let text =
+            format!("<robot name=\"r\">\n{element}{}\n</robot>", if element.contains("tcps") { element } else { "" });
+        let srdf = srdf::parse(text.as_bytes(), Path::new("arm.srdf")).unwrap();
+        let [warning] = &srdf.warnings[..] else { panic!("{element}: {:?}", srdf.warnings) };
+        assert!(warning.line == Some(2) && warning.what.contains(what), "{warning}");
+        assert!(warning.write_instead.as_ref().unwrap().contains(hint), "{warning}");
+    }
 }

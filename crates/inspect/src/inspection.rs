@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use elbowroom_formats::srdf::Srdf;
 use elbowroom_formats::{FormatError, Warning, mesh, robot};
 use elbowroom_kinematics::dh::GeneralizedTable;
 use elbowroom_kinematics::{Chain, LinkId};
@@ -93,6 +94,9 @@ pub struct Inspection {
     pub(crate) dh_shown: Vec<DhConvention>,
     #[serde(skip)]
     robot: Option<Robot>,
+    /// The SRDF of the options.
+    #[serde(skip)]
+    srdf: Option<Srdf>,
     /// The objects of a mesh file.
     #[serde(skip)]
     solids: Vec<(String, Vec<Collider>)>,
@@ -145,6 +149,7 @@ impl Inspection {
             inspection.warn_of_pairs();
         }
         inspection.robot = Some(loaded.robot);
+        inspection.srdf = loaded.srdf;
         Ok(inspection)
     }
 
@@ -199,6 +204,7 @@ impl Inspection {
             warnings: warnings.iter().map(ToString::to_string).collect(),
             dh_shown: vec![DhConvention::Generalized],
             robot: None,
+            srdf: None,
             solids: vec![],
         }
     }
@@ -246,7 +252,8 @@ impl Inspection {
     /// The text of an SRDF for the robot: what need not be tested, with reasons; `None` for a mesh, and without
     /// [`pairs`](Self::pairs).
     pub fn srdf(&self) -> Option<String> {
-        (self.robot.is_some() && !self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs))
+        let given = self.srdf.clone().unwrap_or_default();
+        (self.robot.is_some() && !self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs, given))
     }
 
     /// The robot, where the model is one.
@@ -258,6 +265,14 @@ impl Inspection {
     pub fn solids(&self) -> &[(String, Vec<Collider>)] {
         &self.solids
     }
+}
+
+/// The text of an SRDF for a robot: what need not be tested, with reasons, and the groups, states and the like of `given`.
+///
+/// # Errors
+/// [`FormatError`] with `file` where a scene refuses the robot.
+pub fn srdf(file: &Path, robot: &Robot, given: Srdf) -> Result<String, FormatError> {
+    Ok(pairs::srdf(robot.chain.name(), &pairs::of_robot(file, robot)?, given))
 }
 
 /// True for everything except URDF, 3DS and glTF. A URDF is XML with the root `robot`, or has its extension.

@@ -31,7 +31,7 @@ mod units;
 
 pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
 pub use enclosing_volume::EnclosingVolume;
-pub use inspection::{InspectOptions, Inspection, ModelKind};
+pub use inspection::{InspectOptions, Inspection, ModelKind, srdf};
 pub use pairs::{PairRow, ReasonKind};
 pub use resolution_levels::{BoxRow, CapsuleRow, HullRow, LinkLevels, ObbRow, TrianglesRow};
 pub use rows::{JointRow, MeshRow};

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::srdf::{DisabledPair, Srdf};
 use elbowroom_robot::{GeometryId, Robot};
 use elbowroom_scene::{PairState, Reason, Scene};
 use elbowroom_spatial::Pose;
@@ -104,8 +105,8 @@ impl From<&Reason> for ReasonKind {
 
 /// The SRDF that a robot should have, as MoveIt's Setup Assistant writes it: pairs that are adjacent, proven to be out of reach of
 /// each other, or in contact in all samples are disabled, and those of the present SRDF. Pairs that touch at rest, or in no
-/// sample, are comments: whether to disable them is for a person to decide.
-pub(super) fn srdf(robot: &str, pairs: &[PairRow]) -> String {
+/// sample, are comments: whether to disable them is for a person to decide. Groups, states and the like are those of `given`.
+pub(super) fn srdf(robot: &str, pairs: &[PairRow], given: Srdf) -> String {
     let reason = |row: &PairRow| match (row.kind, row.always) {
         (ReasonKind::Adjacent | ReasonKind::NoJointBetween, _) => Some("Adjacent"),
         (ReasonKind::OutOfReach, _) => Some("Never"),
@@ -113,13 +114,17 @@ pub(super) fn srdf(robot: &str, pairs: &[PairRow]) -> String {
         (ReasonKind::NotExcluded | ReasonKind::TouchesAtRest, true) => Some("Default"),
         _ => None,
     };
-    let disabled = pairs.iter().filter_map(|row| Some([&row.a[..], &row.b, reason(row)?]));
+    let disabled = |row: &PairRow| {
+        let reason = reason(row)?.to_owned();
+        Some(DisabledPair { link1: row.a.clone(), link2: row.b.clone(), reason, line: 0 })
+    };
     let open = pairs.iter().filter(|row| reason(row).is_none());
     let comment = |row: &PairRow| {
         let suggestion = row.suggestion.as_ref()?;
         Some(format!("{} and {}: {suggestion}; tested", row.a, row.b))
     };
-    elbowroom_formats::srdf::text(robot, disabled, &open.filter_map(comment).collect::<Vec<_>>())
+    let disabled = pairs.iter().filter_map(disabled).collect();
+    Srdf { robot: Some(robot.to_owned()), disabled, ..given }.text(&open.filter_map(comment).collect::<Vec<_>>())
 }
 
 /// Number of sampled states.

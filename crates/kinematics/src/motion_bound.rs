@@ -96,15 +96,30 @@ pub fn motion_bound(chain: &Chain, link: LinkId, radius_m: f64, joints: &[JointI
 /// any configuration. A geometry is a link and the radius (m) around the link's origin that holds it. The shares of mimic
 /// joints are added to those of the joint that they follow.
 pub fn max_motion_bounds(chain: &Chain, geometries: impl IntoIterator<Item = (LinkId, f64)>) -> Vec<f64> {
-    let mut most = vec![0.0_f64; chain.dof()];
+    let mut bounds = vec![0.0; chain.dof()];
+    let mut scratch = bounds.clone();
+    update_max_motion_bounds(chain, geometries, &mut bounds, &mut scratch);
+    bounds
+}
+
+/// As [`max_motion_bounds`], written to `bounds` without allocation; `scratch` is overwritten. Both have one entry per entry of
+/// `q`.
+pub fn update_max_motion_bounds(
+    chain: &Chain,
+    geometries: impl IntoIterator<Item = (LinkId, f64)>,
+    bounds: &mut [f64],
+    scratch: &mut [f64],
+) {
+    bounds.fill(0.0);
     for (link, radius_m) in geometries {
-        let mut own = vec![0.0; most.len()];
-        for (index, bound) in motion_bound(chain, link, radius_m, &chain.path(link)) {
-            own[index] += bound;
+        scratch.fill(0.0);
+        for reach in joint_reaches(chain, link, radius_m, |id| max_stroke_m(chain, id)) {
+            if let Some(c) = reach.coupling {
+                scratch[c.index] += reach.lever_arm() * c.multiplier.abs();
+            }
         }
-        most.iter_mut().zip(own).for_each(|(most, own)| *most = most.max(own));
+        bounds.iter_mut().zip(&*scratch).for_each(|(most, own)| *most = most.max(*own));
     }
-    most
 }
 
 /// Largest distance (m) that any point within `radius_m` of the link's origin travels while all joints move together along the

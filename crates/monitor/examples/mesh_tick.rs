@@ -16,7 +16,7 @@ use common::{Random, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Monitor, Part, Region, Snapshot, SourceId, SourceState, Volume,
+    Configuration, ConfigurationParts, Monitor, Part, Presence, Region, Snapshot, SourceId, SourceState, Volume,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
@@ -40,6 +40,7 @@ fn volumes(robot: &Robot) -> Vec<Volume> {
         link: LinkId(link),
         shape: b.shape.clone(),
         in_link: b.in_link,
+        presence: Presence::Always,
     };
     each.map(volume).collect()
 }

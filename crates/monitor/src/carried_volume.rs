@@ -72,13 +72,25 @@ struct JointInfluence {
 impl CarriedVolume {
     pub(crate) fn new(chain: &Chain, volume: &Volume) -> Self {
         let bounds = volume.shape.aabb(&Pose::IDENTITY);
-        let (center_in_shape, radius) = (bounds.center(), 0.5 * bounds.extent().length());
-        let reach_m = radius + volume.in_link.transform_point(center_in_shape).length();
-        let reaches = joint_reaches(chain, volume.link, reach_m, |id| max_stroke_m(chain, id));
-        let mut influences: Vec<_> = reaches.filter_map(|r| JointInfluence::new(&r)).collect();
-        influences.reverse();
-        let any_direction = Approach::default();
-        Self { link: volume.link, center_in_shape, radius, influences, center: Vec3::ZERO, any_direction }
+        let mut carried = Self {
+            link: volume.link,
+            center_in_shape: bounds.center(),
+            radius: 0.5 * bounds.extent().length(),
+            influences: Vec::new(),
+            center: Vec3::ZERO,
+            any_direction: Approach::default(),
+        };
+        carried.set_in_link(chain, &volume.in_link);
+        carried
+    }
+
+    /// Sets the pose of the shape in the link. Allocates the first time only.
+    pub(crate) fn set_in_link(&mut self, chain: &Chain, in_link: &Pose) {
+        let reach_m = self.radius + in_link.transform_point(self.center_in_shape).length();
+        let reaches = joint_reaches(chain, self.link, reach_m, |id| max_stroke_m(chain, id));
+        self.influences.clear();
+        self.influences.extend(reaches.filter_map(|r| JointInfluence::new(&r)));
+        self.influences.reverse();
     }
 
     /// Updates the bounds for the pose `in_world` of the volume and the motion of the chain.

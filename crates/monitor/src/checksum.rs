@@ -5,24 +5,26 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use sha2::{Digest, Sha256};
 
-use crate::{Configuration, Laws, Life, Part, Region, RegionKind, SourceSpec, Volume};
+use crate::{Configuration, Laws, Life, Part, Presence, Region, RegionKind, SourceSpec, Volume};
 
 impl Configuration {
     /// SHA-256 (hex) over all bits that determine an override: chain, volumes, regions, sources and laws. Equal configurations
     /// have equal checksums on every machine; a change of any number changes it.
     pub fn checksum(&self) -> String {
         let mut hasher = Hasher(Sha256::new());
-        hasher.robot(self);
+        hasher.robot(self, &self.volumes.iter().collect::<Vec<_>>());
         hasher.list(&self.regions, Hasher::region);
         hasher.list(&self.sources, Hasher::source);
         hasher.laws(&self.laws);
         hasher.hex()
     }
 
-    /// SHA-256 (hex) over the part of the configuration without regions and sources: chain, volumes and laws.
+    /// SHA-256 (hex) over the part of the configuration without regions and sources: chain, volumes and laws. Without the
+    /// objects that programs grip, too: like regions they are no part of the robot.
     pub fn robot_checksum(&self) -> String {
         let mut hasher = Hasher(Sha256::new());
-        hasher.robot(self);
+        let own: Vec<&Volume> = self.volumes.iter().filter(|v| !v.is_gripped_object()).collect();
+        hasher.robot(self, &own);
         hasher.laws(&self.laws);
         hasher.hex()
     }
@@ -125,11 +127,11 @@ impl Hasher {
         }
     }
 
-    fn robot(&mut self, config: &Configuration) {
+    fn robot(&mut self, config: &Configuration, volumes: &[&Volume]) {
         self.text(&config.robot);
         self.pose(&config.base_in_world);
         self.chain(&config.chain);
-        self.list(&config.volumes, Self::volume);
+        self.list(volumes, |s, volume| s.volume(volume));
     }
 
     fn chain(&mut self, chain: &Chain) {
@@ -160,12 +162,19 @@ impl Hasher {
 
     fn volume(&mut self, volume: &Volume) {
         self.text(&volume.name);
-        self.tag(match volume.part {
+        let presence = match volume.presence {
+            Presence::Always => 0,
+            Presence::Attached => 16,
+            Presence::Detached => 32,
+        };
+        let part = match volume.part {
             Part::Tcp => 0,
-            Part::Tool => 1,
+            // Tool and load have the same effect.
+            Part::Tool | Part::Load => 1,
             Part::Arm => 2,
             Part::TcpOutside => 3,
-        });
+        };
+        self.tag(part + presence);
         self.count(volume.link.0);
         self.pose(&volume.in_link);
         self.shape(&volume.shape);

@@ -25,7 +25,7 @@ pub(crate) fn distance_to_guarded(
     let mut best: Option<BoundedDistance> = None;
     let mut upper_bound = limit;
     for (v, volume) in config.volumes.iter().enumerate() {
-        if !volume.part.counts_for(config.regions[r].guards) {
+        if !now.attached.contains(v) || !volume.part.counts_for(config.regions[r].guards) {
             continue;
         }
         if now.region_box[r].distance(&now.volume_box[v]) > upper_bound {

@@ -44,6 +44,7 @@
 //! is override 0 with a [`OverrideReason`]. This is not a certified safety device.
 
 mod access;
+mod attached_volumes;
 mod braking_check;
 mod broad_phase;
 mod carried_volume;
@@ -81,6 +82,7 @@ mod zone_client;
 mod zone_state;
 
 pub use access::{AccessClass, SwitchError};
+pub use attached_volumes::AttachError;
 pub use configuration::{ConfigError, Configuration, ConfigurationParts};
 pub use configuration_edit::{ConfigurationEdit, EditError};
 pub use event::{Event, EventKind};
@@ -93,5 +95,5 @@ pub use region_sweep::{ClosestApproach, RegionSweep};
 pub use report::{Fault, NamedReason, OverrideReason, TickReport, VirtualTcp};
 pub use snapshot::{Snapshot, SourceState};
 pub use source_limits::{SourceLimits, SourceSpec};
-pub use volume::{Part, Volume, VolumeModel, arm_volumes};
+pub use volume::{Part, Presence, Volume, VolumeModel, arm_volumes};
 pub use zone_client::ExchangeState;

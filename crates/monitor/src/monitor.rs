@@ -5,6 +5,7 @@ use std::sync::Arc;
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::Pose;
 
+use crate::attached_volumes::AttachedVolumes;
 use crate::distance_to_guarded::distance_to_guarded;
 use crate::event::EventLog;
 use crate::laws::rate_limited;
@@ -21,8 +22,8 @@ use crate::watchdog::{Watchdog, WatchdogSettings};
 use crate::zone_client::{ExchangeState, RegionStatus, ZoneClient};
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{
-    AccessClass, ConfigError, Configuration, Event, EventKind, Fault, Life, OverrideReason, RegionId, RegionKind,
-    RobotSlot, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId, ZoneArbiter,
+    AccessClass, AttachError, ConfigError, Configuration, Event, EventKind, Fault, Life, OverrideReason, RegionId,
+    RegionKind, RobotSlot, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId, ZoneArbiter,
 };
 
 /// Smallest override by which actual velocities are divided to infer those of the program.
@@ -56,6 +57,8 @@ pub struct Monitor {
     source_check: SourceCheck,
     zone_client: Option<ZoneClient>,
     last_override: Option<f64>,
+    /// True where a volume was attached since the last tick: then the override does not fall at a limited rate.
+    just_attached: bool,
     fault: Option<Fault>,
 }
 
@@ -99,6 +102,7 @@ impl Monitor {
             just_switched: Vec::with_capacity(2 * regions + 16),
             watchdog: Watchdog::new(&config.chain, laws, WatchdogSettings::default()),
             last_override: None,
+            just_attached: false,
             fault: None,
             now,
             zone_client,
@@ -166,6 +170,70 @@ impl Monitor {
             }
         }
         Ok(())
+    }
+
+    /// Attaches a volume that is not [always](crate::Presence::Always) there, such as an object that the robot has gripped: from
+    /// the next tick on it moves with its link at the pose `in_link`, and counts as every other volume. One that is attached
+    /// already moves there. Call it before the robot moves with it. Never allocates.
+    ///
+    /// ```
+    /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+    /// # use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Monitor, Region, Snapshot, Volume, VolumeId};
+    /// # use elbowroom_proximity::{Shape, Sphere};
+    /// # use elbowroom_spatial::{Pose, Vec3};
+    /// # let rail = Joint { name: "rail".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1),
+    /// #     origin: Pose::IDENTITY, axis: Vec3::X, limits: Limits::range(0.0, 2.0), mimic: None };
+    /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
+    /// let ball = Shape::Sphere(Sphere { radius: 0.2 });
+    /// let volumes = vec![Volume::tcp(LinkId(1), Vec3::ZERO), Volume::gripped("ball", LinkId(1), ball)];
+    /// # let pillar = Region::sphere("pillar", Vec3::X * 2.0, 0.5).warning(0.4);
+    /// # let mut monitor = Monitor::new(Configuration::new(ConfigurationParts { robot: "rail".into(),
+    /// #     base_in_world: Pose::IDENTITY, chain, volumes, regions: vec![pillar], sources: vec![], laws: Laws::default() })?, None)?;
+    /// // Half a metre before a pillar with a warning zone of 0.4 m; then with a ball of 0.2 m in the hand.
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.0, &[1.0])).speed_override, 1.0);
+    /// monitor.attach(VolumeId(1), &Pose::IDENTITY)?;
+    /// let report = monitor.tick(&Snapshot::stationary(0.002, &[1.0]));
+    /// assert!((report.speed_override - 0.75).abs() < 1e-12 && report.governing.is_some_and(|g| g.volume == VolumeId(1)));
+    /// monitor.detach(VolumeId(1))?;
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.004, &[1.0])).speed_override, 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`AttachError`] where the volume is always there or unknown, or the pose is not finite; then nothing changes, and the
+    /// robot must not move with the object.
+    pub fn attach(&mut self, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
+        self.now.attached.attach(&self.config, volume, in_link)?;
+        if let Some(predicted) = &mut self.predicted {
+            predicted.attached.attach(&self.config, volume, in_link)?;
+        }
+        self.sweep.attach(&self.config, volume, in_link)?;
+        if let Some(law) = &mut self.stopping_law {
+            law.attach(&self.config, volume, in_link);
+        }
+        self.just_attached = true;
+        Ok(())
+    }
+
+    /// Detaches a volume: it does not count from the next tick on. Call it when the robot has let go. Never allocates.
+    ///
+    /// # Errors
+    /// [`AttachError`] where the volume is always there or unknown; then nothing changes.
+    pub fn detach(&mut self, volume: VolumeId) -> Result<(), AttachError> {
+        self.now.attached.detach(&self.config, volume)?;
+        if let Some(predicted) = &mut self.predicted {
+            predicted.attached.detach(&self.config, volume)?;
+        }
+        self.sweep.detach(&self.config, volume)
+    }
+
+    /// True where a volume is a part of the robot at present.
+    pub fn is_attached(&self, volume: VolumeId) -> bool {
+        volume.0 < self.config.volumes.len() && self.now.attached.contains(volume.0)
+    }
+
+    pub(crate) fn attached(&self) -> &AttachedVolumes {
+        &self.now.attached
     }
 
     /// True where the region is active.
@@ -251,7 +319,7 @@ impl Monitor {
         self.now.region_in_world[region.0]
     }
 
-    /// Pose of a volume's shape in the last tick.
+    /// Pose of a volume's shape in the last tick; of a detached volume, where it was attached last.
     pub fn volume_in_world(&self, volume: VolumeId) -> Pose {
         self.now.volume_in_world[volume.0]
     }
@@ -358,6 +426,7 @@ impl Monitor {
                 uncertain_s: watchdog.velocity_uncertain_s(),
                 unchanged_s: watchdog.max_unchanged_s(),
                 volume_in_world: &now.volume_in_world,
+                attached: &now.attached,
             };
             stopping_law.begin(config, &input);
         }
@@ -412,7 +481,7 @@ impl Monitor {
         let (requested, mut reason) = (decision.speed_override, decision.reason);
         let previous = self.last_override.unwrap_or(requested);
         let mut speed_override = rate_limited(previous, requested, self.config.laws.override_rate, dt_s);
-        if governing.is_some_and(|g| g.distance_m <= 0.0) {
+        if self.just_attached || governing.is_some_and(|g| g.distance_m <= 0.0) {
             speed_override = speed_override.min(requested);
         }
         speed_override = speed_override.min(s.programmed_override);
@@ -420,6 +489,7 @@ impl Monitor {
         if speed_override < requested {
             reason = OverrideReason::Rate;
         }
+        self.just_attached = false;
         self.record_override(s, speed_override);
         TickReport {
             stamp_s: s.stamp_s,

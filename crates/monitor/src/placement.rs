@@ -3,6 +3,7 @@
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Aabb, FrameMotion, Pose, Rotation};
 
+use crate::attached_volumes::AttachedVolumes;
 use crate::{Configuration, Region, Snapshot, SourceId, SourceState};
 
 /// A region that follows a source of motion.
@@ -17,6 +18,8 @@ pub(crate) struct DynamicRegion {
 #[derive(Debug)]
 pub(crate) struct Placement {
     pub(crate) chain: ChainState,
+    pub(crate) attached: AttachedVolumes,
+    /// Of detached volumes: where they were last, and an empty box.
     pub(crate) volume_in_world: Vec<Pose>,
     pub(crate) volume_box: Vec<Aabb>,
     pub(crate) region_in_world: Vec<Pose>,
@@ -31,6 +34,7 @@ impl Placement {
         let dynamic = |(region, r): (usize, &Region)| Some(DynamicRegion { region, source: r.follow? });
         Self {
             chain: ChainState::new(&config.chain),
+            attached: AttachedVolumes::new(config),
             volume_in_world: vec![Pose::IDENTITY; config.volumes.len()],
             volume_box: vec![Aabb::EMPTY; config.volumes.len()],
             region_box: config.regions.iter().zip(&region_in_world).map(aabb).collect(),
@@ -78,7 +82,11 @@ impl Placement {
 
     fn place_volumes(&mut self, config: &Configuration) {
         for (i, volume) in config.volumes.iter().enumerate() {
-            let pose = config.base_in_world * self.chain.link_in_root(volume.link) * volume.in_link;
+            let Some(in_link) = self.attached.in_link(i) else {
+                self.volume_box[i] = Aabb::EMPTY;
+                continue;
+            };
+            let pose = config.base_in_world * self.chain.link_in_root(volume.link) * *in_link;
             self.volume_in_world[i] = pose;
             self.volume_box[i] = volume.shape.aabb(&pose);
         }

@@ -125,7 +125,7 @@ impl RegionClearances {
             pairs: 0,
             smallest_request: f64::INFINITY,
         };
-        for volume in 0..config.volumes.len() {
+        for volume in (0..config.volumes.len()).filter(|v| now.attached.contains(*v)) {
             let extra_reach = law.extra_reach(volume).max(travel.volumes_m);
             self.tree
                 .visit(&now.volume_box[volume].inflated(extra_reach), |r| measurement.visit(r, volume, extra_reach));

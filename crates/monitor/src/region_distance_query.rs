@@ -66,18 +66,19 @@ struct GuardedLink {
 }
 
 impl Monitor {
-    /// A query of the regions that are closed now, with dynamic regions at the poses given by `sources`, one per source of
+    /// A query of the regions that are closed now for the volumes that are attached now, with dynamic regions at the poses given by `sources`, one per source of
     /// the configuration.
     pub fn region_distance(&self, sources: &[SourceState]) -> RegionDistanceQuery<'_> {
         let config = self.configuration();
         let regions: Vec<_> = (0..config.regions.len()).map(RegionId).filter(|r| self.is_closed(*r)).collect();
         let mut now = Placement::new(config);
+        now.attached.copy_from(self.attached());
         let regions_placed = sources.len() == config.sources.len();
         if regions_placed {
             now.place_sources(config, sources);
         }
         RegionDistanceQuery {
-            links: guarded_links(config, &regions),
+            links: guarded_links(config, &now, &regions),
             config,
             now,
             regions,
@@ -122,11 +123,11 @@ impl RegionDistanceQuery<'_> {
     }
 }
 
-fn guarded_links(config: &Configuration, regions: &[RegionId]) -> Vec<GuardedLink> {
+fn guarded_links(config: &Configuration, now: &Placement, regions: &[RegionId]) -> Vec<GuardedLink> {
     let mut links: Vec<GuardedLink> = Vec::new();
     let counts = |v: &Volume| regions.iter().any(|r| v.part.counts_for(config.regions[r.0].guards));
-    for volume in config.volumes.iter().filter(|v| counts(v)) {
-        let radius_m = volume.radius_in_link();
+    for (volume, in_link) in now.attached.iter(config).filter(|(v, _)| counts(v)) {
+        let radius_m = volume.radius_at(in_link);
         match links.iter_mut().find(|l| l.link == volume.link) {
             Some(known) => known.radius_m = known.radius_m.max(radius_m),
             None => links.push(GuardedLink { link: volume.link, radius_m }),

@@ -4,13 +4,13 @@
 //! than `T`, the sum over the joints of motion bound times change; so while the distances at two instants sum to more than the
 //! travel between them, the volume cannot have touched in between. Where they do not, the interval is halved.
 
-use elbowroom_kinematics::motion_bound::max_motion_bounds;
+use elbowroom_kinematics::motion_bound::update_max_motion_bounds;
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::distance_to_guarded::{BoundedDistance, distance_to_guarded};
 use crate::placement::Placement;
 use crate::region_clearance::TravelBound;
-use crate::{Configuration, RegionId, SourceState};
+use crate::{AttachError, Configuration, RegionId, SourceState, VolumeId};
 
 /// Size of an unbounded region that rotates, m: the border of a half-space beyond it is ignored.
 const UNBOUNDED_SIZE_M: f64 = 100.0;
@@ -51,6 +51,8 @@ pub struct RegionSweep {
     region_motions: Vec<RegionMotion>,
     /// Per joint the motion bound of all volumes, m per rad or m.
     motion_bounds: Vec<f64>,
+    /// Memory for updates of the bounds.
+    scratch: Vec<f64>,
     travel_m: f64,
     /// Number of known snapshots, up to two.
     known: u8,
@@ -99,19 +101,47 @@ impl RegionSweep {
         let at = Placement::new(config);
         let dof = config.chain.dof();
         let at_rest = RegionMotion { from: Pose::IDENTITY, to: Pose::IDENTITY, travel_m: 0.0 };
-        Self {
+        let mut sweep = Self {
             region_motions: vec![at_rest; at.dynamic_regions.len()],
             fraction: None,
             from: vec![0.0; dof],
             to: vec![0.0; dof],
-            motion_bounds: max_motion_bounds(
-                &config.chain,
-                config.volumes.iter().map(|v| (v.link, v.radius_in_link())),
-            ),
+            motion_bounds: vec![0.0; dof],
+            scratch: vec![0.0; dof],
             travel_m: 0.0,
             known: 0,
             at,
-        }
+        };
+        sweep.update_motion_bounds(config);
+        sweep
+    }
+
+    /// Attaches a volume, as [`Monitor::attach`](crate::Monitor::attach) does. Call it where the robot is at the next snapshot:
+    /// the volume counts for the motion to that one too, as if it had been attached before.
+    ///
+    /// # Errors
+    /// [`AttachError`]; then nothing changes.
+    pub fn attach(&mut self, config: &Configuration, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
+        self.at.attached.attach(config, volume, in_link)?;
+        self.update_motion_bounds(config);
+        Ok(())
+    }
+
+    /// Detaches a volume from the next snapshot on.
+    ///
+    /// # Errors
+    /// [`AttachError`]; then nothing changes.
+    pub fn detach(&mut self, config: &Configuration, volume: VolumeId) -> Result<(), AttachError> {
+        self.at.attached.detach(config, volume)?;
+        self.update_motion_bounds(config);
+        Ok(())
+    }
+
+    fn update_motion_bounds(&mut self, config: &Configuration) {
+        let volumes = self.at.attached.iter(config).map(|(v, in_link)| (v.link, v.radius_at(in_link)));
+        update_max_motion_bounds(&config.chain, volumes, &mut self.motion_bounds, &mut self.scratch);
+        // Other volumes are placed now.
+        self.fraction = None;
     }
 
     /// Advances to the next snapshot, `dt_s` (s) after the last one: joint values (rad, m) and one source per source of the

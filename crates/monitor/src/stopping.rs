@@ -10,11 +10,12 @@
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::attached_volumes::AttachedVolumes;
 use crate::braking_check::BrakingCheck;
 use crate::carried_volume::{Approach, CarriedVolume, VolumeMotion, WorldAxis};
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::{OverrideHistory, OverrideRange, PendingMotion, StopTime};
-use crate::{Configuration, StoppingSettings};
+use crate::{Configuration, StoppingSettings, VolumeId};
 
 /// Safety factor of the reaction time. While it slows down, a robot still executes earlier, higher overrides; without this
 /// margin the proof fails from time to time, and the override falls to 0 and rises again.
@@ -85,6 +86,7 @@ pub(crate) struct StoppingInput<'a> {
     /// Program time since the joint values last changed, at most, s.
     pub(crate) unchanged_s: f64,
     pub(crate) volume_in_world: &'a [Pose],
+    pub(crate) attached: &'a AttachedVolumes,
 }
 
 /// A volume before a region.
@@ -126,6 +128,11 @@ impl StoppingLaw {
             braking: BrakingCheck::default(),
             settings: settings.clone(),
         }
+    }
+
+    /// A volume is attached at this pose in its link.
+    pub(crate) fn attach(&mut self, config: &Configuration, volume: VolumeId, in_link: &Pose) {
+        self.volumes[volume.0].set_in_link(&config.chain, in_link);
     }
 
     /// Records a commanded override.
@@ -183,10 +190,11 @@ impl StoppingLaw {
             axis.place(config, now);
         }
         let motion = VolumeMotion { intent, now, uncertain_s: tick.uncertain_s };
-        for (volume, in_world) in self.volumes.iter_mut().zip(tick.volume_in_world) {
+        let volumes = self.volumes.iter_mut().zip(tick.volume_in_world).enumerate();
+        for (_, (volume, in_world)) in volumes.filter(|(v, _)| tick.attached.contains(*v)) {
             volume.update(config, &self.axes, &self.settings, in_world, &motion);
         }
-        self.update_reach(tick.programmed_override);
+        self.update_reach(tick.programmed_override, tick.attached);
     }
 
     /// The approach of a volume along the unit vector `towards` (world), where no point of it moves faster along that than
@@ -240,13 +248,13 @@ impl StoppingLaw {
         self.program_is_known
     }
 
-    /// Updates the largest travel of each volume for a programmed override of at most `max`.
-    fn update_reach(&mut self, max: f64) {
+    /// Updates the largest travel of each attached volume for a programmed override of at most `max`.
+    fn update_reach(&mut self, max: f64, attached: &AttachedVolumes) {
         let phases = [self.phases(max), self.pending_phases(max)];
         let real = self.real_phases();
         let stop_s = phases.iter().fold(real.stop, |longest: f64, p| longest.max(p.stop));
         self.rest_after_s = self.horizon_s + stop_s;
-        for volume in 0..self.volumes.len() {
+        for volume in (0..self.volumes.len()).filter(|v| attached.contains(*v)) {
             let approach = self.volumes[volume].any_direction();
             let travel = |phases: &StopPhases| self.travel(volume, &approach, phases, &self.program);
             let mut reach_m = travel(&phases[0]).max(travel(&phases[1]));

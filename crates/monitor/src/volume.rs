@@ -14,8 +14,10 @@ pub enum Part {
     Tcp,
     /// The tool centre point, not enclosed by any such solid: regions that guard against the tool or the arm include it.
     TcpOutside,
-    /// Tool or load.
+    /// The tool.
     Tool,
+    /// What the tool holds: the load, and objects that it has gripped.
+    Load,
     /// A link.
     Arm,
 }
@@ -27,16 +29,28 @@ impl Part {
         match self {
             Self::Tcp => guards.tcp,
             Self::TcpOutside => guards.tcp || guards.tool || guards.arm,
-            Self::Tool => guards.tool || guards.arm,
+            Self::Tool | Self::Load => guards.tool || guards.arm,
             Self::Arm => guards.arm,
         }
     }
 }
 
+/// Whether a volume is a part of the robot all the time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Presence {
+    /// All the time.
+    #[default]
+    Always,
+    /// Attached and detached while the robot runs ([`Monitor::attach`](crate::Monitor::attach)); attached at first.
+    Attached,
+    /// Attached and detached while the robot runs; detached at first, as objects that it will grip.
+    Detached,
+}
+
 /// A solid that moves with a link and is kept out of regions: a guarded volume.
 #[derive(Debug, Clone)]
 pub struct Volume {
-    /// Name for reports: that of the link or the tool.
+    /// Name for reports: that of the link, the tool or the object.
     pub name: String,
     /// The part of the robot.
     pub part: Part,
@@ -44,26 +58,46 @@ pub struct Volume {
     pub link: LinkId,
     /// The solid.
     pub shape: Shape,
-    /// Pose of the shape in the frame of the link.
+    /// Pose of the shape in the frame of the link; of a volume that is detached at first, until it is attached elsewhere.
     pub in_link: Pose,
+    /// Whether it is always there.
+    pub presence: Presence,
 }
 
 impl Volume {
     /// The tool centre point at `tcp_in_link` (m).
     pub fn tcp(link: LinkId, tcp_in_link: Vec3) -> Self {
         let shape = Shape::Sphere(Sphere { radius: 0.0 });
-        Self { name: "tcp".into(), part: Part::Tcp, link, shape, in_link: Pose::from_translation(tcp_in_link) }
+        let in_link = Pose::from_translation(tcp_in_link);
+        Self { name: "tcp".into(), part: Part::Tcp, link, shape, in_link, presence: Presence::Always }
     }
 
     /// The tool's oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` in the frame of its link (S1, eq. 5).
     pub fn tool_box(link: LinkId, obb_in_link: Obb) -> Self {
         let shape = Shape::Cuboid(Cuboid { half_extents: obb_in_link.half_extents });
-        Self { name: "tool".into(), part: Part::Tool, link, shape, in_link: obb_in_link.pose }
+        let presence = Presence::Always;
+        Self { name: "tool".into(), part: Part::Tool, link, shape, in_link: obb_in_link.pose, presence }
+    }
+
+    /// An object that the robot will grip with this link: detached at first.
+    pub fn gripped(name: impl Into<String>, link: LinkId, shape: Shape) -> Self {
+        let (part, presence) = (Part::Load, Presence::Detached);
+        Self { name: name.into(), part, link, shape, in_link: Pose::IDENTITY, presence }
     }
 
     /// Radius (m) of a sphere around the link's origin that holds the volume, for motion bounds of the link.
     pub fn radius_in_link(&self) -> f64 {
-        self.shape.aabb(&self.in_link).max_distance(Vec3::ZERO)
+        self.radius_at(&self.in_link)
+    }
+
+    /// As [`Volume::radius_in_link`], with the shape at another pose in the link.
+    pub(crate) fn radius_at(&self, in_link: &Pose) -> f64 {
+        self.shape.aabb(in_link).max_distance(Vec3::ZERO)
+    }
+
+    /// True for an object that is only gripped while the robot runs.
+    pub(crate) fn is_gripped_object(&self) -> bool {
+        self.part == Part::Load && self.presence == Presence::Detached
     }
 }
 
@@ -84,6 +118,11 @@ pub enum VolumeModel {
 }
 
 impl VolumeModel {
+    /// The volume of a tool, a load or an object: primitives as they are, a mesh as [`VolumeModel::of`].
+    pub fn of_solid(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
+        if matches!(shape, Shape::Mesh(_)) { self.of(shape, in_frame) } else { (shape.clone(), in_frame) }
+    }
+
     /// The volume of one solid; every model encloses the solid.
     pub fn of(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
         let points = match shape {
@@ -112,7 +151,8 @@ pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
     let volume = |link: usize, collider: &Collider| {
         let (shape, in_link) = model.of(&collider.shape, collider.in_link);
-        Volume { name: chain.links()[link].clone(), part: Part::Arm, link: LinkId(link), shape, in_link }
+        let (name, presence) = (chain.links()[link].clone(), Presence::Always);
+        Volume { name, part: Part::Arm, link: LinkId(link), shape, in_link, presence }
     };
     robot
         .colliders

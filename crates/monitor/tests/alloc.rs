@@ -6,11 +6,13 @@ use std::alloc::System;
 use std::sync::Arc;
 
 use common::{Random, arm, arm_volumes, parts};
+use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     AccessClass, Configuration, ConfigurationParts, EventKind, Laws, Life, Monitor, OverrideReason, Region, RegionKind,
-    RobotSlot, SlotId, Snapshot, StoppingSettings, ZoneArbiter,
+    RobotSlot, SlotId, Snapshot, StoppingSettings, Volume, VolumeId, ZoneArbiter,
 };
-use elbowroom_spatial::{Rotation, Vec3};
+use elbowroom_proximity::{Shape, Sphere};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
 
 #[global_allocator]
@@ -33,17 +35,26 @@ fn main() {
         Laws { direction_aware: true, stopping_distance: Some(stopping()), override_rate: 5.0, ..Laws::default() };
     let regions: Vec<Region> = regions.collect();
     for laws in [Laws::default(), all] {
-        let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions.clone()) };
+        let mut volumes = arm_volumes();
+        volumes.push(Volume::gripped("part", LinkId(6), Shape::Sphere(Sphere { radius: 0.1 })));
+        let part = VolumeId(volumes.len() - 1);
+        let parts = ConfigurationParts { laws, ..parts(arm(), volumes, regions.clone()) };
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = Counter::new(ALLOCATOR);
-        let (mut pairs, mut applied, mut t) = (0, 0.0, 0.0_f64);
+        let (mut pairs, mut applied, mut t, mut carried) = (0, 0.0, 0.0_f64, 0);
         for i in 0..5000 {
             let now_s = 0.002 * f64::from(i);
             let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
             let speed = [t.cos(), 0.65 * (1.3 * t).cos(), -0.7 * (0.7 * t).sin(), 0.2 * t.cos(), -t.sin(), 0.0];
             let qd = speed.map(|v| v * applied);
             m.switch(switchable, i % 7 < 3, AccessClass::Programmer).unwrap();
+            match i % 100 {
+                10 => m.attach(part, &Pose::from_translation(Vec3::X * 0.4)).unwrap(),
+                60 => m.detach(part).unwrap(),
+                _ => {}
+            }
+            carried += u32::from(m.is_attached(part));
             let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::stationary(now_s, &q) });
             assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
             pairs += report.measured_pairs;
@@ -53,7 +64,7 @@ fn main() {
             assert!(m.events().len() < 8000);
         }
         let change = counter.change();
-        assert!(pairs > 5000);
+        assert!(pairs > 5000 && carried == 2500);
         assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
     }
     exchange();

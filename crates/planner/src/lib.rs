@@ -38,7 +38,9 @@ pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use orientation_constraint::OrientationConstraint;
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
-pub use prioritized_planner::{PrioritizedMotion, PrioritizedPlanner, RobotGoal};
+pub use prioritized_planner::{
+    PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
+};
 pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
     JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting,

@@ -13,14 +13,36 @@ use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, Swe
 use elbowroom_validity::{BuiltCovers, CoverSource};
 
 use crate::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
-    RrtConnectSettings, TimedMotion,
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PathConstraint, PlannedPath, RrtConnect,
+    RrtConnectError, RrtConnectSettings, TimedMotion,
 };
 
 /// All priorities of so many robots are tried; of more robots, each as the first.
 const ALL_ORDERS: usize = 4;
 /// Delays are tried in steps of this, s.
 const DELAY_STEP_S: f64 = 0.05;
+
+/// Gives each of several robots the constraint on its paths.
+pub trait PathConstraintSource {
+    /// The constraint of a robot; `None` where its paths have none.
+    fn constraint_of(&self, robot: RobotId) -> Option<Box<dyn PathConstraint + '_>>;
+}
+
+/// Why there are no motions for several robots.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PrioritizedPlannerError {
+    /// No robot has a goal.
+    #[error("no robot has a goal: write at least one")]
+    NoGoal,
+    /// One of them has no motion, for the first priority.
+    #[error("robot {}: {error}", .robot.0)]
+    Robot {
+        /// The robot.
+        robot: RobotId,
+        /// Why.
+        error: RrtConnectError,
+    },
+}
 
 /// Where one of several robots goes.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +113,7 @@ impl PrioritizedMotion {
 pub struct PrioritizedPlanner<'s> {
     scene: &'s Scene,
     covers: &'s dyn CoverSource,
+    constraints: Option<&'s dyn PathConstraintSource>,
 }
 
 impl std::fmt::Debug for PrioritizedPlanner<'_> {
@@ -102,7 +125,7 @@ impl std::fmt::Debug for PrioritizedPlanner<'_> {
 impl<'s> PrioritizedPlanner<'s> {
     /// For robots of a scene.
     pub fn new(scene: &'s Scene) -> Self {
-        Self { scene, covers: &BuiltCovers }
+        Self { scene, covers: &BuiltCovers, constraints: None }
     }
 
     /// With the covers of links from a source.
@@ -111,20 +134,26 @@ impl<'s> PrioritizedPlanner<'s> {
         Self { covers, ..self }
     }
 
+    /// With constraints on the paths, such as regions to stay out of.
+    #[must_use]
+    pub fn with_constraints(self, constraints: &'s dyn PathConstraintSource) -> Self {
+        Self { constraints: Some(constraints), ..self }
+    }
+
     /// Motions from the configurations in `start` to the goals, with a row every `period_s`; in the order of the goals. The first
     /// goals have the highest priority if that leaves a path for all. Between rows all robots move straight in joint space; the
     /// motion of all of them together is proven free, and each keeps its path.
     ///
     /// # Errors
-    /// As [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority; [`RrtConnectError::NoGoal`]
-    /// without goals.
+    /// As [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority and the first robot that they
+    /// concern; [`PrioritizedPlannerError::NoGoal`] without goals.
     pub fn plan(
         &self,
         start: &SceneState,
         goals: &[RobotGoal],
         period_s: f64,
         settings: &RrtConnectSettings,
-    ) -> Result<Vec<PrioritizedMotion>, RrtConnectError> {
+    ) -> Result<Vec<PrioritizedMotion>, PrioritizedPlannerError> {
         let begin = Instant::now();
         let mut first_error = None;
         for order in orders(goals.len()) {
@@ -142,7 +171,7 @@ impl<'s> PrioritizedPlanner<'s> {
                 break;
             }
         }
-        Err(first_error.unwrap_or(RrtConnectError::NoGoal))
+        Err(first_error.unwrap_or(PrioritizedPlannerError::NoGoal))
     }
 
     fn plan_in_order(
@@ -152,16 +181,17 @@ impl<'s> PrioritizedPlanner<'s> {
         order: &[usize],
         period_s: f64,
         settings: &RrtConnectSettings,
-    ) -> Result<Vec<PrioritizedMotion>, RrtConnectError> {
+    ) -> Result<Vec<PrioritizedMotion>, PrioritizedPlannerError> {
         let share = u32::try_from(goals.len()).unwrap_or(u32::MAX);
         let settings = RrtConnectSettings { time_limit: settings.time_limit / share, ..*settings };
         let mut state = start.clone();
         let mut motions: Vec<PrioritizedMotion> = Vec::new();
         for goal in order.iter().map(|&index| &goals[index]) {
-            let (path, motion) = self.plan_one(&state, goal, period_s, &settings)?;
+            let of_robot = |error| PrioritizedPlannerError::Robot { robot: goal.robot, error };
+            let (path, motion) = self.plan_one(&state, goal, period_s, &settings).map_err(of_robot)?;
             let next = PrioritizedMotion { robot: goal.robot, path, motion, start_s: 0.0, period_s };
-            motions.push(self.as_early_as_possible(start, &motions, next, settings.clearance_m)?);
-            state.set_q(self.scene, goal.robot, &goal.q)?;
+            motions.push(self.as_early_as_possible(start, &motions, next, settings.clearance_m).map_err(of_robot)?);
+            state.set_q(self.scene, goal.robot, &goal.q).map_err(|error| of_robot(error.into()))?;
         }
         Ok(motions)
     }
@@ -173,10 +203,12 @@ impl<'s> PrioritizedPlanner<'s> {
         period_s: f64,
         settings: &RrtConnectSettings,
     ) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        let exact = RrtConnect::new(self.scene, goal.robot)?;
+        let mut exact = RrtConnect::new(self.scene, goal.robot)?;
+        if let Some(constraint) = self.constraints.and_then(|all| all.constraint_of(goal.robot)) {
+            exact = exact.with_constraint(constraint);
+        }
         let clearance_m = settings.clearance_m;
         let Ok(model) = CoverModel::with_covers(self.scene, state, goal.robot, clearance_m, self.covers) else {
-            let mut exact = exact;
             let path = exact.plan(state, &goal.q, settings)?;
             let trajectory = exact.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
             let motion = TimedMotion::of(&trajectory, period_s)?;
@@ -242,10 +274,12 @@ impl<'s> PrioritizedPlanner<'s> {
 }
 
 /// What is proven of one robot while the others rest somewhere is not proven of all together.
-fn of_one_order(error: RrtConnectError, robots: usize, after: Duration) -> RrtConnectError {
+fn of_one_order(error: PrioritizedPlannerError, robots: usize, after: Duration) -> PrioritizedPlannerError {
     match error {
-        RrtConnectError::Disconnected { nearer, .. } if robots > 1 => {
-            RrtConnectError::NotFound { seconds: after.as_secs_f64(), states_checked: 0, nodes: 0, nearer }
+        PrioritizedPlannerError::Robot { robot, error: RrtConnectError::Disconnected { nearer, .. } } if robots > 1 => {
+            let seconds = after.as_secs_f64();
+            let error = RrtConnectError::NotFound { seconds, states_checked: 0, nodes: 0, nearer };
+            PrioritizedPlannerError::Robot { robot, error }
         }
         other => other,
     }

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PrioritizedMotion, PrioritizedPlanner, RobotGoal,
-    RrtConnect, RrtConnectError, RrtConnectSettings,
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PrioritizedMotion, PrioritizedPlanner,
+    PrioritizedPlannerError, RobotGoal, RrtConnect, RrtConnectSettings,
 };
 use elbowroom_robot::{RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, MergedRobots, Scene, SceneState, SweepOptions};
@@ -117,5 +117,5 @@ fn a_robot_that_is_in_the_way_moves_first() {
     let stuck = [goal(0, [-0.6, 1.4, 0.1]), goal(1, [0.5, 1.4, 0.1])];
     assert!(PrioritizedPlanner::new(&scene).plan(&start, &stuck, PERIOD_S, &settings).is_err());
     let none = PrioritizedPlanner::new(&scene).plan(&start, &[], PERIOD_S, &settings);
-    assert!(matches!(none, Err(RrtConnectError::NoGoal)));
+    assert!(matches!(none, Err(PrioritizedPlannerError::NoGoal)));
 }

@@ -6,18 +6,27 @@ use std::io::{self, Write};
 use elbowroom_sim::Recording;
 use serde_json::{Value, json};
 
+use crate::packing::deflated;
+use crate::results::{Grade, ResultLine, results};
 use crate::scene::ReportScene;
+use crate::scene_data::PageData;
 use crate::summary::duration;
-use crate::tables::{self, escape, json_in_script};
+use crate::tables::{self, escape};
 use crate::{plots, scene_data};
 
 const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
 const THREE: &str = include_str!("../assets/three/three.bundle.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
-const SCRIPTS: [&str; 3] = [
+/// In order: each uses those before it.
+const SCRIPTS: [&str; 8] = [
+    include_str!("../assets/report/data.js"),
+    include_str!("../assets/report/kinematics.js"),
+    include_str!("../assets/report/distance.js"),
+    include_str!("../assets/report/cell.js"),
     include_str!("../assets/report/figures.js"),
     include_str!("../assets/report/scene.js"),
+    include_str!("../assets/report/panel.js"),
     include_str!("../assets/report/player.js"),
 ];
 
@@ -25,34 +34,67 @@ const SCRIPTS: [&str; 3] = [
 pub(super) struct PageContent<'a> {
     /// Title, plain text.
     pub title: &'a str,
-    /// List below the title, HTML.
+    /// What became of the run, and its regions: above the scene, HTML.
+    pub result: String,
+    /// Below the tables, HTML.
     pub facts: String,
     /// Options of the run selector, HTML.
     pub options: String,
     pub figures: &'a [plots::Figure],
     /// Below the figures, HTML.
     pub tables: String,
-    pub scene: Value,
+    pub data: PageData,
 }
 
-/// Writes the report of one or several runs of the same cell, each with a label (`"monitor on"`).
-///
-/// The curves of all runs share their plots; the 3-D scene shows the selected run, at first the first one. The outlines
-/// of the regions are those of the first run. See the module documentation for the size.
+/// A page of one or several runs of the same cell, each with a label (`"monitor on"`).
+#[derive(Debug, Clone, Copy)]
+pub struct HtmlReport<'a> {
+    scene: &'a ReportScene,
+    runs: &'a [(&'a str, &'a Recording)],
+    planned: Option<&'a Recording>,
+}
+
+impl<'a> HtmlReport<'a> {
+    /// The curves of all runs share their plots; the 3-D scene shows the selected run, at first the first one. The
+    /// outlines of the regions are those of the first run. A run without the monitor serves as the planned one.
+    pub fn new(scene: &'a ReportScene, runs: &'a [(&'a str, &'a Recording)]) -> Self {
+        Self { scene, runs, planned: runs.iter().map(|(_, rec)| *rec).find(|rec| !rec.monitored) }
+    }
+
+    /// The planned motion, a run without the monitor: its distances are shown beside those of the first run, nothing else of it.
+    #[must_use]
+    pub fn planned(mut self, run: &'a Recording) -> Self {
+        self.planned = Some(run);
+        self
+    }
+
+    /// Writes the page.
+    ///
+    /// # Errors
+    ///
+    /// Errors of `out`.
+    pub fn write(&self, out: impl Write) -> io::Result<()> {
+        let Self { scene, runs, planned } = *self;
+        let content = PageContent {
+            title: runs.first().map_or("no run", |(_, r)| &r.cell),
+            result: result_section(runs, planned),
+            facts: facts(runs),
+            options: options(runs),
+            figures: &plots::all(scene, runs, planned),
+            tables: run_tables(runs),
+            data: scene_data::data(scene, runs),
+        };
+        write_page(out, &content)
+    }
+}
+
+/// [`HtmlReport::write`] without a planned run.
 ///
 /// # Errors
 ///
 /// Errors of `out`.
 pub fn write_html(out: impl Write, scene: &ReportScene, runs: &[(&str, &Recording)]) -> io::Result<()> {
-    let content = PageContent {
-        title: runs.first().map_or("no run", |(_, r)| &r.cell),
-        facts: facts(runs),
-        options: options(runs),
-        figures: &plots::all(scene, runs),
-        tables: run_tables(runs),
-        scene: scene_data::data(scene, runs),
-    };
-    write_page(out, &content)
+    HtmlReport::new(scene, runs).write(out)
 }
 
 /// Fills in the page template.
@@ -64,20 +106,56 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "" => {}
             "title" => out.write_all(escape(content.title).as_bytes())?,
             "style" => out.write_all(STYLE.as_bytes())?,
+            "result" => out.write_all(content.result.as_bytes())?,
             "facts" => out.write_all(content.facts.as_bytes())?,
             "options" => out.write_all(content.options.as_bytes())?,
             "figures" => out.write_all(placeholders(content.figures).as_bytes())?,
             "tables" => out.write_all(content.tables.as_bytes())?,
-            "plot_data" => out.write_all(json_in_script(&plot_data.to_string()).as_bytes())?,
-            "scene_data" => out.write_all(json_in_script(&content.scene.to_string()).as_bytes())?,
-            "plotly" => out.write_all(PLOTLY.as_bytes())?,
-            "three" => out.write_all(THREE.as_bytes())?,
+            "plot_data" => out.write_all(deflated(plot_data.to_string().as_bytes())?.as_bytes())?,
+            "scene_data" => out.write_all(deflated(content.data.json.to_string().as_bytes())?.as_bytes())?,
+            "arrays" => out.write_all(deflated(&content.data.arrays)?.as_bytes())?,
+            "plotly" => out.write_all(deflated(PLOTLY.as_bytes())?.as_bytes())?,
+            "three" => out.write_all(deflated(THREE.as_bytes())?.as_bytes())?,
             "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
             unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
         }
         out.write_all(rest.as_bytes())?;
     }
     out.flush()
+}
+
+/// A sentence per robot and per region that was entered, then the table of the regions; for each run.
+fn result_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
+    let mut out = String::new();
+    for (i, (label, rec)) in runs.iter().enumerate() {
+        let mut sentences = String::new();
+        for ResultLine { grade, text } in results(rec) {
+            let (class, mark) = match grade {
+                Grade::Good => ("good", "✓"),
+                Grade::Stopped => ("warn", "■"),
+                Grade::Bad => ("bad", "✕"),
+            };
+            let mark = format!("<span class=\"mark\" aria-hidden=\"true\">{mark}</span>");
+            let _ = write!(sentences, "<p class=\"result {class}\">{mark}<span>{}</span></p>", escape(&text));
+        }
+        for d in &rec.deadlocks {
+            let (robots, regions) = (d.robots.join(", "), d.regions.join(", "));
+            let line = format!("Deadlock since {:.2} s: {robots} wait for each other at {regions}.", d.t_s);
+            let _ = write!(sentences, "<p class=\"result bad\"><span>{}</span></p>", escape(&line));
+        }
+        let heading = if runs.len() > 1 { format!("Result, {label}") } else { "Result".to_owned() };
+        let table = if rec.regions.is_empty() {
+            String::new()
+        } else {
+            format!("<div class=\"scroll\" tabindex=\"0\">{}</div>", tables::regions(rec, planned))
+        };
+        let _ = writeln!(
+            out,
+            "<section class=\"card wide\" data-run=\"{i}\" aria-label=\"{0}\"><h2>{0}</h2>{sentences}{table}</section>",
+            escape(&heading)
+        );
+    }
+    out
 }
 
 fn figure_data(figure: &plots::Figure) -> Value {
@@ -89,8 +167,8 @@ fn placeholders(figures: &[plots::Figure]) -> String {
         let run = f.run.map_or(String::new(), |r| format!(" data-run=\"{r}\""));
         let class = if f.wide { "card wide" } else { "card" };
         format!(
-            "<section class=\"{class}\"{run}><h3>{}</h3><p class=\"note\">{}</p>\
-             <div class=\"plot\" data-figure=\"{i}\" style=\"height:{}px\"></div></section>\n",
+            "<section class=\"{class}\"{run}><h2>{0}</h2><p class=\"note\">{1}</p>\
+             <div class=\"plot\" role=\"img\" aria-label=\"{0}\" data-figure=\"{i}\" style=\"height:{2}px\"></div></section>\n",
             escape(&f.title),
             escape(&f.note),
             f.height
@@ -116,14 +194,10 @@ fn facts(runs: &[(&str, &Recording)]) -> String {
             t.count
         );
         let _ = write!(out, "<li>{}</li>", escape(line.trim_start_matches(": ")));
-        for d in &rec.deadlocks {
-            let (robots, regions) = (d.robots.join(", "), d.regions.join(", "));
-            let line = format!("{label}: deadlock since {:.2} s: {robots} wait for each other at {regions}", d.t_s);
-            let _ = write!(out, "<li class=\"bad\">{}</li>", escape(line.trim_start_matches(": ")));
-        }
     }
     let checksum = runs.first().map_or("", |(_, r)| r.checksum.as_str());
-    format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum))
+    let list = format!("<ul class=\"facts\">{out}<li>configuration <code>{}</code></li></ul>", escape(checksum));
+    format!("<section class=\"card wide\"><h2>Run</h2>{list}</section>")
 }
 
 fn options(runs: &[(&str, &Recording)]) -> String {
@@ -138,13 +212,13 @@ fn run_tables(runs: &[(&str, &Recording)]) -> String {
     let card = |i: usize, what: &str, label: &str, table: String| {
         let heading = if runs.len() > 1 { format!("{what}: {label}") } else { what.to_owned() };
         format!(
-            "<section class=\"card wide\" data-run=\"{i}\"><h3>{}</h3><div class=\"scroll\">{table}</div></section>\n",
+            "<section class=\"card wide\" data-run=\"{i}\"><h2>{}</h2><div class=\"scroll\" tabindex=\"0\">{table}</div></section>\n",
             escape(&heading)
         )
     };
     let of_run = |(i, (label, rec)): (usize, &(&str, &Recording))| {
-        card(i, "Robots", label, tables::robots(rec))
-            + &card(i, "Regions", label, tables::regions(rec))
+        tables::stops(rec).map_or_else(String::new, |table| card(i, "Stops", label, table))
+            + &card(i, "Robots", label, tables::robots(rec))
             + &card(i, "Events", label, tables::events(rec))
     };
     runs.iter().enumerate().map(of_run).collect()

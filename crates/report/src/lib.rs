@@ -1,15 +1,17 @@
 //! Report of a run: one HTML file that opens offline, and a text summary for the terminal; images of maps and models.
 //!
-//! [`write_html`] puts everything into one file: plots after figure 12 of the interference-region paper (S1.13), the
-//! override with the governing region, a timing chart, the events, and an animated 3-D scene. Nothing is loaded from a
-//! network: plotly.js and three.js are embedded. [`summary`] is the text summary.
+//! [`HtmlReport`] puts everything into one file: the result on each robot, the regions, an animated 3-D scene in which the
+//! joints can be moved, with the distances of the guarded volumes to every region and object; plots of the distances over time,
+//! of the override with the governing region, after figure 12 of the interference-region paper (S1.13), and timing; the
+//! events. Nothing is loaded from a network: plotly.js and three.js are embedded. [`summary`] is the text summary.
 //!
-//! **Size.** 2.4 MB are scripts. Plots have at most 2,000 points per trace and the 3-D scene at most 1,500 frames, so a
-//! run adds at most about 60 kB per trace and 56 kB per moving link, however long it is; meshes add 16 bytes per
-//! vertex and triangle.
+//! **Size.** Scripts and data are deflated; the scripts are 0.95 MB. Plots have at most 2,000 points per trace and the 3-D
+//! scene at most 1,700 frames of joint values, so a run adds at most about 20 kB per trace and 8 kB per joint, however long
+//! it is; meshes add about 8 bytes per triangle, equal ones once. The page needs a browser with `DecompressionStream`
+//! (all since 2023); result and tables need no script.
 //!
 //! [`write_perception_html`] writes the page of a run with a camera, [`map_pictures`] images of slices of a joint-space
-//! map, [`model_picture`] an image of a robot model with its joint axes.
+//! map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
 //!
 //! ```
 //! use elbowroom_cell::Cell;
@@ -35,13 +37,19 @@
 mod downsample;
 mod explanation;
 mod html;
+pub mod map_page;
 pub mod map_pictures;
 pub mod model_picture;
+mod packing;
+mod page_meshes;
 mod palette;
 mod perception_page;
 mod plots;
 mod png;
+mod region_distances;
 mod region_surface;
+mod results;
+mod run_data;
 mod scene;
 mod scene_data;
 mod spans;
@@ -49,7 +57,7 @@ mod sparkline;
 mod summary;
 mod tables;
 
-pub use html::write_html;
+pub use html::{HtmlReport, write_html};
 pub use perception_page::{stage_table, write_perception_html};
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
 pub use summary::{TextSummary, summary};

@@ -1,17 +1,17 @@
 //! Colours of plots and of the 3-D scene.
 
-use elbowroom_sim::RecordedRegionKind;
-
-/// Colour of a region of this kind.
-pub fn of_kind(kind: RecordedRegionKind) -> &'static str {
-    match kind {
-        RecordedRegionKind::Monitored => "#2f7ed8",
-        RecordedRegionKind::Exchange => "#2ca02c",
-        RecordedRegionKind::Forbidden | RecordedRegionKind::Obstacle => "#d62728",
-    }
+/// Colour of the region with this index: in tables, plots and the 3-D scene. Distinct on white and on black, the first ones
+/// from those of runs and robots, too.
+pub fn of_region(index: usize) -> &'static str {
+    const COLORS: [&str; 10] =
+        ["#9a4fd6", "#1f9d55", "#d9488b", "#b58900", "#0f9fb5", "#a5673f", "#6a67e0", "#7c8a12", "#e5484d", "#2f7ed8"];
+    COLORS[index % COLORS.len()]
 }
 
-/// Colour of warning zones in plots.
+/// Colour of obstacles in plots of perception.
+pub const OBSTACLE: &str = "#d62728";
+
+/// Colour of slowed motion in plots of perception.
 pub const WARNING: &str = "#f2c230";
 
 /// Colour of a curve: red with control, blue without, as in the paper's figure 12; each further robot has its own pair.

@@ -10,6 +10,7 @@ use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::Life;
 use elbowroom_monitor::{Guards, OverrideReason, RegionId};
 use elbowroom_perception::{ExecutorState, MappedArm, PerceptionLog};
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{RecordedRegionKind, Recording, RegionPoses, RegionTrack, RobotTrack, Sample, TickTimes};
 use elbowroom_spatial::Vec3;
 
@@ -29,11 +30,12 @@ pub fn write_perception_html(out: impl Write, arm: &MappedArm, log: &PerceptionL
     let recording = recording(arm, log, flange);
     let content = PageContent {
         title: &log.title,
-        facts: facts(log),
+        result: facts(log),
+        facts: String::new(),
         options: "<option value=\"0\">run</option>".into(),
         figures: &plots::perception(&scene, log, &recording),
         tables: stage_times(log) + &rejected_frames(log) + &images(log),
-        scene: scene_data::data(&scene, &[("", &recording)]),
+        data: scene_data::data(&scene, &[("", &recording)]),
     };
     write_page(out, &content)
 }
@@ -82,17 +84,21 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
             speed_override: if matches!(tick.step.state, ExecutorState::Waiting(_)) { 0.0 } else { tick.step.rate },
             region: nearest.map(|(i, _)| CellRegionId(i)),
             distance_m: tick.distance_m,
+            governing: None,
             reason,
         });
     }
     let waiting = log.ticks.iter().filter(|t| matches!(t.step.state, ExecutorState::Waiting(_))).count();
     let chain = &arm.robot.chain;
     let robot = RobotTrack {
+        absent_links: Vec::new(),
         name: "arm".into(),
         flange: chain.links()[flange.0].clone(),
         joints: chain.active_joints().iter().map(|id| chain.joints()[id.0].name.clone()).collect(),
         min_override: log.ticks.iter().map(|t| t.step.rate).fold(1.0, f64::min),
+        parts: Vec::new(),
         samples,
+        stops: Vec::new(),
         finished: true,
         stopped_s: waiting as f64 * log.tick_s,
         collisions: Vec::new(),
@@ -123,6 +129,7 @@ fn region(ground_truth: &elbowroom_perception::GroundTruth) -> RegionTrack {
         kind: RecordedRegionKind::Obstacle,
         life: Life::Permanent,
         guards: Guards::default(),
+        robots: vec![RobotId(0)],
         warning_m: 0.0,
         shape: ground_truth.shape.clone(),
         poses: RegionPoses::Moving(ground_truth.poses.clone()),
@@ -137,11 +144,11 @@ fn region(ground_truth: &elbowroom_perception::GroundTruth) -> RegionTrack {
 
 fn facts(log: &PerceptionLog) -> String {
     let lines = log.facts.iter().map(|line| format!("<li>{}</li>", escape(line)));
-    format!("<ul class=\"facts\">{}</ul>", lines.collect::<String>())
+    card("Result", &format!("<ul class=\"facts\">{}</ul>", lines.collect::<String>()))
 }
 
 fn card(heading: &str, body: &str) -> String {
-    format!("<section class=\"card wide\"><h3>{}</h3>{body}</section>\n", escape(heading))
+    format!("<section class=\"card wide\"><h2>{}</h2>{body}</section>\n", escape(heading))
 }
 
 fn stage_times(log: &PerceptionLog) -> String {
@@ -179,7 +186,7 @@ fn rejected_frames(log: &PerceptionLog) -> String {
 fn images(log: &PerceptionLog) -> String {
     let one = |p: &elbowroom_perception::ReportImage| {
         format!(
-            "<section class=\"card\"><h3>{}</h3><p class=\"note\">{}</p><img alt=\"{}\" style=\"width:100%;\
+            "<section class=\"card\"><h2>{}</h2><p class=\"note\">{}</p><img alt=\"{}\" style=\"width:100%;\
              image-rendering:auto;border-radius:6px\" src=\"data:image/png;base64,{}\"></section>\n",
             escape(&p.title),
             escape(&p.note),

@@ -2,15 +2,16 @@
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_monitor::Volume;
 use elbowroom_proximity::{Shape, tessellate::tessellate};
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::palette;
 
 /// Largest chord error of curved surfaces, m.
-const CHORD_ERROR_M: f64 = 1e-3;
+pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
 
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +39,12 @@ pub struct ReportRobot {
     pub tcp_in_flange: Pose,
     /// The link that carries the tool.
     pub flange: LinkId,
+    /// The guarded volumes, whose distances the page shows.
+    pub volumes: Vec<Volume>,
+    /// The objects that it grips, with the volumes that are guarded while it holds them, each with one of its links.
+    pub gripped: Vec<(ObjectId, Volume)>,
+    /// The named tools: name, link, and tool centre point in the link. Empty for a robot with one tool.
+    pub tools: Vec<(String, LinkId, Pose)>,
 }
 
 /// A triangle mesh of one colour.
@@ -58,11 +65,9 @@ pub struct ReportMesh {
 pub struct ReportObject {
     /// Its name in the cell.
     pub name: String,
-    /// Vertices, m.
-    pub vertices: Vec<Vec3>,
-    /// Vertex indices.
-    pub triangles: Vec<[u32; 3]>,
-    /// Pose of the mesh.
+    /// Its solid.
+    pub shape: Shape,
+    /// Pose of the solid.
     pub in_world: Pose,
 }
 
@@ -74,10 +79,18 @@ impl ReportScene {
 
     /// The geometry of a cell.
     pub fn of_cell(cell: &Cell) -> Self {
-        let scene = cell.robots.iter().fold(Self::new(), |scene, r| {
+        let mut scene = cell.robots.iter().fold(Self::new(), |scene, r| {
             let payload: Vec<Collider> = r.payload().cloned().collect();
-            scene.robot(&r.name, &r.without_payload(), r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+            let model = if r.tools.is_empty() { r.without_payload() } else { r.with_all_tools() };
+            scene
+                .robot(&r.name, &model, r.base_in_world, r.flange, r.tcp_in_flange, &payload)
+                .guarded_by(r.guarded_volumes())
+                .with_tools(r.tools.iter().map(|t| (t.name.clone(), t.link, t.tcp_in_link)).collect())
         });
+        for (r, robot) in scene.robots.iter_mut().enumerate() {
+            let volume = |(object, link)| (object, cell.gripped_volume(RobotId(r), object, link));
+            robot.gripped = cell.grips(RobotId(r)).into_iter().map(volume).collect();
+        }
         cell.objects.iter().fold(scene, Self::object)
     }
 
@@ -103,15 +116,36 @@ impl ReportScene {
             tool: meshes(tool, rgb(palette::TOOL)),
             tcp_in_flange,
             flange,
+            volumes: Vec::new(),
+            gripped: Vec::new(),
+            tools: Vec::new(),
         });
+        self
+    }
+
+    /// The named tools of the robot added last.
+    #[must_use]
+    pub fn with_tools(mut self, tools: Vec<(String, LinkId, Pose)>) -> Self {
+        if let Some(robot) = self.robots.last_mut() {
+            robot.tools = tools;
+        }
+        self
+    }
+
+    /// The guarded volumes of the robot added last.
+    #[must_use]
+    pub fn guarded_by(mut self, volumes: Vec<Volume>) -> Self {
+        if let Some(robot) = self.robots.last_mut() {
+            robot.volumes = volumes;
+        }
         self
     }
 
     /// Adds an object.
     #[must_use]
     pub fn object(mut self, object: &Object) -> Self {
-        let (vertices, triangles) = tessellate(&object.shape, CHORD_ERROR_M);
-        self.objects.push(ReportObject { name: object.name.clone(), vertices, triangles, in_world: object.in_world });
+        let Object { name, shape, in_world } = object.clone();
+        self.objects.push(ReportObject { name, shape, in_world });
         self
     }
 }

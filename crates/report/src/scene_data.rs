@@ -1,190 +1,164 @@
-//! Data of the 3-D scene for the script of the page: geometry once, poses per frame.
+//! Data of the 3-D scene and of its distances for the scripts of the page: models once, joint values per frame.
 
-use std::collections::HashMap;
-
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_proximity::project_point;
-use elbowroom_sim::{Recording, RegionPoses, RegionTrack, RobotTrack, Span};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_kinematics::{Chain, JointKind};
+use elbowroom_monitor::{Guards, Part, Presence, Volume};
+use elbowroom_proximity::{Shape, tessellate::tessellate};
+use elbowroom_robot::RobotId;
+use elbowroom_sim::{Recording, RegionTrack};
 use serde_json::{Value, json};
 
-use crate::downsample::every;
-use crate::explanation::explanation;
-use crate::region_surface::{self, Surface};
-use crate::scene::{ReportMesh, ReportRobot, ReportScene};
-use crate::{palette, summary};
+use crate::packing::{ArrayPacker, pose_values};
+use crate::page_meshes::{MeshUse, PageMeshes};
+use crate::scene::{CHORD_ERROR_M, ReportMesh, ReportObject, ReportRobot, ReportScene};
+use crate::{palette, region_surface, run_data};
 
-/// Largest number of frames of the animation.
-pub const MAX_FRAMES: usize = 1500;
+/// A mesh with more triangles than this is drawn, but the page computes no distances to it.
+const MAX_MEASURED_TRIANGLES: usize = 200_000;
 
-/// Data for the script of the page. Large arrays are base64 of little-endian 32-bit values.
-pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Value {
+/// What the scripts of the page read.
+#[derive(Debug, Default)]
+pub struct PageData {
+    /// A document that refers to arrays.
+    pub json: Value,
+    /// The arrays: [`ArrayPacker`].
+    pub arrays: Vec<u8>,
+}
+
+/// Data of a scene and of runs in it. The regions are those of the first run.
+pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
     let regions = runs.first().map_or(&[][..], |(_, rec)| &rec.regions[..]);
-    json!({
-        "robots": scene.robots.iter().map(robot).collect::<Vec<_>>(),
-        "objects": scene.objects.iter().map(|o| {
-            let surface = (o.vertices.clone(), o.triangles.clone());
-            let moves = runs.iter().any(|(_, rec)| rec.objects.iter().any(|t| t.name == o.name));
-            // Moving objects are placed per frame.
-            let (pose, color) = if moves { (&Pose::IDENTITY, palette::MOVING) } else { (&o.in_world, palette::OBJECT) };
-            json!({ "name": o.name, "mesh": mesh(&surface, pose), "color": color })
-        }).collect::<Vec<_>>(),
-        "regions": regions.iter().map(region).collect::<Vec<_>>(),
-        "runs": runs.iter().map(|(label, rec)| run(scene, label, rec)).collect::<Vec<_>>(),
-    })
-}
-
-fn floats(values: impl IntoIterator<Item = f64>) -> String {
-    STANDARD.encode(values.into_iter().flat_map(|v| (v as f32).to_le_bytes()).collect::<Vec<u8>>())
-}
-
-/// Merges coincident vertices, so that the page can smooth normals.
-fn mesh(surface: &Surface, in_frame: &Pose) -> Value {
-    let mut first: HashMap<[u32; 3], u32> = HashMap::new();
-    let mut corners: Vec<f32> = Vec::new();
-    let index: Vec<u32> = surface
-        .0
-        .iter()
-        .map(|&v| {
-            let p = in_frame.transform_point(v).to_array().map(|c| c as f32);
-            *first.entry(p.map(f32::to_bits)).or_insert_with(|| {
-                corners.extend(p);
-                (corners.len() / 3 - 1) as u32
-            })
-        })
-        .collect();
-    let known = |i: u32| index.get(i as usize).copied();
-    let triangles = surface.1.iter().filter_map(|t| Some([known(t[0])?, known(t[1])?, known(t[2])?])).flatten();
-    json!({
-        "v": STANDARD.encode(corners.iter().flat_map(|c| c.to_le_bytes()).collect::<Vec<u8>>()),
-        "i": STANDARD.encode(triangles.flat_map(u32::to_le_bytes).collect::<Vec<u8>>()),
-    })
-}
-
-fn link_mesh(m: &ReportMesh) -> Value {
-    let [r, g, b] = m.color;
-    json!({ "mesh": mesh(&(m.vertices.clone(), m.triangles.clone()), &m.in_link), "color": format!("#{r:02x}{g:02x}{b:02x}") })
-}
-
-fn robot(robot: &ReportRobot) -> Value {
-    let links: Vec<Value> = shown_links(robot)
-        .into_iter()
-        .map(|link| {
-            let tool = if link == robot.flange.0 { &robot.tool[..] } else { &[] };
-            let own = robot.link_meshes.get(link).map_or(&[][..], |m| &m[..]);
-            Value::from(own.iter().chain(tool).map(link_mesh).collect::<Vec<_>>())
-        })
-        .collect();
-    json!({ "name": robot.name, "links": links })
-}
-
-/// Links with visible geometry.
-fn shown_links(robot: &ReportRobot) -> Vec<usize> {
-    let drawn = |link: usize| {
-        robot.link_meshes.get(link).is_some_and(|m| !m.is_empty()) || (link == robot.flange.0 && !robot.tool.is_empty())
-    };
-    (0..robot.chain.links().len()).filter(|&link| drawn(link)).collect()
-}
-
-fn region(region: &RegionTrack) -> Value {
-    json!({
-        "name": region.name, "kind": region.kind.name(), "color": palette::of_kind(region.kind),
-        "solid": mesh(&region_surface::solid(&region.shape), &Pose::IDENTITY),
-        "shell": region_surface::warning(&region.shape, region.warning_m).map(|s| mesh(&s, &Pose::IDENTITY)),
-    })
-}
-
-fn run(scene: &ReportScene, label: &str, rec: &Recording) -> Value {
-    let ticks = rec.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
-    let frames = every(ticks, MAX_FRAMES);
-    let times = rec.robots.first().map(|r| floats(frames.iter().map(|&i| r.samples[i].t_s)));
-    let spans = |list: &[Span]| list.iter().map(|s| json!([s.robot.0, s.from_s, s.to_s])).collect::<Vec<_>>();
-    let regions = rec.regions.iter().map(|r| json!({
-        "poses": match &r.poses {
-            RegionPoses::Fixed(pose) => floats(pose_values(pose)),
-            RegionPoses::Moving(poses) => floats(frames.iter().flat_map(|&i| pose_values(poses.get(i).unwrap_or(&Pose::IDENTITY)))),
-        },
-        "moving": matches!(r.poses, RegionPoses::Moving(_)),
-        "active": r.active.iter().map(|(t, on)| json!([t, on])).collect::<Vec<_>>(),
-        "warning": spans(&r.warning_spans),
-        "inside": spans(&r.inside_spans),
-    })).collect::<Vec<_>>();
-    let objects = scene.objects.iter().map(|o| {
-        let track = rec.objects.iter().find(|t| t.name == o.name)?;
-        Some(floats(frames.iter().flat_map(|&i| pose_values(track.poses.get(i).unwrap_or(&o.in_world)))))
+    let (mut packer, mut meshes) = (ArrayPacker::default(), PageMeshes::default());
+    let mut pack = Pack { packer: &mut packer, meshes: &mut meshes };
+    let json = json!({
+        "robots": scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>(),
+        "objects": scene.objects.iter().map(|o| object(o, runs, &mut pack)).collect::<Vec<_>>(),
+        "regions": regions.iter().enumerate().map(|(i, r)| region(scene, i, r, &mut pack)).collect::<Vec<_>>(),
+        "runs": runs.iter().map(|(label, rec)| run_data::run(scene, label, rec, pack.packer)).collect::<Vec<_>>(),
     });
-    let robots = rec.robots.iter().enumerate().map(|(i, track)| frames_of(scene.robots.get(i), track, rec, &frames));
+    let mut json = json;
+    json["meshes"] = meshes.entries().into();
+    PageData { json, arrays: packer.bytes().to_vec() }
+}
+
+struct Pack<'a> {
+    packer: &'a mut ArrayPacker,
+    meshes: &'a mut PageMeshes,
+}
+
+impl Pack<'_> {
+    fn mesh(&mut self, surface: &region_surface::Surface, used: MeshUse) -> usize {
+        self.meshes.add(self.packer, surface, used)
+    }
+
+    /// A solid as the page measures it; null where its mesh is too large for that.
+    fn shape(&mut self, shape: &Shape) -> Value {
+        match shape {
+            Shape::Sphere(s) => json!({ "kind": "sphere", "radius": s.radius }),
+            Shape::Capsule(c) => json!({ "kind": "capsule", "half": c.half_length, "radius": c.radius }),
+            Shape::Cylinder(c) => json!({ "kind": "cylinder", "half": c.half_length, "radius": c.radius }),
+            Shape::Cuboid(c) => json!({ "kind": "box", "half": c.half_extents.to_array() }),
+            Shape::HalfSpace(_) => json!({ "kind": "plane" }),
+            Shape::Hull(h) => {
+                let mesh = self.mesh(&(h.vertices().to_vec(), h.triangles().to_vec()), MeshUse::Measured);
+                json!({ "kind": "hull", "mesh": mesh })
+            }
+            Shape::Mesh(m) if m.triangles().len() > MAX_MEASURED_TRIANGLES => Value::Null,
+            Shape::Mesh(m) => {
+                let mesh = self.mesh(&(m.vertices().to_vec(), m.triangles().to_vec()), MeshUse::Measured);
+                json!({ "kind": "mesh", "mesh": mesh, "solid": m.has_interior() })
+            }
+        }
+    }
+}
+
+fn robot(robot: &ReportRobot, pack: &mut Pack<'_>) -> Value {
+    let mut solids = Vec::new();
+    for (link, meshes) in robot.link_meshes.iter().enumerate() {
+        solids.extend(meshes.iter().map(|m| solid(link, m, pack)));
+    }
+    solids.extend(robot.tool.iter().map(|m| solid(robot.flange.0, m, pack)));
+    let volume = |v: &Volume, pack: &mut Pack<'_>| {
+        json!({
+            "name": v.name, "link": v.link.0, "pose": pose_values(&v.in_link), "shape": pack.shape(&v.shape),
+            // Of a tool that is exchanged: there while its link is.
+            "exchanged": v.presence != Presence::Always,
+        })
+    };
     json!({
-        "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
-        "t": times.unwrap_or_default(), "robots": robots.collect::<Vec<_>>(), "regions": regions,
-        "objects": objects.collect::<Vec<_>>(),
+        "name": robot.name, "base": pose_values(&robot.base_in_world), "links": robot.chain.links().len(),
+        "joints": joints(&robot.chain), "sliders": sliders(&robot.chain), "solids": solids,
+        "volumes": robot.volumes.iter().map(|v| volume(v, pack)).collect::<Vec<_>>(),
+        // The volumes of objects while it holds them, at their poses in the objects.
+        "gripped": robot.gripped.iter().map(|(o, v)| json!({ "object": o.0, "volume": volume(v, pack) })).collect::<Vec<_>>(),
+        // What counts for an object: the links with tool and load, as for a region with default guards.
+        "measured": volumes_for(robot, Guards::default()),
     })
 }
 
-fn frames_of(robot: Option<&ReportRobot>, track: &RobotTrack, rec: &Recording, frames: &[usize]) -> Value {
-    let column = |f: &dyn Fn(&elbowroom_sim::Sample) -> f64| floats(frames.iter().map(|&i| f(&track.samples[i])));
-    let mut reasons: Vec<String> = Vec::new();
-    let mut reason_at = Vec::with_capacity(frames.len());
-    for &i in frames {
-        let text = explanation(track, i, rec);
-        let known = reasons.iter().position(|r| *r == text);
-        reason_at.push(known.unwrap_or(reasons.len()));
-        if known.is_none() {
-            reasons.push(text);
-        }
-    }
+fn solid(link: usize, m: &ReportMesh, pack: &mut Pack<'_>) -> Value {
+    let [r, g, b] = m.color;
+    let mesh = pack.mesh(&(m.vertices.clone(), m.triangles.clone()), MeshUse::Drawn);
+    json!({ "link": link, "mesh": mesh, "pose": pose_values(&m.in_link), "color": format!("#{r:02x}{g:02x}{b:02x}") })
+}
+
+/// The joints from the root outwards; `index` is that of the value in q, null for a fixed joint.
+fn joints(chain: &Chain) -> Vec<Value> {
+    let joint = |id: &elbowroom_kinematics::JointId| {
+        let joint = &chain.joints()[id.0];
+        let coupling = chain.coupling(*id);
+        json!({
+            "parent": joint.parent.0, "child": joint.child.0, "origin": pose_values(&joint.origin),
+            "axis": joint.axis.to_array(), "slides": joint.kind == JointKind::Prismatic,
+            "index": coupling.map(|c| c.index), "factor": coupling.map(|c| c.multiplier), "offset": coupling.map(|c| c.offset),
+        })
+    };
+    chain.topological_order().iter().map(joint).collect()
+}
+
+/// The joints that a person can move, in the order of q; without limits a turn to either side, or 2 m.
+fn sliders(chain: &Chain) -> Vec<Value> {
+    let slider = |id: &elbowroom_kinematics::JointId| {
+        let joint = &chain.joints()[id.0];
+        let slides = joint.kind == JointKind::Prismatic;
+        let unlimited = if slides { 2.0 } else { std::f64::consts::PI };
+        let bound = |limit: f64, other: f64| if limit.is_finite() { limit } else { other };
+        let (lower, upper) = (bound(joint.limits.lower, -unlimited), bound(joint.limits.upper, unlimited));
+        json!({ "name": joint.name, "slides": slides, "lower": lower, "upper": upper })
+    };
+    chain.active_joints().iter().map(slider).collect()
+}
+
+fn object(object: &ReportObject, runs: &[(&str, &Recording)], pack: &mut Pack<'_>) -> Value {
+    let moves = runs.iter().any(|(_, rec)| rec.objects.iter().any(|t| t.name == object.name));
+    let color = if moves { palette::MOVING } else { palette::OBJECT };
+    let shape = pack.shape(&object.shape);
+    let mesh = match &shape["mesh"] {
+        Value::Null => pack.mesh(&tessellate(&object.shape, CHORD_ERROR_M), MeshUse::Drawn).into(),
+        measured => measured.clone(),
+    };
     json!({
-        "name": track.name,
-        "poses": robot.map(|r| floats(link_poses(r, track, frames))),
-        "tcp": floats(frames.iter().flat_map(|&i| track.samples[i].tcp.to_array())),
-        "override": column(&|s| s.speed_override),
-        "speed": column(&|s| s.tcp_speed),
-        "distance": column(&|s| s.distance_m.unwrap_or(f64::NAN)),
-        "nearest": floats(frames.iter().flat_map(|&i| nearest(track, rec, i))),
-        "reasons": reasons,
-        "reason": reason_at,
-        "outcome": summary::outcome(track, rec),
+        "name": object.name, "mesh": mesh, "color": color, "pose": pose_values(&object.in_world), "shape": shape,
     })
 }
 
-fn link_poses(robot: &ReportRobot, track: &RobotTrack, frames: &[usize]) -> Vec<f64> {
-    let links = shown_links(robot);
-    let mut state = ChainState::new(&robot.chain);
-    let mut out = Vec::with_capacity(frames.len() * links.len() * 7);
-    for &i in frames {
-        let q = &track.samples[i].q;
-        let known = q.len().min(state.q.len());
-        state.q[..known].copy_from_slice(&q[..known]);
-        robot.chain.forward(&mut state);
-        for &link in &links {
-            out.extend(pose_values(&(robot.base_in_world * state.link_in_root(LinkId(link)))));
-        }
-    }
-    out
+fn region(scene: &ReportScene, index: usize, region: &RegionTrack, pack: &mut Pack<'_>) -> Value {
+    let of_robot = |(i, robot): (usize, &ReportRobot)| {
+        let applies = region.robots.contains(&RobotId(i));
+        if applies { volumes_for(robot, region.guards) } else { Vec::new() }
+    };
+    let shell = region_surface::warning(&region.shape, region.warning_m);
+    json!({
+        "name": region.name, "kind": region.kind.name(), "color": palette::of_region(index),
+        "solid": pack.mesh(&region_surface::solid(&region.shape), MeshUse::Drawn),
+        "shell": shell.map(|s| pack.mesh(&s, MeshUse::Drawn)),
+        "shape": pack.shape(&region.shape),
+        "measured": scene.robots.iter().enumerate().map(of_robot).collect::<Vec<_>>(),
+        "guards_load": Part::Load.counts_for(region.guards),
+    })
 }
 
-/// Quaternion x y z w, then the translation.
-fn pose_values(pose: &Pose) -> [f64; 7] {
-    let [x, y, z, w] = pose.rotation.to_quaternion_xyzw();
-    let t = pose.translation;
-    [x, y, z, w, t.x, t.y, t.z]
-}
-
-/// The point of the region nearest to the governing point; NaN where that point is not the TCP.
-fn nearest(track: &RobotTrack, rec: &Recording, tick: usize) -> [f64; 3] {
-    let sample = &track.samples[tick];
-    let unknown = [f64::NAN; 3];
-    let (Some(region), Some(distance)) = (sample.region.and_then(|i| rec.regions.get(i.0)), sample.distance_m) else {
-        return unknown;
-    };
-    let pose = match &region.poses {
-        RegionPoses::Fixed(pose) => Some(pose),
-        RegionPoses::Moving(poses) => poses.get(tick),
-    };
-    let Some(pose) = pose else { return unknown };
-    let on_region: Vec3 = project_point(&region.shape, pose, sample.tcp).on_surface;
-    let is_tcp = (on_region.distance(sample.tcp) - distance).abs() < 1e-6 && distance > 0.0;
-    if is_tcp { on_region.to_array() } else { unknown }
+/// Indices of the volumes that count for a region with these guards.
+fn volumes_for(robot: &ReportRobot, guards: Guards) -> Vec<usize> {
+    let each = robot.volumes.iter().enumerate();
+    each.filter(|(_, v)| v.part.counts_for(guards)).map(|(i, _)| i).collect()
 }

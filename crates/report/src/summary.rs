@@ -3,8 +3,8 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Deadlock, Outcome, PerceptionSummary, PerceptionTrack, Recording, RegionTrack,
-    RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack,
+    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, PerceptionSummary, PerceptionTrack,
+    Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack, Stop,
 };
 
 use crate::explanation::explanation;
@@ -12,6 +12,8 @@ use crate::sparkline::sparkline;
 
 /// Largest number of listed regions; the rest is counted.
 const MAX_REGIONS: usize = 12;
+/// Largest number of listed stops of a robot that finished.
+const MAX_STOPS: usize = 3;
 /// Below this speed (m/s) a TCP counts as stationary.
 const STATIONARY_M_S: f64 = 1e-4;
 
@@ -177,32 +179,47 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     if let Some(track) = &robot.perception {
         lines.extend(kept_clear(track).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     }
-    lines.extend(
-        robot
-            .collisions
-            .iter()
-            .take(3)
-            .map(|c| vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]),
-    );
+    for c in robot.collisions.iter().take(3) {
+        lines.push(vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]);
+        lines.extend(key_to_ignore(robot, c).map(|key| vec![(format!("{indent}  {key}"), Style::Dim)]));
+    }
     lines
+}
+
+/// What to write where links that are in contact at the start always are.
+fn key_to_ignore(robot: &RobotTrack, collision: &Collision) -> Option<String> {
+    let link = |name: &str| Some(name.strip_prefix(&robot.name)?.strip_prefix('/')?.to_owned());
+    let (a, b) = (link(&collision.a)?, link(&collision.b)?);
+    let at_start = collision.t_s <= 0.0;
+    at_start.then(|| format!("if they always touch: ignore = [[\"{a}\", \"{b}\"]] in [robot.{}]", robot.name))
 }
 
 /// Where the TCP is, the part that was closest to the region that stopped the robot, and what would release it.
 fn detail_texts(robot: &RobotTrack) -> Vec<String> {
-    let RobotEnding { part, point, release, .. } = &robot.ending;
+    let RobotEnding { part, part_kind, point, release, .. } = &robot.ending;
     let mut parts = Vec::new();
     if !robot.flange.is_empty() {
         parts.push(format!("TCP on {}", robot.flange));
     }
     // Where the TCP itself is guarded, the line above has its place.
     if let (Some(part), Some(p)) = (part.as_ref().filter(|part| *part != "tcp"), point) {
-        parts.push(format!("closest {part} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
+        let load = if *part_kind == Some(PartKind::Load) && part != "load" { " (load)" } else { "" };
+        parts.push(format!("closest {part}{load} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
     }
     let place = (!parts.is_empty()).then(|| parts.join(", "));
     // A line for each way, so that none is cut.
     let ways = release.iter().flat_map(|ways| ways.split(", or ")).enumerate();
     let ways = ways.map(|(i, way)| format!("{} when {way}", if i == 0 { "continues" } else { "or" }));
-    place.into_iter().chain(ways).collect()
+    let stops = robot.stops.iter().filter(|_| robot.finished).take(MAX_STOPS).map(stop_text);
+    place.into_iter().chain(ways).chain(stops).collect()
+}
+
+/// A stop after which the robot went on.
+fn stop_text(stop: &Stop) -> String {
+    let by = stop.by.as_ref();
+    let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clip(by, 20)));
+    let part = stop.part.as_ref().map_or_else(String::new, |part| format!(", closest {part}"));
+    format!("stood {:.2} to {:.2} s{place}{part}", stop.from_s, stop.to_s)
 }
 
 /// Summary of avoidance.
@@ -247,11 +264,9 @@ fn sensor_line(track: &SensorTrack) -> Line {
 pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(last) = robot.samples.last() else { return "no samples".into() };
     if robot.finished {
-        let moving = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S);
-        let t = moving.map_or(last.t_s, |i| robot.samples[i].t_s);
-        return format!("finished at {t:.2} s");
+        return format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(last.t_s));
     }
-    let since = robot.samples.iter().rposition(|s| s.tcp_speed > STATIONARY_M_S).map_or(0.0, |i| robot.samples[i].t_s);
+    let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
         let at = robot.ending.by.as_deref().unwrap_or("an exchange region");
         return format!("deadlock: stopped since {since:.2} s, waiting for {}", clip(at, 20));
@@ -266,6 +281,11 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         _ if last.tcp_speed > STATIONARY_M_S => format!("still moving at {:.2} s", last.t_s),
         _ => format!("stopped {place}: {}", explanation(robot, robot.samples.len() - 1, rec)),
     }
+}
+
+/// When the TCP moved last, s; `None` where it never did.
+pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
+    robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }
 
 /// Two lines, for narrow screens.

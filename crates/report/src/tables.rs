@@ -2,7 +2,11 @@
 
 use std::fmt::Write as _;
 
-use elbowroom_sim::Recording;
+use elbowroom_monitor::Life;
+use elbowroom_sim::{Recording, Stop};
+
+use crate::palette;
+use crate::summary::millimetres;
 
 /// Rows of the event table; `events.csv` has all events.
 const MAX_EVENTS: usize = 500;
@@ -23,14 +27,9 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// JSON for use inside `<script>`: no `</script`, no `<!--`, no line separators.
-pub fn json_in_script(json: &str) -> String {
-    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
-}
-
 /// One row per robot: its outcome and the effect of the monitor.
 pub fn robots(recording: &Recording) -> String {
-    let mut out = header(&["robot", "outcome", "time stopped", "smallest override", "collisions"]);
+    let mut out = header("Robots", &["robot", "outcome", "time stopped", "smallest override", "collisions"]);
     for robot in &recording.robots {
         let outcome = crate::summary::outcome(robot, recording);
         let hits = match robot.collisions.first() {
@@ -49,28 +48,71 @@ pub fn robots(recording: &Recording) -> String {
     out + "</tbody></table>"
 }
 
-/// One row per region: distance and time.
-pub fn regions(recording: &Recording) -> String {
-    let mut out = header(&["region", "kind", "life", "warning zone", "closest", "entered", "in warning zone"]);
-    for region in &recording.regions {
-        let bad = region.is_violated();
-        let cells = [
-            region.name.clone(),
-            region.kind.name().into(),
-            region.life.name().into(),
+/// One row per region: its colour, distance and times; with what it would be without the monitor, where that is known.
+pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
+    let planned = planned.filter(|p| recording.monitored && p.regions.len() == recording.regions.len());
+    let mut names = vec!["region", "kind", "warning zone", "least distance", "entered", "in warning zone"];
+    if planned.is_some() {
+        names.push("without monitor");
+    }
+    let mut out = header("Regions: how close the robots came", &names);
+    for (index, region) in recording.regions.iter().enumerate() {
+        let life = if region.life == Life::Temporary { ", temporary" } else { "" };
+        let mut cells = vec![
+            chip(palette::of_region(index), &region.name),
+            escape(&format!("{}{life}", region.kind.name())),
             format!("{:.0} mm", 1e3 * region.warning_m),
-            crate::summary::millimetres(region.min_distance_m),
-            if region.entered { "yes" } else { "no" }.into(),
+            millimetres(region.min_distance_m),
+            yes_or_no(region.entered).into(),
             format!("{:.2} s", region.warned_s),
         ];
-        row(&mut out, &cells, if bad { "bad" } else { "" });
+        if let Some(other) = planned.map(|p| &p.regions[index]) {
+            let entered = if other.entered { "entered" } else { "not entered" };
+            cells.push(format!("{}, {entered}", millimetres(other.min_distance_m)));
+        }
+        row_of_html(&mut out, &cells, if region.is_violated() { "bad" } else { "" });
     }
     out + "</tbody></table>"
 }
 
+fn yes_or_no(yes: bool) -> &'static str {
+    if yes { "yes" } else { "no" }
+}
+
+/// A name with its colour.
+fn chip(color: &str, name: &str) -> String {
+    format!("<i class=\"chip\" style=\"background:{color}\"></i>{}", escape(name))
+}
+
+/// One row per stop of any robot.
+pub fn stops(recording: &Recording) -> Option<String> {
+    let mut out = header(
+        "Stops by the monitor",
+        &["robot", "from", "to", "stood", "before", "distance", "closest part", "its point (m)"],
+    );
+    let all: Vec<(&str, &Stop)> =
+        recording.robots.iter().flat_map(|r| r.stops.iter().map(|s| (r.name.as_str(), s))).collect();
+    for (robot, stop) in all.iter().take(MAX_EVENTS) {
+        let point = stop.point.map_or_else(|| "–".into(), |p| format!("{:.3}, {:.3}, {:.3}", p.x, p.y, p.z));
+        let text = |t: &Option<String>| t.clone().unwrap_or_else(|| "–".into());
+        let cells = [
+            (*robot).to_owned(),
+            format!("{:.3} s", stop.from_s),
+            format!("{:.3} s", stop.to_s),
+            format!("{:.2} s", stop.to_s - stop.from_s),
+            text(&stop.by),
+            millimetres(stop.distance_m),
+            text(&stop.part),
+            point,
+        ];
+        row(&mut out, &cells, "");
+    }
+    (!all.is_empty()).then(|| out + "</tbody></table>")
+}
+
 /// One row per event, the first [`MAX_EVENTS`].
 pub fn events(recording: &Recording) -> String {
-    let mut out = header(&["time", "robot", "region", "event"]);
+    let mut out = header("Events", &["time", "robot", "region", "event"]);
     for e in recording.events.iter().take(MAX_EVENTS) {
         row(&mut out, &[format!("{:.3} s", e.t_s), e.robot.clone(), e.region.clone(), e.event.name().into()], "");
     }
@@ -85,11 +127,16 @@ pub fn events(recording: &Recording) -> String {
     out
 }
 
-fn header(names: &[&str]) -> String {
-    format!("<table><thead><tr><th>{}</th></tr></thead><tbody>", names.join("</th><th>"))
+fn header(caption: &str, names: &[&str]) -> String {
+    let names = names.join("</th><th scope=\"col\">");
+    format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{names}</th></tr></thead><tbody>")
 }
 
 fn row(out: &mut String, cells: &[String], class: &str) {
     let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
+    row_of_html(out, &cells, class);
+}
+
+fn row_of_html(out: &mut String, cells: &[String], class: &str) {
     let _ = writeln!(out, "<tr class=\"{class}\"><td>{}</td></tr>", cells.join("</td><td>"));
 }

@@ -94,7 +94,8 @@ fn candidates(robot: &Robot) -> impl Iterator<Item = (LinkId, LinkId)> + '_ {
     pairs.into_iter().filter(|(a, b)| robot.joined_without_colliders(*a, *b) && robot.links_can_meet(*a, *b))
 }
 
-fn touch(robot: &Robot, state: &ChainState, a: LinkId, b: LinkId) -> bool {
+/// True where any colliders of two links touch.
+pub(crate) fn touch(robot: &Robot, state: &ChainState, a: LinkId, b: LinkId) -> bool {
     let in_root = |l: LinkId| state.link_in_root(l);
     robot.colliders[a.0].iter().any(|x| {
         let x_in_root = in_root(a) * x.in_link;

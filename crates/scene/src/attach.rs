@@ -5,7 +5,7 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_spatial::Pose;
 
 use crate::attachment::Attachment;
-use crate::{PairState, Reason, Scene, SceneError, SceneState};
+use crate::{PairEntry, PairState, Reason, Scene, SceneError, SceneState};
 
 impl SceneState {
     /// Attaches an object to a link, with its present pose: it moves with the link from then on, and is checked against the
@@ -80,7 +80,8 @@ impl SceneState {
     }
 
     /// Whether a pair is tested now, and why: the [allowed collision matrix](Scene::allowed_collision_matrix), as attachments
-    /// change it. `None` where there is no such pair, as for two objects of which none is attached.
+    /// change it. `None` where there is no such pair, as for two objects of which none is
+    /// attached and that nobody edited.
     pub fn pair(&self, scene: &Scene, a: GeometryId, b: GeometryId) -> Option<(PairState, Reason)> {
         if a == b || !scene.has_shape(a) || !scene.has_shape(b) {
             return None;
@@ -88,7 +89,9 @@ impl SceneState {
         let entry = scene.matrix.get(a, b);
         let (held_a, held_b) = (self.attachment_of(a), self.attachment_of(b));
         if held_a.is_none() && held_b.is_none() {
-            return entry.map(|e| (e.state, e.reason.clone()));
+            let objects = matches!((a, b), (GeometryId::Object(_), GeometryId::Object(_)));
+            let is_pair = |e: &&PairEntry| !objects || matches!(e.reason, Reason::ByHand(_));
+            return entry.filter(is_pair).map(|e| (e.state, e.reason.clone()));
         }
         if let Some(e) = entry.filter(|e| matches!(e.reason, Reason::ByHand(_))) {
             return Some((e.state, e.reason.clone()));

@@ -9,7 +9,7 @@ use elbowroom_spatial::Pose;
 use crate::allowed_collision_matrix::{by_rules, prove_out_of_reach};
 use crate::geometry_model::GeometryModel;
 use crate::local_shape::LocalShape;
-use crate::{Object, PairEdit, Scene, SceneError, SceneRobot, scale};
+use crate::{Object, PairEdit, PairRules, Scene, SceneError, SceneRobot, scale};
 
 /// Collects the robots, objects and settings of a scene. Errors are reported by [`SceneBuilder::build`].
 ///
@@ -36,6 +36,7 @@ pub struct SceneBuilder {
     padding: HashMap<GeometryId, f64>,
     scale: HashMap<GeometryId, f64>,
     edits: Vec<(GeometryId, GeometryId, PairEdit)>,
+    rules: PairRules,
     prove_out_of_reach: bool,
 }
 
@@ -47,6 +48,7 @@ impl Default for SceneBuilder {
             padding: HashMap::new(),
             scale: HashMap::new(),
             edits: Vec::new(),
+            rules: PairRules::default(),
             prove_out_of_reach: true,
         }
     }
@@ -90,6 +92,12 @@ impl SceneBuilder {
         self
     }
 
+    /// Edits the allowed collision matrix between selections, before the edits of single pairs.
+    pub fn rules(&mut self, rules: PairRules) -> &mut Self {
+        self.rules.extend(rules);
+        self
+    }
+
     /// Whether to look for pairs that no joint values within the limits bring together (default: yes). The proof takes time
     /// once and makes each query faster; the answers are the same.
     pub fn prove_out_of_reach(&mut self, prove: bool) -> &mut Self {
@@ -126,13 +134,15 @@ impl SceneBuilder {
         let ids: Vec<GeometryId> = models.iter().map(|m| m.id).collect();
         let padding = |id| self.padding.get(&id).copied().unwrap_or(0.0);
         let matrix = by_rules(&self.robots, &self.objects, &ids, &padding);
-        let Self { robots, objects, edits, prove_out_of_reach: prove, .. } = self;
+        let Self { robots, objects, edits, rules, prove_out_of_reach: prove, .. } = self;
         let model_matrix = matrix.clone();
         let mut scene = Scene { robots, objects, models, link_model, first_object, names, matrix, model_matrix };
         if prove {
             scene.model_matrix = prove_out_of_reach(&scene, scene.matrix.clone());
         }
-        let mut matrix = scene.model_matrix.clone();
+        scene.matrix = scene.model_matrix.clone();
+        rules.edit_scene(&mut scene)?;
+        let mut matrix = scene.matrix.clone();
         for (a, b, edit) in edits {
             matrix.edit(&scene, a, b, edit)?;
         }

@@ -159,7 +159,7 @@ pub enum MatrixError {
     },
     /// The matrix has no such pair.
     #[error(
-        "{a} and {b} are no pair of the matrix: it has pairs of links with collision shapes, and of such links and objects"
+        "{a} and {b} are no pair of the matrix: it has pairs of links with collision shapes, of such links and objects, and of two objects"
     )]
     NoSuchPair {
         /// One side.

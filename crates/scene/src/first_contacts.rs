@@ -3,14 +3,14 @@
 mod carried_objects;
 mod held_object;
 
-use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::motion_bound::motion_bound;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::ccd::RigidMotion;
 use elbowroom_proximity::{Shape, collides, penetration, separation_within};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot, RobotId, collision_pairs};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-use crate::Object;
+use crate::{Object, PairRules};
 use held_object::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
@@ -36,6 +36,10 @@ pub struct FirstContacts<'a> {
     pairs: Vec<TrackedPair>,
     /// Per object, how a robot carries it.
     held: Vec<Option<HeldObject>>,
+    /// Links that are not there, such as tools in their stands.
+    absent: Vec<(RobotId, LinkId)>,
+    /// Which pairs may touch.
+    rules: PairRules,
 }
 
 /// A pair that touches for the first time.
@@ -115,7 +119,40 @@ impl<'a> FirstContacts<'a> {
         let pairs = list.into_iter().map(|(a, b)| TrackedPair::new(&robots, &held, a, b)).collect();
         let object_boxes = objects.iter().map(|o| o.shape.aabb(&Pose::IDENTITY)).collect();
         let placed = objects.iter().map(|o| (o.in_world, o.shape.aabb(&o.in_world))).collect();
-        Self { robots, objects, boxes, object_boxes, placed, last: Vec::new(), pairs, held }
+        Self {
+            robots,
+            objects,
+            boxes,
+            object_boxes,
+            placed,
+            last: Vec::new(),
+            pairs,
+            held,
+            absent: Vec::new(),
+            rules: PairRules::default(),
+        }
+    }
+
+    /// Leaves out the pairs that the rules skip, those of carried objects too.
+    #[must_use]
+    pub fn skipping(mut self, rules: PairRules) -> Self {
+        self.rules = rules;
+        self.pairs.retain(|p| self.rules.skipped(p.a, p.b).is_none());
+        self
+    }
+
+    /// Whether a link is there, from the last [`check`](Self::check) on; at first all are. What touches a link when it comes does
+    /// not begin to touch: such a contact counts once it has separated, or is 1 mm deeper.
+    pub fn set_present(&mut self, robot: RobotId, link: LinkId, present: bool, states: &[&ChainState]) {
+        self.absent.retain(|absent| *absent != (robot, link));
+        if !present {
+            self.absent.push((robot, link));
+            return;
+        }
+        let id = GeometryId::Link { robot, link };
+        let Self { robots, objects, boxes, placed, pairs, .. } = self;
+        let now = PlacedGeometry { robots, objects, boxes, placed, states };
+        pairs.iter_mut().filter(|p| p.a == id || p.b == id).for_each(|pair| pair.rest_where_in_contact(&now));
     }
 
     /// Declares which objects move by themselves: stationary links can meet those too.
@@ -124,8 +161,10 @@ impl<'a> FirstContacts<'a> {
         for &o in objects {
             for (r, (robot, _)) in self.robots.iter().enumerate() {
                 for link in robot.links_with_colliders().filter(|l| !robot.chain.is_movable(*l)) {
-                    let link = GeometryId::Link { robot: RobotId(r), link };
-                    self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, GeometryId::Object(o)));
+                    let (link, object) = (GeometryId::Link { robot: RobotId(r), link }, GeometryId::Object(o));
+                    if self.rules.skipped(link, object).is_none() {
+                        self.pairs.push(TrackedPair::new(&self.robots, &self.held, link, object));
+                    }
                 }
             }
             let radius = self.object_boxes.get(o.0).map_or(0.0, |b| b.max_distance(Vec3::ZERO));
@@ -168,10 +207,12 @@ impl<'a> FirstContacts<'a> {
             self.placed[s.object.0] = (pose, self.object_boxes[s.object.0].transformed(&pose));
         }
         self.place_held(states);
-        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held } = self;
+        let Self { robots, objects, boxes, object_boxes, placed, last, pairs, held, absent, .. } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
         let interval = Interval { now: &now, object_boxes, last, moved_objects, held };
-        for pair in pairs.iter_mut().filter(|p| !p.touched) {
+        let is_absent =
+            |id: GeometryId| absent.iter().any(|(robot, link)| id == GeometryId::Link { robot: *robot, link: *link });
+        for pair in pairs.iter_mut().filter(|p| !p.touched && !is_absent(p.a) && !is_absent(p.b)) {
             let object = pair
                 .moving_object
                 .and_then(|(o, radius)| Some((moved_objects.iter().find(|s| s.object == o)?, radius)));
@@ -240,6 +281,14 @@ impl TrackedPair {
         let moving_object = None;
         let (touched, resting, allowed_depth) = (false, false, None);
         Self { a, b, joints, moving_object, travel, clear, touched, joined, resting, allowed_depth }
+    }
+
+    /// A pair that is in contact from now on does not begin to touch until it has separated.
+    fn rest_where_in_contact(&mut self, now: &PlacedGeometry<'_, '_>) {
+        let gap = now.gap(self.a, self.b);
+        self.resting = gap.is_none();
+        self.allowed_depth = self.resting.then(|| now.depth(self.a, self.b) + SET_DOWN_DEPTH);
+        self.measured(now.states, gap);
     }
 
     /// True where a resting pair is deeper in contact than is permitted.

@@ -91,7 +91,8 @@ impl MergedRobots {
     /// The matrix of the merged scene, with what differs from that of the scene edited by hand.
     fn matrix(&self, scene: &Scene, merged: &Scene) -> Result<AllowedCollisionMatrix, MatrixError> {
         let mut matrix = merged.allowed_collision_matrix().clone();
-        for entry in scene.allowed_collision_matrix().entries() {
+        let before = scene.allowed_collision_matrix();
+        for entry in before.entries().iter().chain(before.object_entries()) {
             let (a, b) = (self.geometry(entry.a), self.geometry(entry.b));
             let by_rules = matrix.get(a, b).cloned();
             // What is out of reach collides with nothing, but has a distance.

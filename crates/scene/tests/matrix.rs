@@ -125,7 +125,12 @@ fn text_round_trips_and_errors_are_explained() {
         b.padding(link(0, 3), 0.01)
             .edit(link(0, 2), GeometryId::Object(ObjectId(1)), PairEdit::Skip("a \"guard\" is\nbetween".into()))
             .edit(link(0, 2), link(1, 3), PairEdit::Margin(0.03))
-            .edit(link(1, 3), link(0, 3), PairEdit::Weight(99.5));
+            .edit(link(1, 3), link(0, 3), PairEdit::Weight(99.5))
+            .edit(
+                GeometryId::Object(ObjectId(1)),
+                GeometryId::Object(ObjectId(0)),
+                PairEdit::Skip("it stands there".into()),
+            );
     });
     let mut matrix = scene.allowed_collision_matrix().sampled(&scene, 200);
     let text = matrix.to_text(&scene);

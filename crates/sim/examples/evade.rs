@@ -30,10 +30,9 @@ const STATIONARY_SHARE: f64 = 1e-4;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let runs: usize = arguments.next().map_or(Ok(100), |n| n.parse())?;
-    let file = arguments.next().map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pallet/cell.toml")),
-        PathBuf::from,
-    );
+    let file = arguments
+        .next()
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/evade.toml")), PathBuf::from);
     let cell = Cell::load(file)?;
     let seen =
         cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();

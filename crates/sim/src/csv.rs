@@ -4,8 +4,12 @@ use std::io::{self, Write};
 
 use crate::recording::Recording;
 
-/// Writes `t_s,robot,q1..qn,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m`: one row per robot and
-/// tick, ordered by time, then robot.
+/// Columns of what governs.
+const GOVERNING: &str = "part,object,point_x_m,point_y_m,point_z_m";
+
+/// Writes `t_s,robot,q1..qn,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,part,object,point_x_m,
+/// point_y_m,point_z_m`: one row per robot and tick, ordered by time, then robot. `part` is the link, tool or load
+/// closest to the governing region, the point is its closest one; `object` is what avoidance evades.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -15,7 +19,7 @@ pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()>
     for j in 1..=joints {
         write!(out, "q{j},")?;
     }
-    writeln!(out, "tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m")?;
+    writeln!(out, "tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,{GOVERNING}")?;
     let ticks = recording.robots.iter().map(|r| r.samples.len()).max().unwrap_or(0);
     for tick in 0..ticks {
         for robot in &recording.robots {
@@ -29,9 +33,15 @@ pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()>
             }
             write!(out, "{},{},{},{},{},", s.tcp.x, s.tcp.y, s.tcp.z, s.tcp_speed, s.speed_override)?;
             let region = s.region.and_then(|r| recording.regions.get(r.0)).map_or("", |r| &r.name);
-            match s.distance_m {
-                Some(d) => writeln!(out, "{region},{d}")?,
-                None => writeln!(out, "{region},")?,
+            write!(out, "{region},")?;
+            if let Some(d) = s.distance_m {
+                write!(out, "{d}")?;
+            }
+            let object = robot.governing_obstacle(tick).unwrap_or("");
+            write!(out, ",{},{object},", robot.governing_part(s).unwrap_or(""))?;
+            match s.governing {
+                Some(g) => writeln!(out, "{},{},{}", g.point.x, g.point.y, g.point.z)?,
+                None => writeln!(out, ",,")?,
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The hand of a robot: its flange and tool, as far as they grip.
 
-use elbowroom_cell::{Cell, CellRobot, ProgramBody, StepAction};
+use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_kinematics::{ChainState, JointId, LinkId};
 use elbowroom_proximity::{Shape, Sphere, collides, separation};
 use elbowroom_robot::{ObjectId, RobotId};
@@ -59,18 +59,19 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// How a robot grips a part that is at `part_in_world`.
+/// How a robot, with its present tool, grips a part that is at `part_in_world`.
 ///
 /// # Errors
 /// What is wrong, with the distance: the part is too far from the hand.
 pub(crate) fn grip(
     cell: &Cell,
     id: RobotId,
+    robot: &CellRobot,
     object: ObjectId,
     part_in_world: &Pose,
     state: &ChainState,
 ) -> Result<Attachment, String> {
-    let (hand, part) = (Hand::of(&cell.robots[id.0]), &cell.objects[object.0]);
+    let (hand, part) = (Hand::of(robot), &cell.objects[object.0]);
     let distance_m = hand.distance_m(state, &part.shape, part_in_world);
     if distance_m > MAX_GRIP_DISTANCE_M {
         let [distance, limit] =
@@ -81,11 +82,4 @@ pub(crate) fn grip(
         ));
     }
     Ok(hand.attachment(id, state, &part.shape, part_in_world))
-}
-
-/// True where a step of the robot's program grips the object.
-pub(crate) fn program_grips(cell: &Cell, robot: RobotId, object: ObjectId) -> bool {
-    let program = cell.programs.get(robot.0).and_then(Option::as_ref);
-    let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return false };
-    steps.iter().any(|s| matches!(s.action, StepAction::Grip(o) if o == object))
 }

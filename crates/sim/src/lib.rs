@@ -32,15 +32,17 @@
 pub mod check;
 pub mod csv;
 mod hand;
+mod held_object;
 pub mod motion;
 mod recording;
 pub mod run;
 mod summary;
 
+pub use held_object::held_object;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, Hold, HoldReason, ObjectTrack, Outcome, PathReplan,
-    PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack,
-    RunEnd, RunEvent, Sample, SensorTrack, Span, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, Hold, HoldReason, ObjectTrack,
+    Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack,
+    ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

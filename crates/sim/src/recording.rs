@@ -4,7 +4,8 @@ use elbowroom_analysis::watch::WatchRecord;
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_cell::CellRegionId;
-use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionKind};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, Part, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::{Pose, Vec3};
@@ -65,8 +66,14 @@ pub struct RobotTrack {
     pub flange: String,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
+    /// Names of the guarded volumes: links, `tool`, `load`, `tcp`. [`GoverningPoint::part`] is an index in this list.
+    pub parts: Vec<String>,
+    /// The links of tools that are not mounted, each list from its time (s) on; empty for a robot without such tools.
+    pub absent_links: Vec<(f64, Vec<LinkId>)>,
     /// One per tick, first to last of the run.
     pub samples: Vec<Sample>,
+    /// When the monitor stopped it although its program was not complete, in order of time.
+    pub stops: Vec<Stop>,
     /// True where the program was completed.
     pub finished: bool,
     /// Time (s) in which the robot was stopped although its program was not.
@@ -141,6 +148,23 @@ pub struct SensorTrack {
     pub processing_ns: TickTimes,
 }
 
+/// A time during which the monitor stopped a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// Start, s.
+    pub from_s: f64,
+    /// When it moved on, or the end of the run, s.
+    pub to_s: f64,
+    /// The region that governed at the start; `None` for a stop by invalid input.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to that region.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+    /// Its distance to the region, m.
+    pub distance_m: Option<f64>,
+}
+
 /// How a robot's run ended.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RobotEnding {
@@ -148,14 +172,41 @@ pub struct RobotEnding {
     pub outcome: Outcome,
     /// Since when (s) it is stopped at its final configuration; `None` for one that finished or was still moving.
     pub stopped_at_s: Option<f64>,
-    /// The region that stopped it, or what it collided with first: an object, or `robot/link`.
+    /// The region or obstacle that stopped it, or what it collided with first: an object, or `robot/link`.
     pub by: Option<String>,
     /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
+    /// What that part is.
+    pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point: Option<Vec3>,
     /// What would let a stopped robot continue, in words; `None` where nothing is known to.
     pub release: Option<String>,
+}
+
+/// What a part of a robot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PartKind {
+    /// The tool centre point.
+    Tcp,
+    /// The tool.
+    Tool,
+    /// The load, or an object that it has gripped.
+    Load,
+    /// A link.
+    Link,
+}
+
+impl From<Part> for PartKind {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Tcp | Part::TcpOutside => Self::Tcp,
+            Part::Tool => Self::Tool,
+            Part::Load => Self::Load,
+            Part::Arm => Self::Link,
+        }
+    }
 }
 
 /// Outcome of a robot's run.
@@ -204,6 +255,8 @@ pub struct Deadlock {
 pub struct AvoidanceTrack {
     /// One per tick, as the samples are.
     pub samples: Vec<AvoidanceSample>,
+    /// Names of what may be in the way: objects, then `robot/link`.
+    pub obstacles: Vec<String>,
     /// Wall-clock time of its steps: sensing, correction, check, command.
     pub step_ns: TickTimes,
     /// Replanning attempts, in order of time.
@@ -234,6 +287,8 @@ pub struct AvoidanceSample {
     pub path_deviation_s: f64,
     /// How fast the path may advance, 0..1.
     pub rate: f64,
+    /// The dynamic obstacle that requested the largest correction, an index in [`AvoidanceTrack::obstacles`].
+    pub governed_by: Option<usize>,
 }
 
 /// State of a robot at one tick.
@@ -255,8 +310,19 @@ pub struct Sample {
     pub region: Option<CellRegionId>,
     /// Distance (m) from the governing point to its region.
     pub distance_m: Option<f64>,
+    /// The point of the robot closest to the governing region.
+    pub governing: Option<GoverningPoint>,
     /// Why the override has this value; its region is an index in [`Recording::regions`].
     pub reason: OverrideReason,
+}
+
+/// The point of a robot that is closest to the region which governs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoverningPoint {
+    /// The guarded volume, an index in [`RobotTrack::parts`].
+    pub part: usize,
+    /// In the world, m.
+    pub point: Vec3,
 }
 
 /// Poses of one object that moves or is gripped.
@@ -290,6 +356,8 @@ pub struct RegionTrack {
     pub life: Life,
     /// Which parts of the robots it guards.
     pub guards: Guards,
+    /// The robots that it applies to.
+    pub robots: Vec<RobotId>,
     /// Thickness of the warning zone, m.
     pub warning_m: f64,
     /// Its shape.
@@ -366,6 +434,8 @@ pub enum RunEvent {
     Wait,
     /// A robot brakes or stands: a sensor, which is named in place of the region, has sent nothing for too long.
     Stale,
+    /// A robot made a tool active, which is named in place of the region.
+    Tool,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
 }
@@ -384,6 +454,7 @@ impl RunEvent {
             Self::Replan => "replan",
             Self::Wait => "wait",
             Self::Stale => "stale",
+            Self::Tool => "tool",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",
@@ -427,6 +498,19 @@ impl From<RegionKind> for RecordedRegionKind {
             RegionKind::Monitored { .. } => Self::Monitored,
             RegionKind::Exchange { .. } => Self::Exchange,
         }
+    }
+}
+
+impl RobotTrack {
+    /// The part that governs in a sample: a link, `tool`, `load` or `tcp`.
+    pub fn governing_part(&self, sample: &Sample) -> Option<&str> {
+        self.parts.get(sample.governing?.part).map(String::as_str)
+    }
+
+    /// The obstacle that the robot evades, or stands before, at the tick with this index.
+    pub fn governing_obstacle(&self, tick: usize) -> Option<&str> {
+        let track = self.avoidance.as_ref()?;
+        track.obstacles.get(track.samples.get(tick)?.governed_by?).map(String::as_str)
     }
 }
 

@@ -5,8 +5,8 @@ use elbowroom_avoidance::AvoiderState;
 use serde::Serialize;
 
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PerceptionTrack, RecordedRegionKind,
-    Recording, RunEnd, SensorTrack, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    RecordedRegionKind, Recording, RunEnd, SensorTrack, Stop, TickTimes,
 };
 
 /// Figures of a run, in SI units.
@@ -90,16 +90,20 @@ pub struct RobotSummary {
     pub outcome: Outcome,
     /// Since when it is stopped at its final configuration, s; null for one that finished or was still moving.
     pub stopped_at_s: Option<f64>,
-    /// The region that stopped it, or what it collided with first; null where there is none.
+    /// The region or obstacle that stopped it, or what it collided with first; null where there is none.
     pub by: Option<String>,
     /// The link, tool or load concerned.
     pub part: Option<String>,
+    /// What that part is: `tcp`, `tool`, `load` or `link`.
+    pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point_m: Option<[f64; 3]>,
     /// What would let it continue, in words; null where nothing is known to.
     pub release: Option<String>,
     /// Time stopped by the monitor, s.
     pub stopped_s: f64,
+    /// Each time that the monitor stopped it, in order of time.
+    pub stops: Vec<StopSummary>,
     /// Smallest override, 0..1.
     pub min_override: f64,
     /// First contact of each pair.
@@ -228,6 +232,31 @@ impl From<&SensorTrack> for SensorSummary {
     }
 }
 
+/// A time during which the monitor stopped a robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StopSummary {
+    /// Start, s.
+    pub from_s: f64,
+    /// When it moved on, or the end of the run, s.
+    pub to_s: f64,
+    /// The region that governed; null for a stop by invalid input.
+    pub by: Option<String>,
+    /// The link, tool or load closest to it.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point_m: Option<[f64; 3]>,
+    /// Its distance to the region, m.
+    pub distance_m: Option<f64>,
+}
+
+impl From<&Stop> for StopSummary {
+    fn from(s: &Stop) -> Self {
+        let point_m = s.point.map(|p| [p.x, p.y, p.z]);
+        let (by, part) = (s.by.clone(), s.part.clone());
+        Self { from_s: s.from_s, to_s: s.to_s, by, part, point_m, distance_m: s.distance_m }
+    }
+}
+
 /// Evasion of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AvoidanceSummary {
@@ -311,9 +340,11 @@ impl From<&Recording> for RunSummary {
             stopped_at_s: t.ending.stopped_at_s,
             by: t.ending.by.clone(),
             part: t.ending.part.clone(),
+            part_kind: t.ending.part_kind,
             point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
             release: t.ending.release.clone(),
             stopped_s: t.stopped_s,
+            stops: t.stops.iter().map(StopSummary::from).collect(),
             min_override: t.min_override,
             collisions: t
                 .collisions

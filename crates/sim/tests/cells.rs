@@ -194,10 +194,12 @@ fn csv_files_have_a_row_per_robot_and_tick() {
     csv::write_trace(&outcome.recording, &mut trace).unwrap();
     let trace = String::from_utf8(trace).unwrap();
     let mut lines = trace.lines();
-    assert_eq!(lines.next(), Some("t_s,robot,q1,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m"));
+    let columns = "t_s,robot,q1,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,part,object,point_x_m,\
+                   point_y_m,point_z_m";
+    assert_eq!(lines.next(), Some(columns));
     let ticks = outcome.recording.robots[0].samples.len();
     assert_eq!(lines.clone().count(), 2 * ticks);
-    assert!(lines.all(|l| l.split(',').count() == 10));
+    assert!(lines.all(|l| l.split(',').count() == 15));
     let mut events = Vec::new();
     csv::write_events(&outcome.recording, &mut events).unwrap();
     let events = String::from_utf8(events).unwrap();

@@ -12,7 +12,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
-const LAYERS: [&str; 25] = [
+const LAYERS: [&str; 26] = [
     "testkit",
     "spatial",
     "proximity",
@@ -22,6 +22,7 @@ const LAYERS: [&str; 25] = [
     "formats",
     "validity",
     "monitor",
+    "interlock",
     "cspace",
     "planner",
     "avoidance",

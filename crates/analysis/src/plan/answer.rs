@@ -117,15 +117,20 @@ impl TimedPath {
     ///
     /// # Errors
     /// Errors of the writer.
-    pub fn write_csv(&self, joints: &[String], mut out: impl Write) -> io::Result<()> {
-        writeln!(out, "t_s,{}", joints.join(","))?;
-        for (t, q) in &self.rows {
-            write!(out, "{t}")?;
-            for v in q {
-                write!(out, ",{v}")?;
-            }
-            writeln!(out)?;
-        }
-        out.flush()
+    pub fn write_csv(&self, joints: &[String], out: impl Write) -> io::Result<()> {
+        write_rows(joints, &self.rows, out)
     }
+}
+
+/// Writes `t_s` and the columns.
+pub(super) fn write_rows(columns: &[String], rows: &[(f64, Vec<f64>)], mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "t_s,{}", columns.join(","))?;
+    for (t, q) in rows {
+        write!(out, "{t}")?;
+        for v in q {
+            write!(out, ",{v}")?;
+        }
+        writeln!(out)?;
+    }
+    out.flush()
 }

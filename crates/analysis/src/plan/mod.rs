@@ -5,6 +5,7 @@
 
 mod answer;
 pub(crate) mod request_validation;
+mod several;
 
 use std::time::Instant;
 
@@ -24,6 +25,7 @@ use crate::cover_cache::CoverCache;
 
 pub use answer::{PathAnswer, TimedPath};
 pub use request_validation::select_robot;
+pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 
 /// Where a path ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,7 +120,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     limits.velocity.iter_mut().for_each(|v| *v *= request.speed);
     let from = request.from.as_ref().unwrap_or(&robot.start);
     request_validation::check_joint_values(cell, robot, "start", from)?;
-    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
     let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
@@ -127,7 +129,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &CoverCache::of_user()).ok();
     let obstacles = model.as_ref().map(|model| CoverObstacles::new(model, &scene, &state, clearance_m));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
-    region_constraint::at_start(cell, id, from, clearance_m, |constraint| {
+    region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
         let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
         if let Some(constraint) = constraint {

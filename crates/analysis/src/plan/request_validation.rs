@@ -110,7 +110,9 @@ pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError)
                         robot.name
                     )
                 }
-                _ => apart,
+                _ => format!(
+                    "{apart}; or, if they may touch: {{ a = \"{a}\", b = \"{b}\", reason = \"…\" }} in the cell's file of `pairs`"
+                ),
             };
             error(format!("{}: `{a}` and `{b}` {near}", of(end))).hint(hint)
         }

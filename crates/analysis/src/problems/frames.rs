@@ -1,7 +1,7 @@
 //! Frames of objects: links at the start, fixed frames, the world.
 
 use elbowroom_cell::suggest;
-use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_formats::problem_set::{FixedFrame, PlanningProblem};
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 
@@ -25,19 +25,13 @@ impl<'a> Frames<'a> {
 
     /// The pose of a frame in the root link.
     pub(super) fn in_root(&self, name: &str) -> Result<Pose> {
-        let (mut name, mut pose) = (name, Pose::IDENTITY);
-        for _ in 0..=self.problem.frames.len() {
-            if let Some(link) = self.chain.link(name) {
-                return Ok(self.state.link_in_root(link) * pose);
-            }
-            let fixed = self.problem.frames.iter().find(|f| f.name == name && f.parent != name);
-            match fixed {
-                Some(frame) => (name, pose) = (&frame.parent, frame.in_parent * pose),
-                None if name.is_empty() || name == "world" => {
-                    return Ok(self.problem.base_in_world.inverse() * pose);
-                }
-                None => break,
-            }
+        let frames = &self.problem.frames;
+        let (name, pose) = FixedFrame::ancestor(frames, name, |name| self.chain.link(name).is_some());
+        if let Some(link) = self.chain.link(name) {
+            return Ok(self.state.link_in_root(link) * pose);
+        }
+        if name.is_empty() || name == "world" {
+            return Ok(self.problem.base_in_world.inverse() * pose);
         }
         let known = self.problem.frames.iter().map(|f| f.name.as_str());
         let known = known.chain(["world"]).chain(self.chain.links().iter().map(String::as_str));

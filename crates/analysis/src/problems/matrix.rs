@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use elbowroom_formats::problem_set::ProblemMatrix;
+use elbowroom_formats::problem_set::AllowedCollisions;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{AllowedCollisionMatrix, PairEdit, Scene};
 
@@ -12,7 +12,7 @@ const REASON: &str = "allowed collision matrix of the problem";
 /// Skips the pairs that may touch. Names of neither links nor objects have no effect.
 pub(super) fn skip_allowed(
     scene: &Scene,
-    matrix: &ProblemMatrix,
+    matrix: &AllowedCollisions,
     objects: &HashMap<&str, Vec<ObjectId>>,
 ) -> AllowedCollisionMatrix {
     let mut edited = scene.allowed_collision_matrix().clone();

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use elbowroom_cell::suggest;
-use elbowroom_formats::problem_set::{PlanningProblem, ProblemObject};
+use elbowroom_formats::problem_set::PlanningProblem;
 use elbowroom_kinematics::LinkId;
 use elbowroom_planner::RrtConnect;
 use elbowroom_robot::{ObjectId, RobotId};
@@ -96,11 +96,10 @@ fn scene_objects<'p>(problem: &'p PlanningProblem, frames: &Frames<'_>) -> Resul
     let mut objects = Vec::new();
     let mut ids: HashMap<&str, Vec<ObjectId>> = HashMap::new();
     let all = problem.objects.iter().chain(problem.attached.iter().map(|a| &a.object));
-    for ProblemObject { id, frame, solids } in all {
-        let in_root = frames.in_root(frame)?;
-        for (i, (shape, in_frame)) in solids.iter().enumerate() {
-            let name = if solids.len() == 1 { id.clone() } else { format!("{id}:{}", i + 1) };
-            ids.entry(id).or_default().push(ObjectId(objects.len()));
+    for object in all {
+        let in_root = frames.in_root(&object.frame)?;
+        for (name, shape, in_frame) in object.named_solids() {
+            ids.entry(&object.id).or_default().push(ObjectId(objects.len()));
             objects.push(Object { name, shape: shape.clone(), in_world: in_root * *in_frame });
         }
     }

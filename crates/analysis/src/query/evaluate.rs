@@ -1,17 +1,18 @@
 //! Parallel evaluation of queries, with ordered results.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use elbowroom_formats::FormatError;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{
-    Checker, CheckerOptions, CheckerStats, Level, PairContact, PairDistance, Scene, SceneError, SceneState, Selection,
+    Checker, CheckerOptions, CheckerStats, ContactSurfaces, Detail, Level, PairContact, PairDistance, Scene,
+    SceneError, SceneState, Selection,
 };
 use elbowroom_spatial::Vec3;
 
-use super::{QueryKind, QueryPairs, QueryRow, QueryStates};
+use super::{ContactRow, QueryKind, QueryPairs, QueryRow, QueryStates};
 
 /// States per checker: its learned weights must not depend on the number of threads.
 pub const BLOCK: usize = 256;
@@ -50,7 +51,8 @@ pub fn evaluate(
 }
 
 /// Evaluates a query for every state. `take` is called with the rows, in order and block by block; it returns whether
-/// to continue. Returns the counters of the work for the rows taken.
+/// to continue. Returns the counters of the work for the rows taken. [`QueryKind::Contacts`] is answered as
+/// [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
 ///
 /// # Errors
 /// [`FormatError`] where a state does not fit the scene; states that were read for its model do.
@@ -60,13 +62,38 @@ pub fn evaluate_query(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
 ) -> Result<CheckerStats, FormatError> {
+    evaluate_blocks(states, &|block| rows_of_block(scene, states, query, block), take)
+}
+
+/// The triangles that touch in every state, of all pairs of the query that are in contact; as [`evaluate_query`].
+///
+/// # Errors
+/// As [`evaluate_query`].
+pub fn evaluate_contacts(
+    scene: &Scene,
+    states: &QueryStates,
+    query: &Query<'_>,
+    take: &mut dyn FnMut(&[ContactRow]) -> bool,
+) -> Result<CheckerStats, FormatError> {
+    evaluate_blocks(states, &|block| contacts_of_block(scene, states, query, block), take)
+}
+
+/// The rows of a block, and the counters of the work.
+type BlockRows<R> = Result<(Vec<R>, CheckerStats), SceneError>;
+
+/// Evaluates blocks on all cores; `take` gets them in order.
+fn evaluate_blocks<R: Send>(
+    states: &QueryStates,
+    rows_of_block: &(dyn Fn(usize) -> BlockRows<R> + Sync),
+    take: &mut dyn FnMut(&[R]) -> bool,
+) -> Result<CheckerStats, FormatError> {
     let blocks = states.len().div_ceil(BLOCK);
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
     let wrong = |e: SceneError| FormatError::new(&states.file, None, e.to_string());
     let mut done = CheckerStats::default();
     if cores <= 1 {
         for block in 0..blocks {
-            let (rows, counts) = rows_of_block(scene, states, query, block).map_err(wrong)?;
+            let (rows, counts) = rows_of_block(block).map_err(wrong)?;
             done += counts;
             if !take(&rows) {
                 break;
@@ -83,7 +110,7 @@ pub fn evaluate_query(
             threads.spawn(move || {
                 while !stop.load(Ordering::Relaxed) {
                     let block = next.fetch_add(1, Ordering::Relaxed);
-                    if block >= blocks || send.send((block, rows_of_block(scene, states, query, block))).is_err() {
+                    if block >= blocks || send.send((block, rows_of_block(block))).is_err() {
                         return;
                     }
                 }
@@ -116,13 +143,29 @@ pub fn evaluate_query(
     })
 }
 
+/// The touching triangles of a block.
+fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<ContactRow> {
+    let mut checker = Checker::new(scene, CheckerOptions { level: Level::Auto, ..CheckerOptions::default() });
+    let mut surfaces = ContactSurfaces::new(scene);
+    let mut state = query.start.clone();
+    let mut rows = Vec::new();
+    for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
+        for (robot, q) in states.of(index) {
+            state.set_q(scene, RobotId(robot), q)?;
+        }
+        let mut pairs = BTreeSet::new();
+        for &[a, b] in query.pairs.sides() {
+            checker.between(a, b).contacts(&state, |pair| _ = pairs.insert((pair.a, pair.b)));
+        }
+        for pair in pairs {
+            surfaces.contacts(&state, pair.0, pair.1, |contact| rows.push(ContactRow { index, pair, contact }));
+        }
+    }
+    Ok((rows, checker.stats()))
+}
+
 /// The rows of a block. Likely pairs are tested first; the weights are updated from state to state.
-fn rows_of_block(
-    scene: &Scene,
-    states: &QueryStates,
-    query: &Query<'_>,
-    block: usize,
-) -> Result<(Vec<QueryRow>, CheckerStats), SceneError> {
+fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<QueryRow> {
     let options = CheckerOptions { level: query.level, ..CheckerOptions::default() };
     let mut pairs = CheckedPairs { checker: Checker::new(scene, options), sides: query.pairs.sides() };
     let mut state = query.start.clone();
@@ -171,6 +214,7 @@ impl CheckedPairs<'_, '_> {
                     level: contact.level,
                 }
             }
+            QueryKind::Point | QueryKind::Contacts => self.collision_point(state),
             QueryKind::Distance => self.distance(state).unwrap_or_else(|| self.nothing()),
             QueryKind::Tolerance(t) => {
                 if self.within(state, t).is_none() {
@@ -180,6 +224,19 @@ impl CheckedPairs<'_, '_> {
                 let row = self.distance(state).unwrap_or(nothing);
                 QueryRow { collides: true, ..row }
             }
+        }
+    }
+
+    /// The collision point of the first sides that have one: `a` is the link that collides.
+    fn collision_point(&mut self, state: &SceneState) -> QueryRow {
+        let mut of_sides = |&[a, b]: &[Selection; 2]| self.checker.between(a, b).collision_point(state, Detail::Exact);
+        let Some(point) = self.sides.iter().find_map(&mut of_sides) else { return self.nothing() };
+        QueryRow {
+            collides: true,
+            distance_m: Some(0.0),
+            pair: Some((point.link, point.other)),
+            witness: Some((point.on_link, point.on_other)),
+            ..self.nothing()
         }
     }
 

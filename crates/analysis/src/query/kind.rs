@@ -11,6 +11,10 @@ pub enum QueryKind {
     Distance,
     /// Whether the distance of any pair is at most this, m.
     Tolerance(f64),
+    /// The collision point: of the pair in contact that is nearest to a base.
+    Point,
+    /// All triangles that touch.
+    Contacts,
 }
 
 /// A text that is not a query kind.
@@ -19,7 +23,7 @@ pub struct UnknownQueryKind(String);
 
 impl std::fmt::Display for UnknownQueryKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}; write collision, distance, or tolerance=0.02 (metres)", self.0)
+        write!(f, "{}; write collision, distance, tolerance=0.02 (metres), point or contacts", self.0)
     }
 }
 
@@ -28,7 +32,7 @@ impl std::error::Error for UnknownQueryKind {}
 impl FromStr for QueryKind {
     type Err = UnknownQueryKind;
 
-    /// `collision`, `distance` or `tolerance=METRES`.
+    /// `collision`, `distance`, `tolerance=METRES`, `point` or `contacts`.
     ///
     /// ```
     /// use elbowroom_analysis::query::QueryKind;
@@ -39,6 +43,8 @@ impl FromStr for QueryKind {
         match word {
             "collision" => return Ok(Self::Collision),
             "distance" => return Ok(Self::Distance),
+            "point" => return Ok(Self::Point),
+            "contacts" => return Ok(Self::Contacts),
             _ => {}
         }
         let Some(number) = word.strip_prefix("tolerance") else {

@@ -37,8 +37,8 @@ mod row;
 mod states;
 
 pub use elbowroom_scene::Level;
-pub use evaluate::{BLOCK, Query, evaluate, evaluate_query};
+pub use evaluate::{BLOCK, Query, evaluate, evaluate_contacts, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use pairs::{QueryPairs, QueryPairsError};
-pub use row::{QueryRecord, QueryRow};
+pub use row::{ContactRecord, ContactRow, QueryRecord, QueryRow};
 pub use states::QueryStates;

@@ -1,7 +1,6 @@
 //! The pairs that a query tests.
 
 use elbowroom_cell::{Cell, QueryModel, suggest};
-use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::Selection;
 
@@ -61,12 +60,17 @@ impl QueryPairs {
         Self { sides: vec![[Selection::All; 2]] }
     }
 
-    /// All but those within one robot.
+    /// All but those within one robot; what a robot holds is a part of it.
     pub fn without_self(model: &QueryModel) -> Self {
         let robots = model.robots.len();
         let of_robots =
             (0..robots).flat_map(|a| (a + 1..robots).map(move |b| [a, b].map(|r| Selection::Robot(RobotId(r)))));
-        Self { sides: of_robots.chain([[Selection::Robots, Selection::Objects]]).collect() }
+        if model.carried.is_empty() {
+            return Self { sides: of_robots.chain([[Selection::Robots, Selection::Objects]]).collect() };
+        }
+        let is_free = |o: &ObjectId| model.carried.iter().all(|(carried, _)| carried != o);
+        let free = (0..model.objects.len()).map(ObjectId).filter(is_free);
+        Self { sides: of_robots.chain(free.map(|o| [Selection::Robots, Selection::Object(o)])).collect() }
     }
 
     /// The pairs of a text: `A,B;C,D`. Each side is a robot (with tool and load), a link (`robot/link`; for a single robot its
@@ -116,49 +120,18 @@ impl Default for QueryPairs {
 }
 
 fn side(name: &str, model: &mut QueryModel, cell: Option<&Cell>) -> Result<Selection, QueryPairsError> {
-    if let Some(known) = robot_or_link(name, model).or_else(|| object(name, model)) {
+    if let Some(known) = model.selection(name) {
         return Ok(known);
     }
     if cell.is_some_and(|cell| model.add_region(cell, name)) {
         return Ok(Selection::Object(ObjectId(model.objects.len() - 1)));
     }
-    let known = names(model, cell);
+    let regions = cell.into_iter().flat_map(|cell| cell.regions.iter().map(|r| r.region.name.clone()));
+    // A region that was named before is an object of the model by now.
+    let regions = regions.filter(|name| model.selection(name).is_none());
+    let known: Vec<String> = regions.chain(model.names()).collect();
     let hint = suggest::hint(name, known.iter().map(String::as_str));
     Err(QueryPairsError::Unknown { name: name.to_owned(), hint })
-}
-
-/// A robot of a cell, the single robot by the word `robot`, or a link.
-fn robot_or_link(name: &str, model: &QueryModel) -> Option<Selection> {
-    let link = |robot: usize, link: &str| {
-        let link: LinkId = model.robots[robot].robot.chain.link(link)?;
-        Some(Selection::Link { robot: RobotId(robot), link })
-    };
-    if model.is_single_robot {
-        return link(0, name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))));
-    }
-    if let Some((robot, of_robot)) = name.split_once('/') {
-        return link(model.robots.iter().position(|r| r.name == robot)?, of_robot);
-    }
-    model.robots.iter().position(|r| r.name == name).map(|r| Selection::Robot(RobotId(r)))
-}
-
-fn object(name: &str, model: &QueryModel) -> Option<Selection> {
-    model.objects.iter().position(|o| o.name == name).map(|o| Selection::Object(ObjectId(o)))
-}
-
-/// All names: robots, objects, regions, links.
-fn names(model: &QueryModel, cell: Option<&Cell>) -> Vec<String> {
-    let robots = model.robots.iter().map(|r| if model.is_single_robot { "robot".to_owned() } else { r.name.clone() });
-    let objects = model.objects.iter().map(|o| o.name.clone());
-    let regions = cell.into_iter().flat_map(|cell| cell.regions.iter().map(|r| r.region.name.clone()));
-    let links = model.robots.iter().flat_map(|r| {
-        let prefix = if model.is_single_robot { String::new() } else { format!("{}/", r.name) };
-        r.robot.chain.links().iter().map(move |link| format!("{prefix}{link}"))
-    });
-    let mut all: Vec<String> = robots.chain(objects).chain(regions).chain(links).collect();
-    let mut seen = std::collections::HashSet::new();
-    all.retain(|name| seen.insert(name.clone()));
-    all
 }
 
 fn name_of(side: Selection, model: &QueryModel) -> String {

@@ -2,7 +2,7 @@
 
 use elbowroom_cell::QueryModel;
 use elbowroom_robot::GeometryId;
-use elbowroom_scene::Level;
+use elbowroom_scene::{Level, SurfaceContact};
 use elbowroom_spatial::Vec3;
 use serde::Serialize;
 
@@ -87,6 +87,74 @@ impl QueryRecord {
         let [bx, by, bz] = [self.bx, self.by, self.bz].map(number);
         let (distance, a, b) = (number(self.distance_m), name(&self.a), name(&self.b));
         format!("{},{},{distance},{a},{b},{ax},{ay},{az},{bx},{by},{bz},{}", self.index, self.collides, self.level)
+    }
+}
+
+/// Two triangles that touch in a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactRow {
+    /// Index of the state, from 0.
+    pub index: usize,
+    /// The pair in contact.
+    pub pair: (GeometryId, GeometryId),
+    /// Its colliders and triangles, and where they touch.
+    pub contact: SurfaceContact,
+}
+
+/// A contact in CSV and JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactRecord {
+    /// Index of the state, from 0.
+    pub index: usize,
+    /// First of the pair.
+    pub a: String,
+    /// Second of the pair.
+    pub b: String,
+    /// Index of the collider of `a`, from 0.
+    pub collider_a: usize,
+    /// Index of the collider of `b`.
+    pub collider_b: usize,
+    /// Index of the triangle of that collider, from 0; none where the colliders are in contact without touching triangles.
+    pub triangle_a: Option<u32>,
+    /// Index of the triangle of the other collider.
+    pub triangle_b: Option<u32>,
+    /// One end of the segment in which the triangles cross, world, m.
+    pub px: Option<f64>,
+    /// y of that point.
+    pub py: Option<f64>,
+    /// z of that point.
+    pub pz: Option<f64>,
+    /// The other end.
+    pub qx: Option<f64>,
+    /// y of that point.
+    pub qy: Option<f64>,
+    /// z of that point.
+    pub qz: Option<f64>,
+}
+
+impl ContactRecord {
+    /// The columns, in order.
+    pub const HEADER: &'static str = "index,a,b,collider_a,collider_b,triangle_a,triangle_b,px,py,pz,qx,qy,qz";
+
+    /// The record of a row, with names.
+    pub fn of(row: &ContactRow, model: &QueryModel) -> Self {
+        let [p, q] = row.contact.points;
+        let [px, py, pz, qx, qy, qz] = [p.x, p.y, p.z, q.x, q.y, q.z].map(|v| v.is_finite().then_some(v));
+        let [collider_a, collider_b] = row.contact.colliders;
+        let triangle = |side: usize| row.contact.triangles.map(|t| t[side]);
+        let (a, b) = (model.geometry_name(row.pair.0), model.geometry_name(row.pair.1));
+        let (triangle_a, triangle_b) = (triangle(0), triangle(1));
+        Self { index: row.index, a, b, collider_a, collider_b, triangle_a, triangle_b, px, py, pz, qx, qy, qz }
+    }
+
+    /// The CSV line, without line break; unknown values are empty.
+    pub fn csv(&self) -> String {
+        let number = |v: &Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
+        let triangle = |v: Option<u32>| v.map_or_else(String::new, |v| v.to_string());
+        let points = [&self.px, &self.py, &self.pz, &self.qx, &self.qy, &self.qz].map(number).join(",");
+        let (a, b) = (quoted(&self.a), quoted(&self.b));
+        let [x, y] = [self.triangle_a, self.triangle_b].map(triangle);
+        format!("{},{a},{b},{},{},{x},{y},{points}", self.index, self.collider_a, self.collider_b)
     }
 }
 

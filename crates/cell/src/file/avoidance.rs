@@ -33,6 +33,13 @@ pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<Avoidance
 
 fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     let units = cell.units;
+    if let Some(robot) = cell.robots.iter().find(|r| r.tools.iter().any(|t| !t.mounted)) {
+        let what = format!(
+            "`{}`: avoidance does not see tools that are changed, as those of robot \"{}\"",
+            t.name, robot.name
+        );
+        return Err(t.error(what).hint("mounted tools only, or no avoidance"));
+    }
     let mut settings = AvoiderSettings::default();
     if let Some(v) = t.get("speed") {
         settings.reactive.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;

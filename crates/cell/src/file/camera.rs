@@ -28,7 +28,7 @@ const TEMPLATE: &str = "templates = [{ name = \"crate\", size = [600, 400], heig
 pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
     t.only(&[&KEYS[..], &sensor::KEYS[..]].concat())?;
     let units = cell.units;
-    let of_vision = |e: VisionError| t.error(format!("`{}`: {e}", t.name));
+    let of_vision = |e: VisionError| refused(t, &e);
     let pose =
         units.pose(&t.need("pose", "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)")?)?;
     let camera = Camera::new(sensor::intrinsics(t)?, pose).map_err(of_vision)?;
@@ -37,6 +37,23 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
     CameraTracker::new(camera.clone().into(), settings.clone()).map_err(of_vision)?;
     let mask_margin_m = t.get("mask_margin").map_or(Ok(0.03), |v| units.not_negative_length(&v))?;
     sensor::sensor(name, t, cell, "frames", SensorKind::Camera { camera, settings, mask_margin_m })
+}
+
+/// An error of the camera at the key that is wrong, in the words of the cell file.
+fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
+    const LOOKS_DOWN: &str = "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)";
+    let key = match e {
+        VisionError::Setting { name, .. } => name.trim_end_matches("_mps").trim_end_matches("_m"),
+        VisionError::Calibration(why) if why.contains("distortion") => "distortion",
+        VisionError::Calibration(why) if why.contains("focal") => "focal_px",
+        _ => "pose",
+    };
+    let Some(v) = t.get(key) else { return t.error(format!("`{}`: {e}", t.name)).hint(LOOKS_DOWN) };
+    match e {
+        VisionError::Setting { expected, .. } => v.error("is out of its range").hint(*expected),
+        _ if key == "pose" => v.error(format!("does not show the floor: {e}")).hint(LOOKS_DOWN),
+        _ => v.error(e.to_string()).hint("the numbers of the calibration, for pictures of this `size`"),
+    }
 }
 
 fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {

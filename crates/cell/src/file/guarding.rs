@@ -6,19 +6,15 @@ use elbowroom_monitor::{Guards, Part, Region, RegionKind};
 use elbowroom_spatial::Vec3;
 
 use super::read::Table;
-use crate::{CellRegion, CellRobot};
+use crate::{Cell, CellRegionId, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 /// Refuses a region that guards nothing of a robot, and warns where it does not guard the links.
 ///
 /// A monitored region without slow-down is only warned about: its output never rises.
-pub(super) fn check(
-    t: &Table<'_>,
-    region: &CellRegion,
-    robots: &[CellRobot],
-    warnings: &mut Vec<Warning>,
-) -> Result<()> {
+pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Warning>) -> Result<()> {
+    let (robots, region) = (&cell.robots, &cell.regions[region.0]);
     if region.robots.is_empty() && !robots.is_empty() {
         let what = format!(
             "region \"{}\" concerns no robot: a robot is not guarded against a region that follows it",
@@ -33,8 +29,10 @@ pub(super) fn check(
         }
     }
     let line = t.get("guards").map_or(t.line, |v| v.line);
-    for robot in region.robots.iter().map(|r| &robots[r.0]) {
-        let Some(missing) = MissingPart::of(robot, region.region.guards) else { continue };
+    for id in &region.robots {
+        let robot = &robots[id.0];
+        let grips = !cell.gripped_objects(*id).is_empty();
+        let Some(missing) = MissingPart::of(robot, grips, region.region.guards) else { continue };
         let error =
             FormatError::new(t.file, line, missing.what(&region.region, robot)).hint(missing.hint(robot, robots.len()));
         match region.region.kind {
@@ -60,7 +58,8 @@ enum MissingPart {
 }
 
 impl MissingPart {
-    fn of(robot: &CellRobot, guards: Guards) -> Option<Self> {
+    /// `grips`: its program grips objects.
+    fn of(robot: &CellRobot, grips: bool, guards: Guards) -> Option<Self> {
         let moves = |link: LinkId| {
             let chain = &robot.robot.chain;
             chain.path(link).iter().any(|j| chain.joints()[j.0].kind.moves())
@@ -71,7 +70,8 @@ impl MissingPart {
         }
         let links =
             robot.without_payload().colliders.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
-        let carried = flange_moves && robot.payload().next().is_some();
+        let has_tool = robot.payload().next().is_some() || robot.tools.iter().any(|t| t.collider.is_some());
+        let carried = flange_moves && (grips || has_tool);
         // A point is guarded in place of a tool's solid only where the file defines a tool.
         let point_tool = || {
             let tool = robot.tcp_in_flange.translation != Vec3::ZERO;

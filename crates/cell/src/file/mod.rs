@@ -11,6 +11,7 @@ mod guarding;
 mod models;
 pub(crate) mod node;
 mod object;
+mod planning_scene;
 mod plausibility;
 mod poses;
 mod program;
@@ -19,19 +20,25 @@ mod region;
 mod renamed;
 mod robot;
 mod sensor;
+mod tools;
 mod units;
 
 use std::path::Path;
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::Laws;
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::PairRules;
 
 pub use document::CellFile;
 use read::{Table, Value};
 use robot::robot_of;
+pub use units::QUATERNION_TOLERANCE;
 
-use crate::{Cell, CellLaws, CellSensor, MapSpec, Units, configure, seal, suggest};
+use crate::{
+    Cell, CellLaws, CellRegionId, CellRobot, CellSensor, MapSpec, PairFile, QueryModel, Units, configure,
+    joint_contacts, rest_pose_contacts, seal, suggest,
+};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -44,12 +51,14 @@ const KEYS: &[&str] = &[
     "checksum",
     "robot",
     "object",
+    "scene",
     "region",
     "encoder",
     "camera",
     "cloud",
     "monitor",
     "map",
+    "pairs",
     "avoidance",
     "program",
 ];
@@ -85,6 +94,8 @@ impl CellFile {
             avoidance: Vec::new(),
             sensors: Vec::new(),
             maps: Vec::new(),
+            pair_rules: PairRules::default(),
+            joint_contacts: PairRules::default(),
             checksum: String::new(),
             seal: None,
             warnings: Vec::new(),
@@ -96,8 +107,18 @@ impl CellFile {
             cell.encoders.push(region::encoder(name, &t, units)?);
         }
         object::read(&root, &mut cell)?;
+        let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
+        pairs(&root, &mut cell)?;
+        let (rules, found) = joint_contacts::of_cell(&cell);
+        cell.joint_contacts = rules;
+        warnings.extend(found);
+        warnings.extend(contacts_at_start(&cell));
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
+        // Programs grip what regions guard.
+        for ((_, t), index) in root.named("region")?.into_iter().zip(0..) {
+            guarding::check(&t, &cell, CellRegionId(index), &mut warnings)?;
+        }
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
         cell.sensors = sensors(&root, &cell)?;
@@ -108,7 +129,7 @@ impl CellFile {
             cell.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
-        plausibility::check(&root, &cell, &mut warnings)?;
+        plausibility::check(&root, &cell, &scenes, &mut warnings)?;
         cell.warnings = warnings;
         Ok(cell)
     }
@@ -157,6 +178,25 @@ impl Cell {
     pub fn robot(&self, name: &str) -> Option<RobotId> {
         self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
+}
+
+/// The file of pairs that the cell names.
+fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    let Some(v) = root.get("pairs") else { return Ok(()) };
+    cell.pair_rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
+    Ok(())
+}
+
+/// Warnings of links that touch at the start, with no link with collision geometry between them.
+fn contacts_at_start(cell: &Cell) -> Vec<Warning> {
+    let of_robot = |(i, r): (usize, &CellRobot)| {
+        let link = |link| GeometryId::Link { robot: RobotId(i), link };
+        let rules = cell.motion_pair_rules();
+        let is_new = move |a, b| rules.skipped(link(a), link(b)).is_none();
+        let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, Some(&r.name), is_new);
+        warnings.map(|(what, hint)| Warning::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()
+    };
+    cell.robots.iter().enumerate().flat_map(of_robot).collect()
 }
 
 fn version(root: &Table<'_>) -> Result<()> {
@@ -235,9 +275,7 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     };
     let mut regions = Vec::new();
     for (name, t) in root.named("region")? {
-        let region = region::read(name, &t, cell.units, &mut known, warnings)?;
-        guarding::check(&t, &region, &cell.robots, warnings)?;
-        regions.push(region);
+        regions.push(region::read(name, &t, cell.units, &mut known, warnings)?);
     }
     cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::{self as srdf_file, GroupState};
 use elbowroom_formats::{
-    FormatError, LoadOptions, MeshData, NumberTable, Warning, mesh as mesh_file, read_file, robot as robot_file,
+    FormatError, LoadOptions, NumberTable, Warning, mesh as mesh_file, read_file, robot as robot_file,
 };
 use elbowroom_kinematics::Chain;
 use elbowroom_proximity::Shape;
@@ -98,13 +98,7 @@ pub(super) fn mesh_unit(v: &Value<'_>) -> Result<LengthUnit> {
 
 pub(super) fn mesh(v: &Value<'_>, unit: LengthUnit) -> Result<Shape> {
     let path = path(v)?;
-    let loaded = mesh_file::load(&path, Some(unit))?;
-    let mut whole = MeshData { name: String::new(), vertices: Vec::new(), triangles: Vec::new() };
-    for part in loaded.meshes {
-        let offset = whole.vertices.len() as u32;
-        whole.vertices.extend(part.vertices);
-        whole.triangles.extend(part.triangles.into_iter().map(|t| t.map(|i| i.saturating_add(offset))));
-    }
+    let whole = mesh_file::load(&path, Some(unit))?.merged();
     if whole.triangles.is_empty() {
         return Err(v.error(format!("names {}, which holds no triangles", path.display())).hint("a mesh with faces"));
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, planning_scene_hint};
 use toml::de::{DeTable, DeValue};
 
 /// A value and its line (from 1).
@@ -67,7 +67,8 @@ pub(crate) fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> 
         Err(e) => {
             let line = e.span().map(|span| lines.at(span.start));
             let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
-            Err(FormatError::new(file, line, what).hint(syntax_hint(e.message())))
+            let hint = planning_scene_hint(file).unwrap_or_else(|| syntax_hint(e.message()).to_owned());
+            Err(FormatError::new(file, line, what).hint(hint))
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `[object.NAME]`: solid objects, and their motion.
 
 use elbowroom_formats::FormatError;
+use elbowroom_proximity::{HalfSpace, Shape};
 use elbowroom_robot::ObjectId;
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
@@ -19,13 +20,14 @@ const ONE_POINT_M: f64 = 1e-9;
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("object")? {
         let units = cell.units;
-        let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, mesh)")?;
-        let words = ["box", "sphere", "cylinder", "capsule", "mesh"].map(|w| (w, w));
+        let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, plane, mesh)")?;
+        let words = ["box", "sphere", "cylinder", "capsule", "plane", "mesh"].map(|w| (w, w));
         let shape = word.word(&words)?;
         let own: &[&str] = match shape {
             "box" => &["size"],
             "sphere" => &["radius"],
             "cylinder" | "capsule" => &["radius", "height", "from", "to"],
+            "plane" => &[],
             _ => &["mesh", "mesh_unit"],
         };
         t.only(&[COMMON, own].concat())?;
@@ -34,6 +36,7 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
             "sphere" => units.sphere(&t),
             "cylinder" => units.cylinder(&t),
             "capsule" => units.capsule(&t),
+            "plane" => plane(&t, units),
             _ => units.mesh(&t, "mesh"),
         }?;
         if cell.robots.iter().any(|r| r.name == name) {
@@ -48,6 +51,14 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
         cell.moving_objects.extend(moving_object);
     }
     Ok(())
+}
+
+/// Everything below the x-y plane of its frame.
+fn plane(t: &Table<'_>, units: Units) -> Result<(Shape, Pose)> {
+    if let Some(v) = ["follow", "motion"].iter().find_map(|key| t.get(key)) {
+        return Err(v.error("moves a plane, which is unbounded").hint("shape = \"box\", as large as what moves"));
+    }
+    Ok((Shape::HalfSpace(HalfSpace), units.place(t)?))
 }
 
 /// What moves the object; `None` for a fixed one.

@@ -1,5 +1,7 @@
 //! Plausibility of sizes and positions: a length in millimetres that is read in metres is a thousand times too large.
 
+use std::ops::Range;
+
 use elbowroom_formats::Warning;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
 use elbowroom_proximity::{Shape, Sphere, separation, within};
@@ -24,14 +26,23 @@ const SAMPLED_S: f64 = 120.0;
 const SAMPLES: usize = 240;
 
 /// Warns of every region, object and tool that no robot can reach, or that is thinner than 1 mm or larger than 100 m,
-/// with the unit in which it would be plausible.
-pub(super) fn check(root: &Table<'_>, cell: &Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+/// with the unit in which it would be plausible; of the objects of a planning scene (`scenes`, per table), of the first.
+pub(super) fn check(root: &Table<'_>, cell: &Cell, scenes: &[Range<usize>], warnings: &mut Vec<Warning>) -> Result<()> {
     let plausible = PlausibilityCheck { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
     for (robot, (_, t)) in cell.robots.iter().zip(root.named("robot")?) {
         plausible.tool(&t, robot, warnings);
     }
     for (index, (_, t)) in root.named("object")?.iter().enumerate() {
         plausible.object(t, ObjectId(index), warnings);
+    }
+    for (objects, (_, t)) in scenes.iter().zip(root.named("scene")?) {
+        let before = warnings.len();
+        for index in objects.clone() {
+            plausible.object(&t, ObjectId(index), warnings);
+            if warnings.len() > before {
+                break;
+            }
+        }
     }
     for (region, (_, t)) in cell.regions.iter().zip(root.named("region")?) {
         plausible.region(&t, region, warnings);

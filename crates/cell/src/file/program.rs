@@ -3,6 +3,7 @@
 use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
 use elbowroom_monitor::Life;
+use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
@@ -39,9 +40,9 @@ pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut
 }
 
 fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
-    const KINDS: [&str; 6] = ["move", "region", "wait", "override", "grip", "release"];
+    const KINDS: [&str; 7] = ["move", "region", "wait", "override", "grip", "release", "tool"];
     const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 }, \
-                           { override = 50 }, { grip = \"part\" } or { release = \"part\" }";
+                           { override = 50 }, { grip = \"part\" }, { release = \"part\" } or { tool = \"gripper\" }";
     let t = v.table(EXAMPLE)?;
     let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
     let action = match given.as_slice() {
@@ -49,6 +50,7 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
         ["region"] => switch(&t, &cell.regions)?,
         ["grip"] => StepAction::Grip(part(&t, "grip", cell)?),
         ["release"] => StepAction::Release(part(&t, "release", cell)?),
+        ["tool"] => StepAction::Tool(tool(&t, robot)?),
         ["wait"] => {
             t.only(&["wait"])?;
             StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
@@ -58,11 +60,11 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
             StepAction::Override(t.need("override", "override = 50")?.percent()?)
         }
         [] => {
-            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release"])?;
+            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release", "tool"])?;
             return Err(v.error("is not a step").hint(EXAMPLE));
         }
         _ => {
-            let hint = "one of move, region, wait, override, grip, release per step";
+            let hint = "one of move, region, wait, override, grip, release, tool per step";
             return Err(v.error("is several steps in one").hint(hint));
         }
     };
@@ -74,9 +76,31 @@ fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
     t.only(&[key])?;
     let v = t.need(key, &format!("{key} = \"part\""))?;
     let name = v.text()?;
-    cell.objects.iter().position(|o| o.name == name).map(ObjectId).ok_or_else(|| {
+    let index = cell.objects.iter().position(|o| o.name == name).ok_or_else(|| {
         let known = cell.objects.iter().map(|o| o.name.as_str());
         v.error(format!("names the object \"{name}\", which is not in this cell")).hint(suggest::hint(name, known))
+    })?;
+    if matches!(cell.objects[index].shape, Shape::HalfSpace(_)) {
+        return Err(v
+            .error(format!("names \"{name}\", a plane, which is unbounded"))
+            .hint("an object of another shape"));
+    }
+    Ok(ObjectId(index))
+}
+
+/// The tool that a step makes active.
+fn tool(t: &Table<'_>, robot: &CellRobot) -> Result<usize> {
+    t.only(&["tool"])?;
+    let v = t.need("tool", "tool = \"gripper\"")?;
+    let name = v.text()?;
+    robot.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
+        let what = format!("names the tool \"{name}\", which robot \"{}\" does not have", robot.name);
+        let hint = if robot.tools.is_empty() {
+            format!("[robot.{}.tools.{name}] with its tcp and box", robot.name)
+        } else {
+            suggest::hint(name, robot.tools.iter().map(|tool| tool.name.as_str()))
+        };
+        v.error(what).hint(hint)
     })
 }
 
@@ -181,6 +205,11 @@ fn recording_layout(t: &Table<'_>, robot: &CellRobot) -> Result<RecordingLayout>
     let (time, period) = (t.get("time"), t.get("period_ms"));
     if let (Some(_), Some(period)) = (&time, &period) {
         return Err(period.error("contradicts `time`").hint("one of the two: time = \"COLUMN\" or period_ms = 4"));
+    }
+    if let (Some(unit), Some(_)) = (t.get("time_unit"), &period) {
+        return Err(unit
+            .error("contradicts `period_ms`, which is in milliseconds")
+            .hint("time = \"COLUMN\" with it, or leave it out"));
     }
     let time_unit_s = t.get("time_unit").map(|v| v.word(&[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])).transpose()?;
     Ok(RecordingLayout {

@@ -9,8 +9,8 @@ use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
 use super::read::{Table, Value};
-use super::{flange, models};
-use crate::{CellRobot, JointLimits, Units, rest_pose_contacts, suggest};
+use super::{flange, models, tools};
+use crate::{CellRobot, JointLimits, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -28,6 +28,7 @@ const KEYS: &[&str] = &[
     "start",
     "states",
     "tool",
+    "tools",
     "load",
     "volumes",
     "speed",
@@ -68,18 +69,19 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
-    let flange = flange::read(name, t, &robot.chain, warnings)?;
+    let mut flange = flange::read(name, t, &robot.chain, warnings)?;
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
-    let (tcp_in_flange, tool) = t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v, units))?;
+    let (mut tcp_in_flange, tool) =
+        t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v.table(TOOL)?, units))?;
     let load = t.get("load").map(|v| solid(&v, units, "load")).transpose()?;
     robot.colliders[flange.0].extend(tool.iter().chain(&load).cloned());
+    let tools = tools::read(t, &mut robot, flange, units, self::tool)?;
+    if let Some(active) = tools.iter().find(|t| t.mounted) {
+        (flange, tcp_in_flange) = (active.link, active.tcp_in_link);
+    }
     let start = start(name, t, &robot.chain, units, warnings)?;
     let limits = limits(name, t, &robot.chain, units, warnings)?;
     let states = states(t, &robot.chain, &start, units)?;
-    warnings.extend(
-        rest_pose_contacts::warnings(&robot, &start, Some(name))
-            .map(|(what, hint)| Warning::new(t.file, t.line, what).hint(hint)),
-    );
     if t.get("speed").is_some() {
         robot.chain = with_speeds(t, &robot.chain, &limits)?;
     }
@@ -90,6 +92,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<W
         flange,
         tcp_in_flange,
         tool,
+        tools,
         load,
         start,
         start_given: t.get("start").is_some(),
@@ -258,8 +261,9 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
     }
 }
 
-fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
-    let t = v.table("tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }")?;
+const TOOL: &str = "tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }";
+
+fn tool(t: &Table<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "quaternion"])?;
     if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "quaternion", "mesh_unit"].iter().find_map(|k| t.get(k))) {
         return Err(v
@@ -270,8 +274,8 @@ fn tool(v: &Value<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     let collider = |(shape, in_link)| Some(Collider { name: "tool".into(), shape, in_link });
     match (t.get("box"), t.get("mesh")) {
         (Some(_), Some(mesh)) => Err(mesh.error("contradicts `box`").hint("one of the two: box or mesh")),
-        (Some(cuboid), None) => Ok((tcp, collider(named_solid("box", &cuboid, &t, units)?))),
-        (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, &t, units)?))),
+        (Some(cuboid), None) => Ok((tcp, collider(named_solid("box", &cuboid, t, units)?))),
+        (None, Some(mesh)) => Ok((tcp, collider(named_solid("mesh", &mesh, t, units)?))),
         (None, None) => Ok((tcp, None)),
     }
 }
@@ -332,10 +336,13 @@ pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result
 }
 
 fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<f64>> {
-    if let Some(v) = t.get("start") {
-        return joint_values(&v, chain, units);
-    }
     let clamped: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| 0.0_f64.max(*lo).min(hi)).collect();
+    if let Some(v) = t.get("start") {
+        return match v.text() {
+            Ok(state) => start_state(name, &v, state, &states(t, chain, &clamped, units)?),
+            Err(_) => joint_values(&v, chain, units),
+        };
+    }
     if clamped.iter().any(|v| *v != 0.0) {
         let what =
             format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
@@ -344,6 +351,15 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
         );
     }
     Ok(clamped)
+}
+
+/// The named state in which a robot starts.
+fn start_state(robot: &str, v: &Value<'_>, state: &str, states: &[(String, Vec<f64>)]) -> Result<Vec<f64>> {
+    states.iter().find(|(name, _)| name == state).map(|(_, q)| q.clone()).ok_or_else(|| {
+        let known = states.iter().map(|(name, _)| name.as_str());
+        v.error(format!("names the state \"{state}\", which robot \"{robot}\" does not have"))
+            .hint(suggest::hint(state, known))
+    })
 }
 
 /// Time from full speed to rest, s.

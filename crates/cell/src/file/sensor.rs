@@ -52,7 +52,7 @@ fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
     match t.get("robot") {
         Some(v) => {
             let name = v.text()?;
-            robot_of(name, t, &cell.robots).map(|(id, _)| id)
+            robot_of(name, &t.clone().at_line(v.line), &cell.robots).map(|(id, _)| id)
         }
         None if cell.robots.len() == 1 => Ok(RobotId(0)),
         None => {
@@ -88,6 +88,9 @@ pub(super) fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
     let focal = t.need("focal_px", "focal_px = [600, 600]   (pixels, from the calibration)")?;
     let [fx, fy] = if focal.is_number() { [focal.positive()?; 2] } else { two(&focal, "focal_px = [600, 600]")? };
     let middle = [0.5 * width as f64, 0.5 * height as f64];
+    if let (Some(_), Some(v)) = (t.get("centre_px"), t.get("center_px")) {
+        return Err(v.error("contradicts `centre_px`").hint("one of the two spellings"));
+    }
     let centre = t.get("centre_px").or_else(|| t.get("center_px"));
     let [cx, cy] = centre.map_or(Ok(middle), |v| two(&v, "centre_px = [320, 240]"))?;
     let mut radial = [0.0; 3];

@@ -167,8 +167,8 @@ impl Units {
     }
 }
 
-/// Quaternions in files have few decimals.
-const QUATERNION_TOLERANCE: f64 = 1e-3;
+/// By how much the length of a quaternion may differ from 1: in files they have few decimals.
+pub const QUATERNION_TOLERANCE: f64 = 1e-3;
 
 /// Up to six decimals, without trailing zeros.
 fn trim(v: f64) -> String {

@@ -22,7 +22,7 @@ mod state;
 mod text;
 mod time;
 mod trust;
-mod value;
+pub(crate) mod value;
 
 use std::path::Path;
 

@@ -14,7 +14,8 @@ use crate::{Cell, CellFile, configure};
 
 /// Tables and keys that do not affect the monitors. Everything else is sealed. An object that a region follows is
 /// sealed with the region.
-const FREE: &[&str] = &["version", "name", "max_s", "checksum", "object", "map", "avoidance", "program"];
+const FREE: &[&str] =
+    &["version", "name", "max_s", "checksum", "object", "scene", "map", "pairs", "avoidance", "program"];
 /// Tables with names: `[robot.NAME]`.
 const NAMED: &[&str] = &["robot", "region", "encoder"];
 /// Initial joint values of a robot in the simulation.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::file::node::{Data, Node};
 
 /// A key as TOML writes it.
-pub(super) fn key(name: &str) -> String {
+pub(crate) fn key(name: &str) -> String {
     let is_bare_key = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if is_bare_key { name.to_owned() } else { quoted(name) }
 }

@@ -2,7 +2,6 @@
 
 pub(crate) mod args;
 mod path_files;
-mod progress;
 mod selection;
 mod table;
 
@@ -18,8 +17,8 @@ use serde::Serialize;
 
 use crate::args::PlanArgs;
 use crate::output::{ExitStatus, Failure, note, print, print_json, width};
+use crate::progress::Progress;
 use path_files::PathFiles;
-use progress::Progress;
 
 /// Loads, plans and prints.
 pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatus, Failure> {
@@ -34,12 +33,15 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
     model.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     check_speeds(urdf, &model, args)?;
     let mut files = args.problems.paths.as_deref().map(PathFiles::create).transpose()?;
-    let mut progress = Progress::new(problems.len());
+    let progress = Progress::of(problems.len(), "problems");
+    let (mut done, mut unsolved) = (0, 0);
     let mut written = Ok(());
     // The planner; another one takes its place here.
     let mut engine = CoverRrtConnectEngine::default();
     let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, motion| {
-        progress.next(result);
+        done += 1;
+        unsolved += usize::from(result.valid && !result.found);
+        progress.count(done, &format!("{unsolved} not solved"));
         if let (Some(files), Some(motion)) = (&mut files, motion) {
             written = files.write(result, &model.joints, motion);
         }

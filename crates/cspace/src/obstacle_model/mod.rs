@@ -5,5 +5,6 @@ mod model_layer;
 mod planar_slice;
 mod sphere_set;
 
+pub(crate) use model::MAX_SPHERES;
 pub use model::{ObstacleModel, UnknownObstacleModel};
 pub use sphere_set::spheres_until;

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 /// Most spheres of one obstacle.
-pub(super) const MAX_SPHERES: u32 = 4096;
+pub(crate) const MAX_SPHERES: u32 = 4096;
 
 /// The solid that represents an obstacle in a map (S2, sections II to V).
 ///

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::convex_obstacle::ConvexShape;
-use crate::{ConvexObstacle, GridAxis, Layer, PlanarMapBuilder, RowSpan};
+use crate::{ConvexObstacle, Layer, PlanarMapBuilder, RowSpan};
 
 /// Bounds of base angle, radius and height of an obstacle, metres and radians.
 struct CylindricalBounds {
@@ -27,29 +27,30 @@ pub(super) fn build_layer(builder: &mut PlanarMapBuilder, obstacle: &ConvexObsta
     let radius = builder.arm().max_radius_m();
     let bounds = CylindricalBounds::new(obstacle);
     let half = if bounds.near > radius { bounds.half + (radius / bounds.near).asin() } else { PI };
-    let [base, shoulder, _] = builder.grid().axes().clone();
-    let mut slice = Layer::new();
-    for behind in [false, true] {
-        let side = if behind { -1.0 } else { 1.0 };
-        let rectangle = bounds.in_plane(base.center(0), side);
-        builder.build_planes(&rectangle, 0..1, &mut slice);
-        let middle = if behind { bounds.middle + PI } else { bounds.middle };
-        for plane in planes(&base, middle, half) {
-            let first = (plane * shoulder.count()) as u32;
+    let angle = builder.grid().axes()[0].center(0);
+    // Before the base axis, and behind it for an arm that is bent backwards.
+    let mut slices = [Layer::new(), Layer::new()];
+    for (slice, side) in slices.iter_mut().zip([1.0, -1.0]) {
+        let (in_base, half_extents) = bounds.in_plane(angle, side);
+        builder.build_slice(&in_base, half_extents, slice);
+    }
+    let [base, shoulder, _] = builder.grid().axes();
+    let reach = half + base.step() * 0.5 + 1e-9;
+    for plane in 0..base.count() {
+        let first = (plane * shoulder.count()) as u32;
+        let before = layer.spans.len();
+        for (slice, middle) in slices.iter().zip([bounds.middle, bounds.middle + PI]) {
+            let off = base.center(plane) - middle;
+            if (off - TAU * (off / TAU).round()).abs() > reach || slice.spans.is_empty() {
+                continue;
+            }
+            let is_second = layer.spans.len() > before;
             layer.spans.extend(slice.spans.iter().map(|&span| RowSpan { row: span.row + first, ..span }));
+            if is_second {
+                layer.spans[before..].sort_unstable();
+            }
         }
     }
-    layer.spans.sort_unstable();
-    layer.spans.dedup();
-}
-
-/// Cells of θ1 within bounds of an angle.
-fn planes(base: &GridAxis, middle: f64, half: f64) -> impl Iterator<Item = usize> + '_ {
-    let reach = half + base.step() * 0.5 + 1e-9;
-    (0..base.count()).filter(move |&cell| {
-        let off = base.center(cell) - middle;
-        (off - TAU * (off / TAU).round()).abs() <= reach
-    })
 }
 
 impl CylindricalBounds {
@@ -80,12 +81,12 @@ impl CylindricalBounds {
         Self { middle, half, near: near.max(0.0), far, low: bounds.min.z, high: bounds.max.z }
     }
 
-    /// The rectangle of radii and heights in the plane of an angle, in front of the base axis or behind it.
-    fn in_plane(&self, angle: f64, side: f64) -> ConvexObstacle {
+    /// The rectangle of radii and heights in the plane of an angle, in front of the base axis or behind it: a box without
+    /// depth, and its half extents.
+    fn in_plane(&self, angle: f64, side: f64) -> (Pose, Vec3) {
         let at = (self.near + self.far) * 0.5 * side;
         let middle = Vec3::new(at * angle.cos(), at * angle.sin(), (self.low + self.high) * 0.5);
-        let in_base = Pose::new(Rotation::from_axis_angle(Vec3::Z, angle), middle);
         let half_extents = Vec3::new((self.far - self.near) * 0.5, 0.0, (self.high - self.low) * 0.5);
-        ConvexObstacle { solid: ConvexShape::Cuboid { in_base, half_extents } }
+        (Pose::new(Rotation::from_axis_angle(Vec3::Z, angle), middle), half_extents)
     }
 }

@@ -1,8 +1,9 @@
 //! Builds the map of an obstacle for a planar arm.
 
-use std::ops::Range;
+use elbowroom_spatial::{Pose, Vec3};
 
 use super::arm_grid::ArmGrid;
+use super::context::ConvexContext;
 use super::plane_solid::{PlaneBox, PlaneHull};
 use super::simd_math::WIDTH;
 use super::sphere::SphereObstacle;
@@ -82,28 +83,37 @@ impl PlanarMapBuilder {
 
     /// Replaces a layer by the cells that an obstacle blocks: every cell in whose box any configuration touches it.
     pub fn build_layer(&mut self, obstacle: &ConvexObstacle, layer: &mut Layer) {
-        self.build_planes(obstacle, 0..self.arm_grid.planes.len(), layer);
-    }
-
-    /// The same for a range of cells of θ1; the others stay free.
-    pub(crate) fn build_planes(&mut self, obstacle: &ConvexObstacle, planes: Range<usize>, layer: &mut Layer) {
         layer.spans.clear();
         let Self { arm_grid, full_rows } = self;
+        let planes = 0..arm_grid.planes.len();
         let shoulder = [arm_grid.arm.offset_m, arm_grid.arm.height_m];
+        let (center, radius) = obstacle.enclosing_sphere();
         match &obstacle.solid {
             ConvexShape::Sphere { center, radius } => {
                 let sphere = SphereObstacle { center: *center, radius: *radius };
                 sphere::build(arm_grid, &sphere, planes, full_rows, layer);
             }
             ConvexShape::Cuboid { in_base, half_extents } => {
+                let context = ConvexContext::new(arm_grid, center, radius);
                 let mut solid = PlaneBox::new(in_base, *half_extents, shoulder);
-                convex::build(arm_grid, &mut solid, obstacle, planes, full_rows, layer);
+                convex::build(arm_grid, &context, &mut solid, planes, full_rows, layer);
             }
             ConvexShape::Hull { in_base, hull } => {
+                let context = ConvexContext::new(arm_grid, center, radius);
                 let mut solid = PlaneHull::new(in_base, hull, shoulder);
-                convex::build(arm_grid, &mut solid, obstacle, planes, full_rows, layer);
+                convex::build(arm_grid, &context, &mut solid, planes, full_rows, layer);
             }
         }
+    }
+
+    /// The cells that a box blocks in the first plane, as one slice: the others stay free.
+    pub(crate) fn build_slice(&mut self, in_base: &Pose, half_extents: Vec3, layer: &mut Layer) {
+        layer.spans.clear();
+        let Self { arm_grid, full_rows } = self;
+        let shoulder = [arm_grid.arm.offset_m, arm_grid.arm.height_m];
+        let context = ConvexContext::new(arm_grid, in_base.translation, half_extents.length()).without_sectors();
+        let mut solid = PlaneBox::new(in_base, half_extents, shoulder);
+        convex::build(arm_grid, &context, &mut solid, 0..1, full_rows, layer);
     }
 }
 

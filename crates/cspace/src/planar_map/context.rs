@@ -82,6 +82,12 @@ impl ConvexContext {
         }
     }
 
+    /// With outlines that are never cut: quicker, and more is blocked.
+    pub fn without_sectors(mut self) -> Self {
+        self.sectors.whole_rad = f64::INFINITY;
+        self
+    }
+
     /// False where not even the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
     pub fn may_reach(&self, [cos, sin]: [f64; 2], side: f64) -> bool {
         let x = (self.center.x * cos + self.center.y * sin) * side;

@@ -12,7 +12,7 @@ use super::plane_solid::PlaneSolid;
 use super::rows::write_plane;
 use super::simd_math::ANGLE_ERROR;
 use super::upper_arm;
-use crate::{ConvexObstacle, Layer};
+use crate::Layer;
 
 /// Margin for angles seen from the shoulder in single precision, radians.
 const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
@@ -20,15 +20,13 @@ const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
 /// Adds the spans of some planes. `solid` is the obstacle as seen in a plane of the arm; `full_rows` is workspace.
 pub(super) fn build<B: PlaneSolid>(
     arm_grid: &ArmGrid,
+    context: &ConvexContext,
     solid: &mut B,
-    obstacle: &ConvexObstacle,
     planes: Range<usize>,
     full_rows: &mut [u16],
     layer: &mut Layer,
 ) {
-    let (center, radius) = obstacle.enclosing_sphere();
-    let context = ConvexContext::new(arm_grid, center, radius);
-    let mut outlines = Outlines::new(&context);
+    let mut outlines = Outlines::new(context);
     let shoulder = &arm_grid.grid.axes()[1];
     for (i, &plane) in arm_grid.planes.iter().enumerate().take(planes.end).skip(planes.start) {
         let before = layer.spans.len();
@@ -38,11 +36,11 @@ pub(super) fn build<B: PlaneSolid>(
                 continue;
             }
             solid.rotate_to_plane(plane);
-            if !outlines.set_normals(&context, solid, side) {
+            if !outlines.set_normals(context, solid, side) {
                 continue;
             }
             full_rows.fill(0);
-            if let Some((lo, hi)) = outlines.set_upper(&context, solid, side).range_from(-PI) {
+            if let Some((lo, hi)) = outlines.set_upper(context, solid, side).range_from(-PI) {
                 upper_arm::mark_rows(shoulder, lo - UPPER_MARGIN, hi + UPPER_MARGIN, full_rows);
             }
             let rows = PlaneRows {
@@ -53,7 +51,7 @@ pub(super) fn build<B: PlaneSolid>(
                 borders: &arm_grid.borders,
             };
             ordered &= before == layer.spans.len();
-            ordered &= outlines.write_rows(&context, solid, side, &rows, layer);
+            ordered &= outlines.write_rows(context, solid, side, &rows, layer);
         }
         if !ordered {
             layer.spans[before..].sort_unstable();

@@ -47,7 +47,7 @@ mod precision;
 mod precision_audit;
 mod row_culling;
 mod rows;
-mod simd_math;
+pub(crate) mod simd_math;
 mod span_writer;
 mod sphere;
 mod upper_arm;

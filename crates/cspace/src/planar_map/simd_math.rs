@@ -5,7 +5,7 @@
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 
 /// Sixteen numbers.
-pub(super) type Lanes<S> = f32x16<S>;
+pub(crate) type Lanes<S> = f32x16<S>;
 
 /// Number of lanes.
 pub(super) const WIDTH: usize = 16;
@@ -60,11 +60,11 @@ const ACOS: [f32; 6] = [
 ];
 
 /// Bound of the error of [`atan2`] and [`acos`], rounding included, about ten times the measured one, radians.
-pub(super) const ANGLE_ERROR: f32 = 1e-5;
+pub(crate) const ANGLE_ERROR: f32 = 1e-5;
 
 /// Angle of the point (x, y), −π..π; 0 at the origin.
 #[inline(always)]
-pub(super) fn atan2<S: Simd>(simd: S, y: Lanes<S>, x: Lanes<S>) -> Lanes<S> {
+pub(crate) fn atan2<S: Simd>(simd: S, y: Lanes<S>, x: Lanes<S>) -> Lanes<S> {
     let (ax, ay) = (x.abs(), y.abs());
     let steep = ay.simd_gt(ax);
     let ratio = ax.min(ay) / ax.max(ay).max(splat(simd, f32::MIN_POSITIVE));

@@ -95,11 +95,31 @@ impl RobotMapBuilder {
         self.build_with_stats(obstacles).map(|(tree, _)| tree)
     }
 
+    /// The same; calls `progress` from any thread with the share that is done, from 0 to 1.
+    ///
+    /// # Errors
+    /// As [`RobotMapBuilder::build`].
+    pub fn build_with_progress(
+        &self,
+        obstacles: &[(Shape, Pose)],
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<BoxTree, RobotMapError> {
+        self.build_all(obstacles, progress).map(|(tree, _)| tree)
+    }
+
     /// The same with statistics.
     ///
     /// # Errors
     /// As [`RobotMapBuilder::build`].
     pub fn build_with_stats(&self, obstacles: &[(Shape, Pose)]) -> Result<(BoxTree, RobotMapStats), RobotMapError> {
+        self.build_all(obstacles, &|_| ())
+    }
+
+    fn build_all(
+        &self,
+        obstacles: &[(Shape, Pose)],
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<(BoxTree, RobotMapStats), RobotMapError> {
         let obstacles: Vec<PlacedObstacle> =
             obstacles.iter().map(|(shape, in_world)| PlacedObstacle::new(shape, in_world)).collect::<Result<_, _>>()?;
         if self.is_blocked_throughout(&obstacles) {
@@ -113,7 +133,7 @@ impl RobotMapBuilder {
         let task = self.task(&obstacles, &candidates, &used_nodes);
         let mut tree = BoxTree { axes: self.axes.clone(), slabs: Vec::with_capacity(slabs.len()) };
         let mut stats = RobotMapStats::default();
-        for (cells, result) in slabs.iter().zip(run(task, &slabs, threads)) {
+        for (cells, result) in slabs.iter().zip(run(task, &slabs, threads, progress)) {
             let Some(Ok(slab)) = result else {
                 return Err(RobotMapError::Memory { mib: self.settings.max_bytes >> 20 });
             };
@@ -202,7 +222,12 @@ impl RobotMapBuilder {
 }
 
 /// Subdivides slabs on threads; `None` for slabs that were not reached.
-fn run(task: SubdivisionTask<'_>, slabs: &[CellRange], threads: usize) -> Vec<Option<Result<Slab, NodeLimitReached>>> {
+fn run(
+    task: SubdivisionTask<'_>,
+    slabs: &[CellRange],
+    threads: usize,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Option<Result<Slab, NodeLimitReached>>> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new((0..slabs.len()).map(|_| None).collect::<Vec<_>>());
     let work = || {
@@ -213,6 +238,9 @@ fn run(task: SubdivisionTask<'_>, slabs: &[CellRange], threads: usize) -> Vec<Op
             let result = subdivision.run(cells);
             let mut all = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             all[number] = Some(result);
+            let count = all.iter().flatten().count();
+            drop(all);
+            progress(count as f64 / slabs.len() as f64);
         }
     };
     std::thread::scope(|scope| {

@@ -11,8 +11,9 @@
 //! | `rigid_groups.rs`, `robot_pieces.rs`, `solid_pieces.rs`, `triangle_soup.rs` | the robot in small pieces, each with the joints that move it |
 //! | `enclosure.rs` | solids swept by joints that are not axes of the map |
 //! | `motion_bound.rs` | bound of the motion of a piece within a box of joint space |
-//! | `placed_obstacle.rs`, `obstacle_solids.rs` | obstacles, and simpler solids in their place |
+//! | `placed_obstacle.rs`, `obstacle_solids.rs`, `sector_bounds.rs` | obstacles, and simpler solids in their place |
 //! | `subdivision.rs`, `pair_evaluator.rs`, `cell_contact.rs`, `pair_distance.rs` | bisected boxes; pairs in a box; cells at the boundary; one pair |
+//! | `sphere_refinement.rs` | spheres in place of an obstacle, until a deadline |
 //! | `covers/` | maps on sphere covers, in real time |
 //! | `box_tree.rs`, `occupancy_array.rs` | the map as a tree of boxes, or one byte per cell |
 
@@ -31,8 +32,10 @@ mod pair_evaluator;
 mod placed_obstacle;
 mod rigid_groups;
 mod robot_pieces;
+mod sector_bounds;
 mod settings;
 mod solid_pieces;
+mod sphere_refinement;
 mod subdivision;
 mod triangle_soup;
 
@@ -43,3 +46,4 @@ pub use driven_chain::RemainingJoints;
 pub use error::RobotMapError;
 pub use occupancy_array::OccupancyArray;
 pub use settings::{MAX_JOINTS, RobotMapSettings, RobotMapStats};
+pub use sphere_refinement::SphereRefinement;

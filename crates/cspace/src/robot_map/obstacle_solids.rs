@@ -1,12 +1,13 @@
 //! The obstacle models of S2 for any robot: simpler solids that enclose an obstacle.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
-use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Shape, Sphere, separation, within};
-use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_proximity::{ConvexHull, Cuboid, Shape, Sphere, within};
+use elbowroom_spatial::{Pose, Vec3};
 
 use super::enclosure::Enclosure;
+use super::sector_bounds::SectorBounds;
 use crate::ObstacleModel;
 use crate::cuboid::Bisection;
 
@@ -95,17 +96,7 @@ fn halves((center, half): (Vec3, Vec3)) -> [(Vec3, Vec3); 2] {
 
 /// Bounds of angle, radius and height about the base frame's z, as convex wedges; `None` where one has no volume.
 fn wedges(shape: &Shape, in_base: &Pose) -> Option<Vec<Shape>> {
-    let solid = Enclosure::new(shape, *in_base)?;
-    let margin = solid.margin;
-    let (mut low, mut high, mut far) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-    for p in &solid.points {
-        (low, high, far) = (low.min(p.z - margin), high.max(p.z + margin), far.max(p.x.hypot(p.y) + margin));
-    }
-    // Distance from the axis within the solid's height.
-    let axis = Shape::Capsule(Capsule { half_length: 0.5 * (high - low), radius: 0.0 });
-    let on_axis = Pose::new(Rotation::IDENTITY, Vec3::Z * (0.5 * (low + high)));
-    let near = separation(shape, in_base, &axis, &on_axis).lower_bound * (1.0 - 1e-12);
-    let (first, width) = angle_range(&solid, near);
+    let SectorBounds { first, width, near, far, low, high } = SectorBounds::new(shape, in_base)?;
     let count = (width / MAX_WEDGE_RAD).ceil().max(1.0);
     let step = width / count;
     let outer = far / (0.5 * step).cos() * (1.0 + 1e-9);
@@ -119,25 +110,4 @@ fn wedges(shape: &Shape, in_base: &Pose) -> Option<Vec<Shape>> {
         ConvexHull::from_points(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))
     };
     (0..count as usize).map(wedge).collect()
-}
-
-/// First angle and width of the range that a solid covers about z, radians; a full turn where it contains the axis.
-fn angle_range(solid: &Enclosure, near: f64) -> (f64, f64) {
-    if near <= 0.0 {
-        return (-PI, TAU);
-    }
-    // The axis is outside the solid: less than half a turn about the direction of its centre, unless the convex hull contains
-    // the axis.
-    let middle = solid.center.y.atan2(solid.center.x);
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for p in &solid.points {
-        let off = (p.y.atan2(p.x) - middle + PI).rem_euclid(TAU) - PI;
-        let Some(side) = Some(solid.margin / p.x.hypot(p.y)).filter(|s| *s < 1.0) else { return (-PI, TAU) };
-        (least, most) = (least.min(off - side.asin()), most.max(off + side.asin()));
-    }
-    if most - least >= PI {
-        return (-PI, TAU);
-    }
-    let rounding = 1e-9;
-    (middle + least - rounding, most - least + 2.0 * rounding)
 }

@@ -11,7 +11,7 @@ use elbowroom::vision::encode_png;
 use crate::station::{Failure, Station};
 
 /// Smallest interval between images in the report without a change of path, seconds.
-const MIN_INTERVAL_S: f64 = 2.4;
+const MIN_INTERVAL_S: f64 = 4.8;
 /// Largest number of changes of path that the report shows.
 const MAX_PATHS: usize = 4;
 

@@ -99,7 +99,7 @@ impl<'a, 'i> SceneReader<'a, 'i, '_> {
             let mut part = self.instance(geometry)?;
             to_scene.after(&bind_shape).apply(&mut part);
             match &mut object {
-                Some(whole) => append(whole, part),
+                Some(whole) => whole.append(part),
                 None => object = Some(part),
             }
         }
@@ -207,10 +207,4 @@ impl<'a, 'i> SceneReader<'a, 'i, '_> {
             FormatError::new(self.file, xml::line(node), what).hint(format!("{N} numbers, separated by blanks"))
         })
     }
-}
-
-fn append(whole: &mut MeshData, part: MeshData) {
-    let offset = whole.vertices.len() as u32;
-    whole.vertices.extend(part.vertices);
-    whole.triangles.extend(part.triangles.into_iter().map(|t| t.map(|i| i + offset)));
 }

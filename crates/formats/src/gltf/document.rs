@@ -5,13 +5,13 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::FormatError;
+use crate::tokens::show;
 
 /// The root object.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document {
-    /// Present in every glTF 2.0 file.
-    #[expect(dead_code, reason = "a JSON file without it is no glTF")]
+    /// Present in every glTF file.
     asset: Asset,
     #[serde(default)]
     extensions_required: Vec<String>,
@@ -34,8 +34,23 @@ pub(super) struct Document {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Asset {
-    #[expect(dead_code, reason = "required by the specification")]
     version: String,
+}
+
+/// What glTF of every version has.
+#[derive(Debug, Deserialize)]
+struct Versioned {
+    asset: Asset,
+}
+
+impl Asset {
+    fn check(&self, file: &Path) -> Result<(), FormatError> {
+        if self.version.split('.').next() == Some("2") {
+            return Ok(());
+        }
+        let what = format!("is glTF of version {}; only 2 is read", show(self.version.as_bytes()));
+        Err(FormatError::new(file, None, what).hint("the model exported as glTF 2.0"))
+    }
 }
 
 /// The nodes at the top of a scene.
@@ -180,9 +195,13 @@ pub(super) enum Interpolation {
 /// Parses the JSON; refuses files that require an extension.
 pub(super) fn parse(json: &[u8], file: &Path) -> Result<Document, FormatError> {
     let document: Document = serde_json::from_slice(json).map_err(|e| {
+        if let Some(other) = serde_json::from_slice(json).ok().and_then(|v: Versioned| v.asset.check(file).err()) {
+            return other;
+        }
         FormatError::new(file, e.line(), format!("the JSON is not glTF: {e}"))
             .hint("the model exported again as glTF 2.0")
     })?;
+    document.asset.check(file)?;
     match &document.extensions_required[..] {
         [] => Ok(document),
         required => {

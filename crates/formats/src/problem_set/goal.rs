@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::field::Field;
-use super::problem::JointValue;
 use crate::FormatError;
+use crate::moveit_msgs::field::Field;
+use crate::moveit_msgs::types::JointValue;
 
 /// Constraints of a message that are not about joint values.
 const OTHER_CONSTRAINTS: [&str; 3] = ["position_constraints", "orientation_constraints", "visibility_constraints"];

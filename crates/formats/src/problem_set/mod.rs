@@ -3,7 +3,7 @@
 //!
 //! | read | meaning |
 //! | --- | --- |
-//! | `scene.world.collision_objects` | boxes, spheres, cylinders, meshes with their vertices, planes; a cone becomes its cylinder |
+//! | `scene.world.collision_objects` | boxes, spheres, cylinders, meshes with their vertices or files, planes; a cone becomes its cylinder |
 //! | `scene.fixed_frame_transforms` | frames of the objects |
 //! | `scene.allowed_collision_matrix` | pairs that may touch |
 //! | `scene.robot_state`, `request.start_state` | joint values, pose of the base, attached objects; the latter overrides |
@@ -12,15 +12,9 @@
 //! All else is ignored, except for what would make an answer wrong, which is refused: an octomap with data, goals that are
 //! poses, path constraints.
 
-mod collision_matrix;
 mod document;
-mod field;
 mod goal;
-mod object;
-mod pose;
 mod problem;
-mod robot_state;
-mod solid;
 #[cfg(test)]
 mod tests;
 
@@ -29,12 +23,13 @@ use std::path::{Path, PathBuf};
 use elbowroom_spatial::Pose;
 use serde_json::Value;
 
+use crate::moveit_msgs::field::{Field, Location, Reading};
+use crate::moveit_msgs::{collision_matrix, object, pose, robot_state};
 use crate::{FormatError, Warning, input};
 use document::{Entries, LAYOUT};
-use field::{Field, Location, Notes};
 
-pub use collision_matrix::ProblemMatrix;
-pub use problem::{AttachedObject, FixedFrame, JointValue, PlanningProblem, ProblemObject};
+pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
+pub use problem::PlanningProblem;
 
 /// Larger files are refused: a parsed document takes several times the memory of its text.
 const MAX_BYTES: u64 = 256 << 20;
@@ -83,36 +78,36 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let sets: Entries<Entries<Value>> = document::parse(&text, file)?;
-    let mut notes = Notes::default();
+    let mut reading = Reading::default();
     let mut problems = Vec::new();
     for (set, entries) in &sets.0 {
         for (id, value) in &entries.0 {
-            let location = Location { file, set, id };
-            problems.push(problem(&Field::root(&location, value), &mut notes)?);
+            let location = Location { file, part: format!("set `{set}`, problem `{id}`: "), yaml: None };
+            problems.push(problem([set, id], &Field::root(&location, value), &mut reading)?);
         }
     }
     if problems.is_empty() {
         return Err(FormatError::new(file, None, "has no planning problem").hint(LAYOUT));
     }
-    Ok(ProblemFile { file: file.to_owned(), problems, warnings: notes.warnings })
+    Ok(ProblemFile { file: file.to_owned(), problems, warnings: reading.warnings })
 }
 
-fn problem(root: &Field<'_>, notes: &mut Notes) -> Result<PlanningProblem, FormatError> {
+fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Result<PlanningProblem, FormatError> {
     let scene = root.require("scene", LAYOUT)?;
     let request = root.require("request", LAYOUT)?;
     let mut state = robot_state::RobotState::default();
     for at in [scene.get("robot_state")?, request.get("start_state")?].into_iter().flatten() {
-        state.overlay(robot_state::parse(&at, notes)?);
+        state.overlay(robot_state::parse(&at, reading)?);
     }
-    let objects = object::world(&scene, notes)?;
+    let objects = object::world(&scene, reading)?;
     object::check_ids(root, &objects, &state.attached)?;
     Ok(PlanningProblem {
-        set: root.location.set.to_owned(),
-        id: root.location.id.to_owned(),
+        set: set.to_owned(),
+        id: id.to_owned(),
         frames: pose::fixed_frames(&scene)?,
         objects,
         attached: state.attached,
-        matrix: collision_matrix::parse(&scene, notes)?,
+        matrix: collision_matrix::parse(&scene, reading)?,
         base_in_world: state.base_in_world.unwrap_or(Pose::IDENTITY),
         start: state.joints,
         goals: goal::goals(&request)?,

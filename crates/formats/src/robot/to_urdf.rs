@@ -3,12 +3,13 @@
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
-use elbowroom_kinematics::{Chain, Joint, JointKind};
+use elbowroom_kinematics::{Chain, Joint, JointKind, LinkId};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::mesh_data::MeshData;
+use crate::srdf::{DisabledPair, Srdf};
 use crate::xml::escaped;
 use crate::{FormatError, stl};
 
@@ -243,6 +244,12 @@ fn srdf(robot: &Robot, name: &str) -> Option<String> {
         return None;
     }
     let links = robot.chain.links();
-    let pairs = robot.disabled_pairs.iter().map(|(a, b, reason)| [&links[a.0][..], &links[b.0], reason]);
-    Some(crate::srdf::text(name, pairs, &[]))
+    let pair = |(a, b, reason): &(LinkId, LinkId, String)| DisabledPair {
+        link1: links[a.0].clone(),
+        link2: links[b.0].clone(),
+        reason: reason.clone(),
+        line: 0,
+    };
+    let disabled = robot.disabled_pairs.iter().map(pair).collect();
+    Some(Srdf { robot: Some(name.to_owned()), disabled, ..Srdf::default() }.text(&[]))
 }

@@ -8,6 +8,7 @@ use roxmltree::Node;
 use super::model::{UrdfJoint, UrdfLink, UrdfMimic};
 use super::parser::UrdfParser;
 use crate::cycles::find_cycles;
+use crate::names::list_names;
 use crate::tokens::{show, show_name};
 use crate::{FormatError, xml};
 
@@ -34,7 +35,24 @@ impl UrdfParser<'_> {
             joints.push(self.joint(*node, &index, &numbers)?);
         }
         self.check_mimics(&nodes, &mut joints)?;
+        self.check_velocity_limits(&nodes, &joints);
         Ok(joints)
+    }
+
+    /// One warning for all joints without a velocity limit; one that follows another needs none.
+    fn check_velocity_limits(&mut self, nodes: &[Node<'_, '_>], joints: &[UrdfJoint]) {
+        let lacks = |j: &UrdfJoint| j.kind.moves() && j.mimic.is_none() && j.limits.velocity.is_none();
+        let Some(first) = joints.iter().position(lacks) else { return };
+        let names: Vec<_> = joints.iter().filter(|j| lacks(j)).map(|j| show_name(&j.name)).collect();
+        let what = match &names[..] {
+            [name] => format!("the joint `{name}` has no velocity limit, or 0"),
+            _ => {
+                let list = list_names(names.iter().map(String::as_str));
+                format!("{} joints have no velocity limit, or 0: {list}", names.len())
+            }
+        };
+        let node = xml::child(nodes[first], "limit").unwrap_or(nodes[first]);
+        self.warn(node, what, "<limit velocity=\"1.5\" …/>, in rad/s or m/s");
     }
 
     fn joint(
@@ -109,11 +127,6 @@ impl UrdfParser<'_> {
             if bounded {
                 return Err(self.error(joint, format!("the joint `{name}` has no <limit>")).hint(LIMIT));
             }
-            self.warn(
-                joint,
-                format!("the joint `{name}` has no velocity limit"),
-                "<limit velocity=\"1.5\" effort=\"0\"/>",
-            );
             return Ok(Limits::UNLIMITED);
         };
         let (lower, upper) = if bounded { self.bounds(node, &name)? } else { (f64::NEG_INFINITY, f64::INFINITY) };
@@ -122,13 +135,6 @@ impl UrdfParser<'_> {
             return Err(self
                 .error(node, format!("the velocity limit of `{name}` is negative"))
                 .hint("velocity=\"1.5\", in rad/s or m/s"));
-        }
-        if velocity.is_none() {
-            self.warn(
-                node,
-                format!("the joint `{name}` has no velocity limit, or 0"),
-                "velocity=\"1.5\", in rad/s or m/s",
-            );
         }
         // Not in the specification, but written by some tools, with a prefix (drake) or without.
         let acceleration =

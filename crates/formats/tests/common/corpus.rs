@@ -7,11 +7,14 @@ use std::path::Path;
 
 use elbowroom_formats::mesh::{self, UpAxis};
 use elbowroom_formats::nodetree::{Node, NodeTree};
+use elbowroom_formats::planning_scene::{self, PlanningScene};
 use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
+use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 use elbowroom_testkit::random::xorshift;
 /// All readers; `mesh` detects the format.
-pub const PARSERS: [&str; 10] = ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "mesh"];
+pub const PARSERS: [&str; 12] =
+    ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "scene", "yaml", "mesh"];
 
 /// The approximate size of a reader's result, bytes.
 pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
@@ -37,8 +40,19 @@ pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
         "3ds" => tds::parse(bytes, &file).map(|t| tree_size(&t)),
         "urdf" => urdf::parse(bytes, &file).and_then(|m| robot::chain(&m, &file)).map(|c| c.links().len() * 200),
         "srdf" => srdf::parse(bytes, &file).map(|s| s.disabled.len() * 100),
+        "scene" | "yaml" => planning_scene::parse(&file, bytes).map(|s| scene_size(&s)),
         _ => mesh::parse(bytes, &file, None, UpAxis::Ignore).map(size),
     }
+}
+
+fn scene_size(scene: &PlanningScene) -> usize {
+    let solid = |(shape, pose): &(Shape, Pose)| {
+        assert!(shape.validate().is_ok() && pose.is_finite(), "a solid is not valid");
+        let mesh =
+            if let Shape::Mesh(mesh) = shape { mesh.vertices().len() * 24 + mesh.triangles().len() * 12 } else { 0 };
+        100 + mesh
+    };
+    scene.objects.iter().map(|o| 100 + o.solids.iter().map(solid).sum::<usize>()).sum()
 }
 
 fn tree_size(tree: &NodeTree) -> usize {
@@ -78,6 +92,8 @@ pub fn samples(parser: &str) -> Vec<Vec<u8>> {
         "3ds" => vec![tds::write(&waving::waving(), Path::new("a.3ds")).unwrap()],
         "urdf" => of(&[URDF]),
         "srdf" => of(&[SRDF]),
+        "scene" => of(&[SCENE, OLD_SCENE]),
+        "yaml" => of(&[SCENE_YAML]),
         _ => PARSERS[..7].iter().flat_map(|p| samples(p)).collect(),
     }
 }
@@ -148,6 +164,41 @@ const URDF: &str = r#"<?xml version="1.0"?><robot name="r" xmlns:drake="http://d
 <transmission/><drake:collision_filter_group name="g"/></robot>"#;
 const SRDF: &str = r#"<robot name="r"><group name="g"><chain base_link="a" tip_link="c"/></group>
 <disable_collisions link1="a" link2="b" reason="Adjacent"/><disable_collisions link1="b" link2="c"/></robot>"#;
+
+const SCENE: &str = "(noname)+\n* Box_0\n-0.32 0.02 0\n0 0 0 1\n2\nbox\n0.2 0.6 0.8\n0 0 0.1\n0 0 0.7 0.7\n1 0 0 1\ncone\n0.1 0.3\n0 0 0\n0 0 0 1\n\
+0 0 0 0\n1\ntip\n0 0 1\n0 0 0 1\n* my floor\n0 0 0\n0 0 0 1\n1\nplane\n0 0 1 0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n.\n";
+const OLD_SCENE: &str = "cell\n* wedge\n2\nmesh\n4 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 2 1\n0 1 3\n1 2 3\n0 3 2\n0 0 0\n0 0 0 1\n0 0 0 0\n\
+cylinder\n0.05 0.8\n1 0 0\n0 0 0 1\n0 0 0 0\n* ball\n1\nsphere\n0.1\n0 0 1\n0 0 0 1\n0 0 0 0\n.\n";
+const SCENE_YAML: &str = r"name: shelf
+fixed_frame_transforms:
+  - child_frame_id: base
+    transform: {translation: [0, 0, 1], rotation: {x: 0, y: 0, z: 0, w: 1}}
+world:
+  collision_objects:
+    - id: Can1
+      header: {frame_id: base}
+      primitives:
+        - {type: cylinder, dimensions: [0.14, 0.03]}
+        - type: 1
+          dimensions: &size [0.1, 0.2, 0.3]
+      primitive_poses:
+        - position: [0.8, 0, 0.55]
+          orientation: [0, 0, 0, 1]
+        - {position: *size}
+    - id: 'wedge'
+      operation: !!binary AA==
+      meshes:
+        - vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0., 0, 1.0]]
+          triangles: [[0, 2, 1], [0, 1, 3], {vertex_indices: [1, 2, 3]}, [0, 3, 2]]
+      mesh_poses: [{position: {x: 0, y: 0, z: 0}}]
+allowed_collision_matrix:
+  entry_names: [base, Can1]
+  entry_values:
+    - enabled: [false, true]
+    - enabled: [true, false]
+robot_state:
+  joint_state: {name: [a], position: [0.5]}
+";
 
 /// Xorshift: the same damage for the same seed.
 pub struct Random(pub u64);

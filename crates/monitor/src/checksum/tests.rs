@@ -6,7 +6,9 @@ use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mim
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::{Configuration, Guards, Laws, Life, Part, Region, RegionKind, SlotId, SourceId, StoppingSettings, Volume};
+use crate::{
+    Configuration, Guards, Laws, Life, Part, Presence, Region, RegionKind, SlotId, SourceId, StoppingSettings, Volume,
+};
 
 type Change = fn(&mut Configuration);
 
@@ -28,8 +30,8 @@ fn configuration() -> Configuration {
     let links = (0..4).map(|i| format!("l{i}")).collect();
     let joints = vec![joint(0, None), joint(1, None), joint(2, Some(mimic))];
     let ball = Shape::Sphere(Sphere { radius: 0.1 });
-    let volume =
-        Volume { name: "v".into(), part: Part::Arm, link: LinkId(1), shape: ball.clone(), in_link: Pose::IDENTITY };
+    let (name, part, presence) = ("v".into(), Part::Arm, Presence::Always);
+    let volume = Volume { name, part, link: LinkId(1), shape: ball.clone(), in_link: Pose::IDENTITY, presence };
     let region = Region {
         follow: Some(SourceId(0)),
         output: Some(1),
@@ -127,7 +129,7 @@ fn of_chain() -> Vec<Named> {
 }
 
 fn of_volume() -> Vec<Named> {
-    let Volume { name: _, part: _, link: _, shape: _, in_link: _ } = configuration().volumes.remove(0);
+    let Volume { name: _, part: _, link: _, shape: _, in_link: _, presence: _ } = configuration().volumes.remove(0);
     vec![
         ("volume name", |c| c.volumes[0].name.push('x')),
         ("volume is the tcp", |c| c.volumes[0].part = Part::Tcp),
@@ -136,6 +138,8 @@ fn of_volume() -> Vec<Named> {
         ("volume shape", |c| c.volumes[0].shape = Shape::Sphere(Sphere { radius: 0.1 + 1e-9 })),
         ("volume moved", |c| c.volumes[0].in_link = moved()),
         ("volume turned", |c| c.volumes[0].in_link = turned()),
+        ("volume attached at first", |c| c.volumes[0].presence = Presence::Attached),
+        ("volume detached at first", |c| c.volumes[0].presence = Presence::Detached),
     ]
 }
 

@@ -3,7 +3,7 @@
 use super::slot::RobotSlot;
 
 /// Position of a robot with respect to the regions of a slot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Occupancy {
     /// Never published. An occupancy that was published too long ago counts the same.
     Unknown,

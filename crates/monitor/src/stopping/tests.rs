@@ -6,7 +6,8 @@ use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
 
 use super::{StopPhases, StoppingInput, StoppingLaw};
-use crate::{Configuration, ConfigurationParts, Laws, Part, StoppingSettings, Volume};
+use crate::attached_volumes::AttachedVolumes;
+use crate::{Configuration, ConfigurationParts, Laws, Part, Presence, StoppingSettings, Volume};
 
 struct Random(u64);
 
@@ -44,6 +45,7 @@ fn configuration(kinds: &[JointKind], flat: bool, stopping: StoppingSettings) ->
         part: Part::Arm,
         shape: Shape::Sphere(Sphere { radius: 0.01 }),
         in_link: Pose::from_translation(Vec3::X * 0.5),
+        presence: Presence::Always,
     };
     Configuration::new(ConfigurationParts {
         robot: "arm".into(),
@@ -96,6 +98,7 @@ fn fractions(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
                 uncertain_s: 0.0,
                 unchanged_s: 0.0,
                 volume_in_world: &in_world,
+                attached: &AttachedVolumes::new(&config),
             },
         );
         // Towards the first axis, which rotation alone reaches, or in a random direction.

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Region, Volume};
+use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Part, Presence, Region, Volume};
 use elbowroom_proximity::{Capsule, Shape};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -49,7 +49,8 @@ pub fn arm_volumes() -> Vec<Volume> {
         let axis = (to - from).try_normalize().unwrap();
         let in_link = Pose::new(elbowroom_spatial::Rotation::from_z(axis), (from + to) * 0.5);
         let shape = Shape::Capsule(Capsule { half_length: from.distance(to) * 0.5, radius });
-        Volume { name: name.into(), part: elbowroom_monitor::Part::Arm, link: LinkId(link), shape, in_link }
+        let (part, presence) = (Part::Arm, Presence::Always);
+        Volume { name: name.into(), part, link: LinkId(link), shape, in_link, presence }
     };
     let tool = elbowroom_spatial::Obb {
         pose: Pose::from_translation(Vec3::X * 0.15),

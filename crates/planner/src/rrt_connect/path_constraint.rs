@@ -71,6 +71,32 @@ impl<C: PathConstraint + ?Sized> PathConstraint for &mut C {
     }
 }
 
+impl<C: PathConstraint + ?Sized> PathConstraint for Box<C> {
+    fn distance_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        (**self).distance_m(q, limit_m)
+    }
+
+    fn margin_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        (**self).margin_m(q, limit_m)
+    }
+
+    fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64 {
+        (**self).motion_bound_m(from, to)
+    }
+
+    fn describe_nearest(&mut self, q: &[f64]) -> String {
+        (**self).describe_nearest(q)
+    }
+
+    fn projected_edge_length(&self) -> Option<f64> {
+        (**self).projected_edge_length()
+    }
+
+    fn project(&mut self, q: &mut [f64]) -> bool {
+        (**self).project(q)
+    }
+}
+
 /// Checks configurations and motions against a constraint.
 #[derive(Debug)]
 pub(crate) struct ConstraintChecker<'c> {

@@ -51,6 +51,14 @@ impl LongestCrossing {
     }
 }
 
+/// The ends of the segment in which two triangles that touch cross; their nearest points where they do not cross.
+pub(super) fn triangles_meet(s: &[Vec3; 3], t: &[Vec3; 3]) -> (Vec3, Vec3) {
+    crossing(s, t).unwrap_or_else(|| {
+        let near = triangle_triangle(*s, *t);
+        (near.on_a, near.on_b)
+    })
+}
+
 /// The segment that two triangles have in common; `None` where no edge of one passes through the other.
 fn crossing(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<(Vec3, Vec3)> {
     let edges = |s: &[Vec3; 3], k: usize| (s[k], s[(k + 1) % 3]);

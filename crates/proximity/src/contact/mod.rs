@@ -21,6 +21,8 @@ mod mesh_smooth;
 mod placed;
 mod query;
 mod surface;
+mod triangle_contacts;
 
 pub use contact_point::{ContactPoint, ContactSettings, Detail};
 pub use query::contact_point;
+pub use triangle_contacts::{TriangleContact, for_each_triangle_contact, triangle_surface};

@@ -1,11 +1,8 @@
-'use strict';
 // The plots: drawn by plotly.js in the colours of the page, with a cursor at the time of the scene.
 const Figures = (() => {
-  const figures = JSON.parse(document.getElementById('plot-data').textContent);
+  const { figures } = Data;
   const boxes = [...document.querySelectorAll('.plot')];
   let onTime = () => {};
-
-  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   function themed(layout) {
     const themedLayout = { ...layout, paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)', autosize: true };
@@ -68,5 +65,5 @@ const Figures = (() => {
     }
   });
 
-  return { showRun, setTime, css, onTime: (f) => { onTime = f; } };
+  return { showRun, setTime, onTime: (f) => { onTime = f; } };
 })();

@@ -45,8 +45,8 @@ fn path(runs: &[(&str, &Recording)]) -> Figure {
     if let (Some((tick, height)), Some((_, recording))) = (closest_moment(runs), runs.first()) {
         note =
             format!("Tool centre point seen from above. Regions are cut at its closest approach, z = {height:.3} m.");
-        for region in &recording.regions {
-            add_region(&mut plot, region, tick, height);
+        for (index, region) in recording.regions.iter().enumerate() {
+            add_region(&mut plot, region, palette::of_region(index), tick, height);
         }
     }
     for (label, recording, robot, track) in tracks(runs) {
@@ -56,23 +56,18 @@ fn path(runs: &[(&str, &Recording)]) -> Figure {
     Figure { title: "Path in the X-Y plane".into(), note, over_time: false, run: None, height: 460, wide: false, plot }
 }
 
-fn add_region(plot: &mut Plot, region: &RegionTrack, tick: usize, height: f64) {
+fn add_region(plot: &mut Plot, region: &RegionTrack, color: &str, tick: usize, height: f64) {
     let pose = match &region.poses {
         RegionPoses::Fixed(pose) => *pose,
         RegionPoses::Moving(poses) => poses.get(tick).or(poses.last()).copied().unwrap_or(Pose::IDENTITY),
     };
     let name = plain(&region.name);
     if let Some(shell) = region_surface::warning(&region.shape, region.warning_m) {
-        add_section(
-            plot,
-            &region_surface::section(&shell, &pose, height),
-            &format!("warning zone of {name}"),
-            palette::WARNING,
-            0.28,
-        );
+        let section = region_surface::section(&shell, &pose, height);
+        add_section(plot, &section, &format!("warning zone of {name}"), color, 0.15);
     }
     let solid = region_surface::section(&region_surface::solid(&region.shape), &pose, height);
-    add_section(plot, &solid, &format!("{name} ({})", region.kind.name()), palette::of_kind(region.kind), 0.45);
+    add_section(plot, &solid, &format!("{name} ({})", region.kind.name()), color, 0.45);
 }
 
 fn add_section(plot: &mut Plot, curves: &[Vec<[f64; 2]>], name: &str, color: &str, alpha: f64) {

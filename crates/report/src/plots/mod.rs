@@ -1,6 +1,7 @@
-//! The plots: figure 12 of the paper, then override, distance, timing and joints.
+//! The plots: distances and override, figure 12 of the paper, then timing and joints.
 
 mod avoidance;
+mod distances;
 mod figure;
 mod figure12;
 mod joints;
@@ -16,10 +17,15 @@ use crate::scene::ReportScene;
 pub use figure::Figure;
 pub use perception::all as perception;
 
-/// All plots, in the order of the page.
-pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
-    let mut figures = figure12::all(scene, runs);
+/// All plots, in the order of the page; `planned` is the run without the monitor, for comparison.
+pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Recording>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    if let Some((_, first)) = runs.first() {
+        let planned = planned.filter(|_| first.monitored);
+        figures.extend((0..first.robots.len()).filter_map(|r| distances::chart(scene, first, planned, r)));
+    }
     figures.extend(overrides::all(runs));
+    figures.extend(figure12::all(scene, runs));
     for run in 0..runs.len() {
         figures.extend(avoidance::all(runs, run));
         figures.extend(timing::chart(runs, run));

@@ -1,4 +1,4 @@
-//! Override with the governing region, and the distance to it.
+//! Override with the governing region.
 
 use elbowroom_cell::CellRegionId;
 use elbowroom_monitor::OverrideReason;
@@ -8,7 +8,7 @@ use serde_json::json;
 use super::figure::{Figure, bars, curve_name, plain, round, tracks};
 use super::plot::{Plot, axis, layout, line, stroke, with};
 use crate::downsample::{MAX_POINTS, pick};
-use crate::explanation::{collision_text, explanation, reason_text};
+use crate::explanation::{collision_text, reason_text};
 use crate::palette;
 use crate::spans::runs as equal_runs;
 
@@ -16,7 +16,7 @@ use crate::spans::runs as equal_runs;
 const MAX_BANDS: usize = 1000;
 
 pub fn all(runs: &[(&str, &Recording)]) -> Vec<Figure> {
-    vec![overrides(runs), distance(runs)]
+    vec![overrides(runs)]
 }
 
 fn overrides(runs: &[(&str, &Recording)]) -> Figure {
@@ -87,7 +87,7 @@ fn add_bands(plot: &mut Plot, recording: &Recording, samples: &[Sample], row: us
         let (text, color) = match cause {
             Ok(region) => (
                 recording.regions.get(region.0).map_or_else(|| "?".into(), |r| r.name.clone()),
-                palette::of_index(region.0),
+                palette::of_region(region.0),
             ),
             Err(reason) => (reason_text(reason, recording), "#000000"),
         };
@@ -105,28 +105,5 @@ fn add_collisions(plot: &mut Plot, recording: &Recording, track: &RobotTrack, ro
         let span = [(collision.t_s, collision.t_s + wide)];
         let mark = bars(&span, row as f64, 18.0, &text, "#d62728", &format!("{who}<br>{text}"));
         plot.add(with(mark, json!({ "yaxis": "y2", "showlegend": false })));
-    }
-}
-
-fn distance(runs: &[(&str, &Recording)]) -> Figure {
-    let mut plot = Plot::new(layout(axis("time (s)"), with(axis("distance (mm)"), json!({ "rangemode": "tozero" }))));
-    for (label, recording, robot, track) in tracks(runs) {
-        let at = |i: usize| track.samples[i].distance_m.unwrap_or(f64::NAN);
-        let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
-        let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
-        let y = kept.iter().map(|&i| round(1e3 * at(i))).collect();
-        let texts: Vec<String> = kept.iter().map(|&i| plain(&explanation(track, i, recording))).collect();
-        let style = stroke(palette::of_run(robot, recording.monitored), 2.0);
-        let curve = line(t, y, &curve_name(label, recording, track), style);
-        plot.add(with(curve, json!({ "hovertext": texts })));
-    }
-    Figure {
-        title: "Distance to the governing region".into(),
-        note: "From the governing point of the robot; a gap where nothing governs.".into(),
-        over_time: true,
-        run: None,
-        height: 300,
-        wide: true,
-        plot,
     }
 }

@@ -1,7 +1,6 @@
 //! Plots of a perception run.
 
 use elbowroom_perception::{ExecutorState, PerceptionLog};
-use elbowroom_sim::RecordedRegionKind;
 use elbowroom_sim::Recording;
 use serde_json::json;
 
@@ -31,7 +30,7 @@ fn from_above(log: &PerceptionLog, recording: &Recording) -> Figure {
         let xs = kept.iter().map(|&n| round(truth.poses[n].translation.x)).collect();
         let ys = kept.iter().map(|&n| round(truth.poses[n].translation.y)).collect();
         let name = plain(&format!("{}, ground truth", truth.name));
-        plot.add(with(line(xs, ys, &name, stroke(palette::of_index(i), 6.0)), json!({ "opacity": 0.35 })));
+        plot.add(with(line(xs, ys, &name, stroke(palette::of_region(i), 6.0)), json!({ "opacity": 0.35 })));
     }
     let prisms = || log.frames.iter().filter_map(|f| f.result.as_ref().ok()).flat_map(|(s, _)| &s.prisms);
     let mut ids: Vec<_> = prisms().map(|p| p.id).collect();
@@ -67,7 +66,7 @@ fn distance(log: &PerceptionLog) -> Figure {
     let ys = kept.iter().map(|&i| round(at(i))).collect();
     plot.add(line(xs, ys, "nearest obstacle", stroke(palette::of_index(0), 1.8)));
     if let Some((least, t)) = log.least_distance() {
-        let style = json!({ "color": palette::of_kind(RecordedRegionKind::Obstacle), "size": 9 });
+        let style = json!({ "color": palette::OBSTACLE, "size": 9 });
         let name = format!("least: {:.0} mm", least * 1e3);
         plot.add(markers(vec![round(t)], vec![round(least)], &name, style));
     }
@@ -88,9 +87,7 @@ fn state(log: &PerceptionLog) -> Figure {
     plot.add(line(xs, ys, "share of the planned speed", stroke(palette::of_index(0), 1.6)));
     let rows: [(&str, &str, &'static str, StatePredicate); 3] = [
         ("slowing", "slowing", palette::WARNING, |d| matches!(d, ExecutorState::Slowing(_))),
-        ("waiting", "waiting", palette::of_kind(RecordedRegionKind::Obstacle), |d| {
-            matches!(d, ExecutorState::Waiting(_))
-        }),
+        ("waiting", "waiting", palette::OBSTACLE, |d| matches!(d, ExecutorState::Waiting(_))),
         ("no image", "no accepted image", palette::of_index(9), |d| {
             matches!(d.reason(), Some(elbowroom_perception::HoldReason::NoRecentImage { .. }))
         }),
@@ -158,6 +155,6 @@ fn blocked(log: &PerceptionLog) -> Figure {
     let mut plot = Plot::new(layout(axis("time (s)"), axis("cells")));
     let xs = log.frames.iter().map(|f| round(f.t_s)).collect();
     let ys = log.frames.iter().map(|f| round(f.blocked as f64)).collect();
-    plot.add(line(xs, ys, "blocked", stroke(palette::of_kind(RecordedRegionKind::Obstacle), 1.6)));
+    plot.add(line(xs, ys, "blocked", stroke(palette::OBSTACLE, 1.6)));
     figure("Blocked cells", "Blocked cells of the joint-space map after each frame.", true, false, 340, plot)
 }

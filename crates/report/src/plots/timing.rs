@@ -17,6 +17,7 @@ struct TimingRow {
     label: String,
     spans: Vec<(f64, f64)>,
     color: &'static str,
+    opacity: f64,
     text: String,
 }
 
@@ -43,7 +44,7 @@ pub fn chart(runs: &[(&str, &Recording)], run: usize) -> Option<Figure> {
     for (i, row) in rows.iter().enumerate() {
         let shown = &row.spans[..row.spans.len().min(MAX_SPANS)];
         let bars = bars(shown, i as f64, 12.0, &row.label, row.color, &row.text);
-        plot.add(with(bars, json!({ "showlegend": false })));
+        plot.add(with(bars, json!({ "showlegend": false, "opacity": row.opacity })));
     }
     Some(Figure {
         title: title("Timing", label, runs.len()),
@@ -65,12 +66,12 @@ pub fn title(what: &str, label: &str, runs: usize) -> String {
 fn rows_of(recording: &Recording, index: usize, region: &RegionTrack) -> Vec<TimingRow> {
     let name = plain(&region.name);
     let mut rows = Vec::new();
-    let mut add = |what: String, spans: Vec<(f64, f64)>, color| {
+    let mut add = |what: String, spans: Vec<(f64, f64)>, opacity| {
         let label = format!("{name}: {what}");
-        rows.push(TimingRow { text: label.clone(), label, spans, color });
+        rows.push(TimingRow { text: label.clone(), label, spans, color: palette::of_region(index), opacity });
     };
     if region.life == Life::Temporary {
-        add("active".into(), pair(region.active.iter().copied(), recording.duration_s), palette::of_index(9));
+        add("active".into(), pair(region.active.iter().copied(), recording.duration_s), 0.25);
     }
     for (robot, track) in recording.robots.iter().enumerate() {
         let who = if recording.robots.len() > 1 { format!(" ({})", plain(&track.name)) } else { String::new() };
@@ -87,15 +88,15 @@ fn rows_of(recording: &Recording, index: usize, region: &RegionTrack) -> Vec<Tim
             pair(edges, recording.duration_s)
         };
         let candidates = [
-            ("warning", of(&region.warning_spans), palette::WARNING),
-            ("inside", of(&region.inside_spans), palette::of_kind(region.kind)),
-            ("waits", between(&["waiting"], &["granted", "released"]), palette::of_index(7)),
-            ("holds", between(&["granted"], &["released"]), palette::of_index(2)),
-            ("output", between(&["output_on"], &["output_off"]), palette::of_index(0)),
+            ("warning", of(&region.warning_spans), 0.5),
+            ("inside", of(&region.inside_spans), 1.0),
+            ("waits", between(&["waiting"], &["granted", "released"]), 0.35),
+            ("holds", between(&["granted"], &["released"]), 0.8),
+            ("output", between(&["output_on"], &["output_off"]), 0.8),
         ];
-        for (what, spans, color) in candidates {
+        for (what, spans, opacity) in candidates {
             if !spans.is_empty() {
-                add(format!("{what}{who}"), spans, color);
+                add(format!("{what}{who}"), spans, opacity);
             }
         }
     }

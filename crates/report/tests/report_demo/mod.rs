@@ -2,14 +2,14 @@
 
 use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionId};
+use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionId, Volume};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, project_point};
 use elbowroom_report::ReportScene;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_sim::{
-    Collision, EventRow, RecordedRegionKind, Recording, RegionPoses, RegionTrack, RobotTrack, RunEvent, Sample, Span,
-    TickTimes,
+    Collision, EventRow, GoverningPoint, RecordedRegionKind, Recording, RegionPoses, RegionTrack, RobotTrack, RunEvent,
+    Sample, Span, Stop, TickTimes,
 };
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -77,12 +77,27 @@ pub fn scene() -> ReportScene {
     let in_world = Pose::from_translation(Vec3::new(1.35, 0.0, 0.15));
     ReportScene::new()
         .robot("ns16", &arm(), Pose::IDENTITY, LinkId(3), Pose::from_translation(Vec3::Z * FORE), &[tool])
+        .guarded_by(vec![Volume::tcp(LinkId(3), Vec3::Z * FORE)])
         .object(&Object { name: "table".into(), shape: table, in_world })
 }
 
 fn column() -> (Shape, Pose) {
     let pose = Pose::from_translation(Vec3::new(PATH_X, 0.25, 0.5));
     (Shape::Cylinder(Cylinder { half_length: 0.5, radius: 0.15 }), pose)
+}
+
+/// The stop at the column, where the run is long enough for it.
+fn stops(samples: &[Sample], name: &str, monitored: bool, end_s: f64) -> Vec<Stop> {
+    let stopped = samples.iter().find(|s| monitored && s.speed_override < 1e-3);
+    let stop = stopped.map(|s| Stop {
+        from_s: s.t_s,
+        to_s: end_s,
+        by: Some(name.into()),
+        part: Some("tcp".into()),
+        point: Some(s.tcp),
+        distance_m: s.distance_m,
+    });
+    stop.into_iter().collect()
 }
 
 /// The start, an arc to A, the line to B.
@@ -124,6 +139,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             speed_override: law,
             region: near.then_some(CellRegionId(0)),
             distance_m: near.then_some(distance),
+            governing: near.then_some(GoverningPoint { part: 0, point: tcp }),
             reason: if near { OverrideReason::Region(RegionId(0)) } else { OverrideReason::Free },
         });
         s += v * tick_s;
@@ -155,9 +171,12 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
         end: elbowroom_sim::RunEnd::Finished,
         monitored,
         robots: vec![RobotTrack {
+            absent_links: Vec::new(),
             name: "ns16".into(),
             flange: "tool0".into(),
             joints: ["waist", "shoulder", "elbow"].map(String::from).to_vec(),
+            parts: vec!["tcp".into()],
+            stops: stops(&samples, name, monitored, end_s),
             finished: !monitored,
             stopped_s: if monitored { 1.1 } else { 0.0 },
             min_override: samples.iter().map(|s| s.speed_override).fold(1.0, f64::min),
@@ -180,6 +199,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 kind: RecordedRegionKind::Forbidden,
                 life: Life::Permanent,
                 guards: Guards::TCP,
+                robots: vec![RobotId(0)],
                 warning_m,
                 shape,
                 poses: RegionPoses::Fixed(column_in_world),
@@ -195,6 +215,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 kind: RecordedRegionKind::Monitored,
                 life: Life::Temporary,
                 guards: Guards::TCP,
+                robots: vec![RobotId(0)],
                 warning_m: 0.1,
                 shape: Shape::Sphere(Sphere { radius: 0.12 }),
                 poses: RegionPoses::Moving(ball),

@@ -21,15 +21,18 @@ pub enum PairEdit {
 }
 
 impl AllowedCollisionMatrix {
-    /// Changes one pair by hand. `scene` supplies the names for errors.
+    /// Changes one pair by hand. `scene` supplies the names for errors. An edit of two objects holds while one is attached to a
+    /// robot, and in queries that name both.
     ///
     /// # Errors
     /// [`MatrixError`] where there is no such pair or the number is invalid.
     pub fn edit(&mut self, scene: &Scene, a: GeometryId, b: GeometryId, edit: PairEdit) -> Result<(), MatrixError> {
-        let Some(at) = self.position(a, b) else {
-            return Err(MatrixError::NoSuchPair { a: scene.name(a), b: scene.name(b) });
-        };
-        let entry = &mut self.entries_mut()[at];
+        let no_such_pair = || MatrixError::NoSuchPair { a: scene.name(a), b: scene.name(b) };
+        if !(scene.has_shape(a) && scene.has_shape(b)) {
+            return Err(no_such_pair());
+        }
+        let paddings_m = scene.padding_m(a) + scene.padding_m(b);
+        let entry = self.entry_mut(a, b, paddings_m).ok_or_else(no_such_pair)?;
         let check = |what, value: f64| {
             if value >= 0.0 && value.is_finite() {
                 return Ok(value);

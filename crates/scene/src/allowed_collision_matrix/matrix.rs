@@ -1,15 +1,20 @@
 //! The matrix: one entry per pair, in a fixed order.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use elbowroom_robot::GeometryId;
 
 use super::entry::{PairEntry, PairState};
+use super::reason::Reason;
+
+/// Weight of two objects of which one is attached: as that of two large bodies that a joint moves. Dimensionless.
+pub(crate) const OBJECTS_WEIGHT: f64 = 1.0;
 
 /// One entry per pair: links of one robot, links of different robots, links and objects.
 ///
 /// Complete (skipped pairs have an entry too, with a reason), reproducible (equal models give equal matrices) and in a fixed
-/// order. Two objects are no pair while neither is attached to a robot.
+/// order. Two objects are no pair while neither is attached to a robot; they have an entry where one was
+/// [edited](AllowedCollisionMatrix::edit), which then holds while one is attached.
 ///
 /// What "skipped" means depends on the reason. Pairs that are out of reach are skipped only where the answer stays the
 /// same: distance and tolerance queries use the proven least distance in their place, and they are tested in a state beyond
@@ -18,28 +23,48 @@ use super::entry::{PairEntry, PairState};
 pub struct AllowedCollisionMatrix {
     entries: Vec<PairEntry>,
     index: HashMap<(GeometryId, GeometryId), usize>,
+    /// The edited pairs of two objects.
+    of_objects: BTreeMap<(GeometryId, GeometryId), PairEntry>,
 }
 
 impl PartialEq for AllowedCollisionMatrix {
     fn eq(&self, other: &Self) -> bool {
-        self.entries == other.entries
+        self.entries == other.entries && self.of_objects == other.of_objects
     }
 }
 
 impl AllowedCollisionMatrix {
     pub(crate) fn new(entries: Vec<PairEntry>) -> Self {
         let index = entries.iter().enumerate().map(|(i, e)| ((e.a, e.b), i)).collect();
-        Self { entries, index }
+        Self { entries, index, of_objects: BTreeMap::new() }
     }
 
-    /// All entries, in their order.
+    /// All entries but those of two objects, in their order.
     pub fn entries(&self) -> &[PairEntry] {
         &self.entries
     }
 
+    /// The edited pairs of two objects, in the order of the objects.
+    pub fn object_entries(&self) -> impl Iterator<Item = &PairEntry> {
+        self.of_objects.values()
+    }
+
     /// The entry of a pair, in either order of its geometries.
     pub fn get(&self, a: GeometryId, b: GeometryId) -> Option<&PairEntry> {
-        self.position(a, b).map(|i| &self.entries[i])
+        let of_objects = || self.of_objects.get(&(a.min(b), a.max(b)));
+        self.position(a, b).map(|i| &self.entries[i]).or_else(of_objects)
+    }
+
+    /// The entry to edit: made where there is none of two objects, with their margin (m).
+    pub(super) fn entry_mut(&mut self, a: GeometryId, b: GeometryId, margin_m: f64) -> Option<&mut PairEntry> {
+        if let Some(at) = self.position(a, b) {
+            return Some(&mut self.entries[at]);
+        }
+        let (a, b) = (a.min(b), a.max(b));
+        let objects = matches!((a, b), (GeometryId::Object(_), GeometryId::Object(_)));
+        let (state, reason) = (PairState::Tested, Reason::Default);
+        let entry = PairEntry { a, b, state, margin_m, weight: OBJECTS_WEIGHT, reason, suggestion: None };
+        (objects && a != b).then(|| self.of_objects.entry((a, b)).or_insert(entry))
     }
 
     pub(crate) fn position(&self, a: GeometryId, b: GeometryId) -> Option<usize> {

@@ -12,6 +12,7 @@ mod text;
 pub use edit::PairEdit;
 pub use entry::{PairEntry, PairNumber, PairState};
 pub use matrix::AllowedCollisionMatrix;
+pub(crate) use matrix::OBJECTS_WEIGHT;
 pub(crate) use out_of_reach::prove_out_of_reach;
 pub use reason::Reason;
 pub(crate) use rules::by_rules;

@@ -1,5 +1,7 @@
 //! The allowed collision matrix as text: names, not indices, one pair a line, in a fixed order.
 
+use std::collections::HashSet;
+
 use elbowroom_robot::GeometryId;
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +38,8 @@ impl AllowedCollisionMatrix {
     /// TOML that [`AllowedCollisionMatrix::from_text`] reads; the same for equal matrices.
     pub fn to_text(&self, scene: &Scene) -> String {
         let mut text = String::from(HEAD);
-        for e in self.entries() {
+        let by_hand = self.object_entries().filter(|e| matches!(e.reason, Reason::ByHand(_)));
+        for e in self.entries().iter().chain(by_hand) {
             let row = EntryRow {
                 a: scene.name(e.a),
                 b: scene.name(e.b),
@@ -70,16 +73,18 @@ impl AllowedCollisionMatrix {
             return Err(MatrixError::Version(file.version));
         }
         let mut matrix = scene.model_matrix.clone();
-        let mut seen = vec![false; matrix.entries().len()];
+        let mut seen = HashSet::new();
         for row in file.pairs {
             let (a, b) = (geometry(scene, &row.a)?, geometry(scene, &row.b)?);
-            let Some(at) = matrix.position(a, b) else {
+            let objects = matches!((a, b), (GeometryId::Object(_), GeometryId::Object(_)));
+            let is_pair = !objects || matches!(row.reason, Reason::ByHand(_));
+            let Some(entry) = matrix.entry_mut(a, b, row.margin_m).filter(|_| is_pair) else {
                 return Err(MatrixError::NoSuchPair { a: row.a, b: row.b });
             };
-            if std::mem::replace(&mut seen[at], true) {
+            if !seen.insert((entry.a, entry.b)) {
                 return Err(MatrixError::Twice { a: row.a, b: row.b });
             }
-            apply(&mut matrix.entries_mut()[at], row)?;
+            apply(entry, row)?;
         }
         Ok(matrix)
     }

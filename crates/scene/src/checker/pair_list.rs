@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use elbowroom_robot::{GeometryId, ObjectId};
 
+use crate::allowed_collision_matrix::OBJECTS_WEIGHT;
 use crate::narrow_phase::PairWarmStart;
 use crate::world_box::round_up;
 use crate::{PairState, Reason, Scene, SceneState, Selection, pair_weight};
@@ -135,8 +136,9 @@ impl PairList {
                     None => named,
                 };
                 if tested && self.selects(state, a, b) {
-                    let margin = [i, j].map(|o| scene.models[scene.first_object + o].padding_m).iter().sum();
-                    self.push(scene, a, b, margin, 0.0, 1.0);
+                    let entry = scene.matrix.get(a, b);
+                    let margin_m = entry.map_or_else(|| scene.padding_m(a) + scene.padding_m(b), |e| e.margin_m);
+                    self.push(scene, a, b, margin_m, 0.0, entry.map_or(OBJECTS_WEIGHT, |e| e.weight));
                 }
             }
         }

@@ -5,7 +5,7 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::held_object::HeldObject;
-use super::{FirstContacts, PlacedGeometry, SET_DOWN_DEPTH, TrackedPair};
+use super::{FirstContacts, PlacedGeometry, TrackedPair};
 use crate::Attachment;
 
 impl FirstContacts<'_> {
@@ -56,6 +56,7 @@ impl FirstContacts<'_> {
         let is_held = |o: usize| self.held[o].is_some();
         let others = (0..self.objects.len()).filter(|o| *o != object.0 && (is_held(*o) || is_held(object.0)));
         partners.extend(others.map(|o| GeometryId::Object(ObjectId(o))));
+        partners.retain(|other| self.rules.skipped(id, *other).is_none());
         let Self { robots, objects, boxes, placed, held, .. } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
         let pairs = partners.into_iter().map(|other| {
@@ -64,10 +65,7 @@ impl FirstContacts<'_> {
             let mut pair = TrackedPair::new(robots, held, a, b);
             let moves = |o: ObjectId| GeometryId::Object(o) == other && held[o.0].is_none();
             pair.moving_object = moving.iter().copied().find(|(o, _)| moves(*o));
-            let gap = now.gap(a, b);
-            pair.resting = gap.is_none();
-            pair.allowed_depth = pair.resting.then(|| now.depth(a, b) + SET_DOWN_DEPTH);
-            pair.measured(states, gap);
+            pair.rest_where_in_contact(&now);
             pair
         });
         let pairs: Vec<_> = pairs.collect();

@@ -7,6 +7,7 @@ use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
 
+use super::grip_overlaps::GripOverlap;
 use super::program::RobotProgram;
 use super::stopping_profile::{StoppingProfile, response_delay};
 
@@ -119,6 +120,9 @@ impl EntryAnalysis<'_> {
             let why = "it starts inside, and so does another robot that shares this exchange region";
             return Some(MissingGuarantee::new(why, format!("another `start` of [robot.{}]", self.robot().name)));
         }
+        if let Some(missing) = self.grips_inside() {
+            return Some(missing);
+        }
         if region.life == Life::Temporary {
             return Some(MissingGuarantee::new(
                 "temporary: it is not guarded while it is off, and the robot may be inside when it is switched on",
@@ -140,9 +144,45 @@ impl EntryAnalysis<'_> {
         None
     }
 
+    /// Entry by a part: what the program grips inside the region is a part of the robot from then on.
+    fn grips_inside(&self) -> Option<MissingGuarantee> {
+        let region = self.region();
+        if region.follow.is_some() {
+            return None;
+        }
+        let GripOverlap { object, is_certain } = GripOverlap::find(self.cell, self.robot, self.program, region)?;
+        let why = if is_certain {
+            format!("its program grips \"{object}\" inside of it: from then on the part counts as its tool")
+        } else {
+            format!("where its program grips \"{object}\" is known in the run only: the part may be inside of it")
+        };
+        let write = "another place of the part or of the region, or robots = […] in the region without this robot";
+        Some(MissingGuarantee::new(why, write))
+    }
+
+    /// Entry because of speed where it is not known how far a part extends beyond the hand.
+    fn unknown_lever(&self) -> Option<MissingGuarantee> {
+        let guards = self.region().region.guards;
+        let unknown = self.program.grips.iter().find(|g| g.action.attachment.is_none())?;
+        let part = self.cell.gripped_volume(self.robot, unknown.action.object, unknown.action.link);
+        part.part.counts_for(guards).then(|| {
+            let why = format!(
+                "`stopping_distance` is off, and how \"{}\" is in the hand is known in the run only",
+                part.name
+            );
+            MissingGuarantee::new(why, "stopping_distance = true in [monitor]")
+        })
+    }
+
     /// Entry because of speed: the stopping-distance law is off, and the warning zone is too thin.
     fn too_fast(&self) -> Option<MissingGuarantee> {
-        if self.fastest_m_s() <= 0.0 || self.has_stopping_law() || self.is_zone_sufficient() {
+        if self.fastest_m_s() <= 0.0 || self.has_stopping_law() {
+            return None;
+        }
+        if let Some(missing) = self.unknown_lever() {
+            return Some(missing);
+        }
+        if self.is_zone_sufficient() {
             return None;
         }
         let units = self.cell.units;

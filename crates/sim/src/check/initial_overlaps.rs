@@ -28,7 +28,9 @@ pub(super) fn initial_overlaps(cell: &Cell, programs: &[RobotProgram]) -> Vec<(C
                 let in_world = base * state.link_in_root(v.link) * v.in_link;
                 within(&v.shape, &in_world, &r.region.shape, &region_in_world, 0.0)
             };
-            let guarded = |v: &&elbowroom_monitor::Volume| v.part.counts_for(r.region.guards);
+            let guarded = |v: &&elbowroom_monitor::Volume| {
+                v.presence != elbowroom_monitor::Presence::Detached && v.part.counts_for(r.region.guards)
+            };
             if programs[robot.0].volumes.iter().filter(guarded).any(|v| overlaps(&v)) {
                 pairs.push((CellRegionId(index), *robot));
             }

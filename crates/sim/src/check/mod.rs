@@ -33,6 +33,7 @@
 
 mod entry_analysis;
 mod entry_check;
+mod grip_overlaps;
 mod initial_overlaps;
 mod program;
 mod region_speed;

@@ -5,6 +5,7 @@ use elbowroom_formats::FormatError;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile};
+use crate::motion::plan;
 
 /// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region.
 pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f64, FormatError> {
@@ -33,7 +34,12 @@ pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f
         }
         Follow::Robot { robot, link, in_link } => {
             let hull = SphereSweptHull::new(&region.region.shape, &(in_link * in_source));
-            let profile = Profile::of(cell, robot, &[LinkSolid { link, hull }])?;
+            let profile = Profile::of(
+                cell,
+                robot,
+                &plan(cell, robot, 1, &mut Vec::new())?,
+                &[LinkSolid { link, hull, grip: None }],
+            );
             Ok(profile.stopping_profiles[0].fastest_m_s)
         }
     }

@@ -5,13 +5,12 @@ use std::rc::Rc;
 
 use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{Cell, JointLimits};
-use elbowroom_formats::FormatError;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::thickness::{Braking, ResponseDelay, thickness};
-use crate::motion::{PlanStep, ProgramPlan, plan};
+use crate::motion::{GripAction, HeldObjects, PlanStep, ProgramPlan};
 
 /// Largest sampling step of programs, s.
 const STEP_S: f64 = 0.004;
@@ -24,6 +23,8 @@ pub(super) struct LinkSolid {
     pub link: LinkId,
     /// Its bound in the link's frame.
     pub hull: SphereSweptHull,
+    /// The step that grips it, where it is an object: it counts while it is held.
+    pub grip: Option<GripAction>,
 }
 
 /// Speeds and stopping distances of one volume.
@@ -57,12 +58,8 @@ struct OverrideResponse {
 }
 
 impl Profile {
-    /// Samples the program of a robot.
-    ///
-    /// # Errors
-    /// [`FormatError`] at the line of an infeasible step.
-    pub fn of(cell: &Cell, robot: RobotId, solids: &[LinkSolid]) -> Result<Self, FormatError> {
-        let plan = plan(cell, robot, 1, &mut Vec::new())?;
+    /// Samples the planned program of a robot.
+    pub fn of(cell: &Cell, robot: RobotId, plan: &ProgramPlan, solids: &[LinkSolid]) -> Self {
         let mut profile = Self {
             start: plan.start.clone(),
             stopping_profiles: vec![StoppingProfile::default(); solids.len()],
@@ -76,12 +73,12 @@ impl Profile {
             rate: Some(cell.laws.laws.override_rate).filter(|r| *r > 0.0).unwrap_or(f64::INFINITY),
         };
         let mut moves = Vec::new();
-        for_each_move(&plan, response.response_delay.delay_s, |programmed, step_s, points| {
-            let samples = points.iter().map(|p| sampler.at(p)).collect();
+        for_each_move(plan, response.response_delay.delay_s, |programmed, step_s, points, held| {
+            let samples = points.iter().map(|p| sampler.at(p, held)).collect();
             moves.push(SampledMove { programmed, step_s, samples });
         });
         profile.add_moves(response, &moves);
-        Ok(profile)
+        profile
     }
 
     /// Adds moves. The largest speeds are computed first: the needed thickness depends on them.
@@ -193,12 +190,13 @@ fn remaining_half_square(left: f64, a: f64, b: f64, step_s: f64, rate: f64) -> f
 }
 
 /// Calls `visit` for every move of a plan, sampled at equal steps of time at override 1, with its override and step
-/// (s); once for repeated moves. Where the programmed override falls before a move, the larger one still applies: the
+/// (s) and what the robot holds; once for repeated moves. Where the programmed override falls before a move, the larger one still applies: the
 /// robot reacts `delay_s` later.
-fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f64, &[PathPoint])) {
+fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f64, &[PathPoint], &HeldObjects)) {
     let mut programmed = plan.speed_override;
     let mut before = programmed;
     let mut visited = HashSet::new();
+    let mut held = HeldObjects::default();
     for step in &plan.steps {
         let effective = programmed.max(before);
         let (key, duration): (*const (), f64) = match step {
@@ -210,6 +208,12 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
                 before = programmed;
                 continue;
             }
+            PlanStep::Grip(action) => {
+                held.apply(action);
+                // The same moves, with something else in the hand.
+                visited.clear();
+                continue;
+            }
             PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
             PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
             _ => continue,
@@ -217,7 +221,7 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
         before = programmed;
         if visited.insert((key, effective.to_bits())) {
             let (step_s, times) = sample_times(duration);
-            visit(effective, step_s, &times.filter_map(|t| point_at(step, t)).collect::<Vec<_>>());
+            visit(effective, step_s, &times.filter_map(|t| point_at(step, t)).collect::<Vec<_>>(), &held);
         }
     }
 }
@@ -251,11 +255,16 @@ struct MoveSampler<'a> {
 }
 
 impl MoveSampler<'_> {
-    fn at(&mut self, point: &PathPoint) -> MoveSample {
+    fn at(&mut self, point: &PathPoint, held: &HeldObjects) -> MoveSample {
         self.state.q.copy_from_slice(&point.q);
         self.state.qd.copy_from_slice(&point.dq);
         self.chain.forward_motion(&mut self.state);
-        let speed = |r: &LinkSolid| r.hull.fastest(&self.state.link_in_root(r.link), &self.state.link_motion(r.link));
+        let speed = |r: &LinkSolid| {
+            if r.grip.as_ref().is_some_and(|grip| !held.actions().contains(grip)) {
+                return 0.0;
+            }
+            r.hull.fastest(&self.state.link_in_root(r.link), &self.state.link_motion(r.link))
+        };
         let stop_times = point.dq.iter().zip(self.limits).map(|(v, l)| v.abs() / l.stop);
         MoveSample { stop_time: stop_times.fold(0.0, f64::max), speeds: self.solids.iter().map(speed).collect() }
     }

@@ -41,6 +41,7 @@ pub struct ProgramClock {
     intent: Vec<f64>,
     switches: Vec<RegionSwitch>,
     grips: Vec<GripAction>,
+    tools: Vec<usize>,
     held: bool,
 }
 
@@ -62,6 +63,7 @@ impl ProgramClock {
             here,
             switches: Vec::new(),
             grips: Vec::new(),
+            tools: Vec::new(),
             held: false,
         };
         clock.execute_instant_steps();
@@ -200,6 +202,11 @@ impl ProgramClock {
         std::mem::take(&mut self.grips)
     }
 
+    /// Tools made active since the last call, in order.
+    pub fn take_tools(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.tools)
+    }
+
     /// The objects that are released before the next move: the present move sets them down.
     pub fn objects_set_down(&self) -> impl Iterator<Item = ObjectId> + '_ {
         let next = self.plan.steps.get(self.step + 1..).unwrap_or_default().iter();
@@ -327,7 +334,8 @@ impl ProgramClock {
                     self.switches.push(RegionSwitch { region: *region, active: *active });
                 }
                 Some(PlanStep::Override(o)) => self.programmed = *o,
-                Some(PlanStep::Grip(action)) => self.grips.push(*action),
+                Some(PlanStep::Tool(tool)) => self.tools.push(*tool),
+                Some(PlanStep::Grip(action)) => self.grips.push(action.clone()),
                 Some(PlanStep::Move(m)) if m.duration() <= 0.0 => {}
                 Some(PlanStep::Wait(s)) if *s <= 0.0 => {}
                 _ => return,

@@ -17,7 +17,7 @@ mod segment;
 
 pub use clock::{ProgramClock, RegionSwitch};
 pub use geometry::Geometry;
-pub use grip_action::GripAction;
+pub use grip_action::{GripAction, HeldObjects};
 pub use line::TcpLine;
-pub use plan::{PlanStep, ProgramPlan, plan};
+pub use plan::{PlanStep, ProgramPlan, first_grip, plan};
 pub use segment::Segment;

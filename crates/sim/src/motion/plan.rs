@@ -1,16 +1,18 @@
 //! Planning of a program: every move is computed before the simulation starts.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 
 use elbowroom_analysis::plan::{PathGoal, PathRequest};
-use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings};
+use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
 use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
 };
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
-use elbowroom_robot::RobotId;
+use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 
 use super::planned_parts::{PartError, PlannedParts};
 use super::{Geometry, GripAction, Segment, TcpLine};
@@ -52,6 +54,8 @@ pub enum PlanStep {
     },
     /// Grips or releases an object.
     Grip(GripAction),
+    /// Makes a tool the active one.
+    Tool(usize),
     /// Waits, s.
     Wait(f64),
     /// Sets the programmed override, 0..1.
@@ -65,6 +69,17 @@ impl ProgramPlan {
     }
 }
 
+impl PlanStep {
+    /// Joint values at its end; `None` where it is no move.
+    pub fn end(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Move(segment) => Some(segment.end()),
+            Self::Play(play) => Some(play.q(play.duration())),
+            _ => None,
+        }
+    }
+}
+
 /// Plans the program of one robot, run `repeat` times (times the program's own `repeat`).
 ///
 /// # Errors
@@ -75,15 +90,7 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
-    let mut planner = ProgramPlanner {
-        cell,
-        robot: at,
-        q: at.start.clone(),
-        notes,
-        planned_moves: Vec::new(),
-        planned_paths: Vec::new(),
-        parts: PlannedParts::new(cell, robot),
-    };
+    let mut planner = ProgramPlanner::new(cell, robot, notes);
     match &program.body {
         ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
         ProgramBody::Trajectory(rows) => {
@@ -93,29 +100,72 @@ pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) 
     }
 }
 
+/// The step in which the program of a robot first grips an object, planned; `None` where it never does.
+///
+/// # Errors
+/// [`FormatError`] at the line of an infeasible step before it, or of the grip.
+pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, FormatError> {
+    let Some(program) = &cell.programs[robot.0] else { return Ok(None) };
+    let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
+    let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
+    let Some(index) = steps.iter().position(grips) else { return Ok(None) };
+    let mut notes = Vec::new();
+    let plan = ProgramPlanner::new(cell, robot, &mut notes).steps(program, &steps[..=index], 1)?;
+    Ok(plan
+        .steps
+        .into_iter()
+        .next_back()
+        .and_then(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None }))
+}
+
 struct ProgramPlanner<'a> {
     cell: &'a Cell,
-    robot: &'a CellRobot,
+    id: RobotId,
+    /// With the tools as they are after the steps so far.
+    robot: CellRobot,
     /// Joint values after the steps so far.
     q: Vec<f64>,
     notes: &'a mut Vec<Warning>,
     /// Moves of earlier passes.
-    planned_moves: Vec<(usize, Vec<f64>, Rc<Segment>)>,
+    planned_moves: Vec<PlannedMoveEntry>,
     /// Paths of earlier passes.
     planned_paths: Vec<PlannedPathEntry<'a>>,
     /// The objects after the steps so far.
     parts: PlannedParts<'a>,
 }
 
+/// A step from some joint values, with the tool of some flange.
+struct PlannedMoveEntry {
+    step: usize,
+    from: Vec<f64>,
+    flange: LinkId,
+    segment: Rc<Segment>,
+}
+
 /// The path of a planned step from some joint values, with the objects at some places.
 struct PlannedPathEntry<'a> {
     step: usize,
     from: Vec<f64>,
+    flange: LinkId,
     parts: PlannedParts<'a>,
     play: Rc<Playback>,
 }
 
-impl ProgramPlanner<'_> {
+impl<'a> ProgramPlanner<'a> {
+    fn new(cell: &'a Cell, id: RobotId, notes: &'a mut Vec<Warning>) -> Self {
+        let robot = cell.robots[id.0].clone();
+        Self {
+            cell,
+            id,
+            q: robot.start.clone(),
+            robot,
+            notes,
+            planned_moves: Vec::new(),
+            planned_paths: Vec::new(),
+            parts: PlannedParts::new(cell, id),
+        }
+    }
+
     fn steps(&mut self, program: &Program, steps: &[ProgramStep], passes: u64) -> Result<ProgramPlan, FormatError> {
         let mut plan = ProgramPlan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
         for pass in 0..passes {
@@ -129,12 +179,17 @@ impl ProgramPlanner<'_> {
                     StepAction::Override(o) => PlanStep::Override(*o),
                     StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
                     StepAction::Grip(object) => {
-                        self.parts.grip(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(GripAction { object: *object, grips: true, line: step.line })
+                        let gripped = self.parts.grip(*object, &self.robot, &self.q);
+                        let attachment = gripped.map_err(|e| self.part_error(i, step, e))?;
+                        PlanStep::Grip(self.grip_action(*object, true, attachment, step))
                     }
                     StepAction::Release(object) => {
                         self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(GripAction { object: *object, grips: false, line: step.line })
+                        PlanStep::Grip(self.grip_action(*object, false, None, step))
+                    }
+                    StepAction::Tool(tool) => {
+                        self.change_tool(i, step, *tool)?;
+                        PlanStep::Tool(*tool)
                     }
                     StepAction::Planned { to, speed } => {
                         PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
@@ -145,13 +200,37 @@ impl ProgramPlanner<'_> {
         Ok(plan)
     }
 
+    fn change_tool(&mut self, index: usize, step: &ProgramStep, tool: usize) -> Result<(), FormatError> {
+        let changed = self.robot.with_tool(tool);
+        let is_taken_off = |link: LinkId| changed.tools.iter().any(|t| t.link == link && !t.mounted);
+        if let Some(part) = self.parts.held_by(is_taken_off) {
+            let what = format!("takes off the tool that holds \"{part}\"");
+            return Err(self.error(index, step, &what).hint(format!("{{ release = \"{part}\" }} before it")));
+        }
+        self.robot = changed;
+        Ok(())
+    }
+
+    fn grip_action(
+        &self,
+        object: ObjectId,
+        grips: bool,
+        attachment: Option<Attachment>,
+        step: &ProgramStep,
+    ) -> GripAction {
+        GripAction { object, grips, link: self.robot.flange, attachment, line: step.line }
+    }
+
     fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Rc<Segment>, FormatError> {
-        let planned = self.planned_moves.iter().find(|k| k.0 == index && k.1 == self.q).map(|k| k.2.clone());
+        let flange = self.robot.flange;
+        let is_known = |k: &&PlannedMoveEntry| k.step == index && k.from == self.q && k.flange == flange;
+        let planned = self.planned_moves.iter().find(is_known).map(|k| k.segment.clone());
         let segment = if let Some(segment) = planned {
             segment
         } else {
             let segment = Rc::new(self.timed(index, step)?);
-            self.planned_moves.push((index, self.q.clone(), segment.clone()));
+            let from = self.q.clone();
+            self.planned_moves.push(PlannedMoveEntry { step: index, from, flange, segment: segment.clone() });
             segment
         };
         self.q = segment.end();
@@ -166,11 +245,16 @@ impl ProgramPlanner<'_> {
         to: &MoveTarget,
         speed: f64,
     ) -> Result<Rc<Playback>, FormatError> {
-        let is_known = |k: &&PlannedPathEntry<'_>| k.step == index && k.from == self.q && k.parts == self.parts;
+        let is_known = |k: &&PlannedPathEntry<'_>| {
+            k.step == index && k.from == self.q && k.flange == self.robot.flange && k.parts == self.parts
+        };
         let known = self.planned_paths.iter().find(is_known).map(|k| k.play.clone());
         let play = if let Some(play) = known {
             play
         } else {
+            let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
+            let cell = self.cell_now();
+            let volumes = cell.volumes_holding(self.id, &carried);
             let request = PathRequest {
                 robot: Some(self.robot.name.clone()),
                 from: Some(self.q.clone()),
@@ -180,23 +264,34 @@ impl ProgramPlanner<'_> {
                 },
                 speed,
                 placed: self.parts.placed(),
-                carried: self.parts.carried().map_err(|e| self.part_error(index, step, e))?,
+                carried,
                 ..PathRequest::default()
             };
-            let answer = elbowroom_analysis::plan::plan(self.cell, &request)
+            let answer = elbowroom_analysis::plan::plan(&cell, &request)
                 .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
             let Some(motion) = answer.motion else {
                 let why = answer.reason.unwrap_or_default();
                 return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
             };
             let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-            let play = Rc::new(Playback::new(rows, &motion_bounds(self.robot)));
-            let (from, parts) = (self.q.clone(), self.parts.clone());
-            self.planned_paths.push(PlannedPathEntry { step: index, from, parts, play: play.clone() });
+            let bounds = volume_motion_bounds(&self.robot.robot.chain, &volumes);
+            let play = Rc::new(Playback::new(rows, &bounds));
+            let (from, flange, parts) = (self.q.clone(), self.robot.flange, self.parts.clone());
+            self.planned_paths.push(PlannedPathEntry { step: index, from, flange, parts, play: play.clone() });
             play
         };
         self.q = play.q(play.duration());
         Ok(play)
+    }
+
+    /// The cell with the tools as they are now.
+    fn cell_now(&self) -> Cow<'a, Cell> {
+        if self.robot.tools.is_empty() {
+            return Cow::Borrowed(self.cell);
+        }
+        let mut cell = self.cell.clone();
+        cell.robots[self.id.0] = self.robot.clone();
+        Cow::Owned(cell)
     }
 
     fn part_error(&self, index: usize, step: &ProgramStep, e: PartError) -> FormatError {
@@ -245,7 +340,7 @@ impl ProgramPlanner<'_> {
             MoveTarget::Tcp(in_world) => self.robot.base_in_world.inverse_mul(in_world),
             MoveTarget::Joints(q) => self.tcp_in_root(q),
         };
-        TcpLine::new(self.robot, self.cell.units, &self.q, to_in_root).map_err(|error| {
+        TcpLine::new(&self.robot, self.cell.units, &self.q, to_in_root).map_err(|error| {
             let [at, length] = [error.at_m, error.length_m].map(|m| format!("{:.1} mm", m * 1000.0));
             let what = format!("the line of {length} cannot be followed beyond {at}: {}", error.why);
             let hint = "a target within reach on this side of the arm, or a joint move to it";
@@ -294,7 +389,7 @@ impl ProgramPlanner<'_> {
         }
         let mut plan =
             ProgramPlan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
-        let play = Rc::new(Playback::new(rows.to_vec(), &motion_bounds(self.robot)));
+        let play = Rc::new(Playback::new(rows.to_vec(), &motion_bounds(&self.robot)));
         let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;

@@ -1,12 +1,12 @@
 //! Where the objects of a cell are during the planning of one robot's program.
 
 use elbowroom_cell::{Cell, CellRobot, Follow};
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 use elbowroom_spatial::Pose;
 
-use crate::hand::{grip, program_grips};
+use crate::hand::grip;
 
 /// An object during planning. Poses and attachments are unknown where the object moves or another program grips it.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,13 +47,19 @@ impl<'a> PlannedParts<'a> {
     pub(super) fn new(cell: &'a Cell, id: RobotId) -> Self {
         let is_known = |o: ObjectId| {
             let moves = cell.moving_objects.iter().any(|m| m.object == o);
-            !moves && (0..cell.robots.len()).map(RobotId).all(|r| r == id || !program_grips(cell, r, o))
+            !moves && (0..cell.robots.len()).map(RobotId).all(|r| r == id || !cell.gripped_objects(r).contains(&o))
         };
         let place = |o: usize| PlannedPart::Placed(is_known(ObjectId(o)).then_some(cell.objects[o].in_world));
         Self { cell, id, parts: (0..cell.objects.len()).map(place).collect() }
     }
 
-    pub(super) fn grip(&mut self, object: ObjectId, q: &[f64]) -> Result<(), PartError> {
+    /// How the object is attached, as far as that is known.
+    pub(super) fn grip(
+        &mut self,
+        object: ObjectId,
+        robot: &CellRobot,
+        q: &[f64],
+    ) -> Result<Option<Attachment>, PartError> {
         let name = &self.cell.objects[object.0].name;
         let followed = self.cell.regions.iter().find(|r| r.follow == Some(Follow::Object(object)));
         if let Some(region) = followed {
@@ -64,11 +70,11 @@ impl<'a> PlannedParts<'a> {
             let hint = format!("{{ release = \"{name}\" }} before it (or at the end of a program that repeats)");
             return Err(PartError::new(format!("grips \"{name}\", which it has gripped already"), hint));
         };
-        let attachment = pose.map(|pose| grip(self.cell, self.id, object, &pose, &self.state(q))).transpose();
+        let attachment = pose.map(|pose| grip(self.cell, self.id, robot, object, &pose, &self.state(q))).transpose();
         let closer = "a move to the part before it, or the tool and its `tcp` in the robot's table";
         let attachment = attachment.map_err(|what| PartError::new(what, closer))?;
-        self.parts[object.0] = PlannedPart::Carried(attachment);
-        Ok(())
+        self.parts[object.0] = PlannedPart::Carried(attachment.clone());
+        Ok(attachment)
     }
 
     pub(super) fn release(&mut self, object: ObjectId, q: &[f64]) -> Result<(), PartError> {
@@ -83,6 +89,16 @@ impl<'a> PlannedParts<'a> {
         });
         self.parts[object.0] = PlannedPart::Placed(pose);
         Ok(())
+    }
+
+    /// Name of an object that one of these links holds.
+    pub(super) fn held_by(&self, is_holding: impl Fn(LinkId) -> bool) -> Option<&'a str> {
+        let held = self.parts.iter().zip(&self.cell.objects).find(|(part, _)| match part {
+            PlannedPart::Carried(Some(attachment)) => is_holding(attachment.link),
+            PlannedPart::Carried(None) => true,
+            PlannedPart::Placed(_) => false,
+        });
+        held.map(|(_, object)| object.name.as_str())
     }
 
     /// The objects elsewhere than at the start.

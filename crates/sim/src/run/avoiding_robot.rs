@@ -11,7 +11,7 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_scene::Scene;
+use elbowroom_scene::{Attachment, Scene};
 use elbowroom_spatial::FrameMotion;
 
 use crate::motion::ProgramClock;
@@ -74,6 +74,8 @@ pub(super) struct AvoidingRobot<'s> {
     not_before_s: f64,
     /// Failed plans in a row.
     failed: u64,
+    /// Objects that a robot has gripped: they no longer move by themselves.
+    taken: Vec<ObjectId>,
     step_ns: Vec<u64>,
     track: AvoidanceTrack,
     /// The first tick that failed, and why.
@@ -110,8 +112,9 @@ impl<'s> AvoidingRobot<'s> {
             rest: vec![0.0; q.len()],
             not_before_s: 0.0,
             failed: 0,
+            taken: Vec::new(),
             step_ns: Vec::new(),
-            track: AvoidanceTrack { surfaces: surfaces(spec), ..AvoidanceTrack::default() },
+            track: AvoidanceTrack { surfaces: surfaces(spec), obstacles: obstacles(cell), ..AvoidanceTrack::default() },
             fault: None,
         })
     }
@@ -137,6 +140,17 @@ impl<'s> AvoidingRobot<'s> {
         self.output.path_deviation_s == 0.0
     }
 
+    /// A robot, this one or another, has gripped an object.
+    pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
+        self.taken.push(object);
+        self.avoider.attach(object, attachment)
+    }
+
+    /// A robot has released an object.
+    pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
+        self.avoider.detach(object)
+    }
+
     /// Records the current tick.
     pub fn record(&mut self) {
         let a = &self.output;
@@ -146,6 +160,7 @@ impl<'s> AvoidingRobot<'s> {
             size: a.reaction.size,
             path_deviation_s: a.path_deviation_s,
             rate: a.rate,
+            governed_by: a.governed_by,
         });
     }
 
@@ -207,14 +222,15 @@ impl<'s> AvoidingRobot<'s> {
 
     fn step(&mut self, cell: &Cell, clock: &ProgramClock, states: &[ChainState], t_s: f64, allowed: f64) {
         let evaded = |object: ObjectId| self.spec.objects.contains(&object);
-        let moving = cell.moving_objects.iter().map(|m| ObservedObject {
+        let is_taken = |object: &ObjectId| self.taken.contains(object);
+        let moving = cell.moving_objects.iter().filter(|m| !is_taken(&m.object)).map(|m| ObservedObject {
             object: m.object,
             in_world: m.pose(t_s),
             motion: m.motion(t_s),
             known: !evaded(m.object),
         });
         let is_fixed = |o: &&ObjectId| !cell.moving_objects.iter().any(|m| m.object == **o);
-        let fixed = self.spec.objects.iter().filter(is_fixed).map(|&object| ObservedObject {
+        let fixed = self.spec.objects.iter().filter(is_fixed).filter(|o| !is_taken(o)).map(|&object| ObservedObject {
             object,
             in_world: cell.objects[object.0].in_world,
             motion: FrameMotion::REST,
@@ -284,6 +300,13 @@ impl<'s> AvoidingRobot<'s> {
             clock.skip_move();
         }
     }
+}
+
+/// Names in the order of the keys in [`AvoiderOutput::governed_by`]: objects, then the links of all robots.
+fn obstacles(cell: &Cell) -> Vec<String> {
+    let objects = cell.objects.iter().map(|o| o.name.clone());
+    let links = cell.robots.iter().flat_map(|r| r.robot.chain.links().iter().map(|link| format!("{}/{link}", r.name)));
+    objects.chain(links).collect()
 }
 
 fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {

@@ -1,7 +1,7 @@
 //! Gripping and releasing of objects during a run.
 
 use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, FirstContacts};
@@ -33,7 +33,7 @@ impl<'a> CarriedParts<'a> {
     /// The objects in the programs' hands: those without a source of motion that a program grips.
     pub fn gripped_by_programs(cell: &Cell) -> impl Iterator<Item = ObjectId> + '_ {
         let robots = || (0..cell.robots.len()).map(RobotId);
-        let is_gripped = move |o: &ObjectId| robots().any(|r| hand::program_grips(cell, r, *o));
+        let is_gripped = move |o: &ObjectId| robots().any(|r| cell.gripped_objects(r).contains(o));
         let moves = |o: &ObjectId| cell.moving_objects.iter().any(|m| m.object == *o);
         (0..cell.objects.len()).map(ObjectId).filter(is_gripped).filter(move |o| !moves(o))
     }
@@ -54,15 +54,16 @@ impl<'a> CarriedParts<'a> {
         &self.attachments
     }
 
-    /// Grips or releases an object.
+    /// Grips or releases an object; `at` is the robot with its present tool.
     ///
     /// # Errors
     /// At the line of the step: another robot holds the object, it moves, or it is too far away.
     pub fn apply(
         &mut self,
         robot: RobotId,
-        action: GripAction,
+        action: &GripAction,
         t_s: f64,
+        at: &CellRobot,
         checker: &mut FirstContacts<'_>,
         states: &[&ChainState],
     ) -> Result<(), FormatError> {
@@ -89,34 +90,11 @@ impl<'a> CarriedParts<'a> {
             return Err(error(&format!("grips \"{name}\", which moves")).hint(hint));
         }
         let pose = checker.object_in_world(object);
-        let attachment = hand::grip(cell, robot, object, &pose, states[robot.0]).map_err(|what| {
+        let attachment = hand::grip(cell, robot, at, object, &pose, states[robot.0]).map_err(|what| {
             error(&what).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
         })?;
         checker.attach(object, attachment.clone(), states);
         (self.attachments[object.0], self.taken[object.0]) = (Some(attachment), true);
         Ok(())
     }
-}
-
-/// What is not checked of the parts that programs grip.
-pub(super) fn warnings(cell: &Cell, avoidance: bool) -> Vec<Warning> {
-    let robots = cell.robots.iter().enumerate();
-    let of_robot = |(i, robot): (usize, &CellRobot)| {
-        let grips = |o: &ObjectId| hand::program_grips(cell, RobotId(i), *o);
-        let parts: Vec<&str> =
-            (0..cell.objects.len()).map(ObjectId).filter(grips).map(|o| cell.objects[o.0].name.as_str()).collect();
-        if parts.is_empty() {
-            return None;
-        }
-        let parts = parts.join(", ");
-        let avoids = avoidance && cell.avoidance.get(i).is_some_and(Option::is_some);
-        let who = if avoids { "regions and avoidance do" } else { "regions do" };
-        let what = format!(
-            "robot \"{}\" carries {parts}: checked for collisions with objects and robots, but {who} not count it",
-            robot.name
-        );
-        let hint = "regions that are larger by what the part extends beyond the tool";
-        Some(Warning::new(&cell.file, robot.line, what).hint(hint))
-    };
-    robots.filter_map(of_robot).collect()
 }

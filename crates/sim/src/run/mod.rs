@@ -23,20 +23,21 @@ use std::time::Instant;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRegionId, Frames, ObjectMotion, OutOfReachProofs, QueryModel};
+use elbowroom_cell::{Cell, CellRegionId, CellRobot, Frames, ObjectMotion, OutOfReachProofs, QueryModel};
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp,
+    AccessClass, EventKind, Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, VirtualTcp, VolumeId,
     ZoneArbiter,
 };
-use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject, Object};
+use elbowroom_spatial::Pose;
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
-    Collision, EventRow, HoldReason, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, RunEvent,
-    Sample, TickTimes,
+    Collision, EventRow, GoverningPoint, HoldReason, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack,
+    RunEnd, RunEvent, Sample, Stop, TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
 use carried_parts::CarriedParts;
@@ -154,13 +155,13 @@ pub fn simulate_with(
         let replans = plan.has_planned_moves() && perceived.guards(RobotId(i));
         let keeps_to_plan = options.apply_override && !avoids && !replans;
         let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
-        claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(i, &setups[i], &plan, arbiter)));
+        claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(cell, RobotId(i), &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
-    notes.extend(carried_parts::warnings(cell, options.avoidance));
-    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
-    let mut run = Simulation::new(cell, options, &setups, monitors, clocks, avoiding);
+    let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
+    let mut run = Simulation::new(cell, options, &setups, &models, monitors, clocks, avoiding);
     (run.arbiter, run.claims) = (arbiter, claims);
     run.guards = obstacle_guards(cell, &perceived, &run.avoiding, &mut notes)?;
     run.perceived = Some(perceived);
@@ -237,6 +238,10 @@ struct Simulation<'a> {
     regions: RegionRecorder<'a>,
     checker: FirstContacts<'a>,
     parts: CarriedParts<'a>,
+    /// The robots with their tools as they are now.
+    present: Vec<CellRobot>,
+    /// Robots and their volumes that were released at this instant.
+    released: Vec<(usize, VolumeId)>,
     /// The objects of the last tracks, which move only in a robot's hand.
     gripped: Vec<ObjectId>,
     tracks: Vec<RobotTrack>,
@@ -258,6 +263,7 @@ impl<'a> Simulation<'a> {
         cell: &'a Cell,
         options: &'a RunOptions,
         setups: &'a [MonitorSetup],
+        models: &'a [Robot],
         monitors: Vec<Monitor>,
         clocks: Vec<ProgramClock>,
         mut avoiding: Vec<Option<AvoidingRobot<'a>>>,
@@ -266,11 +272,14 @@ impl<'a> Simulation<'a> {
         let states: Vec<_> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
         let gripped: Vec<ObjectId> = CarriedParts::gripped_by_programs(cell).collect();
         let moved = cell.moving_objects.iter().map(|m| m.object).chain(gripped.iter().copied());
-        let track = |r: &elbowroom_cell::CellRobot| RobotTrack {
+        let track = |(r, setup): (&CellRobot, &MonitorSetup)| RobotTrack {
             name: r.name.clone(),
             flange: r.robot.chain.links()[r.flange.0].clone(),
             joints: r.joint_names(),
+            parts: setup.configuration.volumes().iter().map(|v| v.name.clone()).collect(),
+            absent_links: absent_links(r).into_iter().map(|links| (0.0, links)).collect(),
             samples: Vec::new(),
+            stops: Vec::new(),
             finished: false,
             stopped_s: 0.0,
             min_override: 1.0,
@@ -279,6 +288,16 @@ impl<'a> Simulation<'a> {
             perception: None,
             ending: RobotEnding::default(),
         };
+        let mut checker = FirstContacts::new(
+            models.iter().zip(&cell.robots).map(|(model, r)| (model, r.base_in_world)).collect(),
+            &cell.objects,
+        )
+        .skipping(cell.motion_pair_rules())
+        .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>());
+        for (robot, r) in cell.robots.iter().enumerate() {
+            let absent = r.tools.iter().filter(|t| !t.mounted);
+            absent.for_each(|tool| checker.set_present(RobotId(robot), tool.link, false, &[]));
+        }
         Self {
             arbiter: None,
             claims: Vec::new(),
@@ -294,14 +313,12 @@ impl<'a> Simulation<'a> {
             frames: Frames::new(cell),
             fault_injector: fault_injection::FaultInjector::new(&options.faults, cell.robots.len()),
             regions: RegionRecorder::new(cell, setups),
-            checker: FirstContacts::new(
-                cell.robots.iter().map(|r| (&r.robot, r.base_in_world)).collect(),
-                &cell.objects,
-            )
-            .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>()),
-            tracks: cell.robots.iter().map(track).collect(),
+            checker,
+            tracks: cell.robots.iter().zip(setups).map(track).collect(),
             objects: moved.map(|o| object_track(cell, o)).collect(),
             parts: CarriedParts::new(cell),
+            present: cell.robots.clone(),
+            released: Vec::new(),
             gripped,
             checked_s: 0.0,
             stop_states: vec![StopState::default(); cell.robots.len()],
@@ -364,6 +381,10 @@ impl<'a> Simulation<'a> {
         self.update_states(t_s);
         self.perceive(t_s);
         self.declare_claims();
+        self.check_collisions(t_s);
+        // Before the monitors' ticks: these decide how fast the robot moves with what it grips.
+        self.apply_tools(t_s)?;
+        self.apply_grips(t_s)?;
         for i in 0..self.clocks.len() {
             if self.is_silent(i, t_s) { self.record_silent(i, t_s) } else { self.tick_monitor(i, t_s) }
         }
@@ -371,8 +392,54 @@ impl<'a> Simulation<'a> {
         if let Some(arbiter) = &self.arbiter {
             self.deadlocks.observe(t_s, arbiter, &self.stop_states);
         }
-        self.check_collisions(t_s);
-        self.apply_grips(t_s)
+        self.detach_released()
+    }
+
+    /// What a robot releases counts up to the instant of the release.
+    fn detach_released(&mut self) -> Result<(), FormatError> {
+        for (robot, volume) in std::mem::take(&mut self.released) {
+            let detached = self.monitors[robot].detach(volume).and_then(|()| self.regions.detach(robot, volume));
+            detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[robot].line, e.to_string()))?;
+        }
+        Ok(())
+    }
+
+    /// Makes tools active, and exchanges those that are not mounted.
+    fn apply_tools(&mut self, t_s: f64) -> Result<(), FormatError> {
+        for robot in 0..self.clocks.len() {
+            for tool in self.clocks[robot].take_tools() {
+                let before = self.present[robot].clone();
+                self.present[robot] = before.with_tool(tool);
+                self.exchange_volumes(robot, &before)?;
+                let absent = absent_links(&self.present[robot]).map(|links| (t_s, links));
+                self.tracks[robot].absent_links.extend(absent);
+                let name = self.present[robot].tools[tool].name.clone();
+                self.event(t_s, robot, &name, RunEvent::Tool);
+            }
+        }
+        Ok(())
+    }
+
+    /// Attaches and detaches the tools that were exchanged, in collisions and in regions.
+    fn exchange_volumes(&mut self, robot: usize, before: &CellRobot) -> Result<(), FormatError> {
+        let Self { cell, setups, present, monitors, regions, checker, released, states, .. } = self;
+        let states: Vec<&ChainState> = states.iter().collect();
+        let line = present[robot].line;
+        for (tool, _) in present[robot].tools.iter().zip(&before.tools).filter(|(now, old)| now.mounted != old.mounted)
+        {
+            checker.set_present(RobotId(robot), tool.link, tool.mounted, &states);
+            for (id, volume) in setups[robot].tool_volumes(tool.link) {
+                released.retain(|r| *r != (robot, id));
+                if !tool.mounted {
+                    released.push((robot, id));
+                    continue;
+                }
+                let attached = monitors[robot].attach(id, &volume.in_link);
+                let attached = attached.and_then(|()| regions.attach(robot, id, &volume.in_link));
+                attached.map_err(|e| FormatError::new(&cell.file, line, e.to_string()))?;
+            }
+        }
+        Ok(())
     }
 
     /// Takes in the pictures that are due; guarded robots replan, or are held.
@@ -385,7 +452,7 @@ impl<'a> Simulation<'a> {
                 continue;
             }
             let Some(mut guard) = self.guards[i].take() else { continue };
-            self.guard(i, &mut guard, &perceived, has_news, t_s);
+            self.keep_clear(i, &mut guard, &perceived, has_news, t_s);
             self.guards[i] = Some(guard);
         }
         if has_news {
@@ -394,7 +461,8 @@ impl<'a> Simulation<'a> {
         self.perceived = Some(perceived);
     }
 
-    fn guard(
+    /// Replans or holds a robot, so that it keeps clear of what sensors see.
+    fn keep_clear(
         &mut self,
         i: usize,
         guard: &mut ObstacleGuard<'_>,
@@ -455,18 +523,42 @@ impl<'a> Simulation<'a> {
                     late.extend(std::iter::once(action).chain(actions).map(|a| (robot, a)));
                     break;
                 }
-                self.apply_grip(robot, action, t_s)?;
+                self.apply_grip(robot, &action, t_s)?;
             }
         }
-        late.into_iter().try_for_each(|(robot, action)| self.apply_grip(robot, action, t_s))
+        late.into_iter().try_for_each(|(robot, action)| self.apply_grip(robot, &action, t_s))
     }
 
-    fn apply_grip(&mut self, robot: usize, action: GripAction, t_s: f64) -> Result<(), FormatError> {
+    fn apply_grip(&mut self, robot: usize, action: &GripAction, t_s: f64) -> Result<(), FormatError> {
         let states: Vec<&ChainState> = self.states.iter().collect();
-        self.parts.apply(RobotId(robot), action, t_s, &mut self.checker, &states)?;
+        self.parts.apply(RobotId(robot), action, t_s, &self.present[robot], &mut self.checker, &states)?;
         let (cell, event) = (self.cell, if action.grips { RunEvent::Grip } else { RunEvent::Release });
         self.event(t_s, robot, &cell.objects[action.object.0].name, event);
-        Ok(())
+        self.guard(robot, action)
+    }
+
+    /// Attaches what a robot grips to its volumes and in the avoidance of all robots, and notes which volumes are to be
+    /// detached.
+    fn guard(&mut self, robot: usize, action: &GripAction) -> Result<(), FormatError> {
+        let attachment = self.checker.attachment(action.object).cloned();
+        let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
+        for avoiding in self.avoiding.iter_mut().flatten() {
+            let applied = match &attachment {
+                Some(attachment) => avoiding.attach(action.object, attachment.clone()),
+                None => avoiding.detach(action.object),
+            };
+            applied.map_err(|e| FormatError::new(&self.cell.file, action.line, e.to_string()))?;
+        }
+        let error = |what: String| FormatError::new(&self.cell.file, action.line, what);
+        let slot = self.setups[robot].gripped_volume(action.object, action.link, &in_link);
+        let (volume, in_link) = slot.ok_or_else(|| error("grips what its monitor has no volume for".into()))?;
+        if !action.grips {
+            self.released.push((robot, volume));
+            return Ok(());
+        }
+        self.released.retain(|released| *released != (robot, volume));
+        let attached = self.monitors[robot].attach(volume, &in_link);
+        attached.and_then(|()| self.regions.attach(robot, volume, &in_link)).map_err(|e| error(e.to_string()))
     }
 
     fn declare_claims(&mut self) {
@@ -549,18 +641,37 @@ impl<'a> Simulation<'a> {
         let governs = is_governed.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
-        let distance_m = region.and(report.governing).map(|g| g.distance_m);
+        let governing = region.and(report.governing);
         // The monitor counts its own regions, a recording those of the cell.
         let in_cell = |r: RegionId| RegionId(self.setups[i].regions[r.0].0);
         let reason = if is_governed { report.reason.with_region(in_cell) } else { OverrideReason::Free };
-        self.record(i, t_s, applied, region, distance_m, reason);
+        self.record(i, t_s, applied, region, governing, reason);
         if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
             let region = region.map_or("", |r| self.cell.regions[r.0].region.name.as_str());
-            self.event(t_s, i, held_by.as_deref().unwrap_or(region), event);
+            let by = held_by.as_deref().unwrap_or(region);
+            self.event(t_s, i, by, event);
+            self.record_stop(i, t_s, by, governing, event == RunEvent::Stop);
         }
         if self.stop_states[i].stopped {
             self.tracks[i].stopped_s += self.cell.tick_s;
         }
+    }
+
+    /// Begins a stop at the region with this name (empty: at none), or ends the one that goes on.
+    fn record_stop(&mut self, i: usize, t_s: f64, region: &str, governing: Option<VirtualTcp>, begins: bool) {
+        let stops = &mut self.tracks[i].stops;
+        if !begins {
+            stops.last_mut().into_iter().for_each(|stop| stop.to_s = t_s);
+            return;
+        }
+        stops.push(Stop {
+            from_s: t_s,
+            to_s: f64::INFINITY,
+            by: (!region.is_empty()).then(|| region.to_owned()),
+            part: governing.and_then(|g| outcome::part_name(&self.setups[i].configuration, g.volume)),
+            point: governing.map(|g| g.position),
+            distance_m: governing.map(|g| g.distance_m),
+        });
     }
 
     fn log_events(&mut self, i: usize, t_s: f64) {
@@ -595,10 +706,10 @@ impl<'a> Simulation<'a> {
         t_s: f64,
         speed_override: f64,
         region: Option<CellRegionId>,
-        distance_m: Option<f64>,
+        governing: Option<VirtualTcp>,
         reason: OverrideReason,
     ) {
-        let (tcp, tcp_speed) = self.frames.tcp(RobotId(i), &self.states[i]);
+        let (tcp, tcp_speed) = self.present[i].tcp(&self.states[i]);
         // Off its path a robot does not move by its program's time.
         let off_path = self.avoiding[i].as_ref().is_some_and(|a| !a.is_on_path());
         let rate = if off_path { 1.0 } else { self.clocks[i].rate() };
@@ -612,7 +723,7 @@ impl<'a> Simulation<'a> {
             scratch.q.copy_from_slice(&self.states[i].q);
             scratch.qd.copy_from_slice(&self.clocks[i].point().dq);
             self.cell.robots[i].robot.chain.forward_motion(scratch);
-            self.frames.tcp(RobotId(i), &self.scratch[i]).1
+            self.present[i].tcp(&self.scratch[i]).1
         };
         let track = &mut self.tracks[i];
         track.min_override = track.min_override.min(speed_override);
@@ -625,7 +736,8 @@ impl<'a> Simulation<'a> {
             programmed_speed,
             speed_override,
             region,
-            distance_m,
+            distance_m: governing.map(|g| g.distance_m),
+            governing: governing.map(|g| GoverningPoint { part: g.volume.0, point: g.position }),
             reason,
         });
     }
@@ -744,6 +856,7 @@ impl<'a> Simulation<'a> {
         let mut robots = std::mem::take(&mut self.tracks);
         for (i, track) in robots.iter_mut().enumerate() {
             track.finished = self.finished(i);
+            track.stops.iter_mut().for_each(|stop| stop.to_s = stop.to_s.min(t_s));
         }
         let mut deadlocks = self.arbiter.as_ref().map_or_else(Vec::new, |arbiter| {
             self.deadlocks.finish(t_s, arbiter, self.cell, self.setups, &self.monitors)
@@ -752,6 +865,9 @@ impl<'a> Simulation<'a> {
             WaitForGraph::new(self.cell, self.setups, self.arbiter.as_deref(), &self.stop_states, &robots)
                 .cycles(&deadlocks),
         );
+        for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
+            track.avoidance = avoiding.map(AvoidingRobot::finish);
+        }
         for (i, track) in robots.iter_mut().enumerate() {
             // Collisions within one tick are found in the order of the pairs.
             track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
@@ -762,9 +878,6 @@ impl<'a> Simulation<'a> {
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
             track.ending.release = release::release(self.cell, &self.setups[i], self.arbiter.as_deref(), i, track);
-        }
-        for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
-            track.avoidance = avoiding.map(AvoidingRobot::finish);
         }
         Recording {
             cell: self.cell.name.clone(),
@@ -782,6 +895,12 @@ impl<'a> Simulation<'a> {
             tick_ns: TickTimes::of(self.tick_ns),
         }
     }
+}
+
+/// The links of the tools that are not mounted; `None` where no tool is changed.
+fn absent_links(robot: &CellRobot) -> Option<Vec<LinkId>> {
+    let absent: Vec<LinkId> = robot.tools.iter().filter(|t| !t.mounted).map(|t| t.link).collect();
+    (!absent.is_empty()).then_some(absent)
 }
 
 fn object_track(cell: &Cell, object: ObjectId) -> ObjectTrack {

@@ -1,8 +1,8 @@
 //! Outcome of each robot's run.
 
-use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp};
+use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp, VolumeId};
 
-use crate::recording::{Outcome, RobotEnding, RobotTrack};
+use crate::recording::{Outcome, PartKind, RobotEnding, RobotTrack};
 
 /// Joints that differ by less than this (rad, m) from their final values have reached them.
 const SETTLED: f64 = 1e-5;
@@ -19,11 +19,15 @@ pub(super) fn ending(
     if let Some(hit) = track.collisions.first() {
         let own = format!("{}/", track.name);
         let (part, by) = if hit.a.starts_with(&own) { (&hit.a, &hit.b) } else { (&hit.b, &hit.a) };
+        let part = part.strip_prefix(&own).map(str::to_owned);
+        // The tool is a solid of the flange.
+        let is_link = |name: &String| configuration.chain().link(name).is_some();
         return RobotEnding {
             outcome: Outcome::Collided,
             stopped_at_s: if track.finished { None } else { stopped_at(track) },
             by: Some(by.clone()),
-            part: part.strip_prefix(&own).map(str::to_owned),
+            part_kind: part.as_ref().map(|p| if is_link(p) { PartKind::Link } else { PartKind::Load }),
+            part,
             point: None,
             release: None,
         };
@@ -39,14 +43,22 @@ pub(super) fn ending(
     };
     let point = governing.filter(|_| region.is_some());
     let held_by = track.perception.as_ref().and_then(|p| p.ends_held.as_ref()).map(|(_, by)| by.as_str());
+    let obstacle = track.samples.len().checked_sub(1).and_then(|last| track.governing_obstacle(last));
+    let volume = point.and_then(|p| configuration.volumes().get(p.volume.0));
     RobotEnding {
         outcome,
         stopped_at_s: stopped_at(track),
-        by: region.or(held_by).map(str::to_owned),
-        part: point.and_then(|p| configuration.volumes().get(p.volume.0)).map(|v| v.name.clone()),
+        by: region.or(held_by).or(obstacle).map(str::to_owned),
+        part: volume.map(|v| v.name.clone()),
+        part_kind: volume.map(|v| v.part.into()),
         point: point.map(|p| p.position),
         release: None,
     }
+}
+
+/// The name of a guarded volume: that of a link, or `tool`, `load`, `tcp`.
+pub(super) fn part_name(configuration: &Configuration, volume: VolumeId) -> Option<String> {
+    configuration.volumes().get(volume.0).map(|v| v.name.clone())
 }
 
 /// Since when the robot is at its final configuration, s; `None` where it was still moving.

@@ -1,10 +1,9 @@
 //! Recording of the regions during a run.
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::trajectory::volume_motion_bounds;
-use elbowroom_cell::{Cell, CellRegionId, Frames};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep};
+use elbowroom_monitor::{AttachError, Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
@@ -61,7 +60,7 @@ struct TickDistances {
 
 impl<'a> RegionRecorder<'a> {
     pub fn new(cell: &'a Cell, setups: &'a [MonitorSetup]) -> Self {
-        let tracks = cell.regions.iter().map(|r| track(&r.region, r.follow.is_some())).collect();
+        let tracks = cell.regions.iter().map(track).collect();
         let observers = setups
             .iter()
             .enumerate()
@@ -91,6 +90,23 @@ impl<'a> RegionRecorder<'a> {
         let of_region = self.observers.iter_mut().filter(|o| o.region == region);
         of_region.for_each(|o| (o.measured, o.before_m) = (None, None));
         true
+    }
+
+    /// Attaches a volume of a robot, as its monitor does.
+    pub fn attach(&mut self, robot: usize, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
+        self.forget(robot);
+        self.sweeps[robot].attach(&self.setups[robot].configuration, volume, in_link)
+    }
+
+    /// Detaches a volume of a robot.
+    pub fn detach(&mut self, robot: usize, volume: VolumeId) -> Result<(), AttachError> {
+        self.forget(robot);
+        self.sweeps[robot].detach(&self.setups[robot].configuration, volume)
+    }
+
+    /// Measured distances are those of the volumes that were attached.
+    fn forget(&mut self, robot: usize) {
+        self.observers.iter_mut().filter(|o| o.robot.0 == robot).for_each(|o| o.measured = None);
     }
 
     /// Observes one tick and the motion to it, after the monitors' ticks.
@@ -203,19 +219,15 @@ fn span(since: &mut Option<f64>, now: bool, t_s: f64, robot: RobotId, spans: &mu
     }
 }
 
-/// Per joint the motion bound of all guarded volumes; joints without influence are left out.
-pub(super) fn motion_bounds(setup: &MonitorSetup) -> Vec<(usize, f64)> {
-    let motion_bounds = volume_motion_bounds(setup.configuration.chain(), setup.configuration.volumes());
-    motion_bounds.into_iter().enumerate().filter(|(_, bound)| *bound != 0.0).collect()
-}
-
-fn track(r: &elbowroom_monitor::Region, moves: bool) -> RegionTrack {
+fn track(region: &CellRegion) -> RegionTrack {
+    let (r, moves) = (&region.region, region.follow.is_some());
     let pose: Pose = r.anchor * r.shape_in_anchor;
     RegionTrack {
         name: r.name.clone(),
         kind: r.kind.into(),
         life: r.life,
         guards: r.guards,
+        robots: region.robots.clone(),
         warning_m: r.warning_m,
         shape: r.shape.clone(),
         poses: if moves { RegionPoses::Moving(Vec::new()) } else { RegionPoses::Fixed(pose) },

@@ -30,7 +30,8 @@ pub(super) fn release(
         Outcome::Stopped => match (last.region, last.reason) {
             (Some(region), _) => Some(from_region(cell, setup, region)),
             (None, OverrideReason::Fault(_)) => Some("the input of the monitor is valid again".to_owned()),
-            _ => None,
+            // Avoidance stopped it.
+            _ => track.ending.by.as_ref().map(|obstacle| format!("{obstacle} moves away")),
         },
     }
 }

@@ -1,17 +1,19 @@
 //! Claims of exchange regions: the regions that a program occupies without leaving all of them in between. They are
 //! computed before the run and declared to the zone arbiter during it, so that it grants in an order without deadlocks.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 
+use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::trajectory::Playback;
-use elbowroom_kinematics::ChainState;
+use elbowroom_cell::trajectory::{Playback, volume_motion_bounds};
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Region, RegionKind, RobotSlot, SlotId, Volume, ZoneArbiter};
 use elbowroom_proximity::within;
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::{Aabb, Pose};
 
-use super::region_recorder::motion_bounds;
-use crate::motion::{PlanStep, ProgramClock, ProgramPlan, Segment};
+use crate::motion::{HeldObjects, PlanStep, ProgramClock, ProgramPlan, Segment};
 
 /// Sampling step of programs, s of program time.
 const STEP_S: f64 = 0.01;
@@ -48,15 +50,26 @@ pub(super) struct ZoneClaims {
 }
 
 impl ZoneClaims {
-    /// The claims of a plan; `None` where fewer than two slots exist, or regions move.
-    pub fn of_plan(robot: usize, setup: &MonitorSetup, plan: &ProgramPlan, arbiter: &ZoneArbiter) -> Option<Self> {
+    /// The claims of a plan; `None` where fewer than two slots exist, regions move, or where an object will be in the hand is not
+    /// known in advance.
+    pub fn of_plan(
+        cell: &Cell,
+        robot: RobotId,
+        setup: &MonitorSetup,
+        plan: &ProgramPlan,
+        arbiter: &ZoneArbiter,
+    ) -> Option<Self> {
         let fixed = |r: &Region| r.follow.is_none();
         let exchanged = |r: &&Region| matches!(r.kind, RegionKind::Exchange { .. });
         let regions = setup.configuration.regions();
         if arbiter.slots() < 2 || arbiter.slots() > 63 || !regions.iter().filter(exchanged).all(fixed) {
             return None;
         }
-        let mut zones = ZoneTester::new(setup);
+        let mut held = HeldObjects::default();
+        let mut now = Cow::Borrowed(cell);
+        let mut flange = cell.robots[robot.0].flange;
+        let mut zones = ZoneTester::new(setup, cell.volumes_holding(robot, &[]));
+        let mut here = plan.start.clone();
         let mut occupied: Vec<ClaimStage> = Vec::new();
         let mut slots = zones.slots(&plan.start, 0.0);
         let mut evaluated: Vec<EvaluatedMove> = Vec::new();
@@ -65,21 +78,35 @@ impl ZoneClaims {
                 PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
                 PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
                 _ => {
+                    match what {
+                        PlanStep::Grip(action) => held.apply(action),
+                        PlanStep::Tool(tool) => {
+                            now = Cow::Owned(now.with_tool(robot, *tool));
+                            flange = now.robots[robot.0].flange;
+                        }
+                        _ => {}
+                    }
+                    if let PlanStep::Grip(_) | PlanStep::Tool(_) = what {
+                        zones.set_volumes(now.volumes_holding(robot, &held.attachments()?));
+                        slots |= zones.slots(&here, 0.0);
+                    }
                     occupied.push(ClaimStage { step, from_s: 0.0, slots });
                     continue;
                 }
             };
-            let index = evaluated.iter().position(|k| k.key == key && k.before == slots).unwrap_or_else(|| {
+            let is_same = |k: &EvaluatedMove| k.key == key && k.before == slots && k.held == held && k.flange == flange;
+            let index = evaluated.iter().position(is_same).unwrap_or_else(|| {
                 let (occupations, after) = zones.occupations(duration, slots, &|t| at(what, t));
-                evaluated.push(EvaluatedMove { key, before: slots, occupations, after });
+                evaluated.push(EvaluatedMove { key, before: slots, held: held.clone(), flange, occupations, after });
                 evaluated.len() - 1
             });
             let EvaluatedMove { occupations, after, .. } = &evaluated[index];
             occupied.extend(occupations.iter().map(|o| ClaimStage { step, from_s: o.from_s, slots: o.slots }));
             slots = *after;
+            here = what.end().unwrap_or(here);
         }
         occupied.push(ClaimStage { step: plan.steps.len(), from_s: 0.0, slots });
-        Some(Self { robot: RobotSlot(robot), stages: claims_of(occupied), declared: None })
+        Some(Self { robot: RobotSlot(robot.0), stages: claims_of(occupied), declared: None })
     }
 
     /// Declares the claims at the position of the clock.
@@ -127,6 +154,9 @@ struct EvaluatedMove {
     key: *const (),
     /// Slots at its start.
     before: u64,
+    held: HeldObjects,
+    /// Link of the active tool.
+    flange: LinkId,
     occupations: Vec<Occupation>,
     /// Slots at its end.
     after: u64,
@@ -143,6 +173,8 @@ struct PlacedRegion<'a> {
 /// Finds the warning zones that a configuration is in.
 struct ZoneTester<'a> {
     setup: &'a MonitorSetup,
+    /// The guarded volumes, with the objects that the robot holds.
+    volumes: Vec<Volume>,
     state: ChainState,
     /// Index of a joint, and its motion bound.
     motion_bounds: Vec<(usize, f64)>,
@@ -151,19 +183,28 @@ struct ZoneTester<'a> {
 }
 
 impl<'a> ZoneTester<'a> {
-    fn new(setup: &'a MonitorSetup) -> Self {
+    fn new(setup: &'a MonitorSetup, volumes: Vec<Volume>) -> Self {
         let place = |r: &'a Region| {
             let RegionKind::Exchange { slot } = r.kind else { return None };
             let in_world = r.anchor * r.shape_in_anchor;
             Some(PlacedRegion { slot, region: r, in_world, bounds: r.shape.aabb(&in_world) })
         };
         let configuration = &setup.configuration;
-        Self {
+        let mut tester = Self {
             setup,
+            volumes: Vec::new(),
             state: ChainState::new(configuration.chain()),
-            motion_bounds: motion_bounds(setup),
+            motion_bounds: Vec::new(),
             regions: configuration.regions().iter().filter_map(place).collect(),
-        }
+        };
+        tester.set_volumes(volumes);
+        tester
+    }
+
+    fn set_volumes(&mut self, volumes: Vec<Volume>) {
+        let bounds = volume_motion_bounds(self.setup.configuration.chain(), &volumes);
+        self.motion_bounds = bounds.into_iter().enumerate().filter(|(_, bound)| *bound != 0.0).collect();
+        self.volumes = volumes;
     }
 
     /// Occupations over a motion of this duration that begins with `slots`, and the slots at its end. A robot occupies
@@ -218,7 +259,7 @@ impl<'a> ZoneTester<'a> {
         self.state.q.copy_from_slice(q);
         configuration.chain().forward(&mut self.state);
         let in_world = |v: &Volume| *configuration.base_in_world() * self.state.link_in_root(v.link) * v.in_link;
-        let volumes: Vec<(&Volume, Pose)> = configuration.volumes().iter().map(|v| (v, in_world(v))).collect();
+        let volumes: Vec<(&Volume, Pose)> = self.volumes.iter().map(|v| (v, in_world(v))).collect();
         let boxes: Vec<Aabb> = volumes.iter().map(|(v, pose)| v.shape.aabb(pose)).collect();
         let mut slots = 0;
         for PlacedRegion { slot, region, in_world, bounds } in &self.regions {

@@ -1,15 +1,16 @@
 //! Boxes of joint space, halved until each is free or blocked.
 
 use elbowroom_validity::lanes::{LANES, detected_simd_level};
-use fearless_simd::{Level as SimdLevel, dispatch};
+use fearless_simd::{Level as SimdLevel, SimdBase, dispatch};
 
 use super::axis_roles::AxisRoles;
 use super::cell_bits::{CellBits, CellBox};
 use super::cover_class::CoverClass;
 use super::group_test::{BoxTest, NearGroup};
-use super::kernel::HalfWidths;
+use super::kernel::{GroupPlace, HalfWidths, Target, gaps};
 use super::obstacle_lanes::ObstacleLanes;
 use super::place_memo::PlaceMemo;
+use super::solid_core::SolidCore;
 use super::step_chain::Step;
 use super::witnesses::Witnesses;
 
@@ -75,6 +76,49 @@ impl<'a> BoxDivision<'a> {
                 }
             }
         }
+    }
+
+    /// True where a cell, by its number on each axis, is not proven free.
+    pub fn may_touch(&mut self, cell: [usize; 3]) -> bool {
+        let (lane, others) = (cell[self.roles.lanes], self.roles.others.map(|axis| cell[axis]));
+        (0..self.classes.len()).any(|number| {
+            let class = &self.classes[number];
+            self.places.start(class);
+            self.witnesses = Witnesses::none(class);
+            let others = [0, 1].map(|k| if class.uses[k] { others[k] } else { 0 });
+            let boxes = 1 << (lane % LANES);
+            self.pairs.clear();
+            let pair = |&group: &u32| NearGroup { group, element: 0, boxes, balls: 0xffff };
+            self.pairs.extend(class.roots.iter().map(pair));
+            let known = self.assess(number, Boxes { level: 0, others, group: lane / LANES, probes: !0 }, 0);
+            self.left.clear();
+            known.contact != 0
+        })
+    }
+
+    /// Number of a class and of a root group of it, for all links.
+    pub fn roots(&self) -> Vec<(usize, u32)> {
+        let of_class =
+            |(class, covers): (usize, &CoverClass)| covers.roots.iter().map(move |&root| (class, root)).collect();
+        self.classes.iter().enumerate().flat_map(|all| -> Vec<_> { of_class(all) }).collect()
+    }
+
+    /// Distance of a group's balls from the centre of the obstacle at the centre of a cell, less their radii, m.
+    pub fn distance_from_centre(&self, class: usize, group: u32, cell: [usize; 3]) -> f32 {
+        let covers = &self.classes[class];
+        let level = &covers.levels[0];
+        let others = [0, 1].map(|k| if covers.uses[k] { cell[self.roles.others[k]] } else { 0 });
+        let (balls, frames) = (&covers.groups[group as usize], level.frames(others));
+        let pose = &self.obstacle.poses[0][cell[self.roles.lanes]];
+        let target = Target { core: SolidCore::Point, centre: self.obstacle.elements[0].centre, reach: 0.0 };
+        let half = HalfWidths { lanes: 0.0, lanes_turn: false, others: [0.0; 2] };
+        let simd_level = self.simd_level;
+        let gaps = dispatch!(simd_level, simd => {
+            let mut place = GroupPlace::ZERO;
+            place.compute(simd, balls, &covers.paths[balls.path as usize], frames, half);
+            gaps(simd, balls, &place, pose, &target).to_array()
+        });
+        gaps[..balls.lanes.count_ones() as usize].iter().copied().fold(f32::INFINITY, f32::min)
     }
 
     /// Divides boxes; the pairs in question are those from `from` on.

@@ -1,5 +1,6 @@
 //! Builds layers of a robot's map on covers.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_proximity::Shape;
@@ -18,8 +19,11 @@ use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
 use super::planar_arm_map::PlanarArmMap;
+use super::seeds::seeds;
+use super::slice_map::{RingSector, SliceDivision, SliceMotions};
 use super::step_chain::StepChain;
-use crate::{Grid, Layer, RowSpan};
+use crate::seed_expansion::expand;
+use crate::{Grid, Layer, ObstacleModel, RowSpan, SeedExpansion};
 
 /// Slack of covers as a share of the robot's reach, and its limits, m.
 const SLACK_SHARE: f64 = 0.0018;
@@ -65,6 +69,8 @@ pub struct CoverMapBuilder {
     steps: StepChain,
     classes: Vec<CoverClass>,
     planar: Option<PlanarArmMap>,
+    /// Made for the first slices.
+    slice_motions: OnceLock<SliceMotions>,
     slack_m: f64,
 }
 
@@ -122,7 +128,8 @@ impl CoverMapBuilder {
             })
             .collect();
         let classes = classes(&covered, &steps, grid, &roles);
-        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slack_m, exact })
+        let slice_motions = OnceLock::new();
+        Ok(Self { grid: grid.clone(), roles, steps, classes, planar, slice_motions, slack_m, exact })
     }
 
     /// The grid.
@@ -161,12 +168,7 @@ impl CoverMapBuilder {
     /// A pose that is not finite, or too far away.
     pub fn layer(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<Layer, RobotMapError> {
         obstacle.validate_place(in_world)?;
-        if self.exact.has_static_solids()
-            && self.exact.is_blocked_throughout(&[PlacedObstacle::new(&obstacle.shape, in_world)?])
-        {
-            return Ok(full(&self.grid));
-        }
-        if let Some(layer) = self.planar.as_ref().and_then(|planar| planar.layer(&obstacle.shape, in_world)) {
+        if let Some(layer) = self.layer_of_shape(ObstacleModel::Exact, &obstacle.shape, in_world)? {
             return Ok(layer);
         }
         let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
@@ -174,6 +176,80 @@ impl CoverMapBuilder {
         let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
         division.run();
         Ok(division.bits.to_layer(self.grid.shape()))
+    }
+
+    /// The cells that [`ObstacleModel::Slices`] of a solid block: one slice, without the joint nearest the base, copied to the
+    /// values of that joint at which the links can be at the solid. The solid needs no preparation.
+    ///
+    /// Half spaces, which have no bounds, and all solids where the joint nearest the base slides, block what they do themselves.
+    ///
+    /// # Errors
+    /// A shape with NaN or infinite numbers, a pose that is not finite, or too far away.
+    pub fn slice_layer(&self, shape: &Shape, in_world: &Pose) -> Result<Layer, RobotMapError> {
+        if shape.validate().is_err() || !in_world.is_finite() {
+            return Err(RobotMapError::InvalidPlacement("an obstacle".into()));
+        }
+        let turning = self.steps.steps.first().filter(|first| first.turns);
+        let (Some(first), false) = (turning, matches!(shape, Shape::HalfSpace(_))) else {
+            return self.layer(&self.obstacle(shape)?, in_world);
+        };
+        if let Some(layer) = self.layer_of_shape(ObstacleModel::Slices, shape, in_world)? {
+            return Ok(layer);
+        }
+        let reach_m = self.classes.iter().map(|class| class.reach_m).fold(0.0, f64::max);
+        let sector = RingSector::new(shape, in_world, first, reach_m);
+        let sector = sector.ok_or_else(|| RobotMapError::InvalidPlacement("an obstacle".into()))?;
+        let motions = self.slice_motions();
+        let axis = &self.grid.axes()[self.roles.lanes];
+        let mut division = SliceDivision::new(sector, &self.classes, motions, self.roles, first, axis);
+        division.run();
+        Ok(division.bits.to_layer(self.grid.shape()))
+    }
+
+    /// Blocks cells by expansion from seeds, the method of S2, section IV: from cells at which a link is nearest to the obstacle's
+    /// centre, neighbours are tested until no free neighbour of a blocked cell is untested; cells between two blocked neighbours
+    /// on opposite sides are blocked without a test.
+    ///
+    /// **Not conservative.** No cell beside a blocked one is missed, but parts of the blocked cells in which there is no seed are:
+    /// an arm that reaches the obstacle with two links, or over its back, has several. The result is no [`Layer`], so that no map
+    /// that guards takes it.
+    ///
+    /// # Errors
+    /// A pose that is not finite, or too far away.
+    pub fn expand_from_seeds(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<SeedExpansion, RobotMapError> {
+        obstacle.validate_place(in_world)?;
+        let shape = self.grid.shape();
+        let Some(first) = self.steps.steps.first() else { return Ok(expand(shape, [], |_| false)) };
+        let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles);
+        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
+        let counts = self.roles.counts;
+        let seeds = seeds(&mut division, counts);
+        // Cells beyond one turn repeat those of the turn.
+        Ok(expand(shape, seeds, |cell| division.may_touch([0, 1, 2].map(|k| usize::from(cell[k]) % counts[k]))))
+    }
+
+    /// Computes once what all slices need of the robot; [`slice_layer`](Self::slice_layer) does it where that was left out.
+    pub fn prepare_slices(&self) {
+        self.slice_motions();
+    }
+
+    fn slice_motions(&self) -> &SliceMotions {
+        self.slice_motions
+            .get_or_init(|| self.classes.iter().map(|class| class.motions_in_slice(&self.steps, &self.roles)).collect())
+    }
+
+    /// The layer of a solid that needs no division: one that touches what no axis moves, or one of an arm in a plane.
+    fn layer_of_shape(
+        &self,
+        model: ObstacleModel,
+        shape: &Shape,
+        in_world: &Pose,
+    ) -> Result<Option<Layer>, RobotMapError> {
+        if self.exact.has_static_solids() && self.exact.is_blocked_throughout(&[PlacedObstacle::new(shape, in_world)?])
+        {
+            return Ok(Some(full(&self.grid)));
+        }
+        Ok(self.planar.as_ref().and_then(|planar| planar.layer(model, shape, in_world)))
     }
 }
 

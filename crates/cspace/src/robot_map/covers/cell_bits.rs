@@ -41,6 +41,16 @@ impl CellBits {
         }
     }
 
+    /// Sets the same cells of the axis in lanes in a box of the two others, ends excluded and cells beyond the axes left out.
+    pub fn add_lanes(&mut self, lanes: &[u64], others: [[usize; 2]; 2]) {
+        let counts = self.roles.other_counts();
+        for i in others[0][0]..others[0][1].min(counts[0]) {
+            for j in others[1][0]..others[1][1].min(counts[1]) {
+                self.row_mut([i, j]).iter_mut().zip(lanes).for_each(|(word, add)| *word |= add);
+            }
+        }
+    }
+
     /// Sets some of sixteen cells of a row, all within the axis.
     #[inline]
     pub fn set_sixteen(&mut self, others: [usize; 2], group: usize, lanes: u32) {

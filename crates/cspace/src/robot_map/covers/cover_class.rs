@@ -168,26 +168,22 @@ impl CoverClass {
 
     /// Adds the bounds of the motions in boxes of these half widths.
     fn add_motions(&mut self, steps: &StepChain, paths: &[&[usize]], half: &[f64; 3]) {
-        let reach = std::cell::Cell::new(self.reach_m);
-        let motion = |path: u32, centre: [f32; 3]| {
-            let path = paths[path as usize];
-            let [x, y, z] = centre.map(f64::from);
-            let levers = steps.lever_arms(path, Vec3::new(x, y, z));
-            reach.set(levers.iter().copied().fold(reach.get(), f64::max));
-            steps.motion(path, &levers, half)
-        };
-        let of_group = |group: &CoverGroup| {
-            let mut bounds = GroupMotion { paths: Row::ZERO, curvatures: Row::ZERO };
-            for lane in 0..group.lanes.count_ones() as usize {
-                let found = motion(group.path, group.centre(lane));
-                bounds.paths.0[lane] = (found.path_m as f32).next_up();
-                bounds.curvatures.0[lane] = (found.curvature_m as f32).next_up();
-            }
-            bounds
-        };
-        let motions = self.groups.iter().map(of_group).collect();
+        let of_group = |group: &CoverGroup| group.motion(steps, paths[group.path as usize], half);
+        let (motions, reaches): (Vec<GroupMotion>, Vec<f64>) = self.groups.iter().map(of_group).unzip();
         self.motions.push(motions);
-        self.reach_m = reach.get();
+        self.reach_m = reaches.into_iter().fold(self.reach_m, f64::max);
+    }
+
+    /// Bounds of the motions in boxes of each level where the axis in lanes does not move, per level and group.
+    pub fn motions_in_slice(&self, steps: &StepChain, roles: &AxisRoles) -> Vec<Vec<GroupMotion>> {
+        let path = |path: &CoverPath| path.steps.iter().map(|step| step.step as usize).collect();
+        let paths: Vec<Vec<usize>> = self.paths.iter().map(path).collect();
+        let of_level = |level: &BlockLevel| {
+            let mut half = level.half;
+            half[roles.lanes] = 0.0;
+            self.groups.iter().map(|group| group.motion(steps, &paths[group.path as usize], &half).0).collect()
+        };
+        self.levels.iter().map(of_level).collect()
     }
 
     /// The level of the largest boxes.
@@ -218,6 +214,21 @@ impl CoverGroup {
         self.lanes |= 1 << lane;
         self.leaves |= u32::from(below == LEAF) << lane;
         self.largest = self.largest.max(radius);
+    }
+
+    /// Bounds of the motions of its balls by the joints of a path in a box of these half widths, and the largest lever arm, m.
+    fn motion(&self, steps: &StepChain, path: &[usize], half: &[f64; 3]) -> (GroupMotion, f64) {
+        let mut bounds = GroupMotion { paths: Row::ZERO, curvatures: Row::ZERO };
+        let mut reach_m = 0.0;
+        for lane in 0..self.lanes.count_ones() as usize {
+            let [x, y, z] = self.centre(lane).map(f64::from);
+            let levers = steps.lever_arms(path, Vec3::new(x, y, z));
+            reach_m = levers.iter().copied().fold(reach_m, f64::max);
+            let found = steps.motion(path, &levers, half);
+            bounds.paths.0[lane] = (found.path_m as f32).next_up();
+            bounds.curvatures.0[lane] = (found.curvature_m as f32).next_up();
+        }
+        (bounds, reach_m)
     }
 
     pub fn centre(&self, lane: usize) -> [f32; 3] {

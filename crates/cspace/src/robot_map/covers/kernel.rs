@@ -26,9 +26,9 @@ pub(super) struct HalfWidths {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroupPlace {
     /// m.
-    centres: PointRow,
+    pub centres: PointRow,
     /// Displacements by half the box along the two axes that are not in lanes, to first order, m.
-    along: [PointRow; 2],
+    pub along: [PointRow; 2],
 }
 
 impl GroupPlace {

@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::super::driven_chain::{DrivenChain, DrivingJoint};
 use super::super::rigid_groups::RigidGroup;
 use super::obstacle::box_of;
-use crate::{ConvexObstacle, Grid, GridAxis, Layer, PlanarArm, PlanarMapBuilder};
+use crate::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleModel, PlanarArm, PlanarMapBuilder};
 
 /// Largest cosine between axes that count as perpendicular, sine between those that count as parallel, and distance of points from the plane that count as none, m.
 const ANGLE_TOLERANCE: f64 = 1e-9;
@@ -78,8 +78,8 @@ impl PlanarArmMap {
         Some(Self { builder: Arc::new(Mutex::new(builder)), base_in_world: base, reversed })
     }
 
-    /// The cells that a convex obstacle blocks; `None` for others.
-    pub fn layer(&self, shape: &Shape, in_world: &Pose) -> Option<Layer> {
+    /// The cells that a model of a convex obstacle blocks; `None` for others.
+    pub fn layer(&self, model: ObstacleModel, shape: &Shape, in_world: &Pose) -> Option<Layer> {
         let in_base = self.base_in_world.inverse() * *in_world;
         let obstacle = match shape {
             Shape::Sphere(s) => ConvexObstacle::sphere(in_base.translation, s.radius),
@@ -92,7 +92,8 @@ impl PlanarArmMap {
             Shape::Capsule(_) | Shape::Cylinder(_) | Shape::HalfSpace(_) => return None,
         };
         let mut layer = Layer::new();
-        self.builder.lock().unwrap_or_else(PoisonError::into_inner).build_layer(&obstacle.ok()?, &mut layer);
+        let mut builder = self.builder.lock().unwrap_or_else(PoisonError::into_inner);
+        model.build_layer(&mut builder, &obstacle.ok()?, &mut layer);
         if let Some(count) = self.reversed {
             for span in &mut layer.spans {
                 (span.first, span.last) = (count - 1 - span.last.min(count - 1), count - 1 - span.first);

@@ -1,0 +1,90 @@
+//! The maps of a robot without the links that may touch an object.
+
+use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_kinematics::LinkId;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
+
+use super::solids_map::SolidsMap;
+
+/// What fills the maps of a robot: one of all its links, and one for each set of links that may not touch an object.
+pub(super) struct LinkMaps {
+    /// Of all links.
+    first: SolidsMap,
+    /// Others, without the colliders of some links.
+    others: Vec<(Vec<LinkId>, SolidsMap)>,
+    /// Per object: index of its map, where 0 is the first; `None` where all links may touch it.
+    of_object: Vec<Option<usize>>,
+}
+
+impl LinkMaps {
+    pub(super) fn new<E>(
+        cell: &Cell,
+        robot: RobotId,
+        build: impl Fn(&CellRobot) -> Result<SolidsMap, E>,
+    ) -> Result<Self, E> {
+        let at = &cell.robots[robot.0];
+        let mut maps = Self { first: build(at)?, others: Vec::new(), of_object: Vec::new() };
+        for object in (0..cell.objects.len()).map(ObjectId) {
+            let map = match links_that_may_touch(cell, robot, object) {
+                None => None,
+                Some(links) if links.is_empty() => Some(0),
+                Some(links) => Some(match maps.others.iter().position(|(known, _)| *known == links) {
+                    Some(known) => known + 1,
+                    None => {
+                        let solids = build(&without_colliders(at, &links))?;
+                        maps.others.push((links, solids));
+                        maps.others.len()
+                    }
+                }),
+            };
+            maps.of_object.push(map);
+        }
+        Ok(maps)
+    }
+
+    /// The map of all links.
+    pub(super) fn first(&self) -> &SolidsMap {
+        &self.first
+    }
+
+    /// The map of all links, where it is that of every object.
+    pub(super) fn of_every_link(&self) -> Option<&SolidsMap> {
+        self.of_object.iter().all(|map| *map == Some(0)).then_some(&self.first)
+    }
+
+    /// The map of an object; `None` where all links may touch it, so that it blocks nothing.
+    pub(super) fn of(&self, object: ObjectId) -> Option<&SolidsMap> {
+        self.of_object[object.0].map(|map| self.map(map))
+    }
+
+    /// Every map with its objects.
+    pub(super) fn each(&self) -> impl Iterator<Item = (&SolidsMap, Vec<ObjectId>)> {
+        (0..=self.others.len()).map(move |map| {
+            let objects = (0..self.of_object.len()).filter(move |o| self.of_object[*o] == Some(map));
+            (self.map(map), objects.map(ObjectId).collect())
+        })
+    }
+
+    fn map(&self, index: usize) -> &SolidsMap {
+        if index == 0 { &self.first } else { &self.others[index - 1].1 }
+    }
+}
+
+/// The links that may touch an object by the cell's file of pairs; `None` where all of them may.
+fn links_that_may_touch(cell: &Cell, robot: RobotId, object: ObjectId) -> Option<Vec<LinkId>> {
+    let may_touch = |link: &LinkId| {
+        let link = GeometryId::Link { robot, link: *link };
+        cell.pair_rules.skipped(link, GeometryId::Object(object)).is_some()
+    };
+    let all: Vec<LinkId> = cell.robots[robot.0].robot.links_with_colliders().collect();
+    let some: Vec<LinkId> = all.iter().copied().filter(may_touch).collect();
+    (some.is_empty() || some.len() < all.len()).then_some(some)
+}
+
+fn without_colliders(robot: &CellRobot, links: &[LinkId]) -> CellRobot {
+    let mut robot = robot.clone();
+    for link in links {
+        robot.robot.colliders[link.0].clear();
+    }
+    robot
+}

@@ -1,0 +1,56 @@
+//! What a map takes for an object.
+
+use std::str::FromStr;
+
+use elbowroom_cspace::ObstacleModel;
+
+/// What a map takes for an object (S2, sections II to V).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapModel {
+    /// Solids that enclose it: no cell is missed.
+    Solids(ObstacleModel),
+    /// The object itself, its cells by expansion from seeds: parts of them are missed.
+    Seeds,
+}
+
+impl MapModel {
+    /// True where every cell in which the robot can touch the object is blocked.
+    pub fn is_conservative(self) -> bool {
+        self != Self::Seeds
+    }
+}
+
+impl Default for MapModel {
+    fn default() -> Self {
+        Self::Solids(ObstacleModel::default())
+    }
+}
+
+impl From<ObstacleModel> for MapModel {
+    fn from(model: ObstacleModel) -> Self {
+        Self::Solids(model)
+    }
+}
+
+impl FromStr for MapModel {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        match word {
+            "seeds" => Ok(Self::Seeds),
+            _ => word
+                .parse()
+                .map(Self::Solids)
+                .map_err(|e: elbowroom_cspace::UnknownObstacleModel| format!("{e}, or seeds")),
+        }
+    }
+}
+
+impl std::fmt::Display for MapModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Solids(model) => model.fmt(f),
+            Self::Seeds => f.write_str("seeds"),
+        }
+    }
+}

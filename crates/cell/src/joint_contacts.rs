@@ -1,0 +1,61 @@
+//! Links that always touch where they are joined: `run` and `plan` leave them out, with a warning.
+
+use elbowroom_formats::Warning;
+use elbowroom_robot::{GeometryId, JointContact, Robot, RobotId, joint_contacts};
+use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
+
+use crate::{Cell, CellRobot};
+
+/// What is found in a cell, with the warnings that say so.
+pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Warning>) {
+    let (mut rules, mut warnings) = (PairRules::default(), Vec::new());
+    for (i, r) in cell.robots.iter().enumerate() {
+        let robot = RobotId(i);
+        for found in of_robot(r) {
+            let [one, other] = [found.a, found.b].map(|link| GeometryId::Link { robot, link });
+            // The file of pairs says whether they are tested.
+            if cell.pair_rules.decide(one, other) {
+                continue;
+            }
+            let [a, b] = [one, other].map(Selection::from);
+            rules.extend([PairRule { a, b, edit: PairEdit::Skip(reason(&r.robot, &found)) }]);
+            warnings.push(warning(cell, r, &found));
+        }
+    }
+    (rules, warnings)
+}
+
+/// Those of a robot. Tool and load are part of the link that carries them: where they touch another link in any sample, that
+/// pair is not found.
+fn of_robot(r: &CellRobot) -> Vec<JointContact> {
+    let mut found = joint_contacts(&r.robot, &r.start);
+    if !found.is_empty() && r.payload().next().is_some() {
+        let without = joint_contacts(&r.without_payload(), &r.start);
+        found.retain(|contact| without.contains(contact));
+    }
+    found
+}
+
+fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
+    let [a, b] = names(&robot.robot, found);
+    let what = format!(
+        "robot \"{}\": links `{a}` and `{b}` touch {}: `run` and `plan` do not test this pair, `query` does",
+        robot.name,
+        reason(&robot.robot, found)
+    );
+    let hint = format!("ignore = [[\"{a}\", \"{b}\"]] in its table, if they are built so; then no verb tests them");
+    Warning::new(&cell.file, robot.line, what).hint(hint)
+}
+
+/// Where and how often two links touch.
+pub(crate) fn reason(robot: &Robot, found: &JointContact) -> String {
+    let joint = &robot.chain.joints()[found.joint.0].name;
+    let (samples, radius_mm) = (found.samples, (found.farthest_m.1 * 1e3).ceil());
+    format!(
+        "in all {samples} states sampled in the joint space, and only at `{joint}` (within {radius_mm} mm of its origin)"
+    )
+}
+
+fn names<'r>(robot: &'r Robot, found: &JointContact) -> [&'r str; 2] {
+    [found.a, found.b].map(|link| robot.chain.links()[link.0].as_str())
+}

@@ -1,0 +1,65 @@
+//! Changes of the active tool of a robot, and of the tool on a flange.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::Presence;
+use elbowroom_robot::{Robot, RobotId};
+use elbowroom_spatial::Vec3;
+
+use crate::{Cell, CellRobot, CellTool};
+
+impl CellRobot {
+    /// The robot after the step `{ tool = … }`: this tool is active. One that is not mounted takes the place of the tool on its
+    /// flange. The same robot for an index that it does not have.
+    #[must_use]
+    pub fn with_tool(&self, index: usize) -> Self {
+        let mut robot = self.clone();
+        let Some(CellTool { flange, link, tcp_in_link, mounted, .. }) = self.tools.get(index) else { return robot };
+        (robot.flange, robot.tcp_in_flange) = (*link, *tcp_in_link);
+        if !mounted {
+            robot.tools.iter_mut().filter(|t| t.flange == *flange).for_each(|t| t.mounted = false);
+            robot.tools[index].mounted = true;
+        }
+        for tool in &robot.tools {
+            robot.robot.colliders[tool.link.0] = tool.collider.iter().filter(|_| tool.mounted).cloned().collect();
+        }
+        robot
+    }
+
+    /// The robot with the colliders of all its tools, mounted or not.
+    pub fn with_all_tools(&self) -> Robot {
+        let mut robot = self.robot.clone();
+        for tool in &self.tools {
+            robot.colliders[tool.link.0] = tool.collider.iter().cloned().collect();
+        }
+        robot
+    }
+
+    /// Whether a tool is always there: where the tools of its flange are all mounted, none is changed.
+    pub(crate) fn presence(&self, tool: &CellTool) -> Presence {
+        let is_changed = self.tools.iter().any(|t| t.flange == tool.flange && !t.mounted);
+        match (is_changed, tool.mounted) {
+            (false, _) => Presence::Always,
+            (true, true) => Presence::Attached,
+            (true, false) => Presence::Detached,
+        }
+    }
+
+    /// Tool centre point in the world (m) and its speed (m/s).
+    pub fn tcp(&self, state: &ChainState) -> (Vec3, f64) {
+        let flange_in_root = state.link_in_root(self.flange);
+        let offset = flange_in_root.transform_vector(self.tcp_in_flange.translation);
+        let tcp_in_root = flange_in_root * self.tcp_in_flange;
+        let speed = state.link_motion(self.flange).velocity_at(offset).length();
+        ((self.base_in_world * tcp_in_root).translation, speed)
+    }
+}
+
+impl Cell {
+    /// The cell after the step `{ tool = … }` of a robot: [`CellRobot::with_tool`].
+    #[must_use]
+    pub fn with_tool(&self, robot: RobotId, index: usize) -> Self {
+        let mut cell = self.clone();
+        cell.robots[robot.0] = self.robots[robot.0].with_tool(index);
+        cell
+    }
+}

@@ -1,0 +1,41 @@
+//! `elbowroom plan --report`: the page of a run in which robots play their paths.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use elbowroom::cell::{Cell, Program, ProgramBody, TrajectoryRow, Travel};
+use elbowroom::report::{self, ReportScene};
+use elbowroom::robot::RobotId;
+use elbowroom::sim::RunOptions;
+
+use crate::output::{Failure, cannot_write};
+use crate::run::with_progress;
+
+/// A robot and the samples of its path: s, and rad or m.
+pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);
+
+/// Writes the page. As in the plan, all other robots stay at their start, and objects where they are then; the monitor slows
+/// nothing down, so that the times are those of the plan.
+pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<(), Failure> {
+    let mut cell = cell.clone();
+    cell.programs.iter_mut().for_each(|program| *program = None);
+    cell.avoidance.iter_mut().for_each(|avoidance| *avoidance = None);
+    cell.moving_objects.clear();
+    for encoder in &mut cell.encoders {
+        let (at_m, _) = encoder.at(0.0);
+        encoder.travel = Travel::Constant { at_m, speed: 0.0, start_s: 0.0, end_s: 0.0 };
+    }
+    for (robot, rows) in paths {
+        let Some((_, first)) = rows.first() else { continue };
+        cell.robots[robot.0].start.clone_from(first);
+        let rows = rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+        let line = cell.robots[robot.0].line;
+        let body = ProgramBody::Trajectory(rows);
+        cell.programs[robot.0] = Some(Program { speed_override: 1.0, repeat: 1, body, line });
+    }
+    let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };
+    let played = with_progress(&cell, &options)?.recording;
+    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+    report::write_html(file, &ReportScene::of_cell(&cell), &[("plan", &played)]).map_err(cannot_write(path))
+}

@@ -1,0 +1,45 @@
+//! What the options of `elbowroom plan` say of a path.
+
+use std::time::Duration;
+
+use elbowroom::analysis::plan;
+use elbowroom::cell::{Cell, suggest};
+use elbowroom::planner::RrtConnectSettings;
+
+use crate::args::{Configuration, PlanArgs};
+use crate::output::Failure;
+
+/// Time limit, clearance and seed.
+pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
+    RrtConnectSettings {
+        time_limit: Duration::from_secs_f64(args.time_limit),
+        clearance_m: args.clearance,
+        seed: args.seed,
+        ..RrtConnectSettings::default()
+    }
+}
+
+/// The values of a configuration of a robot, or of the only one that was named, rad or m.
+pub(crate) fn configuration(
+    args: &PlanArgs,
+    cell: &Cell,
+    robot: Option<&str>,
+    given: &Configuration,
+) -> Result<Vec<f64>, Failure> {
+    let (_, robot) = plan::select_robot(cell, robot.or(args.robot.first().map(String::as_str)))?;
+    match given {
+        Configuration::Values(q) if args.cell_units => Ok(robot.joint_values_from_units(q, cell.units)),
+        Configuration::Values(q) => Ok(q.clone()),
+        Configuration::Named(name) => {
+            let start = (name == "start").then_some(&robot.start[..]);
+            robot.state(name).or(start).map(<[f64]>::to_vec).ok_or_else(|| {
+                let known = robot.states.iter().map(|(name, _)| name.as_str());
+                let hint = suggest::hint(name, known);
+                Failure::Wrong(format!(
+                    "robot \"{}\" has no state \"{name}\"\n  write: {hint}   (states = {{ {name} = […] }} in [robot.{}])",
+                    robot.name, robot.name
+                ))
+            })
+        }
+    }
+}

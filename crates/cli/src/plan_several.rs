@@ -1,0 +1,104 @@
+//! `elbowroom plan` for several robots that move at the same time.
+
+use std::fmt::Write;
+use std::fs::File;
+use std::io::BufWriter;
+
+use elbowroom::analysis::plan::{
+    RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several, select_robot,
+};
+use elbowroom::cell::Cell;
+
+use crate::args::PlanArgs;
+use crate::output::{ExitStatus, Failure, cannot_write, print, print_json};
+use crate::plan_report::{self, PlayedPath};
+use crate::plan_request::{configuration, settings};
+
+pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> {
+    let request = SeveralPathsRequest { robots: robots(cell, args)?, options: settings(args), period_s: args.period };
+    let answer = plan_several(cell, &request)?;
+    if let Some(path) = args.out.as_ref().filter(|_| answer.found) {
+        let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+        answer.write_csv(file).map_err(cannot_write(path))?;
+    }
+    if let Some(path) = args.report.as_ref().filter(|_| answer.found) {
+        plan_report::write(path, cell, played(cell, &answer)?)?;
+    }
+    if args.json {
+        print_json(&answer)?;
+    } else {
+        print(&text(&answer))?;
+        if let Some(path) = args.out.as_ref().filter(|_| answer.found) {
+            print(&format!("\n{} rows in {}\n", answer.rows.len(), path.display()))?;
+        }
+    }
+    Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
+}
+
+/// The columns of each robot.
+fn played(cell: &Cell, answer: &SeveralPathsAnswer) -> Result<Vec<PlayedPath>, Failure> {
+    let mut first = 0;
+    let of_robot = |path: &RobotPath| {
+        let (id, _) = select_robot(cell, Some(&path.robot))?;
+        let columns = first..first + path.joints.len();
+        first = columns.end;
+        let rows = answer.rows.iter().map(|(t_s, q)| (*t_s, q[columns.clone()].to_vec())).collect();
+        Ok((id, rows))
+    };
+    answer.robots.iter().map(of_robot).collect()
+}
+
+/// The options of each robot, in the order in which they are written.
+fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure> {
+    let count = args.robot.len();
+    let wrong = |what: String| {
+        let example = "--robot a --from start --to q,… --robot b --from q,… --to NAME";
+        Err(Failure::Wrong(format!("{what}\n  write: {example}")))
+    };
+    if args.to_pose.is_some() || args.optimize {
+        let option = if args.optimize { "--optimize" } else { "--to-pose" };
+        return wrong(format!("{option} is for one robot, and there are {count}"));
+    }
+    if args.to.len() != count {
+        return wrong(format!("--to is given {} times for {count} robots: each needs a goal", args.to.len()));
+    }
+    if !args.from.is_empty() && args.from.len() != count {
+        return wrong(format!(
+            "--from is given {} times for {count} robots: for all of them, or for none",
+            args.from.len()
+        ));
+    }
+    let one = |(i, robot): (usize, &String)| {
+        let of_robot = |given| configuration(args, cell, Some(robot), given);
+        let from = args.from.get(i).map(of_robot).transpose()?;
+        Ok(RobotPathRequest { robot: robot.clone(), from, to: of_robot(&args.to[i])? })
+    };
+    args.robot.iter().enumerate().map(one).collect()
+}
+
+/// The table for the terminal. Writing to a String cannot fail.
+fn text(answer: &SeveralPathsAnswer) -> String {
+    let Some(duration_s) = answer.duration_s else {
+        return format!("{}\n", answer.reason.as_deref().unwrap_or("no paths found"));
+    };
+    let width = answer.robots.iter().map(|r| r.robot.chars().count()).max().unwrap_or(0).max(5);
+    let milliseconds = answer.planning_us as f64 / 1000.0;
+    let mut out = format!(
+        "{} robots at the same time, {duration_s:.3} s, planned in {milliseconds:.1} ms\n\n",
+        answer.robots.len()
+    );
+    let _ = write!(out, "  {:<width$} {:>9} {:>9} {:>11} {:>12}", "robot", "starts", "ends", "stretches", "length");
+    for r in &answer.robots {
+        let legs = r.waypoints.len().saturating_sub(1);
+        let _ = write!(
+            out,
+            "\n  {:<width$} {:>7.3} s {:>7.3} s {legs:>11} {:>8.4} rad",
+            r.robot, r.start_s, r.end_s, r.cost_rad
+        );
+        if !r.regions.is_empty() {
+            let _ = write!(out, "   stays out of {}", r.regions.join(", "));
+        }
+    }
+    out.push('\n');
+    out
+}

@@ -1,0 +1,105 @@
+//! Spheres around the parts of an obstacle, more and smaller ones until a deadline (S2, section VI.C), for any robot.
+
+use std::time::Instant;
+
+use elbowroom_proximity::Shape;
+use elbowroom_spatial::Pose;
+
+use super::covers::CoverMapBuilder;
+use super::error::RobotMapError;
+use crate::obstacle_model::MAX_SPHERES;
+use crate::{Layer, ObstacleModel};
+
+/// The cells that spheres around the parts of an obstacle block: first one sphere, then 2, 4, 8 …
+///
+/// Each refinement only frees cells: its cells are intersected with those of fewer spheres, and both hold all cells that the
+/// obstacle blocks. One that the deadline interrupts is discarded. [`spheres_until`](crate::spheres_until) is the same for an
+/// arm of capsules in a plane.
+///
+/// ```
+/// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints, SphereRefinement};
+/// use elbowroom_proximity::{Cuboid, Shape};
+/// use elbowroom_robot::example;
+/// use elbowroom_spatial::{Pose, Vec3};
+/// use std::time::{Duration, Instant};
+/// let robot = example::arm()?;
+/// let grid = Grid::new(["a", "b", "c"].map(|name| GridAxis::from_degrees(name, -90.0, 90.0, 5.0).unwrap()))?;
+/// let settings = CoverMapSettings::default();
+/// let builder = CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], RemainingJoints::Swept, settings)?;
+/// let beam = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.4, 0.1) });
+/// let deadline = Instant::now() + Duration::from_millis(5);
+/// let mut spheres = SphereRefinement::new(&builder, &beam, Pose::from_translation(Vec3::new(0.7, 0.0, 0.7)), 64)?;
+/// while spheres.refine(deadline)? {}
+/// assert!(spheres.spheres() >= 1 && spheres.spheres() <= 64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct SphereRefinement<'b> {
+    builder: &'b CoverMapBuilder,
+    shape: &'b Shape,
+    in_world: Pose,
+    most: u32,
+    spheres: u32,
+    layer: Layer,
+}
+
+impl<'b> SphereRefinement<'b> {
+    /// One sphere around an obstacle, placed in the world, to become at most so many. Half spaces stay as they are, and so do
+    /// spheres.
+    ///
+    /// # Errors
+    /// As [`CoverMapBuilder::obstacle`] and [`CoverMapBuilder::layer`].
+    pub fn new(
+        builder: &'b CoverMapBuilder,
+        shape: &'b Shape,
+        in_world: Pose,
+        most: u32,
+    ) -> Result<Self, RobotMapError> {
+        let is_final = matches!(shape, Shape::HalfSpace(_) | Shape::Sphere(_));
+        let most = if is_final { 1 } else { most.min(MAX_SPHERES) };
+        let mut first = Self { builder, shape, in_world, most, spheres: 1, layer: Layer::new() };
+        // Without a deadline there is always a layer.
+        first.layer = first.layer_of(1, None)?.unwrap_or_default();
+        Ok(first)
+    }
+
+    /// Twice as many spheres, unless there would be too many or the deadline passes. The time is
+    /// checked between two spheres only: one that is begun is finished. False where nothing changed.
+    ///
+    /// # Errors
+    /// As [`CoverMapBuilder::layer`].
+    pub fn refine(&mut self, deadline: Instant) -> Result<bool, RobotMapError> {
+        if self.spheres.saturating_mul(2) > self.most {
+            return Ok(false);
+        }
+        let Some(finer) = self.layer_of(self.spheres * 2, Some(deadline))? else { return Ok(false) };
+        self.layer.intersect(&finer, self.builder.grid().shape()[2]);
+        self.spheres *= 2;
+        Ok(true)
+    }
+
+    /// Number of parts that have a sphere, empty ones included.
+    pub fn spheres(&self) -> u32 {
+        self.spheres
+    }
+
+    /// The cells.
+    pub fn into_layer(self) -> Layer {
+        self.layer
+    }
+
+    /// The cells of so many spheres; `None` where the deadline passes.
+    fn layer_of(&self, count: u32, deadline: Option<Instant>) -> Result<Option<Layer>, RobotMapError> {
+        let base = self.builder.base_in_world();
+        let mut whole = Layer::new();
+        for (shape, in_world) in ObstacleModel::Spheres(count).solids(self.shape, &self.in_world, &base) {
+            if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                return Ok(None);
+            }
+            let layer = self.builder.layer(&self.builder.obstacle(&shape)?, &in_world)?;
+            whole.spans.extend_from_slice(&layer.spans);
+        }
+        whole.spans.sort_unstable();
+        Ok(Some(whole))
+    }
+}

@@ -1,0 +1,146 @@
+//! A map as one page with a slider over its slices.
+
+use std::io::{self, Write};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use elbowroom_analysis::map::CellMap;
+use elbowroom_cell::Units;
+use elbowroom_cspace::GridAxis;
+use serde_json::{Value, json};
+
+use crate::palette;
+use crate::tables::escape;
+
+const PAGE: &str = include_str!("../assets/map/page.html");
+
+/// Most cells of a page: a browser holds one byte per cell.
+pub const MAX_PAGE_CELLS: usize = 1 << 26;
+/// Most objects that have a number of their own.
+const MAX_OBJECTS: usize = 255;
+
+/// Writes one page that opens offline: slices across any of three joints, chosen by a slider, with the axes in the units of the
+/// cell. Of more than three joints the first and the last two are shown, the others at the middle of their ranges.
+///
+/// # Errors
+/// More than [`MAX_PAGE_CELLS`] cells on the three axes, more than 255 objects, and errors of `out`.
+pub fn write(mut out: impl Write, map: &CellMap, units: Units) -> io::Result<()> {
+    let shown = shown_axes(map.axes.len());
+    let counts = shown.map(|axis| axis.map_or(1, |axis| map.axes[axis].count()));
+    if counts.iter().product::<usize>() > MAX_PAGE_CELLS || map.obstacles.len() > MAX_OBJECTS {
+        let what = format!(
+            "{} cells and {} objects are too many for a page",
+            counts.iter().product::<usize>(),
+            map.obstacles.len()
+        );
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    let data = json!({
+        "joints": map.axes.len(),
+        "axes": shown.map(|axis| axis.map_or_else(no_axis, |axis| axis_data(&map.axes[axis], map.is_angle[axis], units))),
+        "objects": map.obstacles.iter().enumerate().map(|(i, o)| json!({
+            "name": o.name,
+            "colour": palette::of_index(i),
+            "share": (1e4 * o.blocks.blocked() as f64 / map.cells().max(1) as f64).round() / 100.0,
+        })).collect::<Vec<_>>(),
+        "cells": STANDARD.encode(packed_cells(map, shown, counts)),
+    });
+    let title = format!("Joint-space map of {}", escape(&map.robot));
+    // `</script>` within a name would end the script.
+    let data = data.to_string().replace('<', "\\u003c");
+    let page = PAGE.replace("TITLE", &title).replace("SUMMARY", &summary(map, shown)).replace("/*DATA*/null", &data);
+    out.write_all(page.as_bytes())?;
+    out.flush()
+}
+
+/// The first axis and the last two, as far as there are so many.
+fn shown_axes(count: usize) -> [Option<usize>; 3] {
+    match count {
+        0 => [None; 3],
+        1 => [None, None, Some(0)],
+        2 => [None, Some(0), Some(1)],
+        _ => [Some(0), Some(count - 2), Some(count - 1)],
+    }
+}
+
+fn no_axis() -> Value {
+    json!({ "joint": "", "unit": "", "min": 0, "step": 1, "count": 1 })
+}
+
+/// An axis in the units of the cell.
+fn axis_data(axis: &GridAxis, is_angle: bool, units: Units) -> Value {
+    let (scale, unit) = if is_angle {
+        (1.0 / units.angle.to_radians(1.0), units.angle.symbol())
+    } else {
+        (1.0 / units.length.to_metres(1.0), units.length.symbol())
+    };
+    json!({
+        "joint": axis.joint(),
+        "unit": unit,
+        "min": axis.min() * scale,
+        "step": axis.step() * scale,
+        "count": axis.count(),
+    })
+}
+
+fn summary(map: &CellMap, shown: [Option<usize>; 3]) -> String {
+    let share = 100.0 * map.blocked as f64 / map.cells().max(1) as f64;
+    let held =
+        (0..map.axes.len()).filter(|axis| !shown.contains(&Some(*axis))).map(|axis| escape(map.axes[axis].joint()));
+    let held: Vec<String> = held.collect();
+    let held =
+        if held.is_empty() { String::new() } else { format!("; {} at the middle of the range", held.join(", ")) };
+    format!("{} cells, {share:.2} % of them blocked: in these the robot can touch an object{held}.", map.cells())
+}
+
+/// The number of the first object that blocks each cell, 0 for none, as runs: each a number of object + (objects + 1) · length,
+/// in groups of seven bits, the lowest first.
+fn packed_cells(map: &CellMap, shown: [Option<usize>; 3], counts: [usize; 3]) -> Vec<u8> {
+    let mut cell: Vec<u16> = map.axes.iter().map(|a| (a.count() / 2) as u16).collect();
+    let kinds = map.obstacles.len() as u64 + 1;
+    let mut packed = Vec::new();
+    let (mut kind, mut length) = (0, 0);
+    for i in 0..counts[0] {
+        for j in 0..counts[1] {
+            for k in 0..counts[2] {
+                for (axis, value) in shown.into_iter().zip([i, j, k]) {
+                    if let Some(axis) = axis {
+                        cell[axis] = value as u16;
+                    }
+                }
+                let first = map.obstacles.iter().position(|o| o.blocks.is_blocked_cell(&cell));
+                let next = first.map_or(0, |first| first as u64 + 1);
+                if next != kind {
+                    push_number(&mut packed, kind + kinds * length);
+                    (kind, length) = (next, 0);
+                }
+                length += 1;
+            }
+        }
+    }
+    push_number(&mut packed, kind + kinds * length);
+    packed
+}
+
+fn push_number(packed: &mut Vec<u8>, mut number: u64) {
+    while number >= 128 {
+        packed.push((number & 127) as u8 | 128);
+        number >>= 7;
+    }
+    packed.push(number as u8);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::push_number;
+
+    #[test]
+    fn numbers_are_read_back() {
+        for number in [0, 1, 127, 128, 300, 16_383, 16_384, u64::from(u32::MAX) * 3] {
+            let mut packed = Vec::new();
+            push_number(&mut packed, number);
+            let read = packed.iter().rev().fold(0, |sum, byte| sum << 7 | u64::from(byte & 127));
+            assert!(read == number && packed.iter().rev().skip(1).all(|byte| byte & 128 != 0), "{number}");
+        }
+    }
+}
