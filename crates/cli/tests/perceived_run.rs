@@ -286,7 +286,11 @@ struct Score {
     seen: usize,
     contained: usize,
     false_alarms: usize,
+    /// Errors of the centres, smallest first.
     centres_m: Vec<f64>,
+    /// Errors of the centres before the camera knows the kind, and with it the height: the centre is then that of what the object
+    /// hides of the floor, which the view from one side moves outwards.
+    of_unknown_height_m: Vec<f64>,
 }
 
 fn score(records: &[Value], leaves_s: f64) -> Score {
@@ -306,7 +310,9 @@ fn score(records: &[Value], leaves_s: f64) -> Score {
         score.due += 1;
         let Some(near) = near else { continue };
         score.seen += 1;
-        score.centres_m.push((centre(near) - truth).length());
+        let knows_height = near["height_m"].as_f64().unwrap() < 2.0 * SIZE[2];
+        let errors = if knows_height { &mut score.centres_m } else { &mut score.of_unknown_height_m };
+        errors.push((centre(near) - truth).length());
         let corner = |p: &Value| Point2::new(p[0].as_f64().unwrap(), p[1].as_f64().unwrap());
         let outline: Vec<Point2> = near["outline_m"].as_array().unwrap().iter().map(corner).collect();
         let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
@@ -344,6 +350,9 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     println!("{sensors}: recall {} of {}, wholly contained {}", score.seen, score.due, score.contained);
     println!("{sensors}: false alarms {}", score.false_alarms);
     println!("{sensors}: centre error median {:.0} mm, worst {:.0} mm", centre(0.5), centre(1.0));
+    let unknown = &score.of_unknown_height_m;
+    let worst_unknown_m = unknown.iter().copied().fold(0.0, f64::max);
+    println!("{sensors}: before the height is known: {} frames, worst {:.0} mm", unknown.len(), worst_unknown_m * 1e3);
     let ms = |key: &str| sensor["processing_ns"][key].as_f64().unwrap() / 1e6;
     println!("{sensors}: frame to motion median {:.1} ms, worst {:.1} ms", ms("p50"), ms("max"));
     println!(
@@ -355,7 +364,9 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     println!("{sensors}: region entered {}, least distance {} m", hoist["entered"], hoist["min_distance_m"]);
     assert!(robot["outcome"] == "finished", "{robot}");
     assert!(score.due > 60 && score.seen == score.due && score.contained == score.due, "{score:?}");
-    assert!(score.false_alarms == 0 && centre(1.0) < 150.0, "{score:?}");
+    assert!(score.false_alarms == 0 && centre(1.0) < 50.0, "{score:?}");
+    // Twelve pictures, 0.5 s, at most; each contains the crate.
+    assert!(unknown.len() <= 12 && worst_unknown_m < 0.25, "{unknown:?}");
     assert!(p["replans_in_motion"].as_u64().unwrap() + p["replans_from_rest"].as_u64().unwrap() > 0, "{p}");
     assert!(events(dir).contains(",kr,,replan"), "{}", events(dir));
     // The points are 20 mm apart: no point of the surface is farther from one of them than 15 mm.

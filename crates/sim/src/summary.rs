@@ -149,7 +149,8 @@ pub struct HoldSummary {
 impl From<&PerceptionTrack> for PerceptionSummary {
     fn from(track: &PerceptionTrack) -> Self {
         let count = |in_motion| track.replans.iter().filter(|r| r.in_motion == in_motion).count();
-        let time = |reason| track.holds.iter().filter(|h| h.reason == reason).map(|h| h.to_s - h.from_s).sum::<f64>();
+        let time =
+            |reason| track.holds.iter().filter(|h| h.reason == reason).fold(0.0, |sum, h| sum + h.to_s - h.from_s);
         let hold = |h: &Hold| HoldSummary { from_s: h.from_s, to_s: h.to_s, reason: h.reason, by: h.by.clone() };
         Self {
             replans_in_motion: count(Some(true)),

@@ -51,7 +51,7 @@ impl<'a> ObstacleGuard<'a> {
     /// # Errors
     /// [`FormatError`] where the scene refuses the cell.
     pub fn new(cell: &'a Cell, robot: RobotId) -> Result<Self, FormatError> {
-        let model = QueryModel { objects: Vec::new(), ..QueryModel::of_cell(cell) };
+        let model = QueryModel { objects: Vec::new(), ..QueryModel::for_motion(cell) };
         Ok(Self {
             robot,
             base: model.scene(OutOfReachProofs::Omit)?,
@@ -151,14 +151,18 @@ impl<'a> ObstacleGuard<'a> {
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());
         let mut pairs = checker.between(Selection::Robot(self.robot), Selection::Objects);
         let options = SweepOptions { clearance_m: CLEARANCE_M, ..SweepOptions::default() };
-        let hit = pairs.sweep_path(&placed.state, self.robot, &ahead.polyline(), &options)?;
-        Ok(hit.map(|(corner, hit)| {
+        let path = ahead.polyline();
+        let Some((_, hit)) = pairs.sweep_path(&placed.state, self.robot, &path, &options)? else { return Ok(None) };
+        // It stops where the search for another path can still start.
+        let options = SweepOptions { clearance_m: path_replanner::CLEARANCE_M + CLEARANCE_M, ..options };
+        let near = pairs.sweep_path(&placed.state, self.robot, &path, &options)?;
+        Ok(near.map(|(corner, near)| {
             let object = [hit.a, hit.b].into_iter().find_map(|id| match id {
                 GeometryId::Object(o) => placed.perceived(o),
                 GeometryId::Link { .. } => None,
             });
             let by = object.map_or_else(String::new, |i| surroundings.perceived[i].name.clone());
-            BlockedPath { free_until_s: ahead.time_before(corner, hit.time), by }
+            BlockedPath { free_until_s: ahead.time_before(corner, near.time), by }
         }))
     }
 

@@ -27,6 +27,9 @@ const TIME_LIMIT_S: u64 = 1;
 /// Paths keep this distance from everything, m: more than the check of paths asks for, so that noise of the outlines does not
 /// block them at once.
 pub(super) const CLEARANCE_M: f64 = 0.02;
+/// A robot that rests nearer to something than that, because it could not stop earlier, leaves with this distance, m: more than
+/// the check of paths asks for.
+const CLEARANCE_AT_REST_M: f64 = 6e-3;
 /// Shares of each warning zone that paths keep from a region, in the order in which they are tried: so much of the override
 /// remains.
 const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
@@ -108,9 +111,11 @@ impl<'a> PathReplanner<'a> {
         };
         let mut placed = surroundings.everything(base, solids).ok()?;
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
-        let motion = WARNING_SHARES
-            .into_iter()
-            .find_map(|share| self.search(&placed, &departure, &goal, &limits, regions(share)))?;
+        let clearances = if is_moving { &[CLEARANCE_M][..] } else { &[CLEARANCE_M, CLEARANCE_AT_REST_M] };
+        let tried = clearances.iter().flat_map(|clearance_m| WARNING_SHARES.map(|share| (*clearance_m, share)));
+        let motion = tried.into_iter().find_map(|(clearance_m, share)| {
+            self.search(&placed, &departure, &goal, &limits, (clearance_m, regions(share)))
+        })?;
         let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
         let play = Rc::new(Playback::new(rows, &self.motion_bounds));
         if !is_moving {
@@ -136,7 +141,7 @@ impl<'a> PathReplanner<'a> {
         departure: &Departure,
         goal: &[f64],
         limits: &KinematicLimits,
-        constraint: Option<RegionConstraint<'_>>,
+        (clearance_m, constraint): (f64, Option<RegionConstraint<'_>>),
     ) -> Option<TimedMotion> {
         let PlacedScene { scene, state, .. } = placed;
         let mut exact = RrtConnect::new(scene, self.robot).ok()?;
@@ -146,28 +151,28 @@ impl<'a> PathReplanner<'a> {
         let settings = RrtConnectSettings {
             time_limit: Duration::from_secs(TIME_LIMIT_S),
             max_states: MAX_STATES,
-            clearance_m: CLEARANCE_M,
+            clearance_m,
             ..RrtConnectSettings::default()
         };
         let tick_s = self.tick_s;
-        let Some(model) = self.cover_model(scene, state) else {
+        let Some(model) = self.cover_model(scene, state, clearance_m) else {
             // A link without bounds cannot be covered; the exact scene plans for it.
             let path = exact.plan(state, goal, &settings).ok()?;
             let path = with_departure(path, departure);
             let motion = exact.time_parametrize(state, &path, limits, tick_s, &settings).ok()?;
             return TimedMotion::of(&motion, tick_s).ok();
         };
-        let obstacles = CoverObstacles::new(model, scene, state, CLEARANCE_M);
+        let obstacles = CoverObstacles::new(model, scene, state, clearance_m);
         let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
         let path = planner.plan(state, goal, &settings).ok()?;
         let path = with_departure(path, departure);
         planner.time_parametrize(state, &path, limits, tick_s, &settings).ok()
     }
 
-    fn cover_model(&mut self, scene: &Scene, state: &SceneState) -> Option<&CoverModel> {
-        if !self.model.as_ref().is_some_and(|m| m.serves(scene, state, CLEARANCE_M)) {
+    fn cover_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) -> Option<&CoverModel> {
+        if !self.model.as_ref().is_some_and(|m| m.serves(scene, state, clearance_m)) {
             let covers = CoverCache::of_user();
-            self.model = CoverModel::with_covers(scene, state, self.robot, CLEARANCE_M, &covers).ok();
+            self.model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &covers).ok();
         }
         self.model.as_ref()
     }
