@@ -250,7 +250,7 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
     points
 }
 
-/// Smallest distance (m) of the arm to the crate over a run, and when: at every tick, at every point of its surface.
+/// Smallest distance (m) of the arm to the crate over a run, and when: at every fourth tick, at every point of its surface.
 fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
     let points = surface_points(robot);
     let mut state = ChainState::new(&robot.chain);
