@@ -6,7 +6,11 @@ use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneError, SweepOptions};
 
+use crate::border::BorderQuery;
 use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
+use crate::escape_check::EscapeClearance;
+use crate::escape_search::{EscapeSearch, EscapeTick};
+use crate::escape_trajectory::EscapeStart;
 use crate::joint_command::JointCommand;
 use crate::joint_limit::{
     JointLimit, arrival_speed, brake, distance_s, progress, speed_fraction, stop_s, update_bounds,
@@ -18,8 +22,8 @@ use crate::reversal_limiter::ReversalLimiter;
 use crate::state_machine::{StateMachine, TickSummary};
 use crate::sweep_check::{SweepCheck, VelocitySegment};
 use crate::{
-    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, ObstacleKind, ProximityPair, Reaction,
-    ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
+    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, EscapeState, ObstacleKind, ProximityPair,
+    Reaction, ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
 };
 
 /// Override below which the robot is stopped.
@@ -49,6 +53,8 @@ pub struct Avoider<'s> {
     query: ProximityQuery<'s>,
     controller: ReactiveController,
     sweep: SweepCheck,
+    escapes: EscapeSearch<'s>,
+    border: BorderQuery,
     reversals: ReversalLimiter,
     limits: Vec<JointLimit>,
     settings: AvoiderSettings,
@@ -110,6 +116,8 @@ impl<'s> Avoider<'s> {
         Ok(Self {
             controller: ReactiveController::new(chain, &speeds, rules, settings.reactive),
             sweep: SweepCheck::new(scene),
+            escapes: EscapeSearch::new(scene, robot, q, settings.escape),
+            border: BorderQuery::new(n),
             query,
             reversals: ReversalLimiter::new(n, settings.min_reversal_interval_s),
             machine: StateMachine::new(settings.stall_timeout_s),
@@ -133,7 +141,8 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// As [`SceneState::attach_at`](elbowroom_scene::SceneState::attach_at).
     pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
-        self.query.attach(object, attachment)
+        self.query.attach(object, attachment.clone())?;
+        Ok(self.escapes.attach(object, attachment)?)
     }
 
     /// Detaches an object: it is an obstacle again, where it is now.
@@ -141,7 +150,8 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// It is not attached.
     pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
-        self.query.detach(object)
+        let in_world = self.query.detach(object)?;
+        Ok(self.escapes.detach(object, in_world)?)
     }
 
     /// The commanded joint values, rad or m.
@@ -187,10 +197,27 @@ impl<'s> Avoider<'s> {
         obstacles: &DynamicObstacles<'_>,
         speed_override: f64,
     ) -> Result<AvoiderOutput, AvoidanceError> {
+        self.tick_constrained(dt, reference, obstacles, speed_override, None)
+    }
+
+    /// As [`tick`](Self::tick), with a constraint on what leaves the path, such as regions in which a monitor
+    /// stops the robot: its border is a row of the least squares, and escapes keep it.
+    ///
+    /// # Errors
+    /// As [`tick`](Self::tick).
+    pub fn tick_constrained(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        obstacles: &DynamicObstacles<'_>,
+        speed_override: f64,
+        mut constraint: Option<&mut dyn PathConstraint>,
+    ) -> Result<AvoiderOutput, AvoidanceError> {
         let valid = self.check_call(dt, reference);
         let begin = Instant::now();
         if let Err(error) = valid.and_then(|()| self.query.update_scene(&self.command.q, obstacles)) {
             self.machine.fail();
+            self.escapes.reset();
             self.command.stop();
             return Err(error);
         }
@@ -198,15 +225,24 @@ impl<'s> Avoider<'s> {
         let sensed = Instant::now();
         let allowed = if speed_override >= MIN_OVERRIDE { speed_override.min(1.0) } else { 0.0 };
         let objective = Objective::of(self.machine.state());
-        let mut correction = self.correct(dt, reference, allowed, objective);
+        let border = constraint.as_mut().map(|c| &mut **c as &mut dyn PathConstraint);
+        let mut correction = self.correct(dt, reference, allowed, objective, border);
         let corrected = Instant::now();
         let braked = !correction.is_reference && self.check(dt, reference, obstacles, objective, &mut correction);
         let checked = Instant::now();
+        let escape = self.keep_escape(dt, reference, obstacles, allowed, constraint, &mut correction);
+        let escaped = Instant::now();
         let reference_q = correction.is_reference.then_some(reference.q);
         self.command.advance(dt, &self.workspace.next, &self.limits, reference_q);
         self.reversals.record(&self.command.qd, self.limits.iter().map(|l| l.speed), dt);
-        let times = StageTimes { sense: sensed - begin, correct: corrected - sensed, check: checked - corrected };
-        let output = AvoiderOutput { reaction: correction.reaction, braked, times, ..AvoiderOutput::default() };
+        let times = StageTimes {
+            sense: sensed - begin,
+            correct: corrected - sensed,
+            check: checked - corrected,
+            escape: escaped - checked,
+        };
+        let braked = braked && escape != EscapeState::Escaping;
+        let output = AvoiderOutput { reaction: correction.reaction, braked, escape, times, ..AvoiderOutput::default() };
         Ok(self.conclude(dt, reference, allowed, correction.progress, output))
     }
 
@@ -272,7 +308,14 @@ impl<'s> Avoider<'s> {
     }
 
     /// Writes the next velocity to the workspace.
-    fn correct(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, objective: Objective) -> Correction {
+    fn correct(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        allowed: f64,
+        objective: Objective,
+        constraint: Option<&mut dyn PathConstraint>,
+    ) -> Correction {
         self.update_bounds(dt);
         self.update_desired(dt, reference, allowed, objective);
         if allowed == 0.0 {
@@ -294,7 +337,14 @@ impl<'s> Avoider<'s> {
         let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
         let (chain, state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
         let task = VelocityTask { desired, bounds, mode: objective.mode(reference) };
-        let reaction = self.controller.react(chain, state, &task, pairs, next);
+        let s = &self.settings.reactive;
+        let reach_m = FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
+        let border = match constraint {
+            // Without an obstacle the robot follows what was planned with the border.
+            Some(c) if pairs.iter().any(|p| p.obstacle.may_move()) => self.border.near(c, &self.command.q, reach_m),
+            _ => None,
+        };
+        let reaction = self.controller.react_within(chain, state, &task, pairs, border, next);
         let progress = progress(next, desired, &self.limits);
         self.command.intent.copy_from_slice(next);
         let is_trapped = self.is_stalled() && progress < MIN_PROGRESS && reaction.overrun_m_s <= 0.0;
@@ -390,6 +440,41 @@ impl<'s> Avoider<'s> {
             self.brake(dt);
         }
         true
+    }
+
+    /// Replaces the next command by that of an escape where none would be left after it.
+    fn keep_escape(
+        &mut self,
+        dt: f64,
+        reference: &Reference<'_>,
+        obstacles: &DynamicObstacles<'_>,
+        allowed: f64,
+        constraint: Option<&mut dyn PathConstraint>,
+        correction: &mut Correction,
+    ) -> EscapeState {
+        let nearest = |counts: fn(&ObstacleKind) -> bool| {
+            self.query.pairs.iter().find(|p| counts(&p.obstacle)).map_or(f64::INFINITY, |p| p.distance_m)
+        };
+        let nearest =
+            EscapeClearance { moving_m: nearest(ObstacleKind::is_dynamic), fixed_m: nearest(|o| !o.may_move()) };
+        let start = EscapeStart {
+            q: &self.command.q,
+            qd: &self.command.qd,
+            limits: &self.limits,
+            speed_share: allowed,
+            reversals: &self.reversals,
+        };
+        let tick = EscapeTick { dt, start, obstacles, reference_q: reference.q, nearest };
+        let state = self.escapes.guard(&tick, constraint, &mut self.workspace.next);
+        if state == EscapeState::Escaping {
+            self.machine.abandon_detour();
+            self.command.intent.copy_from_slice(&self.workspace.next);
+            correction.is_reference = false;
+            correction.progress = 1.0;
+            correction.reaction.is_active = true;
+            correction.reaction.size = 1.0;
+        }
+        state
     }
 
     /// True where the command, and a stop after it, hit no fixed or known obstacle. While every command satisfies this, a

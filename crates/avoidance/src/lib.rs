@@ -11,17 +11,25 @@
 //! crate.
 
 mod avoider;
+mod border;
 mod detour;
 mod dynamic_obstacles;
 mod error;
+mod escape_check;
+mod escape_search;
+mod escape_targets;
+mod escape_trajectory;
+mod escape_tree;
 pub mod fuzzy;
 mod joint_command;
 mod joint_limit;
+mod joint_profile;
 mod least_squares;
 mod motion_bounds;
 mod objective;
 mod output;
 mod path_rate;
+mod prediction;
 mod proximity_pair;
 mod proximity_query;
 mod reactive_controller;
@@ -36,8 +44,11 @@ mod sweep_check;
 mod velocity_bounds;
 
 pub use avoider::Avoider;
+pub use border::Border;
 pub use dynamic_obstacles::{DynamicObstacles, Neighbour, ObservedObject};
 pub use error::AvoidanceError;
+pub use escape_search::{EscapeSettings, EscapeState};
+pub use escape_tree::{EscapeTreeReport, search_escape_tree};
 pub use joint_limit::{JointLimit, LimitProblem};
 pub use least_squares::{LeastSquares, SoftConstraint};
 pub use output::{AvoiderOutput, StageTimes};

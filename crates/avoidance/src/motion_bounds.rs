@@ -2,7 +2,9 @@
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::motion_bound::motion_bound;
-use elbowroom_robot::Robot;
+use elbowroom_robot::{ObjectId, Robot, RobotId};
+use elbowroom_scene::{Scene, SceneState};
+use elbowroom_spatial::Vec3;
 
 use crate::{ObstacleKind, ProximityPair};
 
@@ -18,7 +20,7 @@ pub(crate) struct MotionBounds {
 impl MotionBounds {
     /// The bounds of a robot; no point of an object that is attached to a link is farther than `attached_radius_m` (per link, m)
     /// from the link's origin.
-    pub(crate) fn new(robot: &Robot, attached_radius_m: impl Fn(LinkId) -> f64) -> Self {
+    fn new(robot: &Robot, attached_radius_m: impl Fn(LinkId) -> f64) -> Self {
         let chain = &robot.chain;
         let (links, joints) = (chain.links().len(), chain.dof());
         let mut bounds =
@@ -40,6 +42,17 @@ impl MotionBounds {
             }
         }
         bounds
+    }
+
+    /// The bounds of a robot of a scene, with the objects that are attached to it.
+    pub(crate) fn of_state(scene: &Scene, state: &SceneState, robot: RobotId) -> Self {
+        let attached = (0..scene.objects().len()).filter_map(|o| {
+            let a = state.attachment(ObjectId(o)).filter(|a| a.robot == robot)?;
+            Some((a.link, scene.objects()[o].shape.aabb(&a.in_link).max_distance(Vec3::ZERO)))
+        });
+        let attached: Vec<(LinkId, f64)> = attached.collect();
+        let radius = |link| attached.iter().filter(|(l, _)| *l == link).map(|(_, r)| *r).fold(0.0, f64::max);
+        Self::new(&scene.robots()[robot.0].robot, radius)
     }
 
     /// Upper bound of the travel of any point of any link in `dt` seconds at joint velocities `qd`, m.

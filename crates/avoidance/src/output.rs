@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::Reaction;
 use crate::state::AvoiderState;
+use crate::{EscapeState, Reaction};
 
 /// Durations of the stages of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,12 +14,14 @@ pub struct StageTimes {
     pub correct: Duration,
     /// Sweep between this command and the next.
     pub check: Duration,
+    /// Search for escapes.
+    pub escape: Duration,
 }
 
 impl StageTimes {
     /// The sum of all stages.
     pub fn total(&self) -> Duration {
-        self.sense + self.correct + self.check
+        self.sense + self.correct + self.check + self.escape
     }
 }
 
@@ -40,6 +42,8 @@ pub struct AvoiderOutput {
     pub path_deviation_s: f64,
     /// The sweep found that the command, or a stop after it, would collide; the command was replaced by braking.
     pub braked: bool,
+    /// What the search for escapes did.
+    pub escape: EscapeState,
     /// A detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no dynamic obstacle
     /// near, or stalled for the stall timeout by stationary obstacles.
     pub requests_detour: bool,

@@ -67,14 +67,16 @@ pub(crate) struct ProximityQuery<'s> {
 impl<'s> ProximityQuery<'s> {
     pub(crate) fn new(scene: &'s Scene, robot: RobotId) -> Self {
         let object_radius = |o: &Object| o.shape.aabb(&Pose::IDENTITY).max_distance(Vec3::ZERO);
+        let state = SceneState::new(scene);
+        let bounds = |r| MotionBounds::of_state(scene, &state, RobotId(r));
         Self {
             scene,
             robot,
             checker: Checker::new(scene, CheckerOptions::default()),
-            state: SceneState::new(scene),
             chains: scene.robots().iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             object_radii: scene.objects().iter().map(object_radius).collect(),
-            motion_bounds: scene.robots().iter().map(|r| MotionBounds::new(&r.robot, |_| 0.0)).collect(),
+            motion_bounds: (0..scene.robots().len()).map(bounds).collect(),
+            state,
             excluded: [None; 2],
             observed: vec![None; scene.objects().len()],
             known_robots: vec![false; scene.robots().len()],
@@ -126,24 +128,18 @@ impl<'s> ProximityQuery<'s> {
         Ok(())
     }
 
-    /// Detaches an object: it stays where it is.
-    pub(crate) fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
+    /// Detaches an object: it stays where it is, at the pose returned.
+    pub(crate) fn detach(&mut self, object: ObjectId) -> Result<Pose, AvoidanceError> {
         let robot = self.state.attachment(object).map(|a| a.robot);
         self.state.detach(self.scene, object)?;
         if let Some(robot) = robot {
             self.update_motion_bounds(robot);
         }
-        Ok(())
+        Ok(self.state.pose(self.scene, GeometryId::Object(object)).unwrap_or(Pose::IDENTITY))
     }
 
     fn update_motion_bounds(&mut self, robot: RobotId) {
-        let attached = (0..self.scene.objects().len()).filter_map(|o| {
-            let a = self.state.attachment(ObjectId(o)).filter(|a| a.robot == robot)?;
-            Some((a.link, self.scene.objects()[o].shape.aabb(&a.in_link).max_distance(Vec3::ZERO)))
-        });
-        let attached: Vec<(LinkId, f64)> = attached.collect();
-        let radius = |link| attached.iter().filter(|(l, _)| *l == link).map(|(_, r)| *r).fold(0.0, f64::max);
-        self.motion_bounds[robot.0] = MotionBounds::new(&self.scene.robots()[robot.0].robot, radius);
+        self.motion_bounds[robot.0] = MotionBounds::of_state(self.scene, &self.state, robot);
     }
 
     /// The link that an attached object moves with; any other geometry itself.

@@ -6,6 +6,8 @@
 //! - **keep clear** (all obstacles): the distance decreases no faster than a stop allows, `ḋ ≥ −(d − d_min)/τ` (Faverjon and
 //!   Tournassoud 1987, "A local based approach for path planning of manipulators with a high number of degrees of freedom").
 //!
+//! A border ([`Border`]) adds one row of the second kind: where the joints move towards a region, no faster than that.
+//!
 //! The remaining degrees of freedom follow the desired velocity: motion beyond the task is minimal in the norm of the joints'
 //! top speeds, and the null space belongs to the task.
 
@@ -14,7 +16,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::least_squares::{LeastSquares, SoftConstraint};
 use crate::side_selector::{ApproachingObstacle, SideSelector};
-use crate::{ObstacleKind, ProximityPair, Rules, VelocityBounds};
+use crate::{Border, ObstacleKind, ProximityPair, Rules, VelocityBounds};
 
 /// Largest number of proximity pairs that count: the nearest ones.
 pub(crate) const MAX_PAIRS: usize = 48;
@@ -22,6 +24,8 @@ pub(crate) const MAX_PAIRS: usize = 48;
 const EVADE_WEIGHT: f64 = 100.0;
 /// Weight of keeping clear: a desired full speed violates it by a millionth of the evasion speed.
 const KEEP_CLEAR_WEIGHT: f64 = 1e6;
+/// Weight of a border: at a border a monitor stops the robot, so that crossing it would not help to keep clear.
+const BORDER_WEIGHT: f64 = 1e8;
 /// Speed below which a motion has no direction, m/s.
 const STATIONARY_M_S: f64 = 0.02;
 /// Speed of approach from which an obstacle is fully evaded even by a robot that keeps its path, m/s.
@@ -116,7 +120,7 @@ impl ReactiveController {
             rules,
             settings,
             speeds,
-            solver: LeastSquares::new(n, 2 * MAX_PAIRS),
+            solver: LeastSquares::new(n, 2 * MAX_PAIRS + 1),
             sides: SideSelector::default(),
             columns: vec![[0.0; 6]; n],
             other_columns: vec![[0.0; 6]; n],
@@ -138,6 +142,19 @@ impl ReactiveController {
         state: &ChainState,
         task: &VelocityTask<'_>,
         pairs: &[ProximityPair],
+        out: &mut [f64],
+    ) -> Reaction {
+        self.react_within(chain, state, task, pairs, None, out)
+    }
+
+    /// As [`react`](Self::react), within a border.
+    pub fn react_within(
+        &mut self,
+        chain: &Chain,
+        state: &ChainState,
+        task: &VelocityTask<'_>,
+        pairs: &[ProximityPair],
+        border: Option<Border<'_>>,
         out: &mut [f64],
     ) -> Reaction {
         let VelocityTask { desired, bounds, .. } = *task;
@@ -171,6 +188,9 @@ impl ReactiveController {
             if size > reaction.size {
                 (reaction.size, reaction.governing) = (size, Some(index));
             }
+        }
+        if let Some(border) = border {
+            self.keep_within(&border);
         }
         if !self.solver.solve(&mut self.scaled) {
             // No finite solution: as slow as the bounds allow.
@@ -206,6 +226,18 @@ impl ReactiveController {
         let closing = if is_dynamic { free } else { free.max(0.0) } / s.closing_s;
         let b = (pair.away.dot(pair.obstacle_velocity()) - closing) / s.speed_m_s;
         self.add_constraint(pair.away, b, KEEP_CLEAR_WEIGHT);
+    }
+
+    /// Adds the constraint that the margin to a border decreases no faster than a stop allows.
+    fn keep_within(&mut self, border: &Border<'_>) {
+        let s = self.settings;
+        let Some(constraint) = self.solver.add_constraint() else { return };
+        for (a, (slope, speed)) in constraint.a.iter_mut().zip(border.gradient.iter().zip(&self.speeds)) {
+            *a = slope * speed / s.speed_m_s;
+        }
+        // A robot that is nearer than the margin does not back away: its way may lead along the border.
+        constraint.b = -border.margin_m.max(0.0) / s.closing_s / s.speed_m_s;
+        (constraint.weight, constraint.at_least) = (BORDER_WEIGHT, true);
     }
 
     /// Adds the correction of the rules and returns its size.
@@ -263,7 +295,7 @@ impl ReactiveController {
     }
 
     fn overrun(&self) -> f64 {
-        let keep_clear = self.solver.constraints().iter().filter(|c| c.weight >= KEEP_CLEAR_WEIGHT);
+        let keep_clear = self.solver.constraints().iter().filter(|c| c.weight == KEEP_CLEAR_WEIGHT);
         keep_clear.map(|c| -c.residual(&self.scaled)).fold(0.0, f64::max) * self.settings.speed_m_s
     }
 }

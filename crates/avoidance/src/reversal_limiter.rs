@@ -33,6 +33,17 @@ impl ReversalLimiter {
         }
     }
 
+    /// Time until a joint that moves at `qd` may move in a direction (±1), s; `speed` is its top speed. `qd` need not be
+    /// recorded yet.
+    pub(crate) fn wait_s(&self, joint: usize, qd: f64, speed: f64, direction: f64) -> f64 {
+        let moves = qd.abs() > REST_FRACTION * speed;
+        let (sign, since_s) = match self.sign[joint] {
+            sign if moves && sign * qd < 0.0 => (qd.signum(), 0.0),
+            sign => (sign, self.since_s[joint]),
+        };
+        if sign * direction < 0.0 { (self.min_interval_s - since_s).max(0.0) } else { 0.0 }
+    }
+
     /// True where a motion from rest reverses no joint that reversed recently.
     pub(crate) fn allows(&self, velocity: impl Iterator<Item = f64>) -> bool {
         let mut joints = velocity.zip(&self.sign).zip(&self.since_s);

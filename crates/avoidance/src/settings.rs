@@ -1,12 +1,14 @@
 //! Settings of the avoidance.
 
-use crate::ReactiveSettings;
+use crate::{EscapeSettings, ReactiveSettings};
 
 /// Settings of the control loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AvoiderSettings {
     /// Settings of the reactive controller.
     pub reactive: ReactiveSettings,
+    /// Settings of the search for escapes.
+    pub escape: EscapeSettings,
     /// Speed of detours and of the return to the path, as a fraction of the joints' top speeds.
     pub return_speed_fraction: f64,
     /// Deviation at which a path that may be left stops, in seconds of joint motion at full speed.
@@ -22,6 +24,7 @@ impl Default for AvoiderSettings {
     fn default() -> Self {
         Self {
             reactive: ReactiveSettings::default(),
+            escape: EscapeSettings::default(),
             return_speed_fraction: 0.5,
             max_deviation_s: 0.4,
             min_reversal_interval_s: 0.25,

@@ -1,4 +1,4 @@
-//! A tick does not allocate, once the number of pairs has been reached before. Without the test harness, whose threads
+//! A tick does not allocate, once the number of pairs and the length of the sweeps have been reached before. Without the test harness, whose threads
 //! allocate.
 
 mod common;
@@ -31,7 +31,10 @@ fn main() {
         }
         corrected
     };
-    assert!(pass() > 100);
+    // Sweeps allocate where they are longer than any before.
+    for _ in 0..3 {
+        assert!(pass() > 100);
+    }
     let region = Region::new(ALLOCATOR);
     let corrected = pass();
     let used = region.change();

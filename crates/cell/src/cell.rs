@@ -88,6 +88,10 @@ pub struct AvoidanceSpec {
     pub robots: Vec<RobotId>,
     /// Whether another path is planned where an obstacle blocks the path.
     pub replan: bool,
+    /// Standard deviation of each coordinate of an observed position, m.
+    pub noise_m: f64,
+    /// Age of an observation when it arrives, s.
+    pub delay_s: f64,
 }
 
 /// The units of a cell file.

@@ -35,7 +35,7 @@ fn every_verb_has_the_objects_of_a_scene() {
     write(here, "cell.toml", &cell(&format!("{scene}{program}")));
     let run = elbowroom(here, &["run", "cell.toml", "--json", "--out", "out"]).expect(1);
     assert!(run.stdout.contains("\"board\""), "{}", run.stdout);
-    assert!(std::fs::read_to_string(here.join("out/report.html")).unwrap().contains("wedge"));
+    assert!(std::fs::read_to_string(here.join("out/report.html")).unwrap().contains("id=\"scene-data\""));
     write(here, "q.csv", "joint_1\n1.5707963267948966\n0\n");
     let query = ["query", "cell.toml", "--ask", "distance", "--between", "bar,board", "--states", "q.csv", "--json"];
     let json = elbowroom(here, &query).expect(0).json();

@@ -186,10 +186,16 @@ fn recordings_of_controllers_play_as_they_are() {
 
 #[test]
 fn a_start_in_which_own_links_touch_shows_the_key_that_ignores_them() {
-    let cell = CELL
-        .replace("links = [[], ", "links = [{ sphere = { at = [0, 0, 0], radius = 120 } }, ")
-        .replace("radius = 40 } }, []]", "radius = 40 } }, { sphere = { at = [-100, 0, 0], radius = 230 } }]");
-    let dir = with_cell(&cell);
+    let cell = |last: &str| {
+        CELL.replace("links = [[], ", "links = [{ sphere = { at = [0, 0, 0], radius = 120 } }, ")
+            .replace("radius = 40 } }, []]", &format!("radius = 40 }} }}, {last}]"))
+    };
+    // In contact whatever the joints do, where they are joined: they are built so.
+    let always = with_cell(&cell("{ sphere = { at = [-100, 0, 0], radius = 230 } }"));
+    let planned = elbowroom(always.path(), &["plan", "cell.toml", "--to", "left"]).expect(0);
+    assert!(planned.stderr.contains("link_1") && planned.stderr.contains("link_3"), "{}", planned.stderr);
+    // In contact where the arm is straight.
+    let dir = with_cell(&cell("{ sphere = { at = [-150, 0, 0], radius = 170 } }"));
     let refused = elbowroom(dir.path(), &["plan", "cell.toml", "--to", "left"]).expect(2);
     assert!(refused.stderr.contains("ignore = [[\"link_1\", \"link_3\"]] in [robot.arm]"), "{}", refused.stderr);
 }

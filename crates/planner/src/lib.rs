@@ -43,7 +43,7 @@ pub use prioritized_planner::{
 };
 pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
-    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSetting,
+    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
     RrtConnectSettings, ShortcuttingSettings,
 };
 pub use task_space_region::TaskSpaceRegion;

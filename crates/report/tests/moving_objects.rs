@@ -4,6 +4,8 @@ use elbowroom_cell::Cell;
 use elbowroom_report::{ReportScene, write_html};
 use elbowroom_sim::{RunOptions, simulate};
 
+mod page_data;
+
 const CELL: &str = r#"
 version = 1
 units = { length = "mm", angle = "deg" }
@@ -28,11 +30,8 @@ fn the_report_has_the_poses_of_a_moving_object() {
     let mut page = Vec::new();
     let scene = ReportScene::of_cell(&cell);
     write_html(&mut page, &scene, &[("run", &outcome.recording)]).unwrap();
-    let page = String::from_utf8(page).unwrap();
-    let data = page.split("id=\"scene-data\"").nth(1).unwrap();
-    let data = &data[data.find('{').unwrap()..data.find("</script>").unwrap()];
-    let data: serde_json::Value = serde_json::from_str(data).unwrap();
-    let frames = data["runs"][0]["frames"].as_u64().unwrap() as usize;
-    let poses = data["runs"][0]["objects"][0].as_str().unwrap();
-    assert_eq!(poses.len(), (frames * 7 * 4).div_ceil(3) * 4, "seven numbers a frame");
+    let data = page_data::block(&String::from_utf8(page).unwrap(), "scene-data");
+    let frames = data["runs"][0]["frames"].as_u64().unwrap();
+    let poses = &data["runs"][0]["objects"][0]["poses"];
+    assert_eq!((poses["n"].as_u64(), poses["width"].as_u64()), (Some(7 * frames), Some(7)), "{poses}");
 }

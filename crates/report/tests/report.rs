@@ -171,6 +171,7 @@ fn after_a_collision_the_report_shows_it_instead_of_free() {
         path_deviation_s: 0.1,
         rate: 0.0,
         governed_by: None,
+        escape: elbowroom_avoidance::EscapeState::Free,
     };
     let samples = vec![evading; run.robots[0].samples.len()];
     run.robots[0].avoidance = Some(elbowroom_sim::AvoidanceTrack { samples, ..Default::default() });

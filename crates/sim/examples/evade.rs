@@ -1,7 +1,10 @@
 //! Statistics of many runs with and without avoidance, with an obstacle that crosses the workspace at random.
 //! Collisions are detected by continuous sweeps of the exact scene from tick to tick.
 //!
-//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL]`
+//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N]`
+//!
+//! Environment: `EVADE_ONLY=135,301` makes these runs only, and prints what the arm did; `EVADE_EXPLAIN=5000` searches an escape
+//! with so many motions from several instants before each hit, against the true path of the obstacle.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/common/random.rs"]
@@ -11,11 +14,11 @@ use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use elbowroom_avoidance::AvoiderState;
-use elbowroom_cell::{Cell, Drive, ObjectPath, PathRepeat};
+use elbowroom_avoidance::{AvoiderState, DynamicObstacles, EscapeState, ObservedObject, search_escape_tree};
+use elbowroom_cell::{Cell, Drive, ObjectPath, OutOfReachProofs, PathRepeat, QueryModel};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
-use elbowroom_sim::run::simulate;
+use elbowroom_sim::run::{evasion_limits, simulate};
 use elbowroom_sim::{Recording, RobotTrack, RunOptions};
 use elbowroom_spatial::{Pose, Vec3};
 use random::Random;
@@ -24,16 +27,27 @@ use random::Random;
 const PEDESTAL_M: f64 = 1.0;
 /// Smallest initial distance of the obstacle to the robot, m.
 const MIN_START_DISTANCE_M: f64 = 0.8;
+/// Times before a hit from which an escape is searched, s.
+const EXPLAINED_S: [f64; 7] = [3.0, 2.5, 2.0, 1.5, 1.0, 0.75, 0.5];
+/// An escape is free for this time after the time of the hit, s.
+const AFTER_HIT_S: f64 = 1.5;
 /// Below this share of its speed a joint counts as stationary.
 const STATIONARY_SHARE: f64 = 1e-4;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1);
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let noise_mm = option(&mut arguments, "--noise-mm")?;
+    let delay_ms = option(&mut arguments, "--delay-ms")?;
+    let mut arguments = arguments.into_iter();
     let runs: usize = arguments.next().map_or(Ok(100), |n| n.parse())?;
     let file = arguments
         .next()
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/evade.toml")), PathBuf::from);
-    let cell = Cell::load(file)?;
+    let mut cell = Cell::load(file)?;
+    for spec in cell.avoidance.iter_mut().flatten() {
+        spec.noise_m = noise_mm.map_or(spec.noise_m, |mm| 1e-3 * mm);
+        spec.delay_s = delay_ms.map_or(spec.delay_s, |ms| 1e-3 * ms);
+    }
     let seen =
         cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();
     let moves = |o: &&ObjectId| cell.moving_objects.iter().any(|m| m.object == **o);
@@ -45,24 +59,39 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cell.robots.len(),
         free.duration_s
     );
-    // A single run, with the state of the robot before a collision.
-    let only: Option<usize> = std::env::var("EVADE_ONLY").ok().and_then(|o| o.parse().ok());
+    // Single runs, `EVADE_ONLY=135,301`, with the state of the robot before a collision.
+    let only: Option<Vec<usize>> =
+        std::env::var("EVADE_ONLY").ok().map(|o| o.split(',').filter_map(|n| n.trim().parse().ok()).collect());
     let mut random = Random(2026);
     let mut paths = Vec::new();
     let scene = obstacle_scene(&cell, object)?;
     while paths.len() < runs {
         paths.extend(crossing(&cell, &scene, free.duration_s, &mut random)?);
     }
-    let chosen: Vec<usize> = only.map_or_else(|| (0..runs).collect(), |o| vec![o.min(runs - 1)]);
-    let mut statistics = Statistics { show: only.is_some(), least_reversal_s: f64::INFINITY, ..Statistics::default() };
+    let explain_tries: Option<usize> = std::env::var("EVADE_EXPLAIN").ok().and_then(|n| n.parse().ok());
+    let show = only.is_some();
+    let chosen: Vec<usize> =
+        only.map_or_else(|| (0..runs).collect(), |o| o.into_iter().filter(|n| *n < runs).collect());
+    let mut statistics = Statistics { show, least_reversal_s: f64::INFINITY, ..Statistics::default() };
     for some in chosen.chunks(50) {
         for run in compare(&cell, object, &paths, some)? {
             statistics.add(&cell, &run);
+            if let (Some(tries), Some(hit)) = (explain_tries, run.on.robots[0].collisions.first()) {
+                explain(&cell, object, &paths[run.number], &run.on, hit.t_s, tries)?;
+            }
         }
         eprintln!("{} runs: {} collide without, {} with", statistics.runs, statistics.hit_off, statistics.hit_on);
     }
     statistics.print();
     Ok(())
+}
+
+/// Takes an option and its number from the arguments.
+fn option(arguments: &mut Vec<String>, name: &str) -> Result<Option<f64>, Box<dyn std::error::Error>> {
+    let Some(at) = arguments.iter().position(|a| a == name) else { return Ok(None) };
+    let number = arguments.get(at + 1).ok_or_else(|| format!("{name} needs a number"))?.parse()?;
+    arguments.drain(at..=at + 1);
+    Ok(Some(number))
 }
 
 /// The runs of one object path, without avoidance and with it.
@@ -171,6 +200,11 @@ struct Statistics {
     travel: Vec<f64>,
     nearest_m: Vec<f64>,
     step_us: Vec<f64>,
+    /// 99th percentile and largest of each run.
+    step_p99_us: Vec<f64>,
+    step_max_us: Vec<f64>,
+    /// Runs in which the robot followed an escape.
+    escaped: usize,
     /// Largest excess over a speed and a limit of a joint.
     over: [f64; 2],
     least_reversal_s: f64,
@@ -209,6 +243,9 @@ impl Statistics {
         }
         self.nearest_m.push(track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min));
         self.step_us.push(track.step_ns.p50 as f64 / 1e3);
+        self.step_p99_us.push(track.step_ns.p99 as f64 / 1e3);
+        self.step_max_us.push(track.step_ns.max as f64 / 1e3);
+        self.escaped += usize::from(track.samples.iter().any(|s| s.escape == EscapeState::Escaping));
         self.plans[0] += track.plans.len();
         self.plans[1] += track.plans.iter().filter(|p| p.search_s.is_some()).count();
         self.limits(cell, with, on.tick_s);
@@ -264,11 +301,59 @@ impl Statistics {
         println!("shortest time between two reversals of a joint: {:.3} s", self.least_reversal_s);
         println!("replanning attempts: {}, found: {}", self.plans[0], self.plans[1]);
         println!(
-            "step, us: median of the runs' medians {:.0}, largest median {:.0}",
+            "step, us: median of the runs' medians {:.0}, largest median {:.0}; 99th percentile: median {:.0}, largest \
+             {:.0}; longest {:.0}",
             at(&mut self.step_us, 0.5),
-            at(&mut self.step_us, 1.0)
+            at(&mut self.step_us, 1.0),
+            at(&mut self.step_p99_us, 0.5),
+            at(&mut self.step_p99_us, 1.0),
+            at(&mut self.step_max_us, 1.0)
+        );
+        println!("runs with an escape: {}", self.escaped);
+    }
+}
+
+/// Searches an escape from the states of the robot before a hit, in space and time, and prints what was found.
+fn explain(
+    cell: &Cell,
+    object: ObjectId,
+    path: &ObjectPath,
+    run: &Recording,
+    hit_s: f64,
+    tries: usize,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let robot = RobotId(0);
+    let mut cell = cell.clone();
+    cell.moving_objects.iter_mut().filter(|m| m.object == object).for_each(|m| m.drive = Drive::Path(path.clone()));
+    let scene = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit)?;
+    let limits = evasion_limits(&cell, robot);
+    let samples = &run.robots[0].samples;
+    for before_s in EXPLAINED_S {
+        let Some(at) = samples.iter().rposition(|s| s.t_s <= hit_s - before_s).filter(|n| *n > 0) else { continue };
+        let (last, now) = (&samples[at - 1], &samples[at]);
+        let qd: Vec<f64> = now.q.iter().zip(&last.q).map(|(a, b)| (a - b) / run.tick_s).collect();
+        // The obstacle moves straight: its present motion is its true path.
+        let seen = cell.moving_objects.iter().map(|m| ObservedObject {
+            object: m.object,
+            in_world: m.pose(now.t_s),
+            motion: m.motion(now.t_s),
+            known: m.object != object,
+        });
+        let objects: Vec<ObservedObject> = seen.collect();
+        let obstacles = DynamicObstacles { objects: &objects, robots: &[] };
+        let mut random = Random(1);
+        let horizon_s = before_s + AFTER_HIT_S;
+        let from = [&now.q[..], &qd[..]];
+        let found = search_escape_tree(&scene, robot, &limits, from, &obstacles, horizon_s, tries, &mut || {
+            random.range(0.0, 1.0)
+        })?;
+        let outcome = found.gap_m.map_or_else(|| "no escape".to_owned(), |gap| format!("an escape, gap {gap:.3} m"));
+        println!(
+            "  {before_s:.2} s before the hit: {outcome} after {} motions; longest without a hit {:.2} s of {horizon_s:.2} s",
+            found.tries, found.longest_s
         );
     }
+    Ok(())
 }
 
 /// Prints the states of the robot in the last second.
@@ -278,9 +363,10 @@ fn show(track: &RobotTrack, until_s: f64) {
     let both = track.samples.iter().zip(&avoidance.samples).filter(|(s, _)| last(s.t_s));
     for (sample, a) in both.step_by(10) {
         println!(
-            "  {:.3} {:9} nearest {:.3} size {:.2} deviation {:.3} rate {:.2} q {:.3?}",
+            "  {:.3} {:9} {:9} nearest {:.3} size {:.2} deviation {:.3} rate {:.2} q {:.3?}",
             sample.t_s,
             a.state.name(),
+            format!("{:?}", a.escape),
             a.nearest_m,
             a.size,
             a.path_deviation_s,

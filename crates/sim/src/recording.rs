@@ -1,8 +1,8 @@
 //! Recording of a run, for the report and the CSV writers.
 
 use elbowroom_analysis::watch::WatchRecord;
-use elbowroom_avoidance::AvoiderState;
 use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_avoidance::{AvoiderState, EscapeState};
 use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, Part, RegionKind};
@@ -289,6 +289,8 @@ pub struct AvoidanceSample {
     pub rate: f64,
     /// The dynamic obstacle that requested the largest correction, an index in [`AvoidanceTrack::obstacles`].
     pub governed_by: Option<usize>,
+    /// What the search for escapes did.
+    pub escape: EscapeState,
 }
 
 /// State of a robot at one tick.

@@ -89,7 +89,19 @@ fn errors_in_the_table_name_the_line() {
     wrong("clearance = 1e-3", "0.1 mm to 5000 mm");
     wrong("clearance = 1500", "1000 mm range of the rules");
     wrong("stall_timeout = 3600", "0.01 to 60 s");
+    for key in ["horizon", "noise", "delay_ms"] {
+        for value in ["-1", "nan", "inf", "1e9", "\"long\"", "[1]"] {
+            wrong(&format!("{key} = {value}"), &format!("avoidance.kr150.{key}"));
+        }
+    }
+    wrong("horizon = 11", "0 to 10 s");
+    wrong("noise = 501", "0 to 500");
+    wrong("delay_ms = 2001", "0 to 2000 ms");
     wrong("rules = \"nowhere.toml\"", "nowhere.toml");
+    let seen = "horizon = 2\nnoise = 12\ndelay_ms = 60";
+    let seen = Cell::parse(file(), &text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{seen}"))).unwrap();
+    let spec = seen.avoidance[0].as_ref().unwrap();
+    assert_eq!((spec.settings.escape.horizon_s, spec.noise_m, spec.delay_s), (2.0, 0.012, 0.06));
     let sound = "speed = 20000\nclearance = 0.1\nreturn_speed = 1\nstall_timeout = 60";
     let sound = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{sound}"));
     let cell = Cell::parse(file(), &sound).unwrap();

@@ -10,7 +10,19 @@ use crate::{AvoidanceSpec, Cell, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-const KEYS: &[&str] = &["rules", "objects", "robots", "speed", "clearance", "return_speed", "stall_timeout", "replan"];
+const KEYS: &[&str] = &[
+    "rules",
+    "objects",
+    "robots",
+    "speed",
+    "clearance",
+    "return_speed",
+    "stall_timeout",
+    "replan",
+    "horizon",
+    "noise",
+    "delay_ms",
+];
 
 /// Range of the speed of an evasion, m/s.
 const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
@@ -20,6 +32,13 @@ const CLEARANCES_M: (f64, f64) = (1e-4, 5.0);
 const MIN_RETURN: f64 = 0.01;
 /// Range of the stall timeout, s.
 const STALL_TIMEOUTS_S: (f64, f64) = (0.01, 60.0);
+
+/// Longest time for which motions are predicted, s.
+const MAX_HORIZON_S: f64 = 10.0;
+/// Largest noise of an observation, m.
+const MAX_NOISE_M: f64 = 0.5;
+/// Longest delay of an observation, ms.
+const MAX_DELAY_MS: f64 = 2000.0;
 
 pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<AvoidanceSpec>>> {
     let mut all = vec![None; cell.robots.len()];
@@ -64,6 +83,18 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
                 .hint("stall_timeout = 0.6   (seconds without progress before another path is planned)"));
         }
     }
+    settings.escape.clearance_m = settings.reactive.clearance_m;
+    if let Some(v) = t.get("horizon") {
+        settings.escape.horizon_s = up_to(&v, MAX_HORIZON_S, "s", "horizon = 3   (seconds; 0: no prediction)")?;
+    }
+    let noise_m = t.get("noise").map_or(Ok(0.0), |v| {
+        let most = MAX_NOISE_M / units.length.to_metres(1.0);
+        let hint = "noise = 10   (standard deviation of an observed position, in the cell's unit of length)";
+        up_to(&v, most, "in the unit of length of the cell", hint).map(|n| units.length.to_metres(n))
+    })?;
+    let delay_s = t.get("delay_ms").map_or(Ok(0.0), |v| {
+        up_to(&v, MAX_DELAY_MS, "ms", "delay_ms = 60   (age of an observation)").map(|ms| 1e-3 * ms)
+    })?;
     let rules = t.get("rules").map_or_else(|| Ok(Rules::default()), |v| rules(&v))?;
     let reach = rules.reach_m();
     if settings.reactive.clearance_m >= reach {
@@ -82,7 +113,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
         None => (0..cell.robots.len()).map(RobotId).filter(|r| *r != own).collect(),
         Some(v) => v.list("robots = [\"r2\"]")?.iter().map(|v| neighbour(v, cell, own)).collect::<Result<_>>()?,
     };
-    Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)? })
+    Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)?, noise_m, delay_s })
 }
 
 /// A length (m), or with `per` a speed, within its range.
@@ -100,6 +131,15 @@ fn length(v: &Value<'_>, units: Units, bounds: (f64, f64), per: &str) -> Result<
     Err(v
         .error(what)
         .hint(format!("{} = {number}, or a number between; or leave it out: a default fits most", v.key())))
+}
+
+/// A number from 0 to `most`.
+fn up_to(v: &Value<'_>, most: f64, unit: &str, hint: &str) -> Result<f64> {
+    let number = v.number()?;
+    if within((0.0, most), number) {
+        return Ok(number);
+    }
+    Err(v.error(format!("is {number}, and can be 0 to {most} {unit}")).hint(hint))
 }
 
 fn within((least, most): (f64, f64), v: f64) -> bool {

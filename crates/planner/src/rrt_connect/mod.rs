@@ -21,7 +21,7 @@ pub(crate) use interpolation::{length, lerp, path_length};
 pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
 pub(crate) use path_constraint::ConstraintChecker;
-pub(crate) use random::Random;
+pub use random::Random;
 
 pub use error::{JointUnit, LinearMoveEnd, RrtConnectError};
 pub use path_constraint::PathConstraint;

@@ -2,9 +2,10 @@
 
 /// `SplitMix64` (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*, 2014).
 #[derive(Debug, Clone)]
-pub(crate) struct Random(u64);
+pub struct Random(u64);
 
 impl Random {
+    /// Starts from a seed; any will do.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -2,8 +2,8 @@
 
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{
-    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
-    PathKind, Reference,
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
+    ObservedObject, PathKind, Reference,
 };
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
@@ -14,6 +14,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene};
 use elbowroom_spatial::FrameMotion;
 
+use super::observation::ObservationModel;
 use crate::motion::ProgramClock;
 use crate::recording::{AvoidanceSample, AvoidanceTrack, ReplanRecord, RunEvent, TickTimes};
 
@@ -35,6 +36,8 @@ struct ReplanSettings {
     /// A robot off its path with less than this share of the programmed override counts as at the border of a region.
     /// Any closer, it would take too long to leave.
     border_override: f64,
+    /// Share of each warning zone that an escape keeps from a region.
+    escape_warning_share: f64,
 }
 
 /// One attempt of replanning.
@@ -58,6 +61,7 @@ const REPLANNING: ReplanSettings = ReplanSettings {
     max_failures: 8,
     failed_interval_s: 4.0,
     border_override: 1e-3,
+    escape_warning_share: 0.1,
 };
 /// Samples per input of the recorded control surfaces.
 const SURFACE_SAMPLES: usize = 33;
@@ -102,7 +106,7 @@ impl<'s> AvoidingRobot<'s> {
         clock: &ProgramClock,
     ) -> Result<Self, FormatError> {
         let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot.0].line, e.to_string());
-        let (q, limits) = (&clock.point().q, limits(cell, robot));
+        let (q, limits) = (&clock.point().q, evasion_limits(cell, robot));
         let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
         Ok(Self {
             avoider,
@@ -161,6 +165,7 @@ impl<'s> AvoidingRobot<'s> {
             path_deviation_s: a.path_deviation_s,
             rate: a.rate,
             governed_by: a.governed_by,
+            escape: a.escape,
         });
     }
 
@@ -191,13 +196,13 @@ impl<'s> AvoidingRobot<'s> {
         states: &[ChainState],
         t_s: f64,
         allowed: f64,
-        regions: impl FnMut(f64) -> Option<RegionConstraint<'f>>,
+        mut regions: impl FnMut(f64) -> Option<RegionConstraint<'f>>,
     ) -> Option<RunEvent> {
         let before = self.output.state;
         let at_border = self.at_border(clock, allowed);
         let needs_path = self.output.requests_detour || (at_border && self.avoider.is_stationary());
         if self.spec.replan && needs_path && t_s >= self.not_before_s {
-            self.plan(clock, t_s, regions);
+            self.plan(clock, t_s, &mut regions);
         }
         // No closer to a border than a planned path can leave in time.
         let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
@@ -206,7 +211,12 @@ impl<'s> AvoidingRobot<'s> {
         if !(clock.waiting() && self.output.rate == 0.0) {
             clock.advance(cell.tick_s, allowed * self.output.rate);
         }
-        self.step(cell, clock, states, t_s, allowed);
+        // Only what may leave the path needs the regions.
+        let is_near = self.output.nearest_m.is_finite() || self.output.escape != EscapeState::Free;
+        let may_leave = allowed > 0.0 && (is_near || !self.is_on_path());
+        let mut constraint = may_leave.then(|| regions(REPLANNING.escape_warning_share)).flatten();
+        let constraint = constraint.as_mut().map(|c| c as &mut dyn PathConstraint);
+        self.step(cell, clock, states, t_s, allowed, constraint);
         let now = self.output.state;
         (now != before).then_some(RunEvent::Avoidance(now))
     }
@@ -220,14 +230,24 @@ impl<'s> AvoidingRobot<'s> {
         !free && self.spec.replan && self.failed < REPLANNING.max_failures
     }
 
-    fn step(&mut self, cell: &Cell, clock: &ProgramClock, states: &[ChainState], t_s: f64, allowed: f64) {
+    fn step(
+        &mut self,
+        cell: &Cell,
+        clock: &ProgramClock,
+        states: &[ChainState],
+        t_s: f64,
+        allowed: f64,
+        constraint: Option<&mut dyn PathConstraint>,
+    ) {
         let evaded = |object: ObjectId| self.spec.objects.contains(&object);
+        let AvoidanceSpec { noise_m, delay_s, .. } = *self.spec;
+        let exact = ObservationModel { noise_m: 0.0, delay_s: 0.0 };
+        // What the program knows is not observed.
+        let model = |known: bool| if known { exact } else { ObservationModel { noise_m, delay_s } };
         let is_taken = |object: &ObjectId| self.taken.contains(object);
-        let moving = cell.moving_objects.iter().filter(|m| !is_taken(&m.object)).map(|m| ObservedObject {
-            object: m.object,
-            in_world: m.pose(t_s),
-            motion: m.motion(t_s),
-            known: !evaded(m.object),
+        let moving = cell.moving_objects.iter().filter(|m| !is_taken(&m.object)).map(|m| {
+            let known = !evaded(m.object);
+            model(known).observe(m, t_s, known)
         });
         let is_fixed = |o: &&ObjectId| !cell.moving_objects.iter().any(|m| m.object == **o);
         let fixed = self.spec.objects.iter().filter(is_fixed).filter(|o| !is_taken(o)).map(|&object| ObservedObject {
@@ -245,7 +265,7 @@ impl<'s> AvoidingRobot<'s> {
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
         let reference = Reference { q: &clock.point().q, qd: &clock.point().dq, path };
         let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
-        match self.avoider.tick(cell.tick_s, &reference, &obstacles, allowed) {
+        match self.avoider.tick_constrained(cell.tick_s, &reference, &obstacles, allowed, constraint) {
             Ok(output) => {
                 self.output = output;
                 self.step_ns.push(output.times.total().as_nanos() as u64);
@@ -268,7 +288,7 @@ impl<'s> AvoidingRobot<'s> {
         &mut self,
         clock: &mut ProgramClock,
         t_s: f64,
-        mut regions: impl FnMut(f64) -> Option<RegionConstraint<'f>>,
+        regions: &mut impl FnMut(f64) -> Option<RegionConstraint<'f>>,
     ) {
         let end = clock.end_of_joint_move();
         let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
@@ -313,7 +333,8 @@ fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
     (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE_SAMPLES)).collect()
 }
 
-fn limits(cell: &Cell, robot: RobotId) -> Vec<JointLimit> {
+/// The limits of the joints within which a robot evades.
+pub fn evasion_limits(cell: &Cell, robot: RobotId) -> Vec<JointLimit> {
     let robot = &cell.robots[robot.0];
     let chain = &robot.robot.chain;
     let bounds = chain.lower().into_iter().zip(chain.upper());

@@ -5,6 +5,7 @@ mod carried_parts;
 mod deadlock_detector;
 mod fault_injection;
 mod idle_detector;
+mod observation;
 mod obstacle_guard;
 mod outcome;
 mod override_delay;
@@ -40,6 +41,7 @@ use crate::recording::{
     RunEnd, RunEvent, Sample, Stop, TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
+pub use avoiding_robot::evasion_limits;
 use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};

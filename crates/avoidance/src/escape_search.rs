@@ -1,0 +1,392 @@
+//! Keeps an escape known: a command is given only while one is.
+//!
+//! Where a stop would be hit within the horizon, time-optimal joint motions are sampled ([`escape_targets`]) and proven
+//! against the predicted motion of all that moves ([`EscapeCheck`]). The proven one with the largest gap is kept. The rules
+//! command the robot as long as an escape remains after their command; where none would, the robot moves on the escape that
+//! was proven before (a safety filter in the sense of Fraichard and Asama 2004, "Inevitable collision states").
+//!
+//! [`escape_targets`]: crate::escape_targets
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_planner::PathConstraint;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Attachment, Scene, SceneError};
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::DynamicObstacles;
+use crate::escape_check::{EscapeCheck, EscapeClearance, MotionCheck, PredictedHit, TimedMotion, moves, robot_moves};
+use crate::escape_targets::{EscapeDirections, target};
+use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
+
+/// Gap beyond which escapes are equally good, m.
+const ENOUGH_GAP_M: f64 = 0.15;
+/// Difference of gaps by which another escape is better, m.
+const BETTER_GAP_M: f64 = 0.02;
+/// Difference of durations by which another escape is better at the same gap, s.
+const BETTER_DURATION_S: f64 = 0.2;
+/// Where a stop is free for longer than this (s), the search pauses …
+const UNHURRIED_S: f64 = 1.5;
+/// … for so many ticks.
+const PAUSE_TICKS: usize = 3;
+/// A better escape than the known one is looked for in every so many examined ticks.
+const IMPROVE_TICKS: usize = 4;
+/// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
+const OFF_ESCAPE: f64 = 1e-3;
+
+/// Settings of the search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EscapeSettings {
+    /// Time for which motions are predicted, s. 0: no escapes are sampled.
+    pub horizon_s: f64,
+    /// Largest number of escapes that are examined in one tick.
+    pub per_tick: usize,
+    /// Clearance of an escape from what moves, m.
+    pub clearance_m: f64,
+    /// Clearance of an escape from what is fixed, m.
+    pub fixed_clearance_m: f64,
+}
+
+impl Default for EscapeSettings {
+    /// 3 s; 3 escapes per tick; 50 mm and 10 mm.
+    fn default() -> Self {
+        Self { horizon_s: 3.0, per_tick: 3, clearance_m: 0.05, fixed_clearance_m: 0.01 }
+    }
+}
+
+/// What the search did in a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum EscapeState {
+    /// A stop is free within the horizon.
+    #[default]
+    Free,
+    /// A stop would be hit, and an escape is known.
+    Known,
+    /// A stop would be hit, and no escape is known.
+    Unknown,
+    /// The robot follows an escape.
+    Escaping,
+}
+
+/// The instant before a command.
+pub(crate) struct EscapeTick<'a> {
+    pub(crate) dt: f64,
+    /// The robot now.
+    pub(crate) start: EscapeStart<'a>,
+    pub(crate) obstacles: &'a DynamicObstacles<'a>,
+    /// The point of the path.
+    pub(crate) reference_q: &'a [f64],
+    /// Present distance of the nearest obstacle that is evaded, and of anything fixed, m.
+    pub(crate) nearest: EscapeClearance,
+}
+
+/// Samples, proves and follows escapes of one robot.
+#[derive(Debug)]
+pub(crate) struct EscapeSearch<'s> {
+    scene: &'s Scene,
+    robot: RobotId,
+    settings: EscapeSettings,
+    check: EscapeCheck<'s>,
+    /// Configuration at the start of the robot's program.
+    home_q: Vec<f64>,
+    /// The robot after the command.
+    next_q: Vec<f64>,
+    next_qd: Vec<f64>,
+    stop: EscapeTrajectory,
+    trial: EscapeTrajectory,
+    best: Option<EscapeCandidate>,
+    trial_target: Vec<f64>,
+    /// The escape that is known: it begins after the last command.
+    known: EscapeTrajectory,
+    known_target: Vec<f64>,
+    is_known: bool,
+    /// The known escape begins at the present state.
+    is_fresh: bool,
+    /// What the last examined tick found, and the ticks until the next one.
+    state: EscapeState,
+    pause: usize,
+    /// Time since the robot follows it, s; `None` where it does not.
+    followed_s: Option<f64>,
+    /// Number of the next target.
+    index: usize,
+    /// Number of ticks in which the known escape was examined.
+    examined: usize,
+    chain: ChainState,
+    columns: Vec<[f64; 6]>,
+    point: Vec<Vec3>,
+    rest_q: Vec<f64>,
+}
+
+/// Quality of an escape.
+#[derive(Debug, Clone, Copy)]
+struct EscapeCandidate {
+    gap_m: f64,
+    duration_s: f64,
+}
+
+impl EscapeCandidate {
+    /// Largest gap first, as far as it matters, then the least time.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let [own, others] = [self, other].map(|e| e.gap_m.min(ENOUGH_GAP_M));
+        own > others + BETTER_GAP_M
+            || (own > others - BETTER_GAP_M && self.duration_s < other.duration_s - BETTER_DURATION_S)
+    }
+}
+
+impl<'s> EscapeSearch<'s> {
+    pub(crate) fn new(scene: &'s Scene, robot: RobotId, q: &[f64], settings: EscapeSettings) -> Self {
+        let n = q.len();
+        let trajectory = || EscapeTrajectory::new(n);
+        Self {
+            scene,
+            robot,
+            settings,
+            check: EscapeCheck::new(scene, robot),
+            home_q: q.to_vec(),
+            next_q: q.to_vec(),
+            next_qd: vec![0.0; n],
+            stop: trajectory(),
+            trial: trajectory(),
+            best: None,
+            trial_target: q.to_vec(),
+            known: trajectory(),
+            known_target: q.to_vec(),
+            is_known: false,
+            is_fresh: false,
+            state: EscapeState::Free,
+            pause: 0,
+            followed_s: None,
+            index: 0,
+            examined: 0,
+            chain: ChainState::new(&scene.robots()[robot.0].robot.chain),
+            columns: vec![[0.0; 6]; n],
+            point: vec![Vec3::ZERO; n],
+            rest_q: q.to_vec(),
+        }
+    }
+
+    /// Attaches an object to a link of any robot. The known escape was proven without it.
+    pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), SceneError> {
+        self.reset();
+        self.check.attach(object, attachment)
+    }
+
+    /// Detaches an object, which is there now.
+    pub(crate) fn detach(&mut self, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
+        self.reset();
+        self.check.detach(object, in_world)
+    }
+
+    /// Forgets the known escape.
+    pub(crate) fn reset(&mut self) {
+        (self.is_known, self.followed_s) = (false, None);
+        (self.state, self.pause) = (EscapeState::Free, 0);
+    }
+
+    /// Replaces the next command (rad/s or m/s) by that of the known escape where no escape would be left after it.
+    pub(crate) fn guard(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        mut constraint: Option<&mut dyn PathConstraint>,
+        next: &mut [f64],
+    ) -> EscapeState {
+        let evaded_moves = tick.obstacles.objects.iter().any(|o| !o.known && moves(o))
+            || tick.obstacles.robots.iter().any(|n| !n.known && n.robot != self.robot && robot_moves(n));
+        if self.settings.horizon_s <= 0.0 || !evaded_moves || tick.start.speed_share <= 0.0 {
+            self.reset();
+            return EscapeState::Free;
+        }
+        if self.pause > 0 && self.followed_s.is_none() {
+            self.pause -= 1;
+            self.is_fresh = false;
+            return self.state;
+        }
+        // A scene that cannot be checked has no escape: the rules remain.
+        let state = self.examine(tick, &mut constraint, next).unwrap_or(EscapeState::Unknown);
+        if state == EscapeState::Free {
+            let pause = self.pause;
+            self.reset();
+            self.pause = pause;
+        }
+        self.state = state;
+        // An error was reported above: poses that can be placed can be placed again.
+        let _ = self.check.reset(tick.obstacles);
+        state
+    }
+
+    fn examine(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+        next: &mut [f64],
+    ) -> Result<EscapeState, SceneError> {
+        let clearance = EscapeClearance {
+            moving_m: self.settings.clearance_m.min(0.5 * tick.nearest.moving_m),
+            fixed_m: self.settings.fixed_clearance_m.min(0.5 * tick.nearest.fixed_m),
+        };
+        self.set_next(tick, next);
+        let stop = self.check_stop(tick, clearance.moving_m)?;
+        let is_unhurried = stop.hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
+        self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
+        let Some(hit) = stop.hit else { return Ok(EscapeState::Free) };
+        self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
+        if let Some(followed_s) = self.followed_s {
+            return self.follow(tick, followed_s, &hit, clearance, constraint, next);
+        }
+        if self.find(tick, &hit, clearance, constraint)? {
+            return Ok(EscapeState::Known);
+        }
+        // The command would lose the last escape: the robot takes it.
+        self.is_known = self.is_known && (self.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
+        if self.is_known {
+            return self.follow(tick, 0.0, &hit, clearance, constraint, next);
+        }
+        Ok(EscapeState::Unknown)
+    }
+
+    /// Moves the beginning of the known escape to the present state; true where it is still free.
+    fn is_free_from_now(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        clearance: EscapeClearance,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+    ) -> Result<bool, SceneError> {
+        self.known.set_target(&self.known_target, &tick.start);
+        let horizon_s = self.settings.horizon_s;
+        let motion = TimedMotion { trajectory: &self.known, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
+        Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.hit.is_none()
+            && self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
+            && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
+    }
+
+    /// The robot after a command.
+    fn set_next(&mut self, tick: &EscapeTick<'_>, next: &[f64]) {
+        for (j, limit) in tick.start.limits.iter().enumerate() {
+            self.next_q[j] = (tick.start.q[j] + next[j] * tick.dt).clamp(limit.lower, limit.upper);
+            self.next_qd[j] = next[j];
+        }
+    }
+
+    fn check_stop(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<MotionCheck, SceneError> {
+        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
+        self.stop.set_stop(&start);
+        let horizon_s = self.settings.horizon_s;
+        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        self.check.meets_moving(&motion, tick.obstacles, clearance_m, |known| !known)
+    }
+
+    fn is_on_escape(&self, tick: &EscapeTick<'_>, followed_s: f64) -> bool {
+        self.known.is_near(followed_s, tick.start.q, OFF_ESCAPE)
+    }
+
+    /// Moves on along the known escape; another one is looked for where the prediction has changed so that it is hit.
+    fn follow(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        followed_s: f64,
+        hit: &PredictedHit,
+        clearance: EscapeClearance,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+        next: &mut [f64],
+    ) -> Result<EscapeState, SceneError> {
+        let after_s = followed_s + tick.dt;
+        self.known.q_at(after_s, &mut self.next_q);
+        for (j, v) in next.iter_mut().enumerate() {
+            *v = (self.next_q[j] - tick.start.q[j]) / tick.dt;
+            self.next_qd[j] = *v;
+        }
+        self.followed_s = Some(after_s);
+        let horizon_s = self.settings.horizon_s;
+        let motion = TimedMotion { trajectory: &self.known, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
+        let remains = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
+        if remains.hit.is_some() && self.find(tick, hit, clearance, constraint)? {
+            self.followed_s = Some(0.0);
+        }
+        Ok(EscapeState::Escaping)
+    }
+
+    /// True where an escape from the robot after the command is known: to the known target, or to a new one.
+    fn find(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        hit: &PredictedHit,
+        clearance: EscapeClearance,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+    ) -> Result<bool, SceneError> {
+        self.best = None;
+        let mut attempts = self.settings.per_tick;
+        if self.is_known {
+            self.trial_target.copy_from_slice(&self.known_target);
+            self.examine_trial(tick, clearance, constraint)?;
+            // One other, in case it is better.
+            if self.best.is_some() {
+                self.examined += 1;
+                let may_improve = self.best.is_some_and(|b| b.gap_m < ENOUGH_GAP_M);
+                attempts = usize::from(may_improve && self.examined % IMPROVE_TICKS == 0);
+            }
+        }
+        if attempts > 0 {
+            self.update_point(tick, hit);
+        }
+        for _ in 0..attempts {
+            self.set_trial_target(tick, hit);
+            self.examine_trial(tick, clearance, constraint)?;
+        }
+        Ok(self.best.is_some())
+    }
+
+    /// Examines the trial target; the best one becomes the known escape.
+    fn examine_trial(
+        &mut self,
+        tick: &EscapeTick<'_>,
+        clearance: EscapeClearance,
+        constraint: &mut Option<&mut dyn PathConstraint>,
+    ) -> Result<(), SceneError> {
+        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
+        self.trial.set_target(&self.trial_target, &start);
+        let horizon_s = self.settings.horizon_s;
+        let motion = TimedMotion { trajectory: &self.trial, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        let moving = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
+        let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.duration_s };
+        let is_worse = self.best.is_some_and(|best| !escape.is_better_than(&best));
+        if moving.hit.is_some()
+            || is_worse
+            || !self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
+            || constraint.as_deref_mut().is_some_and(|c| !self.check.keeps_constraint(&motion, c))
+        {
+            return Ok(());
+        }
+        self.best = Some(escape);
+        (self.is_known, self.is_fresh) = (true, true);
+        std::mem::swap(&mut self.known, &mut self.trial);
+        self.known_target.copy_from_slice(&self.trial_target);
+        Ok(())
+    }
+
+    /// Updates the velocity of the point that is hit, per joint at its top speed.
+    fn update_point(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
+        let robot = &self.scene.robots()[self.robot.0];
+        let chain = &robot.robot.chain;
+        self.stop.q_at(hit.time_s, &mut self.chain.q);
+        chain.forward(&mut self.chain);
+        let in_root = robot.base_in_world.inverse_transform_point(hit.point);
+        let in_link = self.chain.link_in_root(hit.link).inverse().transform_point(in_root);
+        chain.jacobian(&self.chain, hit.link, in_link, &mut self.columns);
+        for (j, point) in self.point.iter_mut().enumerate() {
+            let c = &self.columns[j];
+            *point = Vec3::new(c[0], c[1], c[2]) * tick.start.limits[j].speed;
+        }
+    }
+
+    fn set_trial_target(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
+        let base = self.scene.robots()[self.robot.0].base_in_world;
+        let directions = EscapeDirections {
+            point: &self.point,
+            at: base.inverse_transform_point(hit.point),
+            along: base.inverse_transform_vector(hit.velocity).try_normalize().unwrap_or(Vec3::X),
+        };
+        self.stop.q_at(self.stop.duration_s, &mut self.rest_q);
+        let homes = [tick.reference_q, &self.home_q];
+        target(self.index, &self.rest_q, &tick.start, &directions, homes, &mut self.trial_target);
+        self.index += 1;
+    }
+}
