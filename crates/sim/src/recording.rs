@@ -454,14 +454,13 @@ impl RunEvent {
             Self::Grip => "grip",
             Self::Release => "release",
             Self::Replan => "replan",
-            Self::Wait => "wait",
             Self::Stale => "stale",
             Self::Tool => "tool",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",
             Self::Avoidance(AvoiderState::Detouring) => "go_around",
-            Self::Avoidance(AvoiderState::Waiting) => "wait",
+            Self::Wait | Self::Avoidance(AvoiderState::Waiting) => "wait",
             Self::Avoidance(AvoiderState::Halted) => "halt",
         }
     }

@@ -112,7 +112,11 @@ impl<'a> PerceivedObstacles<'a> {
     /// Takes in what is due at a time (s); `q_at` are the joint values of all robots at an earlier time. True where
     /// something was accepted.
     pub fn take_in(&mut self, t_s: f64, q_at: &dyn Fn(f64) -> Vec<Vec<f64>>) -> bool {
-        self.sensors.iter_mut().fold(false, |any, sensor| sensor.take_in(t_s, q_at) || any)
+        let mut is_accepted = false;
+        for sensor in &mut self.sensors {
+            is_accepted |= sensor.take_in(t_s, q_at);
+        }
+        is_accepted
     }
 
     /// Adds the wall-clock time (ns) from the pictures that were taken in last to the reaction of all robots.
