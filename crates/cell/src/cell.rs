@@ -10,10 +10,9 @@ use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
-use elbowroom_vision::{Camera, CameraTrackerSettings};
 
 use crate::seal::Seal;
-use crate::{CellTool, Encoder, MovingObject, PoseTrack};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -50,8 +49,8 @@ pub struct Cell {
     pub programs: Vec<Option<Program>>,
     /// One per robot; `None` for a robot without avoidance.
     pub avoidance: Vec<Option<AvoidanceSpec>>,
-    /// Cameras, in file order.
-    pub cameras: Vec<CellCamera>,
+    /// Cameras in file order, then sources of point clouds.
+    pub sensors: Vec<CellSensor>,
     /// Joint-space maps.
     pub maps: Vec<MapSpec>,
     /// What the file of pairs says. [`Self::robots`] are as in their models.
@@ -93,29 +92,6 @@ pub struct AvoidanceSpec {
     pub noise_m: f64,
     /// Age of an observation when it arrives, s.
     pub delay_s: f64,
-}
-
-/// A calibrated camera above the floor.
-#[derive(Debug, Clone)]
-pub struct CellCamera {
-    /// Its name.
-    pub name: String,
-    /// Line of its table.
-    pub line: usize,
-    /// Lens and pose in the world.
-    pub camera: Camera,
-    /// How obstacles are detected and tracked.
-    pub settings: CameraTrackerSettings,
-    /// The robot in whose map its obstacles are.
-    pub robot: RobotId,
-    /// How long a moving obstacle also blocks where it will be, s.
-    pub prediction_s: f64,
-    /// By how much the silhouette of the robots is dilated, m.
-    pub mask_margin_m: f64,
-    /// The folder of its pictures.
-    pub frames: Option<PathBuf>,
-    /// The joint values at the times of the pictures.
-    pub joints: Option<PathBuf>,
 }
 
 /// The units of a cell file.

@@ -42,14 +42,15 @@ mod query_model;
 pub mod region_constraint;
 mod rest_pose_contacts;
 pub mod seal;
+mod sensor;
 pub mod suggest;
 mod tool;
 mod tool_change;
 pub mod trajectory;
 
 pub use cell::{
-    AvoidanceSpec, Cell, CellCamera, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec,
-    MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
+    AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
+    Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
 };
 pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
@@ -58,4 +59,5 @@ pub use object_tables::{ObjectTables, object_tables};
 pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
+pub use sensor::{CellSensor, SensorKind};
 pub use tool::CellTool;

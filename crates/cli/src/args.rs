@@ -527,18 +527,27 @@ pub(crate) enum TaughtShape {
   elbowroom watch cell.toml                                    pictures and joint values that the cell file names
   elbowroom watch cell.toml --frames pictures --joints q.csv   others
   elbowroom watch cell.toml --frames pictures --json | jq -c '{t_s, obstacles}'
+  elbowroom watch cell.toml --clouds clouds --json             point clouds of [cloud.NAME]
+  ffmpeg -loglevel error -f v4l2 -i /dev/video0 -f image2pipe -c:v png - | elbowroom watch cell.toml --frames -
 
-DIR has pictures (*.png, *.pgm, *.ppm, in the order of their names) and times.csv with the columns file,t_s.
-The first pictures show the empty cell. [camera.NAME] of the cell file has lens, pose and templates (docs/vision.md).")]
+DIR has pictures (*.png, *.pgm, *.ppm) or clouds (*.pcd, *.ply), in the order of their names, and times.csv with the
+columns file,t_s. The first pictures show the empty cell. [camera.NAME] of the cell file has lens, pose and templates,
+[cloud.NAME] the pose of the sensor (docs/vision.md).")]
 pub(crate) struct WatchArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
-    /// The camera; optional if there is only one
+    /// The camera or cloud; optional if there is only one
     #[arg(long, value_name = "NAME")]
     pub(crate) camera: Option<String>,
-    /// The folder of pictures; default: `frames` of the camera
-    #[arg(long, value_name = "DIR")]
+    /// The folder of pictures; default: `frames` of the camera. `-`: PNG pictures one after another from standard input
+    #[arg(long, value_name = "DIR", conflicts_with = "clouds")]
     pub(crate) frames: Option<PathBuf>,
+    /// The folder of point clouds; default: `clouds` of the cloud
+    #[arg(long, value_name = "DIR")]
+    pub(crate) clouds: Option<PathBuf>,
+    /// Pictures per second of the stream; default: each has the time at which it arrives
+    #[arg(long, value_name = "RATE", requires = "frames")]
+    pub(crate) fps: Option<f64>,
     /// Joint values over time (`t_s` and a column per joint); default: `joints` of the camera, or the robots' start
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) joints: Option<PathBuf>,

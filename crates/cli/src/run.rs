@@ -1,7 +1,7 @@
 //! `elbowroom run`: a cell's programs in simulated time.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use elbowroom::cell::Cell;
@@ -9,7 +9,7 @@ use elbowroom::cell::seal::Seal;
 use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::run::{RunProgress, simulate_with};
-use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, csv};
+use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
@@ -101,6 +101,9 @@ pub(crate) fn write_files(
     };
     csv::write_trace(run, create("trace.csv")?).map_err(cannot_write(dir))?;
     csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
+    for sensor in &run.sensors {
+        write_records(&dir.join(format!("{}-{}.jsonl", sensor.kind, sensor.name)), sensor)?;
+    }
     let scene = ReportScene::of_cell(cell);
     let label = if run.monitored { "monitor on" } else { "monitor off" };
     let second = without.filter(|_| compare).map(|w| ("monitor off", w));
@@ -110,4 +113,14 @@ pub(crate) fn write_files(
         page = page.planned(without);
     }
     page.write(create("report.html")?).map_err(cannot_write(dir))
+}
+
+/// Writes what a sensor saw: a JSON document per picture or cloud, a line each, as `watch --json` prints it.
+fn write_records(path: &Path, sensor: &SensorTrack) -> Result<(), Failure> {
+    let mut out = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
+    for record in &sensor.records {
+        let line = serde_json::to_string(record).map_err(|e| Failure::Wrong(e.to_string()))?;
+        writeln!(out, "{line}").map_err(cannot_write(path))?;
+    }
+    out.flush().map_err(cannot_write(path))
 }

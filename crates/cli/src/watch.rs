@@ -1,9 +1,12 @@
-//! `elbowroom watch`: what a camera of a cell sees, picture by picture.
+//! `elbowroom watch`: what a camera or a source of point clouds of a cell sees, picture by picture.
 
 use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
 
-use elbowroom::analysis::watch::{CameraWatch, WatchRecord, WatchRequest, WatchStatus};
+use elbowroom::analysis::watch::{SensorWatch, WatchInput, WatchRecord, WatchRequest, WatchStatus};
 use elbowroom::cell::Cell;
+use elbowroom::formats::PngStream;
 
 use crate::args::WatchArgs;
 use crate::output::{ExitStatus, Failure, note, print};
@@ -11,33 +14,95 @@ use crate::output::{ExitStatus, Failure, note, print};
 pub(crate) fn watch(args: &WatchArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let request =
-        WatchRequest { camera: args.camera.clone(), frames: args.frames.clone(), joints: args.joints.clone() };
-    let mut watch = CameraWatch::new(&cell, &request)?;
+    let is_stream = args.frames.as_deref() == Some(Path::new("-"));
+    let period_s = period_s(args.fps, is_stream)?;
+    let input = match (&args.frames, &args.clouds) {
+        (Some(_), _) if is_stream => WatchInput::Stream,
+        (Some(folder), _) => WatchInput::Pictures(folder.clone()),
+        (None, Some(folder)) => WatchInput::Clouds(folder.clone()),
+        (None, None) => WatchInput::CellFile,
+    };
+    let request = WatchRequest { sensor: args.camera.clone(), input, joints: args.joints.clone() };
+    let mut watch = SensorWatch::new(&cell, &request)?;
     watch.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let mut summary = Summary::default();
-    if !args.json {
-        print("     t, s  picture               obstacles   blocked cells\n")?;
-    }
-    for index in 0..watch.frames() {
-        let record = watch.record(index);
-        if args.json {
-            let line = serde_json::to_string(&record).map_err(|e| Failure::Wrong(e.to_string()))?;
-            print(&format!("{line}\n"))?;
-        } else if summary.is_news(&record) {
-            print(&row(&record))?;
+    let mut output = WatchOutput::begin(args.json)?;
+    if is_stream {
+        watch_stream(&mut watch, period_s, &mut output)?;
+    } else {
+        for index in 0..watch.files().len() {
+            output.add(&watch.record(index))?;
         }
-        summary.add(&record);
     }
-    if !args.json {
-        print(&summary.text())?;
-    }
-    if summary.accepted == 0 {
-        note(
-            "warning: no picture was accepted: the first ones must show the empty cell (learning_frames), more must follow",
-        );
-    }
+    output.end()?;
     Ok(ExitStatus::Success)
+}
+
+/// The period of `--fps`, s.
+fn period_s(fps: Option<f64>, is_stream: bool) -> Result<Option<f64>, Failure> {
+    match fps {
+        Some(_) if !is_stream => {
+            Err(Failure::Wrong("--fps is for a stream of pictures: write --frames -, or leave it out".into()))
+        }
+        Some(fps) if !(fps.is_finite() && fps > 0.0) => {
+            Err(Failure::Wrong(format!("--fps {fps} is no rate: write a number above 0, such as --fps 25")))
+        }
+        fps => Ok(fps.map(|fps| 1.0 / fps)),
+    }
+}
+
+/// Takes in the pictures of standard input as they arrive.
+fn watch_stream(watch: &mut SensorWatch, period_s: Option<f64>, output: &mut WatchOutput) -> Result<(), Failure> {
+    let mut stream = PngStream::new(std::io::stdin().lock());
+    let begin = Instant::now();
+    for index in 0_u64.. {
+        let picture = stream.next_picture().map_err(|e| {
+            let instead =
+                "PNG pictures one after another: ffmpeg … -f image2pipe -c:v png - | elbowroom watch … --frames -";
+            Failure::Wrong(format!("standard input, picture {index}: {e}\n  write: {instead}"))
+        })?;
+        let Some(picture) = picture else { break };
+        let t_s = period_s.map_or_else(|| begin.elapsed().as_secs_f64(), |period_s| index as f64 * period_s);
+        output.add(&watch.record_bytes(&picture, Path::new(&format!("picture {index}")), t_s))?;
+    }
+    Ok(())
+}
+
+/// Prints records: as JSON lines, or as a table of what changes.
+struct WatchOutput {
+    json: bool,
+    summary: Summary,
+}
+
+impl WatchOutput {
+    fn begin(json: bool) -> Result<Self, Failure> {
+        if !json {
+            print("     t, s  picture               obstacles   blocked cells\n")?;
+        }
+        Ok(Self { json, summary: Summary::default() })
+    }
+
+    fn add(&mut self, record: &WatchRecord) -> Result<(), Failure> {
+        if self.json {
+            let line = serde_json::to_string(record).map_err(|e| Failure::Wrong(e.to_string()))?;
+            print(&format!("{line}\n"))?;
+        } else if self.summary.is_news(record) {
+            print(&row(record))?;
+        }
+        self.summary.add(record);
+        Ok(())
+    }
+
+    fn end(mut self) -> Result<(), Failure> {
+        if !self.json {
+            print(&self.summary.text())?;
+        }
+        if self.summary.accepted == 0 {
+            note(
+                "warning: no picture was accepted: the first ones must show the empty cell (learning_frames), more must follow",
+            );
+        }
+        Ok(())
+    }
 }
 
 /// A line of the table: what changed.

@@ -3,7 +3,9 @@
 mod common;
 
 use std::fmt::Write;
+use std::io::Write as _;
 use std::path::Path;
+use std::process::Stdio;
 
 use common::{Answer, elbowroom};
 use elbowroom::formats::robot::{LoadOptions, load};
@@ -177,6 +179,56 @@ fn a_crate_is_tracked_from_files_alone() {
         text.contains("entered at 2.") && text.contains("rejected:") && text.contains("30 pictures learnt"),
         "{text}"
     );
+}
+
+/// `ffmpeg -f image2pipe -c:v png -` writes the pictures one after another.
+#[test]
+fn a_stream_of_pictures_gives_what_the_folder_gives() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell()).unwrap();
+    write_pictures(dir.path());
+    let picture = |i: usize| std::fs::read(dir.path().join(format!("pictures/frame_{i:04}.png"))).unwrap();
+    let all: Vec<u8> = (0..DAMAGED).flat_map(picture).collect();
+    let stream = |args: &[&str], bytes: &[u8]| {
+        let mut child = common::command(dir.path(), &[&["watch", "cell.toml", "--frames", "-"], args].concat())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut input = child.stdin.take().unwrap();
+        let bytes = bytes.to_vec();
+        // The command prints while it reads: both pipes must move.
+        let writer = std::thread::spawn(move || drop(input.write_all(&bytes)));
+        let output = child.wait_with_output().unwrap();
+        writer.join().unwrap();
+        common::answer(output)
+    };
+    let parse = |answer: &Answer| -> Vec<Value> {
+        answer.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    };
+    let folder = parse(&watch(dir.path(), &["--json"]).expect(0));
+    let streamed = parse(&stream(&["--fps", "25", "--json"], &all).expect(0));
+    assert_eq!(streamed.len(), DAMAGED);
+    for (a, b) in streamed.iter().zip(&folder) {
+        assert!((a["t_s"].as_f64().unwrap() - b["t_s"].as_f64().unwrap()).abs() < 1e-9);
+        assert!(
+            a["status"] == b["status"]
+                && a["obstacles"].as_array().unwrap().len() == b["obstacles"].as_array().unwrap().len()
+        );
+    }
+    // Without --fps the stamps are those of the arrival: they rise.
+    std::fs::write(dir.path().join("cell.toml"), cell().replace("joints = \"joints.csv\"\n", "")).unwrap();
+    let arrived = parse(&stream(&["--json"], &all[..]).expect(0));
+    let times: Vec<f64> = arrived.iter().map(|r| r["t_s"].as_f64().unwrap()).collect();
+    assert!(times.len() == DAMAGED && times.windows(2).all(|w| w[0] < w[1]), "{times:?}");
+    // What is no stream of pictures is reported, with the number of the picture.
+    let cut = &all[..picture(0).len() + 100];
+    let message = stream(&["--json"], cut).expect(2).stderr;
+    assert!(message.contains("picture 1: the stream ends within a picture") && message.contains("ffmpeg"), "{message}");
+    assert!(stream(&[], b"JFIF and so on").expect(2).stderr.contains("no PNG picture"));
+    assert!(stream(&["--fps", "0"], &all).expect(2).stderr.contains("--fps 25"));
+    assert!(watch(dir.path(), &["--fps", "25", "--frames", "pictures"]).expect(2).stderr.contains("--frames -"));
 }
 
 #[test]

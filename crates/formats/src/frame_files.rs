@@ -1,5 +1,5 @@
-//! A folder of camera pictures: `*.png`, `*.pgm`, `*.ppm` in the order of their names, and `times.csv` with the columns `file` and
-//! `t_s`, when each was taken.
+//! A folder of camera pictures (`*.png`, `*.pgm`, `*.ppm`) or point clouds (`*.pcd`, `*.ply`) in the order of their names, and
+//! `times.csv` with the columns `file` and `t_s`, when each was taken.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,43 @@ use crate::{FormatError, Warning};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Endings of the names of pictures.
-const ENDINGS: [&str; 4] = ["png", "pgm", "ppm", "pnm"];
 const TIMES: &str = "times.csv";
 const HEADER: &str = "the header file,t_s and a row per picture: frame_0000.png,0.0";
 
-/// A picture and when it was taken.
+/// What the files of a folder are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrameKind {
+    /// Pictures: of brightness, colour or depth.
+    Picture,
+    /// Point clouds.
+    Cloud,
+}
+
+impl FrameKind {
+    /// Endings of the names.
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Picture => &["png", "pgm", "ppm", "pnm"],
+            Self::Cloud => &["pcd", "ply"],
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Picture => "picture",
+            Self::Cloud => "point cloud",
+        }
+    }
+
+    fn instead(self) -> &'static str {
+        match self {
+            Self::Picture => "a folder of pictures (*.png, *.pgm, *.ppm) with times.csv",
+            Self::Cloud => "a folder of point clouds (*.pcd, *.ply) with times.csv",
+        }
+    }
+}
+
+/// A picture or cloud and when it was taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameFile {
     /// The file.
@@ -23,23 +54,24 @@ pub struct FrameFile {
     pub t_s: f64,
 }
 
-/// The pictures of a folder, in the order of their names, which is that of their times.
+/// The pictures or clouds of a folder, in the order of their names, which is that of their times.
 ///
 /// ```
+/// use elbowroom_formats::frame_files::FrameKind;
 /// let dir = tempfile::tempdir()?;
 /// for name in ["b.png", "a.png"] {
 ///     std::fs::write(dir.path().join(name), "")?;
 /// }
 /// std::fs::write(dir.path().join("times.csv"), "file,t_s\na.png,0\nb.png,0.04\n")?;
-/// let (frames, warnings) = elbowroom_formats::frame_files::read(dir.path())?;
+/// let (frames, warnings) = elbowroom_formats::frame_files::read(dir.path(), FrameKind::Picture)?;
 /// assert!(frames[1].path.ends_with("b.png") && frames[1].t_s == 0.04 && warnings.is_empty());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// [`FormatError`] where the folder has no picture, or the times are missing, incomplete or do not rise.
-pub fn read(folder: &Path) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
-    let pictures = pictures(folder)?;
+pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
+    let pictures = files(folder, kind)?;
     let file = folder.join(TIMES);
     let mut times = times(&file)?;
     let mut frames: Vec<FrameFile> = Vec::with_capacity(pictures.len());
@@ -64,20 +96,20 @@ pub fn read(folder: &Path) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
     Ok((frames, missing.first().map(warning).into_iter().collect()))
 }
 
-/// All pictures of a folder, sorted.
-fn pictures(folder: &Path) -> Result<Vec<PathBuf>> {
-    const INSTEAD: &str = "a folder of pictures (*.png, *.pgm, *.ppm) with times.csv";
-    let unreadable = |e: std::io::Error| FormatError::new(folder, None, format!("cannot be read: {e}")).hint(INSTEAD);
+/// All files of a kind in a folder, sorted.
+fn files(folder: &Path, kind: FrameKind) -> Result<Vec<PathBuf>> {
+    let unreadable =
+        |e: std::io::Error| FormatError::new(folder, None, format!("cannot be read: {e}")).hint(kind.instead());
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        if ENDINGS.contains(&ending.as_str()) {
+        if kind.endings().contains(&ending.as_str()) {
             found.push(path);
         }
     }
     if found.is_empty() {
-        return Err(FormatError::new(folder, None, "has no picture").hint(INSTEAD));
+        return Err(FormatError::new(folder, None, format!("has no {}", kind.name())).hint(kind.instead()));
     }
     found.sort();
     Ok(found)
@@ -138,11 +170,12 @@ mod tests {
             (&["a.png", "b.png"][..], Some("file,t_s\na.png,1\nb.png,1\n"), ":3:"),
         ] {
             let dir = folder(pictures, times);
-            let message = read(dir.path()).unwrap_err().to_string();
+            let message = read(dir.path(), FrameKind::Picture).unwrap_err().to_string();
             assert!(message.contains(expected), "{expected}: {message}");
         }
         let dir = folder(&["a.PNG", "note.txt"], Some("t_s,file\n0.5,a.PNG\n0.6,lost.png\n"));
-        let (frames, warnings) = read(dir.path()).unwrap();
+        let (frames, warnings) = read(dir.path(), FrameKind::Picture).unwrap();
         assert_eq!((frames.len(), frames[0].t_s, warnings.len()), (1, 0.5, 1));
+        assert!(read(dir.path(), FrameKind::Cloud).unwrap_err().to_string().contains("has no point cloud"));
     }
 }

@@ -9,7 +9,6 @@ use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneError, SceneS
 use elbowroom_spatial::Pose;
 
 use crate::executor_state::HoldReason;
-use crate::map_updater::prism_hull;
 use crate::mapped_arm::MappedArm;
 use crate::obstacle_update::Prism;
 
@@ -50,8 +49,7 @@ impl ExactPathChecker {
         let failed = |what: String| HoldReason::CheckFailed(what);
         let mut objects = self.fixtures.clone();
         for prism in prisms {
-            let solid =
-                prism_hull(&prism.footprint_m, [prism.z_from_m, prism.z_to_m]).map_err(|e| failed(e.to_string()))?;
+            let solid = prism.observed_solid().map_err(|e| failed(e.to_string()))?;
             let shape = Shape::Hull(Arc::new(solid));
             objects.push(Object { name: prism.id.to_string(), shape, in_world: Pose::IDENTITY });
         }

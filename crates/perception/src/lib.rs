@@ -65,6 +65,7 @@
 //! An obstacle that moves into a stopped arm is not prevented from doing so. This is not a certified safety device.
 
 mod arc_limit;
+mod cloud_watcher;
 mod error;
 mod exact_path_checker;
 mod executor;
@@ -74,6 +75,7 @@ mod executor_step;
 mod free_arc;
 mod map_updater;
 mod mapped_arm;
+pub mod motion_entry;
 mod observation;
 mod obstacle_update;
 mod obstacle_watcher;
@@ -84,9 +86,12 @@ mod pipeline;
 mod prism_boxes;
 mod replan_in_motion;
 mod replan_result;
+mod robot_map;
 mod times;
+mod watched_robots;
 mod worker;
 
+pub use cloud_watcher::CloudWatcher;
 pub use error::PerceptionError;
 pub use exact_path_checker::ExactPathChecker;
 pub use executor::ReplanningExecutor;
@@ -95,9 +100,10 @@ pub use executor_state::{ExecutorState, HoldReason};
 pub use executor_step::ExecutorStep;
 pub use mapped_arm::MappedArm;
 pub use obstacle_update::{ObstacleUpdate, Prism};
-pub use obstacle_watcher::{ObstacleWatcher, WatchedRobot};
+pub use obstacle_watcher::ObstacleWatcher;
 pub use perception_log::{FrameEntry, GroundTruth, PerceptionLog, ReportImage, TickEntry};
 pub use pipeline::{PerceptionPipeline, PerceptionSettings};
 pub use replan_result::ReplanResult;
 pub use times::{PerceptionTimes, ReplanTimes};
+pub use watched_robots::WatchedRobot;
 pub use worker::{CapturedImage, PerceptionWorker};

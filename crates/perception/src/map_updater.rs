@@ -4,12 +4,11 @@ use std::ops::AddAssign;
 use std::sync::Arc;
 
 use elbowroom_cspace::{CellChanges, ConvexObstacle, JointMap};
-use elbowroom_proximity::{ConvexHull, HullError};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::Pose;
 use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polygon};
 
 use crate::error::PerceptionError;
-use crate::obstacle_update::{ObstacleUpdate, Prism};
+use crate::obstacle_update::{ObstacleUpdate, Prism, prism_hull};
 
 /// A joint-space map in which observed obstacles are layers.
 pub(super) trait PrismMap {
@@ -167,13 +166,6 @@ fn prism(observed: &vision::Obstacle, prediction_s: f64) -> Prism {
         velocity_mps: observed.velocity_mps,
         is_unobserved: observed.is_unobserved,
     }
-}
-
-/// The convex hull of an upright prism.
-pub(super) fn prism_hull(footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<ConvexHull, HullError> {
-    let at = |z: f64| footprint_m.iter().map(move |p| Vec3::new(p.x, p.y, z));
-    let points: Vec<Vec3> = heights_m.into_iter().flat_map(at).collect();
-    ConvexHull::from_points(&points)
 }
 
 #[cfg(test)]

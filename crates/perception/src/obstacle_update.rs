@@ -1,5 +1,7 @@
 //! Obstacle update: the result of one frame.
 
+use elbowroom_proximity::{ConvexHull, HullError};
+use elbowroom_spatial::Vec3;
 use elbowroom_vision::{FrameStatus, ObstacleId, Point2, polygon};
 
 use crate::times::PerceptionTimes;
@@ -29,6 +31,22 @@ pub struct Prism {
 }
 
 impl Prism {
+    /// The solid over the observed footprint, in the world.
+    ///
+    /// # Errors
+    /// A prism without a volume.
+    pub fn observed_solid(&self) -> Result<ConvexHull, HullError> {
+        prism_hull(&self.footprint_m, [self.z_from_m, self.z_to_m])
+    }
+
+    /// The solid over the observed and the predicted footprint, in the world.
+    ///
+    /// # Errors
+    /// A prism without a volume.
+    pub fn predicted_solid(&self) -> Result<ConvexHull, HullError> {
+        prism_hull(&self.swept_m, [self.z_from_m, self.z_to_m])
+    }
+
     /// True where a convex footprint (world x and y, metres) lies within the observed one.
     pub fn contains(&self, footprint_m: &[Point2]) -> bool {
         footprint_m.iter().all(|&p| polygon::convex_contains(&self.footprint_m, p))
@@ -61,4 +79,11 @@ impl ObstacleUpdate {
     pub fn is_accepted(&self) -> bool {
         self.status == FrameStatus::Accepted
     }
+}
+
+/// The convex hull of an upright prism.
+pub(super) fn prism_hull(footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<ConvexHull, HullError> {
+    let at = |z: f64| footprint_m.iter().map(move |p| Vec3::new(p.x, p.y, z));
+    let points: Vec<Vec3> = heights_m.into_iter().flat_map(at).collect();
+    ConvexHull::from_points(&points)
 }

@@ -1,29 +1,15 @@
 //! Camera frames to the joint-space map of any robot.
 
 use elbowroom_cspace::{CoverMapBuilder, LayerMap, MapReader};
-use elbowroom_kinematics::ChainState;
-use elbowroom_robot::Robot;
-use elbowroom_spatial::Pose;
-use elbowroom_vision::{
-    Calibration, CameraTracker, CameraTrackerSettings, Frame, FrameStatus, ObstacleId, PixelMask, Point2, Stopwatch,
-};
+use elbowroom_vision::{Calibration, CameraTracker, CameraTrackerSettings, Frame, FrameStatus, PixelMask, Stopwatch};
 
 use crate::error::PerceptionError;
-use crate::map_updater::{Changed, MapUpdater, PrismMap, PrismSettings};
-use crate::mapped_arm::append_parts;
+use crate::map_updater::PrismSettings;
 use crate::observation::observe;
 use crate::obstacle_update::{ObstacleUpdate, Prism};
 use crate::pipeline::PerceptionSettings;
-use crate::prism_boxes::prism_boxes;
-
-/// A robot that the camera sees.
-#[derive(Debug, Clone)]
-pub struct WatchedRobot {
-    /// Links, joints, colliders.
-    pub robot: Robot,
-    /// Pose of the root link in the world.
-    pub base_in_world: Pose,
-}
+use crate::robot_map::RobotMap;
+use crate::watched_robots::{WatchedRobot, WatchedRobots};
 
 /// Turns camera frames into obstacles and keeps the joint-space map of a robot up to date: of any robot, on sphere covers of its
 /// links. ([`PerceptionPipeline`](crate::PerceptionPipeline) is for arms in a plane, and faster.)
@@ -54,13 +40,11 @@ pub struct WatchedRobot {
 /// ```
 #[derive(Debug)]
 pub struct ObstacleWatcher {
-    robots: Vec<WatchedRobot>,
-    states: Vec<ChainState>,
+    robots: WatchedRobots,
     settings: PerceptionSettings,
     tracker: CameraTracker,
     mask: PixelMask,
-    map: RobotPrisms,
-    map_updater: MapUpdater,
+    map: RobotMap,
 }
 
 impl ObstacleWatcher {
@@ -79,30 +63,30 @@ impl ObstacleWatcher {
         settings.validate()?;
         camera.camera()?;
         let (width, height) = camera.size()?;
+        let tracker = CameraTracker::new(camera, tracker_settings)?;
+        let of_prisms = PrismSettings { prediction_s: settings.prediction_s, slack_m: tracker.settings().hysteresis_m };
         Ok(Self {
-            states: robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
-            robots,
+            robots: WatchedRobots::new(robots),
             settings,
-            tracker: CameraTracker::new(camera, tracker_settings)?,
+            tracker,
             mask: PixelMask::new(width, height),
-            map: RobotPrisms { map: LayerMap::new(builder.grid()), builder, parts: Vec::new() },
-            map_updater: MapUpdater::default(),
+            map: RobotMap::new(builder, of_prisms),
         })
     }
 
     /// The joint-space map.
     pub fn map(&self) -> &LayerMap {
-        &self.map.map
+        self.map.map()
     }
 
     /// The obstacles in the map.
     pub fn prisms(&self) -> &[Prism] {
-        self.map_updater.prisms()
+        self.map.prisms()
     }
 
     /// A lock-free reader of the published map, for this or another thread.
     pub fn reader(&self) -> MapReader {
-        self.map.map.reader()
+        self.map.map().reader()
     }
 
     /// The camera tracker: settings, foreground, detailed timings.
@@ -116,79 +100,15 @@ impl ObstacleWatcher {
     /// A frame of the wrong size or out of order, joint values that do not match the robots. The map is unchanged: unknown is
     /// not free. Where an obstacle has no volume its cells are unchanged; the others are updated.
     pub fn process_frame(&mut self, frame: &Frame, q: &[&[f64]]) -> Result<ObstacleUpdate, PerceptionError> {
-        self.validate(q)?;
         let mut stopwatch = Stopwatch::start();
-        let mut parts = Vec::new();
-        for ((robot, state), q) in self.robots.iter().zip(&mut self.states).zip(q) {
-            append_parts(&robot.robot, robot.base_in_world, state, q, &mut parts);
-        }
+        let parts = self.robots.parts(q)?;
         self.mask.clear();
         self.mask.mask_arm(self.tracker.calibration(), &parts, self.settings.mask_margin_m)?;
         let mut update = observe(&mut self.tracker, frame, &self.mask, stopwatch.lap())?;
-        stopwatch.lap();
         if update.status == FrameStatus::Accepted {
-            let slack_m = self.tracker.settings().hysteresis_m;
-            let settings = PrismSettings { prediction_s: self.settings.prediction_s, slack_m };
-            self.map_updater.update(&self.tracker.report().obstacles, &settings, &mut self.map, &mut update)?;
-            update.times.map = stopwatch.lap();
-            self.map.map.publish();
-            update.times.publish = stopwatch.lap();
+            self.map.take_over(&self.tracker.report().obstacles, &mut update)?;
         }
-        update.prisms.clone_from(self.map_updater.prisms());
+        update.prisms = self.map.prisms().to_vec();
         Ok(update)
     }
-
-    fn validate(&self, q: &[&[f64]]) -> Result<(), PerceptionError> {
-        let dof: usize = self.robots.iter().map(|r| r.robot.chain.dof()).sum();
-        let fits = q.len() == self.robots.len()
-            && self.robots.iter().zip(q).all(|(r, q)| q.len() == r.robot.chain.dof())
-            && q.iter().copied().flatten().all(|value| value.is_finite());
-        if fits { Ok(()) } else { Err(PerceptionError::Values { found: q.iter().map(|q| q.len()).sum(), dof }) }
-    }
-}
-
-/// Prisms as boxes in the map of any robot.
-#[derive(Debug)]
-struct RobotPrisms {
-    map: LayerMap,
-    builder: CoverMapBuilder,
-    /// Number of boxes of each obstacle.
-    parts: Vec<(ObstacleId, usize)>,
-}
-
-impl PrismMap for RobotPrisms {
-    fn set(&mut self, id: ObstacleId, footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<Changed, PerceptionError> {
-        let boxes = prism_boxes(footprint_m, heights_m);
-        if boxes.is_empty() || !(heights_m[1] > heights_m[0]) {
-            return Err(PerceptionError::Obstacle(format!("{id} has no volume")));
-        }
-        let layer = |(shape, in_world)| self.builder.layer(&self.builder.obstacle(shape)?, in_world);
-        let layers = boxes.iter().map(|(shape, pose)| layer((shape, pose)));
-        let layers: Vec<_> = layers.collect::<Result<_, _>>().map_err(|e| PerceptionError::Obstacle(e.to_string()))?;
-        // The new ones first, so that no cell is free in between.
-        let count = layers.len();
-        let mut changed = Changed::default();
-        for (part, layer) in layers.into_iter().enumerate() {
-            changed += Changed::of(self.map.set_layer(&part_name(id, part), layer));
-        }
-        let before = self.parts.iter().position(|(known, _)| *known == id).map(|at| self.parts.swap_remove(at).1);
-        for part in count..before.unwrap_or(0) {
-            changed += self.map.remove(&part_name(id, part)).map_or_else(Changed::default, Changed::of);
-        }
-        self.parts.push((id, count));
-        Ok(changed)
-    }
-
-    fn remove(&mut self, id: ObstacleId) -> Option<Changed> {
-        let at = self.parts.iter().position(|(known, _)| *known == id)?;
-        let mut changed = Changed::default();
-        for part in 0..self.parts.swap_remove(at).1 {
-            changed += self.map.remove(&part_name(id, part)).map_or_else(Changed::default, Changed::of);
-        }
-        Some(changed)
-    }
-}
-
-fn part_name(id: ObstacleId, part: usize) -> String {
-    format!("{id}.{part}")
 }

@@ -1,9 +1,4 @@
-//! Replanning while the arm moves: change of path without a stop.
-//!
-//! A trajectory starts at rest. The new one therefore starts on the current straight segment *behind* the arm, so far
-//! back that it is at least as fast as the arm where it passes the arm's configuration. It leaves the segment so far
-//! ahead that the arm could stop before. Execution enters it at the arm's configuration, at the rate at which both
-//! speeds are equal: position, direction and speed are continuous.
+//! Replanning while the arm moves: change of path without a stop, by an entry in motion ([`motion_entry`](crate::motion_entry)).
 
 use std::time::Duration;
 
@@ -14,23 +9,15 @@ use elbowroom_planner::{
 use elbowroom_vision::Stopwatch;
 
 use crate::free_arc::free_arc_rad;
+use crate::motion_entry::{acceleration_distance, first_root};
 use crate::path_execution::{PathExecution, distance, state_at};
 
 /// The arm enters the new path where that passes its configuration within this distance, rad.
 const ENTRY_DISTANCE_RAD: f64 = 1e-6;
 /// The rate at the entry may exceed 1 by this much, which is rounding; it is then 1.
 const RATE_ROUNDING: f64 = 1e-6;
-/// Reserve of the distance in which a speed is reached: a factor, and a length in rad for speeds near 0.
-const DISTANCE_RESERVE_FACTOR: f64 = 1.05;
-const DISTANCE_RESERVE_RAD: f64 = 1e-3;
-/// Smallest component of a direction: joints that do not move along it do not limit the motion.
-const MIN_COMPONENT: f64 = 1e-12;
 /// A slower arm has no direction of motion, rad/s.
 const MIN_SPEED_RAD_S: f64 = 1e-9;
-/// Steps in which the entry is searched, seconds: in one the arm hardly changes its speed.
-const ENTRY_STEP_S: f64 = 0.004;
-/// Bisections of such a step: to rounding.
-const ENTRY_BISECTIONS: usize = 50;
 
 /// Settings of [`replan_in_motion`].
 pub(super) struct InMotionSettings<'a> {
@@ -83,7 +70,7 @@ fn find_replacement(
     let segment = old.segment()?;
     let speed = norm(state.qd) * old.rate;
     let along = unit(state.qd)?;
-    let back_rad = acceleration_distance(speed, along, settings.limits);
+    let back_rad = acceleration_distance(speed, &along, settings.limits);
     let here = PathProgress { segment, q: state.q };
     // Both lengths are unweighted: a weighted free length could exceed the stopping distance although the path is blocked
     // before the arm can leave it.
@@ -122,15 +109,6 @@ fn find_replacement(
     is_smooth.then(|| (execution(), kind))
 }
 
-/// Distance in which a speed along a direction is reached from rest, which is also the distance to stop from it, with a
-/// reserve.
-fn acceleration_distance(speed: f64, along: [f64; 3], limits: &KinematicLimits) -> f64 {
-    let least = |of: &[f64]| (0..3).map(|i| of[i] / along[i].abs().max(MIN_COMPONENT)).fold(f64::INFINITY, f64::min);
-    let (a, j) = (least(&limits.acceleration), least(&limits.jerk));
-    let seconds = if speed >= a * a / j { speed / a + a / j } else { 2.0 * (speed / j).sqrt() };
-    0.5 * speed * seconds * DISTANCE_RESERVE_FACTOR + DISTANCE_RESERVE_RAD
-}
-
 /// Moves `left` rad along a path: the waypoints passed, and the point reached.
 fn advance_along(path: &Path, here: PathProgress, mut left: f64) -> Option<(Vec<[f64; 3]>, PathProgress)> {
     let (mut corners, mut at) = (Vec::new(), here.q);
@@ -146,28 +124,6 @@ fn advance_along(path: &Path, here: PathProgress, mut left: f64) -> Option<(Vec<
         at = to;
     }
     None
-}
-
-/// First zero of a function that rises from below 0: steps, then bisection.
-fn first_root(value: impl Fn(f64) -> f64, end: f64) -> Option<f64> {
-    let mut low = 0.0;
-    let mut high = low;
-    while value(high) < 0.0 {
-        low = high;
-        high += ENTRY_STEP_S;
-        if low > end {
-            return None;
-        }
-    }
-    for _ in 0..ENTRY_BISECTIONS {
-        let middle = f64::midpoint(low, high);
-        if value(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(high)
 }
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

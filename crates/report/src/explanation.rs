@@ -2,7 +2,7 @@
 
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_monitor::{Fault, OverrideReason};
-use elbowroom_sim::{Collision, Recording, RobotTrack};
+use elbowroom_sim::{Collision, HoldReason, Recording, RobotTrack};
 
 /// Description of a robot at a sample: its last collision, its avoidance state, the reason of the override.
 pub fn explanation(robot: &RobotTrack, index: usize, recording: &Recording) -> String {
@@ -13,6 +13,12 @@ pub fn explanation(robot: &RobotTrack, index: usize, recording: &Recording) -> S
     parts.extend(hits.max_by(|a, b| a.t_s.total_cmp(&b.t_s)).map(|c| collision_text(c, robot)));
     let state = robot.avoidance.as_ref().and_then(|a| a.samples.get(index)).map(|a| a.state);
     parts.extend(state.filter(|d| *d != AvoiderState::Following).map(|d| d.name().to_owned()));
+    let holds = robot.perception.iter().flat_map(|p| &p.holds);
+    let hold = holds.filter(|h| h.from_s <= sample.t_s && sample.t_s <= h.to_s).last();
+    parts.extend(hold.map(|h| match h.reason {
+        HoldReason::Obstacle => format!("{} blocks its path", h.by),
+        HoldReason::Stale => format!("{} sees nothing", h.by),
+    }));
     if sample.reason != OverrideReason::Free || parts.is_empty() {
         parts.push(reason_text(sample.reason, recording));
     }

@@ -103,6 +103,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
         stopped_s: waiting as f64 * log.tick_s,
         collisions: Vec::new(),
         avoidance: None,
+        perception: None,
         ending: elbowroom_sim::RobotEnding::default(),
     };
     Recording {
@@ -115,6 +116,7 @@ fn recording(arm: &MappedArm, log: &PerceptionLog, flange: LinkId) -> Recording 
         robots: vec![robot],
         regions: log.ground_truth.iter().map(region).collect(),
         objects: Vec::new(),
+        sensors: Vec::new(),
         deadlocks: Vec::new(),
         events: Vec::new(),
         tick_ns: TickTimes::default(),

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, Recording, RegionTrack, RobotEnding,
-    RobotTrack, RunEnd, Stop,
+    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, PerceptionSummary, PerceptionTrack,
+    Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack, Stop,
 };
 
 use crate::explanation::explanation;
@@ -25,7 +25,7 @@ const STATIONARY_M_S: f64 = 1e-4;
 /// let recording = Recording {
 ///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, end: RunEnd::Finished,
 ///     monitored: true,
-///     robots: vec![], regions: vec![], objects: vec![], deadlocks: vec![], events: vec![],
+///     robots: vec![], regions: vec![], objects: vec![], sensors: vec![], deadlocks: vec![], events: vec![],
 ///     tick_ns: TickTimes::default(),
 /// };
 /// assert!(elbowroom_report::summary(&recording, 80, false).contains("welding column"));
@@ -115,6 +115,7 @@ impl fmt::Display for TextSummary<'_> {
             let why = "  ended   robots at override 0 for 10 s, only endless belts moved";
             lines.push(vec![(why.into(), Style::Warn)]);
         }
+        lines.extend(rec.sensors.iter().map(sensor_line));
         lines.push(ticks(rec));
         for line in &lines {
             self.write_line(f, line)?;
@@ -175,6 +176,9 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
+    if let Some(track) = &robot.perception {
+        lines.extend(kept_clear(track).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
+    }
     for c in robot.collisions.iter().take(3) {
         lines.push(vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]);
         lines.extend(key_to_ignore(robot, c).map(|key| vec![(format!("{indent}  {key}"), Style::Dim)]));
@@ -231,6 +235,29 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
+}
+
+/// Summary of what a robot did about the obstacles that sensors see.
+fn kept_clear(track: &PerceptionTrack) -> Vec<String> {
+    let p = PerceptionSummary::from(track);
+    let [in_motion, from_rest] = [p.replans_in_motion, p.replans_from_rest];
+    let blind = (p.stale_s > 0.0).then(|| format!("waited {:.2} s for pictures", p.stale_s));
+    let paths = format!("new paths: {in_motion} in motion, {from_rest} from rest; waited {:.2} s", p.waited_s);
+    std::iter::once(paths).chain(blind).collect()
+}
+
+/// What a sensor sent and saw.
+fn sensor_line(track: &SensorTrack) -> Line {
+    let s = SensorSummary::from(track);
+    let what = if track.kind == "cloud" { "clouds" } else { "pictures" };
+    let rejected = if s.rejected > 0 { format!(", {} rejected", s.rejected) } else { String::new() };
+    let obstacles = match s.obstacles.len() {
+        1 => "1 obstacle".to_owned(),
+        n => format!("{n} obstacles"),
+    };
+    let time = duration(s.processing_ns.p50);
+    let text = format!("  {} {}: {} {what}{rejected}, {obstacles}", pad(track.kind, 7), s.name, s.frames);
+    vec![(text, Style::Plain), (format!(", {time} to motion"), Style::Dim)]
 }
 
 /// Description of the outcome of a robot's program.

@@ -40,9 +40,9 @@ mod summary;
 
 pub use held_object::held_object;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, ObjectTrack, Outcome, PartKind,
-    RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent,
-    Sample, Span, Stop, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, Hold, HoldReason, ObjectTrack,
+    Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack,
+    ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
-pub use summary::{AvoidanceSummary, RunSummary};
+pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

@@ -1,5 +1,6 @@
 //! Recording of a run, for the report and the CSV writers.
 
+use elbowroom_analysis::watch::WatchRecord;
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{AvoiderState, EscapeState};
 use elbowroom_cell::CellRegionId;
@@ -31,6 +32,8 @@ pub struct Recording {
     pub regions: Vec<RegionTrack>,
     /// One per object that moves or is gripped: the moving ones in the order of the cell file, then the others.
     pub objects: Vec<ObjectTrack>,
+    /// One per sensor whose pictures or clouds were taken in.
+    pub sensors: Vec<SensorTrack>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<Deadlock>,
     /// In order of time.
@@ -81,8 +84,68 @@ pub struct RobotTrack {
     pub collisions: Vec<Collision>,
     /// Evasion; `None` for a robot without avoidance.
     pub avoidance: Option<AvoidanceTrack>,
+    /// What it did about the obstacles that sensors see; `None` for a robot that no sensor guards.
+    pub perception: Option<PerceptionTrack>,
     /// How its run ended.
     pub ending: RobotEnding,
+}
+
+/// What one robot did about the obstacles that sensors see.
+#[derive(Debug, Clone, Default)]
+pub struct PerceptionTrack {
+    /// Searches for a new path, in order of time.
+    pub replans: Vec<PathReplan>,
+    /// Times in which it was held, in order.
+    pub holds: Vec<Hold>,
+    /// It was held at the end of the run: why, and by what.
+    pub ends_held: Option<(HoldReason, String)>,
+}
+
+/// A search for a new path of a planned move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathReplan {
+    /// Simulated time, s.
+    pub t_s: f64,
+    /// Wall-clock time of the search, s.
+    pub search_s: f64,
+    /// Whether the robot entered the new path in motion; `None` where none was found.
+    pub in_motion: Option<bool>,
+}
+
+/// A time in which a robot is held: it brakes or stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// Start, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Why.
+    pub reason: HoldReason,
+    /// The obstacle (`sensor#number`) or the sensor.
+    pub by: String,
+}
+
+/// Why a robot is held because of what sensors see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HoldReason {
+    /// An obstacle blocks its path.
+    Obstacle,
+    /// A sensor has sent nothing that can be used for too long, or nothing yet.
+    Stale,
+}
+
+/// What one sensor sent and saw.
+#[derive(Debug, Clone)]
+pub struct SensorTrack {
+    /// Its name.
+    pub name: String,
+    /// `camera` or `cloud`.
+    pub kind: &'static str,
+    /// One per picture or cloud that was taken in.
+    pub records: Vec<WatchRecord>,
+    /// Wall-clock time from the picture in the file to the reaction of the robots.
+    pub processing_ns: TickTimes,
 }
 
 /// A time during which the monitor stopped a robot.
@@ -344,7 +407,7 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned, or the object gripped or released; empty where none is.
+    /// The region concerned, the object gripped or released, or the perceived obstacle; empty where none is.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -367,6 +430,12 @@ pub enum RunEvent {
     Grip,
     /// A robot released an object, which is named in place of the region.
     Release,
+    /// A robot has another path, around what sensors see.
+    Replan,
+    /// A robot brakes or stands: an obstacle that a sensor sees, which is named in place of the region, blocks its path.
+    Wait,
+    /// A robot brakes or stands: a sensor, which is named in place of the region, has sent nothing for too long.
+    Stale,
     /// A robot made a tool active, which is named in place of the region.
     Tool,
     /// The avoidance of a robot changed to this state.
@@ -384,12 +453,14 @@ impl RunEvent {
             Self::Resume => "resume",
             Self::Grip => "grip",
             Self::Release => "release",
+            Self::Replan => "replan",
+            Self::Stale => "stale",
             Self::Tool => "tool",
             Self::Avoidance(AvoiderState::Following) => "on_path",
             Self::Avoidance(AvoiderState::Evading) => "evade",
             Self::Avoidance(AvoiderState::Returning) => "return",
             Self::Avoidance(AvoiderState::Detouring) => "go_around",
-            Self::Avoidance(AvoiderState::Waiting) => "wait",
+            Self::Wait | Self::Avoidance(AvoiderState::Waiting) => "wait",
             Self::Avoidance(AvoiderState::Halted) => "halt",
         }
     }

@@ -1,10 +1,12 @@
 //! Summary of a run as one JSON document: the output of `elbowroom run --json`.
 
+use elbowroom_analysis::watch::WatchStatus;
 use elbowroom_avoidance::AvoiderState;
 use serde::Serialize;
 
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, ObjectTrack, Outcome, PartKind, RecordedRegionKind, Recording, RunEnd, Stop,
+    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    RecordedRegionKind, Recording, RunEnd, SensorTrack, Stop, TickTimes,
 };
 
 /// Figures of a run, in SI units.
@@ -28,6 +30,12 @@ pub struct RunSummary {
     pub regions: Vec<RegionSummary>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<DeadlockSummary>,
+    /// Per camera whose pictures were taken in; left out where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<SensorSummary>,
+    /// Per source of point clouds that were taken in; left out where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub clouds: Vec<SensorSummary>,
     /// Where the objects that move or are gripped are at the end; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSummary>,
@@ -61,6 +69,12 @@ pub struct TickNs {
     pub p99: u64,
     /// Largest.
     pub max: u64,
+}
+
+impl From<TickTimes> for TickNs {
+    fn from(t: TickTimes) -> Self {
+        Self { p50: t.p50, p99: t.p99, max: t.max }
+    }
 }
 
 /// Result of one robot.
@@ -97,6 +111,126 @@ pub struct RobotSummary {
     /// Evasion; left out for a robot without avoidance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub avoidance: Option<AvoidanceSummary>,
+    /// What it did about the obstacles that sensors see; left out for a robot that no sensor guards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub perception: Option<PerceptionSummary>,
+}
+
+/// What a robot did about the obstacles that sensors see.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PerceptionSummary {
+    /// New paths that it entered in motion.
+    pub replans_in_motion: usize,
+    /// New paths from rest.
+    pub replans_from_rest: usize,
+    /// Searches that found no path.
+    pub replans_failed: usize,
+    /// Time in which it braked or stood because of an obstacle, s.
+    pub waited_s: f64,
+    /// Time in which it braked or stood because a sensor had sent nothing for too long, s.
+    pub stale_s: f64,
+    /// Each of these times.
+    pub holds: Vec<HoldSummary>,
+}
+
+/// A time in which a robot was held.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HoldSummary {
+    /// Start, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// `obstacle` or `stale`.
+    pub reason: HoldReason,
+    /// The obstacle (`sensor#number`) or the sensor.
+    pub by: String,
+}
+
+impl From<&PerceptionTrack> for PerceptionSummary {
+    fn from(track: &PerceptionTrack) -> Self {
+        let count = |in_motion| track.replans.iter().filter(|r| r.in_motion == in_motion).count();
+        let time =
+            |reason| track.holds.iter().filter(|h| h.reason == reason).fold(0.0, |sum, h| sum + h.to_s - h.from_s);
+        let hold = |h: &Hold| HoldSummary { from_s: h.from_s, to_s: h.to_s, reason: h.reason, by: h.by.clone() };
+        Self {
+            replans_in_motion: count(Some(true)),
+            replans_from_rest: count(Some(false)),
+            replans_failed: count(None),
+            waited_s: time(HoldReason::Obstacle),
+            stale_s: time(HoldReason::Stale),
+            holds: track.holds.iter().map(hold).collect(),
+        }
+    }
+}
+
+/// What one sensor sent and saw.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensorSummary {
+    /// Its name.
+    pub name: String,
+    /// Pictures or clouds taken in.
+    pub frames: usize,
+    /// Of these: learnt as the empty cell.
+    pub learned: usize,
+    /// Of these: evaluated.
+    pub accepted: usize,
+    /// Of these: not usable.
+    pub rejected: usize,
+    /// Every obstacle seen, in the order in which they entered.
+    pub obstacles: Vec<SeenObstacle>,
+    /// Most cells of the joint-space map that obstacles blocked at once.
+    pub most_blocked: u64,
+    /// Wall-clock time from a picture in its file to the reaction of the robots, new paths included, ns.
+    pub processing_ns: TickNs,
+}
+
+/// An obstacle that a sensor saw.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeenObstacle {
+    /// Its identity.
+    pub id: u64,
+    /// The template that it matched last; null for none.
+    pub kind: Option<String>,
+    /// When it was seen first, s.
+    pub first_s: f64,
+    /// When it was seen last, s.
+    pub last_s: f64,
+    /// Its estimated centre then, world x and y, m.
+    pub centre_m: [f64; 2],
+    /// Its height then, m.
+    pub height_m: f64,
+}
+
+impl From<&SensorTrack> for SensorSummary {
+    fn from(track: &SensorTrack) -> Self {
+        let count = |status| track.records.iter().filter(|r| r.status == status).count();
+        let mut obstacles: Vec<SeenObstacle> = Vec::new();
+        for record in track.records.iter().filter(|r| r.status == WatchStatus::Accepted) {
+            for o in &record.obstacles {
+                let first_s = obstacles.iter().find(|known| known.id == o.id).map_or(record.t_s, |known| known.first_s);
+                obstacles.retain(|known| known.id != o.id);
+                obstacles.push(SeenObstacle {
+                    id: o.id,
+                    kind: o.kind.clone(),
+                    first_s,
+                    last_s: record.t_s,
+                    centre_m: o.centre_m,
+                    height_m: o.height_m,
+                });
+            }
+        }
+        obstacles.sort_by_key(|o| o.id);
+        Self {
+            name: track.name.clone(),
+            frames: track.records.len(),
+            learned: count(WatchStatus::Learning),
+            accepted: count(WatchStatus::Accepted),
+            rejected: count(WatchStatus::Rejected),
+            obstacles,
+            most_blocked: track.records.iter().map(|r| r.blocked).max().unwrap_or(0),
+            processing_ns: track.processing_ns.into(),
+        }
+    }
 }
 
 /// A time during which the monitor stopped a robot.
@@ -148,7 +282,6 @@ impl AvoidanceSummary {
     pub fn new(track: &AvoidanceTrack, tick_s: f64) -> Self {
         let time = |f: &dyn Fn(&AvoidanceSample) -> bool| track.samples.iter().filter(|s| f(s)).count() as f64 * tick_s;
         let least = track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min);
-        let t = track.step_ns;
         Self {
             evading_s: time(&|s| s.state == AvoiderState::Evading),
             off_path_s: time(&|s| s.path_deviation_s > 0.0),
@@ -156,7 +289,7 @@ impl AvoidanceSummary {
             min_distance_m: least.is_finite().then_some(least),
             plans: track.plans.len(),
             plans_found: track.plans.iter().filter(|p| p.search_s.is_some()).count(),
-            step_ns: TickNs { p50: t.p50, p99: t.p99, max: t.max },
+            step_ns: track.step_ns.into(),
         }
     }
 }
@@ -220,6 +353,7 @@ impl From<&Recording> for RunSummary {
                 .map(|c| CollisionSummary { t_s: c.t_s, a: c.a.clone(), b: c.b.clone() })
                 .collect(),
             avoidance: t.avoidance.as_ref().map(|a| AvoidanceSummary::new(a, r.tick_s)),
+            perception: t.perception.as_ref().map(PerceptionSummary::from),
         };
         let region = |t: &crate::recording::RegionTrack| RegionSummary {
             name: t.name.clone(),
@@ -228,6 +362,7 @@ impl From<&Recording> for RunSummary {
             entered: t.entered,
             warned_s: t.warned_s,
         };
+        let sensors = |kind| r.sensors.iter().filter(|s| s.kind == kind).map(SensorSummary::from).collect();
         let deadlock = |d: &crate::recording::Deadlock| DeadlockSummary {
             t_s: d.t_s,
             robots: d.robots.clone(),
@@ -240,9 +375,11 @@ impl From<&Recording> for RunSummary {
             duration_s: r.duration_s,
             end: r.end,
             ticks: (r.duration_s / r.tick_s).round() as usize + 1,
-            tick_ns: TickNs { p50: r.tick_ns.p50, p99: r.tick_ns.p99, max: r.tick_ns.max },
+            tick_ns: r.tick_ns.into(),
             robots: r.robots.iter().map(robot).collect(),
             regions: r.regions.iter().map(region).collect(),
+            cameras: sensors("camera"),
+            clouds: sensors("cloud"),
             objects: r.objects.iter().filter_map(ObjectSummary::of).collect(),
         }
     }

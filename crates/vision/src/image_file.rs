@@ -94,9 +94,16 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
 /// # Errors
 /// As [`read`]; and images that are not 16-bit grey.
 pub fn read_grey16(path: &Path) -> Result<(usize, usize, Vec<u16>), VisionError> {
-    let bytes = read_bytes(path)?;
+    decode_grey16(&read_bytes(path)?, path)
+}
+
+/// As [`read_grey16`], from bytes.
+///
+/// # Errors
+/// As [`read_grey16`].
+pub fn decode_grey16(bytes: &[u8], path: &Path) -> Result<(usize, usize, Vec<u16>), VisionError> {
     let mut pixels = Vec::new();
-    let header = decode_image(&bytes, path, &mut pixels)?;
+    let header = decode_image(bytes, path, &mut pixels)?;
     if header.format != PixelFormat::Grey16 {
         let what = format!("holds {} values, not depths", header.format);
         return Err(FormatError::new(path, None, what)

@@ -96,7 +96,7 @@ pub use frame::Frame;
 pub use frame_source::{FrameSource, ImageFiles};
 pub use homography::FloorHomography;
 pub use illumination::Illumination;
-pub use image_file::{RawLayout, decode, encode_png, read, read_grey16};
+pub use image_file::{RawLayout, decode, decode_grey16, encode_png, read, read_grey16};
 pub use mask::{ArmPart, PixelMask};
 pub use obstacle::{Obstacle, ObstacleChange, ObstacleId};
 pub use point::Point2;

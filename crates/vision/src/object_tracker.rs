@@ -32,6 +32,10 @@ pub(crate) struct ObjectTracker {
 /// Slower objects count as stationary: noise of the outline alone gives such speeds, metres per second.
 const STATIONARY_MPS: f64 = 0.05;
 
+/// An object that the arm occludes in part is assumed to move on at its last speed for so long, s; then it is where it was seen
+/// or assumed until the arm sets it free.
+const MAX_EXTRAPOLATION_S: f64 = 1.0;
+
 /// Reported heights may exceed the present ones by so many times the hysteresis before the prism changes.
 const HEIGHT_HYSTERESIS_FACTOR: f64 = 2.0;
 
@@ -95,6 +99,7 @@ impl ObjectTracker {
         let track = &mut self.tracks[t];
         track.outline_m.clone_from(&detection.outline_m);
         track.full_outline_m.clone_from(&detection.outline_m);
+        track.extrapolated_s = 0.0;
         (track.z_from_m, track.z_to_m) = (detection.z_from_m, detection.z_to_m);
         track.is_truncated = detection.touches_border;
         if !track.is_truncated {
@@ -172,6 +177,11 @@ impl ObjectTracker {
         let track = &mut self.tracks[t];
         track.frames_seen = track.frames_seen.saturating_add(1);
         if track.velocity_mps.length() < STATIONARY_MPS || track.full_outline_m.is_empty() {
+            return;
+        }
+        track.extrapolated_s += dt_s;
+        if track.extrapolated_s > MAX_EXTRAPOLATION_S {
+            track.velocity_mps = Point2::default();
             return;
         }
         let step = track.velocity_mps * dt_s;
@@ -287,4 +297,42 @@ fn write(obstacle: &Obstacle, count: &mut usize, out: &mut Vec<Obstacle>, spare:
     }
     out[*count].copy_from(obstacle);
     *count += 1;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x_m: f64, touches_arm: bool) -> Detection {
+        let outline_m = [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)].map(|(x, y)| Point2::new(x + x_m, y));
+        Detection {
+            outline_m: outline_m.to_vec(),
+            centre_m: Point2::new(x_m, 0.0),
+            area: 0.04,
+            z_to_m: 0.5,
+            touches_arm,
+            ..Detection::default()
+        }
+    }
+
+    /// An object at 1 m/s stops behind the arm: it is assumed to go on for a second, and grows no more after that.
+    #[test]
+    fn an_object_that_the_arm_occludes_does_not_grow_forever() {
+        let (settings, mut tracker) = (CameraTrackerSettings::default(), ObjectTracker::default());
+        for i in 0..=20 {
+            tracker.update(&[square(0.05 * f64::from(i), false)], 0.05, &settings);
+        }
+        let mut far_m = Vec::new();
+        for _ in 0..60 {
+            tracker.update(&[square(1.0, true)], 0.05, &settings);
+            assert_eq!(tracker.tracks.len(), 1);
+            far_m.push(tracker.tracks[0].outline_m.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max));
+        }
+        assert!(far_m[9] > 1.5, "{far_m:?}");
+        assert!((2.0..2.2).contains(&far_m[20]) && far_m[20..].iter().all(|x| *x == far_m[20]), "{far_m:?}");
+        assert_eq!(tracker.tracks[0].velocity_mps, Point2::default());
+        // Seen in full, it is as large as it is.
+        tracker.update(&[square(1.0, false)], 0.05, &settings);
+        assert!(tracker.tracks[0].outline_m.iter().all(|p| p.x < 1.2));
+    }
 }

@@ -22,6 +22,13 @@ pub enum RejectReason {
         /// Fraction of the image, 0 to 1.
         foreground_ratio: f64,
     },
+    /// A point cloud with too few valid points.
+    FewPoints {
+        /// Number of valid points.
+        points: usize,
+        /// Number of invalid points.
+        dropped: usize,
+    },
 }
 
 /// Whether the obstacles of a frame can be used.

@@ -10,6 +10,8 @@ pub(crate) struct Track {
     pub(crate) outline_m: Vec<Point2>,
     /// Its outline when it was last observed in full, moved on with its velocity while the arm occludes a part of it.
     pub(crate) full_outline_m: Vec<Point2>,
+    /// Time for which it was moved on since then, s.
+    pub(crate) extrapolated_s: f64,
     /// The arm occludes a part of the outline in this frame: set by the caller before
     /// [`ObjectTracker::update`](crate::object_tracker::ObjectTracker::update).
     pub(crate) is_occluded: bool,
@@ -60,6 +62,7 @@ impl Track {
     pub(crate) fn restart(&mut self, id: ObstacleId, detection: &Detection) {
         self.outline_m.clone_from(&detection.outline_m);
         self.full_outline_m.clear();
+        self.extrapolated_s = 0.0;
         self.is_occluded = false;
         self.obstacle.id = id;
         self.centre_m = detection.centre_m;

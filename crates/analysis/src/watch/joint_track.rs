@@ -35,6 +35,12 @@ impl JointTrack {
         Ok(Self { start, states: Some(states) })
     }
 
+    /// The values of each robot at a time that the file covers; `None` at other times, and without a file.
+    pub fn recorded_at(&self, t_s: f64) -> Option<Vec<Vec<f64>>> {
+        self.states.as_ref()?;
+        self.at(t_s).ok()
+    }
+
     /// The values of each robot at a time; an error where they are not known.
     pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, String> {
         let Some(states) = &self.states else { return Ok(self.start.clone()) };

@@ -1,115 +1,266 @@
-//! What a camera of a cell sees: obstacles with an identity, and the cells of joint space that they block (`elbowroom watch`).
+//! What a camera or a source of point clouds of a cell sees: obstacles with an identity, and the cells of joint space that they
+//! block (`elbowroom watch`).
 
 mod joint_track;
 mod record;
+mod sensor;
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_cell::{Cell, CellCamera};
-use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};
-use elbowroom_formats::{FormatError, Warning, frame_files};
-use elbowroom_perception::{ObstacleWatcher, PerceptionSettings, WatchedRobot};
-use elbowroom_vision::Frame;
+use elbowroom_cell::{Cell, CellSensor, SensorKind};
+use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, LayerMap, RemainingJoints};
+use elbowroom_formats::frame_files::{self, FrameFile, FrameKind};
+use elbowroom_formats::{FormatError, Warning, read_file};
+use elbowroom_perception::{Prism, WatchedRobot};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_vision::ArmPart;
 
 use crate::cover_cache::CoverCache;
 use crate::map::{axes, select_map};
 use joint_track::JointTrack;
+use sensor::Sensor;
 
 pub use record::{WatchRecord, WatchStatus, WatchedObstacle};
+
+/// Largest picture or cloud, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+/// A motion may be so far (rad or m) from the polyline through its samples.
+const CURVE_MARGIN: f64 = 1e-3;
 
 /// What is watched.
 #[derive(Debug, Clone, Default)]
 pub struct WatchRequest {
-    /// The camera; optional if there is only one.
-    pub camera: Option<String>,
-    /// The folder of pictures; `None`: that of the cell file.
-    pub frames: Option<PathBuf>,
+    /// The sensor; optional if there is only one that fits.
+    pub sensor: Option<String>,
+    /// Where its pictures or clouds come from.
+    pub input: WatchInput,
     /// Joint values over time; `None`: those of the cell file. Without either all robots stay at their start.
     pub joints: Option<PathBuf>,
 }
 
-/// A camera of a cell, its pictures, and the map of a robot.
-#[derive(Debug)]
-pub struct CameraWatch {
-    /// What the user should know.
-    pub warnings: Vec<Warning>,
-    frames: Vec<frame_files::FrameFile>,
-    joints: JointTrack,
-    watcher: ObstacleWatcher,
-    frame: Frame,
+/// Where pictures or clouds come from.
+#[derive(Debug, Clone, Default)]
+pub enum WatchInput {
+    /// The folder that the cell file names.
+    #[default]
+    CellFile,
+    /// A folder of pictures, of a camera or of depths.
+    Pictures(PathBuf),
+    /// A folder of point clouds.
+    Clouds(PathBuf),
+    /// Pictures are passed one by one ([`SensorWatch::record_bytes`]).
+    Stream,
 }
 
-impl CameraWatch {
+/// A sensor of a cell, its pictures or clouds, and the map of a robot.
+#[derive(Debug)]
+pub struct SensorWatch {
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    files: Vec<FrameFile>,
+    joints: JointTrack,
+    sensor: Sensor,
+    mapped: MappedJoints,
+}
+
+/// The joints of the map.
+#[derive(Debug, Clone)]
+struct MappedJoints {
+    robot: RobotId,
+    /// Indices among the robot's joint values.
+    joints: [usize; 3],
+    /// The map holds for all values of the other joints.
+    others_are_any: bool,
+}
+
+impl SensorWatch {
     /// Reads what a request names.
     ///
     /// # Errors
     /// [`FormatError`] names the file and the line, or the key that is missing.
     pub fn new(cell: &Cell, request: &WatchRequest) -> Result<Self, FormatError> {
-        let camera = select_camera(cell, request.camera.as_deref())?;
-        let refuse =
-            |what: String| FormatError::new(&cell.file, camera.line, format!("camera \"{}\": {what}", camera.name));
-        let folder = request.frames.as_ref().or(camera.frames.as_ref());
-        let folder =
-            folder.ok_or_else(|| refuse("has no pictures".into()).hint("--frames DIR, or frames = \"DIR\""))?;
-        let (frames, mut warnings) = frame_files::read(folder)?;
-        let joints = JointTrack::read(cell, request.joints.as_deref().or(camera.joints.as_deref()), &mut warnings)?;
-        let builder = map_builder(cell, camera, &mut warnings)?;
+        let sensor = select_sensor(cell, request)?;
+        let folder = match &request.input {
+            WatchInput::Pictures(folder) | WatchInput::Clouds(folder) => Some(folder),
+            WatchInput::CellFile => sensor.folder.as_ref(),
+            WatchInput::Stream => return Self::of_sensor(cell, sensor, Vec::new(), request.joints.as_deref()),
+        };
+        let folder = folder.ok_or_else(|| without_folder(cell, sensor))?;
+        let (files, warnings) = read_folder(sensor, folder, &request.input)?;
+        let mut watch = Self::of_sensor(cell, sensor, files, request.joints.as_deref())?;
+        watch.warnings.extend(warnings);
+        Ok(watch)
+    }
+
+    /// A sensor with the folder that the cell file names, for a run.
+    ///
+    /// # Errors
+    /// As [`SensorWatch::new`].
+    pub fn in_run(cell: &Cell, sensor: &CellSensor) -> Result<Self, FormatError> {
+        let folder = sensor.folder.as_ref().ok_or_else(|| without_folder(cell, sensor))?;
+        let (files, warnings) = read_folder(sensor, folder, &WatchInput::CellFile)?;
+        let mut watch = Self::of_sensor(cell, sensor, files, None)?;
+        watch.warnings.extend(warnings);
+        Ok(watch)
+    }
+
+    fn of_sensor(
+        cell: &Cell,
+        sensor: &CellSensor,
+        files: Vec<FrameFile>,
+        joints: Option<&Path>,
+    ) -> Result<Self, FormatError> {
+        let mut warnings = Vec::new();
+        let joints = JointTrack::read(cell, joints.or(sensor.joints.as_deref()), &mut warnings)?;
+        let (builder, mapped) = map_builder(cell, sensor, &mut warnings)?;
         let robots = cell
             .robots
             .iter()
             .map(|r| WatchedRobot { robot: r.robot.clone(), base_in_world: r.base_in_world })
             .collect();
-        let settings = PerceptionSettings {
-            prediction_s: camera.prediction_s,
-            mask_margin_m: camera.mask_margin_m,
-            ..PerceptionSettings::default()
+        let refuse = |what: String| refusal(cell, sensor, &what);
+        let sensor = Sensor::new(sensor, robots, fixed_objects(cell), builder).map_err(|e| refuse(e.to_string()))?;
+        Ok(Self { warnings, files, joints, sensor, mapped })
+    }
+
+    /// The pictures or clouds of the folder, in the order of time; empty for a stream.
+    pub fn files(&self) -> &[FrameFile] {
+        &self.files
+    }
+
+    /// The obstacles in the map.
+    pub fn prisms(&self) -> &[Prism] {
+        self.sensor.prisms()
+    }
+
+    /// The joint-space map.
+    pub fn map(&self) -> &LayerMap {
+        self.sensor.map()
+    }
+
+    /// True where the map proves a path of a robot free: all cells are free that a polyline through these joint values (rad or m)
+    /// crosses or comes near. What the robot carries is not in the map.
+    pub fn proves_free<'q>(&self, robot: RobotId, path: impl IntoIterator<Item = &'q [f64]>) -> bool {
+        let MappedJoints { robot: mapped, joints, others_are_any } = self.mapped;
+        if self.prisms().is_empty() {
+            return true;
+        }
+        if robot != mapped || !others_are_any {
+            return false;
+        }
+        let points: Vec<[f64; 3]> = path.into_iter().map(|q| joints.map(|j| q[j])).collect();
+        let ends = points.first().zip(points.last()).map(|(first, last)| [[*first; 2], [*last; 2]]);
+        let segments = points.windows(2).map(|w| [w[0], w[1]]);
+        segments.chain(ends.into_iter().flatten()).all(|segment| self.is_free_around(segment))
+    }
+
+    /// True where all cells around a segment of the map's joints are free.
+    fn is_free_around(&self, [a, b]: [[f64; 3]; 2]) -> bool {
+        let (grid, occupancy) = (self.map().grid(), self.map().occupancy());
+        let cell =
+            |towards: fn(f64, f64) -> f64, margin: f64| grid.cell([0, 1, 2].map(|i| towards(a[i], b[i]) + margin));
+        let (Some(low), Some(high)) = (cell(f64::min, -CURVE_MARGIN), cell(f64::max, CURVE_MARGIN)) else {
+            return false;
         };
-        let watcher =
-            ObstacleWatcher::new(robots, builder, camera.camera.clone().into(), camera.settings.clone(), settings)
-                .map_err(|e| refuse(e.to_string()))?;
-        Ok(Self { warnings, frames, joints, watcher, frame: Frame::default() })
+        let ranges = [0, 1, 2].map(|i| low[i]..=high[i]);
+        let [first, second, third] = ranges;
+        first.into_iter().all(|i| second.clone().all(|j| third.clone().all(|k| !occupancy.is_blocked([i, j, k]))))
     }
 
-    /// Number of pictures.
-    pub fn frames(&self) -> usize {
-        self.frames.len()
-    }
-
-    /// The record of a picture, by its number; they must be taken in order. A picture that cannot be used gives a record that
-    /// says why: obstacles and map stay as they were.
+    /// The record of a picture or cloud of the folder, by its number; they must be taken in order. One that cannot be used
+    /// gives a record that says why: obstacles and map stay as they were.
     pub fn record(&mut self, index: usize) -> WatchRecord {
-        let frames = &self.frames[index];
-        let (path, t_s) = (frames.path.clone(), frames.t_s);
-        let result = self.process(&path, t_s);
-        WatchRecord::of(&path, t_s, result, &self.watcher)
+        self.record_with(index, None)
     }
 
-    fn process(&mut self, path: &Path, t_s: f64) -> Result<elbowroom_perception::ObstacleUpdate, String> {
-        let q = self.joints.at(t_s)?;
-        elbowroom_vision::read(path, None, &mut self.frame).map_err(|e| e.to_string())?;
-        self.frame.stamp_s = t_s;
-        let q: Vec<&[f64]> = q.iter().map(Vec::as_slice).collect();
-        self.watcher.process_frame(&self.frame, &q).map_err(|e| e.to_string())
+    /// As [`record`](Self::record); at times that the file of joint values does not cover, and without one, each robot is where
+    /// it was in a run (rad or m).
+    pub fn record_in_run(&mut self, index: usize, q: &[Vec<f64>]) -> WatchRecord {
+        let recorded = self.joints.recorded_at(self.files[index].t_s);
+        self.record_with(index, Some(recorded.as_deref().unwrap_or(q)))
+    }
+
+    fn record_with(&mut self, index: usize, q: Option<&[Vec<f64>]>) -> WatchRecord {
+        let FrameFile { path, t_s } = self.files[index].clone();
+        let bytes = read_file(&path, MAX_BYTES, "a smaller picture or a thinner cloud");
+        match bytes {
+            Ok(bytes) => self.process(&bytes, &path, t_s, q),
+            Err(e) => WatchRecord::of(&path, t_s, Err(e.to_string()), &self.sensor),
+        }
+    }
+
+    /// The record of a picture of a stream: its bytes, a name for messages, and when it was taken (s).
+    pub fn record_bytes(&mut self, bytes: &[u8], name: &Path, t_s: f64) -> WatchRecord {
+        self.process(bytes, name, t_s, None)
+    }
+
+    fn process(&mut self, bytes: &[u8], name: &Path, t_s: f64, q: Option<&[Vec<f64>]>) -> WatchRecord {
+        let q = q.map_or_else(|| self.joints.at(t_s), |q| Ok(q.to_vec()));
+        let result = q.and_then(|q| self.sensor.process(bytes, name, t_s, &q).map_err(|e| e.to_string()));
+        WatchRecord::of(name, t_s, result, &self.sensor)
     }
 }
 
-fn select_camera<'c>(cell: &'c Cell, name: Option<&str>) -> Result<&'c CellCamera, FormatError> {
-    let names = || cell.cameras.iter().map(|c| c.name.as_str());
+fn refusal(cell: &Cell, sensor: &CellSensor, what: &str) -> FormatError {
+    FormatError::new(&cell.file, sensor.line, format!("{} \"{}\": {what}", sensor.table(), sensor.name))
+}
+
+fn without_folder(cell: &Cell, sensor: &CellSensor) -> FormatError {
+    let (what, hint) = match sensor.kind {
+        SensorKind::Camera { .. } => ("has no pictures", "--frames DIR, or frames = \"DIR\""),
+        SensorKind::Cloud { .. } => ("has no clouds", "--clouds DIR, or clouds = \"DIR\""),
+    };
+    refusal(cell, sensor, what).hint(hint)
+}
+
+/// The files of a sensor: pictures for a camera or for depths, else clouds.
+fn read_folder(
+    sensor: &CellSensor,
+    folder: &Path,
+    input: &WatchInput,
+) -> Result<(Vec<FrameFile>, Vec<Warning>), FormatError> {
+    let kind = match (&sensor.kind, input) {
+        (SensorKind::Cloud { depth: None, .. }, WatchInput::CellFile | WatchInput::Clouds(_)) => FrameKind::Cloud,
+        _ => FrameKind::Picture,
+    };
+    frame_files::read(folder, kind)
+}
+
+/// The sensor that a request names, or the only one that fits.
+fn select_sensor<'c>(cell: &'c Cell, request: &WatchRequest) -> Result<&'c CellSensor, FormatError> {
     let refuse = |what: String, hint: String| FormatError::new(&cell.file, None, what).hint(hint);
-    match (name, &cell.cameras[..]) {
-        (_, []) => Err(refuse("has no camera".into(), "[camera.NAME]   (docs/cell-file.md has its keys)".into())),
+    let fits = |s: &&CellSensor| match request.input {
+        WatchInput::CellFile => true,
+        WatchInput::Pictures(_) | WatchInput::Stream => matches!(s.kind, SensorKind::Camera { .. }),
+        WatchInput::Clouds(_) => matches!(s.kind, SensorKind::Cloud { .. }),
+    };
+    let table = if matches!(request.input, WatchInput::Clouds(_)) { "cloud" } else { "camera" };
+    let all: Vec<&CellSensor> = cell.sensors.iter().filter(fits).collect();
+    match (&request.sensor, &all[..]) {
+        (_, []) => Err(refuse(format!("has no {table}"), format!("[{table}.NAME]   (docs/cell-file.md has its keys)"))),
         (None, [only]) => Ok(only),
-        (None, _) => Err(refuse("has several cameras".into(), format!("--camera {}", cell.cameras[0].name))),
-        (Some(name), all) => all
-            .iter()
-            .find(|c| c.name == name)
-            .ok_or_else(|| refuse(format!("has no camera \"{name}\""), elbowroom_cell::suggest::hint(name, names()))),
+        (None, [first, ..]) => Err(refuse(format!("has several {table}s"), format!("--camera {}", first.name))),
+        (Some(name), all) => all.iter().copied().find(|s| s.name == *name).ok_or_else(|| {
+            let known = all.iter().map(|s| s.name.as_str());
+            refuse(format!("has no {table} \"{name}\""), elbowroom_cell::suggest::hint(name, known))
+        }),
     }
 }
 
-/// The builder of the map of the camera's robot, over three joints.
-fn map_builder(cell: &Cell, camera: &CellCamera, warnings: &mut Vec<Warning>) -> Result<CoverMapBuilder, FormatError> {
-    let (robot, spec) = select_map(cell, Some(&cell.robots[camera.robot.0].name))?;
+/// The objects that neither move nor are gripped, as solids in the world.
+fn fixed_objects(cell: &Cell) -> Vec<ArmPart> {
+    let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
+    let fixed = cell.objects.iter().enumerate().filter(|(i, _)| !moves(ObjectId(*i)));
+    fixed.filter_map(|(_, o)| ArmPart::from_shape(&o.shape, &o.in_world)).collect()
+}
+
+/// The builder of the map of the sensor's robot, over three joints.
+fn map_builder(
+    cell: &Cell,
+    sensor: &CellSensor,
+    warnings: &mut Vec<Warning>,
+) -> Result<(CoverMapBuilder, MappedJoints), FormatError> {
+    let (robot, spec) = select_map(cell, Some(&cell.robots[sensor.robot.0].name))?;
     let refuse = |what: String, hint: &str| {
         FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {what}", robot.name)).hint(hint)
     };
@@ -117,12 +268,14 @@ fn map_builder(cell: &Cell, camera: &CellCamera, warnings: &mut Vec<Warning>) ->
     let count = all.len();
     let three = <[GridAxis; 3]>::try_from(all).ok().zip(<[usize; 3]>::try_from(&spec.joints[..]).ok());
     let Some((axes, joints)) = three else {
-        let what = format!("the map of a camera has three joints, not {count}");
+        let what = format!("the map of a {} has three joints, not {count}", sensor.table());
         return Err(refuse(what, "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"));
     };
     let grid = Grid::new(axes).map_err(|e| refuse(e.to_string(), "step = 5   (larger)"))?;
     let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
     let (settings, covers) = (CoverMapSettings::default(), CoverCache::of_user());
-    CoverMapBuilder::with_covers(&robot.robot, robot.base_in_world, &grid, joints, others, settings, &covers)
-        .map_err(|e| refuse(e.to_string(), "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"))
+    let builder =
+        CoverMapBuilder::with_covers(&robot.robot, robot.base_in_world, &grid, joints, others, settings, &covers)
+            .map_err(|e| refuse(e.to_string(), "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"))?;
+    Ok((builder, MappedJoints { robot: sensor.robot, joints, others_are_any: !spec.others_at_start }))
 }

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use elbowroom_perception::{ObstacleUpdate, ObstacleWatcher, Prism};
+use elbowroom_perception::{ObstacleUpdate, Prism};
 use elbowroom_vision::{FrameStatus, RejectReason};
 use serde::Serialize;
+
+use super::sensor::Sensor;
 
 /// Whether the obstacles of a picture can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -61,9 +63,9 @@ pub struct WatchRecord {
 }
 
 impl WatchRecord {
-    pub(super) fn of(path: &Path, t_s: f64, result: Result<ObstacleUpdate, String>, watcher: &ObstacleWatcher) -> Self {
+    pub(super) fn of(path: &Path, t_s: f64, result: Result<ObstacleUpdate, String>, sensor: &Sensor) -> Self {
         let frame = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let blocked = watcher.map().occupancy().blocked() as u64;
+        let blocked = sensor.map().occupancy().blocked() as u64;
         match result {
             Ok(update) => {
                 let (status, reason) = status(&update.status);
@@ -84,7 +86,7 @@ impl WatchRecord {
                 frame,
                 status: WatchStatus::Rejected,
                 reason: Some(reason),
-                obstacles: watcher.prisms().iter().map(WatchedObstacle::of).collect(),
+                obstacles: sensor.prisms().iter().map(WatchedObstacle::of).collect(),
                 entered: Vec::new(),
                 left: Vec::new(),
                 blocked,
@@ -127,6 +129,9 @@ fn why(reason: &RejectReason) -> String {
         ),
         RejectReason::TooMuchForeground { foreground_ratio } => {
             format!("{:.0} % of the picture differ from the empty cell", 100.0 * foreground_ratio)
+        }
+        RejectReason::FewPoints { points, dropped } => {
+            format!("only {points} of {} points are valid", points + dropped)
         }
     }
 }

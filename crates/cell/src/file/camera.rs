@@ -1,71 +1,42 @@
 //! `[camera.NAME]`: a calibrated camera above the floor of the cell, and what is known of what it sees.
 
-use std::path::{Path, PathBuf};
-
 use elbowroom_formats::FormatError;
-use elbowroom_robot::RobotId;
-use elbowroom_vision::{
-    Camera, CameraTracker, CameraTrackerSettings, Intrinsics, Point2, ShadowSettings, Template, VisionError,
-};
+use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, ShadowSettings, Template, VisionError};
 
 use super::read::{Table, Value};
-use super::robot::robot_of;
-use crate::{Cell, CellCamera, Units};
+use super::sensor::{self, two};
+use crate::{Cell, CellSensor, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-const KEYS: &[&str] = &[
+const KEYS: [&str; 12] = [
     "size",
     "focal_px",
     "centre_px",
     "center_px",
     "distortion",
-    "pose",
-    "area",
-    "floor",
     "learning_frames",
     "templates",
     "uncertainty",
     "max_speed",
     "shadows",
-    "prediction",
     "mask_margin",
-    "robot",
     "frames",
-    "joints",
 ];
 const TEMPLATE: &str = "templates = [{ name = \"crate\", size = [600, 400], height = 320 }]";
-const AREA: &str = "area = [[-1500, -1000], [1500, -1000], [1500, 1000], [-1500, 1000]]";
-/// Largest picture, pixels along a side.
-const MOST_PIXELS: u32 = 16_384;
 
-pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellCamera>> {
-    root.named("camera")?.into_iter().map(|(name, t)| camera(name, &t, cell)).collect()
-}
-
-fn camera(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellCamera> {
-    t.only(KEYS)?;
+pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
+    t.only(&[&KEYS[..], &sensor::KEYS[..]].concat())?;
     let units = cell.units;
     let of_vision = |e: VisionError| refused(t, &e);
     let pose =
         units.pose(&t.need("pose", "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)")?)?;
-    let camera = Camera::new(intrinsics(t)?, pose).map_err(of_vision)?;
+    let camera = Camera::new(sensor::intrinsics(t)?, pose).map_err(of_vision)?;
     let settings = settings(t, units)?;
     // Refuses a view of the horizon, and an area that is not in the picture.
     CameraTracker::new(camera.clone().into(), settings.clone()).map_err(of_vision)?;
-    let seconds = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| v.not_negative());
-    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
-    Ok(CellCamera {
-        name: name.to_owned(),
-        line: t.line,
-        camera,
-        settings,
-        robot: robot(t, cell)?,
-        prediction_s: seconds("prediction", 0.5)?,
-        mask_margin_m: length("mask_margin", 0.03)?,
-        frames: t.get("frames").map(|v| folder(&v)).transpose()?,
-        joints: t.get("joints").map(|v| super::models::path(&v)).transpose()?,
-    })
+    let mask_margin_m = t.get("mask_margin").map_or(Ok(0.03), |v| units.not_negative_length(&v))?;
+    sensor::sensor(name, t, cell, "frames", SensorKind::Camera { camera, settings, mask_margin_m })
 }
 
 /// An error of the camera at the key that is wrong, in the words of the cell file.
@@ -85,55 +56,11 @@ fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
     }
 }
 
-/// The robot in whose map the obstacles are: the one named, or the only one.
-fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
-    match t.get("robot") {
-        Some(v) => {
-            let name = v.text()?;
-            robot_of(name, &t.clone().at_line(v.line), &cell.robots).map(|(id, _)| id)
-        }
-        None if cell.robots.len() == 1 => Ok(RobotId(0)),
-        None => {
-            let names = cell.robots.iter().map(|r| format!("\"{}\"", r.name)).collect::<Vec<_>>().join(" or ");
-            Err(t.error(format!("`{}` needs the key `robot`", t.name)).hint(format!("robot = {names}")))
-        }
-    }
-}
-
-fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
-    const SIZE: &str = "size = [640, 480]   (columns and rows of a picture)";
-    let size = t.need("size", SIZE)?;
-    let sides = size.list(SIZE)?;
-    let [width, height] = &sides[..] else {
-        return Err(size.error(format!("needs 2 numbers, not {}", sides.len())).hint(SIZE));
-    };
-    let [width, height] = [width.whole(8, MOST_PIXELS)? as usize, height.whole(8, MOST_PIXELS)? as usize];
-    let focal = t.need("focal_px", "focal_px = [600, 600]   (pixels, from the calibration)")?;
-    let [fx, fy] = if focal.is_number() { [focal.positive()?; 2] } else { two(&focal, "focal_px = [600, 600]")? };
-    let middle = [0.5 * width as f64, 0.5 * height as f64];
-    if let (Some(_), Some(v)) = (t.get("centre_px"), t.get("center_px")) {
-        return Err(v.error("contradicts `centre_px`").hint("one of the two spellings"));
-    }
-    let centre = t.get("centre_px").or_else(|| t.get("center_px"));
-    let [cx, cy] = centre.map_or(Ok(middle), |v| two(&v, "centre_px = [320, 240]"))?;
-    let mut radial = [0.0; 3];
-    if let Some(v) = t.get("distortion") {
-        const EXAMPLE: &str = "distortion = [-0.1, 0.01, 0]   (k1, k2, k3)";
-        let given = v.numbers(EXAMPLE)?;
-        if given.len() > 3 {
-            let what = format!("has {} coefficients; the model has the radial ones k1, k2 and k3", given.len());
-            return Err(v.error(what).hint(EXAMPLE));
-        }
-        radial[..given.len()].copy_from_slice(&given);
-    }
-    Ok(Intrinsics { width, height, fx, fy, cx, cy, radial })
-}
-
 fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {
     let default = CameraTrackerSettings::default();
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
     Ok(CameraTrackerSettings {
-        area_m: t.get("area").map_or(Ok(Vec::new()), |v| area(&v, units))?,
+        area_m: sensor::area(t, units)?,
         floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
         uncertainty_m: length("uncertainty", default.uncertainty_m)?,
         max_speed_mps: t.get("max_speed").map_or(Ok(default.max_speed_mps), |v| units.positive_length(&v))?,
@@ -144,17 +71,6 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {
             .map_or(Ok(Vec::new()), |v| v.list(TEMPLATE)?.iter().map(|v| template(v, units)).collect())?,
         ..default
     })
-}
-
-/// The polygon of the floor that is watched, world x and y.
-fn area(v: &Value<'_>, units: Units) -> Result<Vec<Point2>> {
-    let corners = v.list(AREA)?;
-    if corners.len() < 3 {
-        return Err(v.error(format!("has {} corners and needs three or more", corners.len())).hint(AREA));
-    }
-    let corner =
-        |v: &Value<'_>| two(v, AREA).map(|[x, y]| Point2::new(units.length.to_metres(x), units.length.to_metres(y)));
-    corners.iter().map(corner).collect()
 }
 
 /// A known kind of object: `size` of its footprint (or `diameter`) and `height`.
@@ -181,19 +97,4 @@ fn template(v: &Value<'_>, units: Units) -> Result<Template> {
         template.height_tolerance_m = units.not_negative_length(&v)?;
     }
     Ok(template)
-}
-
-fn two(v: &Value<'_>, example: &str) -> Result<[f64; 2]> {
-    let numbers = v.numbers(example)?;
-    <[f64; 2]>::try_from(numbers.as_slice())
-        .map_err(|_| v.error(format!("needs 2 numbers, not {}", numbers.len())).hint(example))
-}
-
-/// The folder that a value names, relative to the cell file; it need not exist yet.
-fn folder(v: &Value<'_>) -> Result<PathBuf> {
-    let name = v.text()?;
-    if name.is_empty() || name.contains('\0') {
-        return Err(v.error("names no folder").hint("frames = \"frames\""));
-    }
-    Ok(v.file.parent().unwrap_or(Path::new("")).join(name))
 }

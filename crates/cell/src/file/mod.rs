@@ -2,6 +2,7 @@
 
 mod avoidance;
 mod camera;
+mod cloud;
 mod definitions;
 mod document;
 mod flange;
@@ -18,6 +19,7 @@ pub(crate) mod read;
 mod region;
 mod renamed;
 mod robot;
+mod sensor;
 mod tools;
 mod units;
 
@@ -34,8 +36,8 @@ use robot::robot_of;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
-    Cell, CellLaws, CellRegionId, CellRobot, MapSpec, PairFile, QueryModel, Units, configure, joint_contacts,
-    rest_pose_contacts, seal, suggest,
+    Cell, CellLaws, CellRegionId, CellRobot, CellSensor, MapSpec, PairFile, QueryModel, Units, configure,
+    joint_contacts, rest_pose_contacts, seal, suggest,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -53,6 +55,7 @@ const KEYS: &[&str] = &[
     "region",
     "encoder",
     "camera",
+    "cloud",
     "monitor",
     "map",
     "pairs",
@@ -89,7 +92,7 @@ impl CellFile {
             laws: laws(&root, &mut warnings)?,
             programs: Vec::new(),
             avoidance: Vec::new(),
-            cameras: Vec::new(),
+            sensors: Vec::new(),
             maps: Vec::new(),
             pair_rules: PairRules::default(),
             joint_contacts: PairRules::default(),
@@ -118,7 +121,7 @@ impl CellFile {
         }
         cell.maps = maps(&root, &cell)?;
         cell.avoidance = avoidance::read(&root, &cell)?;
-        cell.cameras = camera::read(&root, &cell)?;
+        cell.sensors = sensors(&root, &cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
         if self.on_disk {
@@ -277,6 +280,13 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Re
     cell.pose_tracks = known.pose_tracks;
     cell.regions = regions;
     Ok(())
+}
+
+/// Cameras, then sources of point clouds.
+fn sensors(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellSensor>> {
+    let cameras = root.named("camera")?.into_iter().map(|(name, t)| camera::read(name, &t, cell));
+    let clouds = root.named("cloud")?.into_iter().map(|(name, t)| cloud::read(name, &t, cell));
+    cameras.chain(clouds).collect()
 }
 
 fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {

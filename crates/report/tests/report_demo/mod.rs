@@ -187,9 +187,11 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 vec![Collision { t_s: 3.1, a: "ns16/fore".into(), b: "table".into() }]
             },
             avoidance: None,
+            perception: None,
             ending: elbowroom_sim::RobotEnding::default(),
         }],
         objects: vec![],
+        sensors: vec![],
         deadlocks: vec![],
         regions: vec![
             RegionTrack {

@@ -215,7 +215,7 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
                 continue;
             }
             PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
-            PlanStep::Play(p) => (Rc::as_ptr(p).cast(), p.duration()),
+            PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
             _ => continue,
         };
         before = programmed;
@@ -229,7 +229,7 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
 fn point_at(step: &PlanStep, time_s: f64) -> Option<PathPoint> {
     match step {
         PlanStep::Move(m) => Some(m.at(time_s)),
-        PlanStep::Play(p) => Some(p.at(time_s)),
+        PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => Some(p.at(time_s)),
         _ => None,
     }
 }

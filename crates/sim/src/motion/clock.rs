@@ -1,6 +1,8 @@
 //! Execution of a program in time: scaled by the override, within the joints' decelerations, never backwards.
 
-use elbowroom_cell::trajectory::PathPoint;
+use std::rc::Rc;
+
+use elbowroom_cell::trajectory::{PathPoint, Playback};
 use elbowroom_cell::{CellRegionId, JointLimits};
 use elbowroom_robot::ObjectId;
 
@@ -115,7 +117,7 @@ impl ProgramClock {
 
     /// True during a move.
     pub fn moving(&self) -> bool {
-        matches!(self.plan.steps.get(self.step), Some(PlanStep::Move(_) | PlanStep::Play(_)))
+        matches!(self.plan.steps.get(self.step), Some(PlanStep::Move(_) | PlanStep::Play(_) | PlanStep::Planned { .. }))
     }
 
     /// True during a wait.
@@ -139,6 +141,57 @@ impl ProgramClock {
         self.update_point();
     }
 
+    /// The path from now to the end of the step: times in the step (s, at override 1), at most `step_s` apart, and joint
+    /// values; empty for a step without motion.
+    pub fn path_ahead(&self, step_s: f64) -> Vec<(f64, Vec<f64>)> {
+        let end_s = self.duration();
+        let count = ((end_s - self.time).max(0.0) / step_s).ceil() as usize;
+        let times = (0..=count).map(|n| (self.time + step_s * n as f64).min(end_s));
+        times.filter_map(|t| self.point_at(t).map(|p| (t, p.q))).collect()
+    }
+
+    /// The time in the step (s, at override 1) at which the robot rests if it goes on for `coast_s` and then brakes, in ticks
+    /// of `dt` (s).
+    pub fn rests_at(&self, coast_s: f64, dt: f64) -> f64 {
+        let (mut time, mut rate) = (self.time, self.rate);
+        let speeding = (rate + self.max_rate_increase() * coast_s).min(self.programmed.max(rate));
+        time += coast_s * speeding;
+        rate = speeding;
+        while rate > 0.0 && time < self.duration() {
+            let Some(here) = self.point_at(time) else { break };
+            let next = self.braked(time, rate, &here.dq, dt).max(0.0);
+            time += dt * f64::midpoint(rate, next);
+            rate = next;
+        }
+        time
+    }
+
+    /// The planned move of this step, and the share of the joints' speeds that it uses.
+    pub fn planned_move(&self) -> Option<(&Rc<Playback>, f64)> {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Planned { play, speed }) => Some((play, *speed)),
+            _ => None,
+        }
+    }
+
+    /// Replaces the planned move of this step by another one with the same end, from the time `entry_s` (s, at override 1) in
+    /// it on, at a rate.
+    pub fn replace_planned_move(&mut self, play: Rc<Playback>, entry_s: f64, rate: f64) {
+        let Some(PlanStep::Planned { play: old, .. }) = self.plan.steps.get_mut(self.step) else { return };
+        *old = play;
+        (self.time, self.rate, self.rate_change) = (entry_s, rate, 0.0);
+        self.update_point();
+    }
+
+    /// Duration of the step at override 1, s; 0 for one without motion.
+    fn duration(&self) -> f64 {
+        match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => m.duration(),
+            Some(PlanStep::Play(p) | PlanStep::Planned { play: p, .. }) => p.duration(),
+            _ => 0.0,
+        }
+    }
+
     /// Region switches since the last call.
     pub fn take_switches(&mut self) -> Vec<RegionSwitch> {
         std::mem::take(&mut self.switches)
@@ -157,7 +210,8 @@ impl ProgramClock {
     /// The objects that are released before the next move: the present move sets them down.
     pub fn objects_set_down(&self) -> impl Iterator<Item = ObjectId> + '_ {
         let next = self.plan.steps.get(self.step + 1..).unwrap_or_default().iter();
-        let until_move = next.take_while(|s| !matches!(s, PlanStep::Move(_) | PlanStep::Play(_)));
+        let until_move =
+            next.take_while(|s| !matches!(s, PlanStep::Move(_) | PlanStep::Play(_) | PlanStep::Planned { .. }));
         let next = until_move.filter_map(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None });
         // The releases that this instant executes, too: the move before them ends now.
         self.grips.iter().chain(next).filter(|a| !a.grips).map(|a| a.object)
@@ -184,7 +238,7 @@ impl ProgramClock {
                 self.time += dt * mean;
                 m.duration()
             }
-            Some(PlanStep::Play(p)) => {
+            Some(PlanStep::Play(p) | PlanStep::Planned { play: p, .. }) => {
                 self.time += dt * mean;
                 p.duration()
             }
@@ -215,26 +269,31 @@ impl ProgramClock {
     }
 
     /// The rate after braking for `dt` seconds, at least `target`.
+    fn braked_rate(&self, dt: f64, target: f64) -> f64 {
+        self.braked(self.time, self.rate, &self.here.dq, dt).max(target)
+    }
+
+    /// The rate after braking for `dt` seconds from a time in the step, a rate, and the velocities there at override 1.
     ///
     /// The robot brakes along its path: its stop time, the longest stop time of any joint, falls by one second per
     /// second. Where the program accelerates meanwhile, the rate falls faster; where it decelerates harder by itself,
     /// the program is followed.
-    fn braked_rate(&self, dt: f64, target: f64) -> f64 {
-        let left = self.stop_time(&self.here.dq) * self.rate - dt;
+    fn braked(&self, time: f64, rate: f64, dq: &[f64], dt: f64) -> f64 {
+        let left = self.stop_time(dq) * rate - dt;
         if left <= 0.0 {
-            return target;
+            return 0.0;
         }
-        let mut rate = self.rate;
+        let mut braked = rate;
         for _ in 0..SAMPLES {
-            let ahead = self.point_at(self.time + dt * f64::midpoint(self.rate, rate));
+            let ahead = self.point_at(time + dt * f64::midpoint(rate, braked));
             let stop_time = ahead.map_or(0.0, |p| self.stop_time(&p.dq));
-            let fits = if stop_time * rate > left { left / stop_time } else { rate };
-            if fits >= rate {
+            let fits = if stop_time * braked > left { left / stop_time } else { braked };
+            if fits >= braked {
                 break;
             }
-            rate = fits;
+            braked = fits;
         }
-        rate.max(target)
+        braked
     }
 
     /// The longest stop time of any joint from these velocities, s.
@@ -246,7 +305,7 @@ impl ProgramClock {
     fn point_at(&self, time: f64) -> Option<PathPoint> {
         match self.plan.steps.get(self.step) {
             Some(PlanStep::Move(m)) => Some(m.at(time)),
-            Some(PlanStep::Play(p)) => Some(p.at(time)),
+            Some(PlanStep::Play(p) | PlanStep::Planned { play: p, .. }) => Some(p.at(time)),
             _ => None,
         }
     }
@@ -295,12 +354,7 @@ impl ProgramClock {
             self.here.ddq.fill(0.0);
         }
         self.intent.clone_from(&self.here.dq);
-        let duration = match self.plan.steps.get(self.step) {
-            Some(PlanStep::Move(m)) => m.duration(),
-            Some(PlanStep::Play(p)) => p.duration(),
-            _ => 0.0,
-        };
-        let ahead = LOOKAHEAD_S.min(duration / 2.0);
+        let ahead = LOOKAHEAD_S.min(self.duration() / 2.0);
         if moves && self.time < ahead {
             self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.dq);
         }

@@ -38,6 +38,13 @@ pub enum PlanStep {
     Move(Rc<Segment>),
     /// A recording.
     Play(Rc<Playback>),
+    /// A planned move, which may be replaced by another one with the same end.
+    Planned {
+        /// The path in time.
+        play: Rc<Playback>,
+        /// Share of the joints' speeds that it uses.
+        speed: f64,
+    },
     /// Switches a region.
     Switch {
         /// The region.
@@ -53,6 +60,13 @@ pub enum PlanStep {
     Wait(f64),
     /// Sets the programmed override, 0..1.
     Override(f64),
+}
+
+impl ProgramPlan {
+    /// True where it has a planned move.
+    pub fn has_planned_moves(&self) -> bool {
+        self.steps.iter().any(|s| matches!(s, PlanStep::Planned { .. }))
+    }
 }
 
 impl PlanStep {
@@ -177,7 +191,9 @@ impl<'a> ProgramPlanner<'a> {
                         self.change_tool(i, step, *tool)?;
                         PlanStep::Tool(*tool)
                     }
-                    StepAction::Planned { to, speed } => PlanStep::Play(self.planned(i, step, to, *speed)?),
+                    StepAction::Planned { to, speed } => {
+                        PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
+                    }
                 });
             }
         }

@@ -4,7 +4,7 @@ use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_scene::FirstContacts;
+use elbowroom_scene::{Attachment, FirstContacts};
 
 use crate::hand;
 use crate::motion::GripAction;
@@ -13,8 +13,8 @@ use crate::motion::GripAction;
 #[derive(Debug)]
 pub(super) struct CarriedParts<'a> {
     cell: &'a Cell,
-    /// Per object.
-    carriers: Vec<Option<RobotId>>,
+    /// Per object: how a robot carries it.
+    attachments: Vec<Option<Attachment>>,
     /// Per object: it was gripped once, and no longer moves by itself.
     taken: Vec<bool>,
 }
@@ -22,7 +22,7 @@ pub(super) struct CarriedParts<'a> {
 impl<'a> CarriedParts<'a> {
     pub fn new(cell: &'a Cell) -> Self {
         let count = cell.objects.len();
-        Self { cell, carriers: vec![None; count], taken: vec![false; count] }
+        Self { cell, attachments: vec![None; count], taken: vec![false; count] }
     }
 
     /// True where the object no longer moves by itself.
@@ -41,12 +41,17 @@ impl<'a> CarriedParts<'a> {
     /// Name of an object: `robot/part` in a hand.
     pub fn name(&self, object: ObjectId) -> String {
         let name = &self.cell.objects[object.0].name;
-        self.carriers[object.0].map_or_else(|| name.clone(), |r| format!("{}/{name}", self.cell.robots[r.0].name))
+        self.carrier(object).map_or_else(|| name.clone(), |r| format!("{}/{name}", self.cell.robots[r.0].name))
     }
 
     /// The robot that carries an object.
     pub fn carrier(&self, object: ObjectId) -> Option<RobotId> {
-        self.carriers[object.0]
+        self.attachments[object.0].as_ref().map(|a| a.robot)
+    }
+
+    /// Per object: how a robot carries it.
+    pub fn attachments(&self) -> &[Option<Attachment>] {
+        &self.attachments
     }
 
     /// Grips or releases an object; `at` is the robot with its present tool.
@@ -64,7 +69,7 @@ impl<'a> CarriedParts<'a> {
     ) -> Result<(), FormatError> {
         let object = action.object;
         if !action.grips {
-            self.carriers[object.0] = None;
+            self.attachments[object.0] = None;
             checker.detach(object, states);
             return Ok(());
         }
@@ -73,7 +78,7 @@ impl<'a> CarriedParts<'a> {
             let robot = &cell.robots[robot.0].name;
             FormatError::new(&cell.file, action.line, format!("`program.{robot}` {what} (at {t_s:.3} s of the run)"))
         };
-        if let Some(carrier) = self.carriers[object.0] {
+        if let Some(carrier) = self.carrier(object) {
             let carrier = &cell.robots[carrier.0].name;
             let what = format!("grips \"{name}\", which robot \"{carrier}\" holds");
             let hint = format!("a `wait` before it, until the program of \"{carrier}\" has released it");
@@ -88,8 +93,8 @@ impl<'a> CarriedParts<'a> {
         let attachment = hand::grip(cell, robot, at, object, &pose, states[robot.0]).map_err(|what| {
             error(&what).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
         })?;
-        checker.attach(object, attachment, states);
-        (self.carriers[object.0], self.taken[object.0]) = (Some(robot), true);
+        checker.attach(object, attachment.clone(), states);
+        (self.attachments[object.0], self.taken[object.0]) = (Some(attachment), true);
         Ok(())
     }
 }

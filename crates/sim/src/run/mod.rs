@@ -6,11 +6,16 @@ mod deadlock_detector;
 mod fault_injection;
 mod idle_detector;
 mod observation;
+mod obstacle_guard;
 mod outcome;
 mod override_delay;
+mod path_ahead;
+mod path_replanner;
+mod perceived_obstacles;
 mod region_recorder;
 mod release;
 mod stop_state;
+mod surroundings;
 mod wait_for_graph;
 mod zone_claims;
 
@@ -27,13 +32,13 @@ use elbowroom_monitor::{
     ZoneArbiter,
 };
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
-use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
+use elbowroom_scene::{FirstContact, FirstContacts, MovedObject, Object};
 use elbowroom_spatial::Pose;
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
-    Collision, EventRow, GoverningPoint, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd,
-    RunEvent, Sample, Stop, TickTimes,
+    Collision, EventRow, GoverningPoint, HoldReason, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack,
+    RunEnd, RunEvent, Sample, Stop, TickTimes,
 };
 use avoiding_robot::AvoidingRobot;
 pub use avoiding_robot::evasion_limits;
@@ -41,9 +46,12 @@ use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
 use idle_detector::{IDLE_TIMEOUT_S, IdleDetector, STANDSTILL_TIMEOUT_S};
+use obstacle_guard::ObstacleGuard;
 use override_delay::OverrideDelay;
+use perceived_obstacles::PerceivedObstacles;
 use region_recorder::RegionRecorder;
 use stop_state::StopState;
+use surroundings::Surroundings;
 use wait_for_graph::WaitForGraph;
 use zone_claims::ZoneClaims;
 
@@ -140,12 +148,14 @@ pub fn simulate_with(
     let setups = configure::setups(cell)?;
     let arbiter = configure::zone_arbiter(cell);
     let monitors = configure::monitors_with(cell, &setups, arbiter.as_ref())?;
+    let perceived = PerceivedObstacles::of_cell(cell, &mut notes)?;
     let mut claims = Vec::new();
     for (i, robot) in cell.robots.iter().enumerate() {
         let plan = plan(cell, RobotId(i), options.repeat, &mut notes)?;
-        // A robot with avoidance leaves its program: its claims are not known.
-        let keeps_to_plan =
-            options.apply_override && !(options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some));
+        // A robot with avoidance or with planned moves around obstacles leaves its program: its claims are not known.
+        let avoids = options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some);
+        let replans = plan.has_planned_moves() && perceived.guards(RobotId(i));
+        let keeps_to_plan = options.apply_override && !avoids && !replans;
         let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
         claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(cell, RobotId(i), &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
@@ -155,6 +165,8 @@ pub fn simulate_with(
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let mut run = Simulation::new(cell, options, &setups, &models, monitors, clocks, avoiding);
     (run.arbiter, run.claims) = (arbiter, claims);
+    run.guards = obstacle_guards(cell, &perceived, &run.avoiding, &mut notes)?;
+    run.perceived = Some(perceived);
     let mut tick = 0_u64;
     loop {
         let t_s = tick_time_s(tick, cell.tick_s);
@@ -175,6 +187,31 @@ pub fn simulate_with(
     }
 }
 
+/// Per robot its guard against what sensors see; `None` for one that no sensor guards.
+fn obstacle_guards<'a>(
+    cell: &'a Cell,
+    perceived: &PerceivedObstacles<'_>,
+    avoiding: &[Option<AvoidingRobot<'_>>],
+    notes: &mut Vec<Warning>,
+) -> Result<Vec<Option<ObstacleGuard<'a>>>, FormatError> {
+    let mut guards = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        let is_guarded = perceived.guards(RobotId(i));
+        if is_guarded && avoiding[i].is_some() {
+            let what = format!(
+                "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
+                robot.name, robot.name
+            );
+            notes.push(
+                Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"),
+            );
+        }
+        let guard = is_guarded && avoiding[i].is_none();
+        guards.push(guard.then(|| ObstacleGuard::new(cell, RobotId(i))).transpose()?);
+    }
+    Ok(guards)
+}
+
 struct Simulation<'a> {
     cell: &'a Cell,
     options: &'a RunOptions,
@@ -190,6 +227,12 @@ struct Simulation<'a> {
     clocks: Vec<ProgramClock>,
     /// Per robot; `None` for one without avoidance.
     avoiding: Vec<Option<AvoidingRobot<'a>>>,
+    /// What sensors see; `None` until the run begins.
+    perceived: Option<PerceivedObstacles<'a>>,
+    /// Per robot; `None` for one that no sensor guards.
+    guards: Vec<Option<ObstacleGuard<'a>>>,
+    /// Per robot: the obstacle or sensor that holds it in this tick.
+    holds: Vec<Option<(HoldReason, String)>>,
     states: Vec<ChainState>,
     scratch: Vec<ChainState>,
     frames: Frames<'a>,
@@ -244,6 +287,7 @@ impl<'a> Simulation<'a> {
             min_override: 1.0,
             collisions: Vec::new(),
             avoidance: None,
+            perception: None,
             ending: RobotEnding::default(),
         };
         let mut checker = FirstContacts::new(
@@ -263,6 +307,9 @@ impl<'a> Simulation<'a> {
             governing: vec![None; cell.robots.len()],
             options,
             setups,
+            perceived: None,
+            guards: Vec::new(),
+            holds: vec![None; cell.robots.len()],
             scratch: states.clone(),
             states,
             frames: Frames::new(cell),
@@ -334,6 +381,7 @@ impl<'a> Simulation<'a> {
     fn tick(&mut self, t_s: f64) -> Result<(), FormatError> {
         self.apply_switches(t_s);
         self.update_states(t_s);
+        self.perceive(t_s);
         self.declare_claims();
         self.check_collisions(t_s);
         // Before the monitors' ticks: these decide how fast the robot moves with what it grips.
@@ -394,6 +442,75 @@ impl<'a> Simulation<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Takes in the pictures that are due; guarded robots replan, or are held.
+    fn perceive(&mut self, t_s: f64) {
+        let Some(mut perceived) = self.perceived.take() else { return };
+        let begin = Instant::now();
+        let has_news = perceived.take_in(t_s, &|stamp_s| self.joint_values_at(stamp_s));
+        for i in 0..self.guards.len() {
+            if self.is_silent(i, t_s) {
+                continue;
+            }
+            let Some(mut guard) = self.guards[i].take() else { continue };
+            self.keep_clear(i, &mut guard, &perceived, has_news, t_s);
+            self.guards[i] = Some(guard);
+        }
+        if has_news {
+            perceived.add_processing_time(begin.elapsed().as_nanos() as u64);
+        }
+        self.perceived = Some(perceived);
+    }
+
+    /// Replans or holds a robot, so that it keeps clear of what sensors see.
+    fn keep_clear(
+        &mut self,
+        i: usize,
+        guard: &mut ObstacleGuard<'_>,
+        perceived: &PerceivedObstacles<'_>,
+        has_news: bool,
+        t_s: f64,
+    ) {
+        let (cell, setups, states, monitors) = (self.cell, self.setups, &self.states[..], &self.monitors);
+        let (frames, checker, parts) = (&self.frames, &self.checker, &self.parts);
+        let clock = &mut self.clocks[i];
+        let surroundings = || Surroundings {
+            states,
+            objects: (0..cell.objects.len())
+                .map(|o| Object { in_world: checker.object_in_world(ObjectId(o)), ..cell.objects[o].clone() })
+                .collect(),
+            attachments: parts.attachments().to_vec(),
+            perceived: perceived.obstacles(RobotId(i)).cloned().collect(),
+        };
+        let regions = |share: f64| {
+            let sources = frames.sources(&setups[i].sources, states, t_s);
+            RegionConstraint::new(&monitors[i], &sources, share, 0.0)
+        };
+        let has_new_path = guard.observe(t_s, clock, perceived, has_news, surroundings, regions);
+        let stale = if clock.moving() { perceived.stale(RobotId(i), t_s) } else { None };
+        let held = guard.hold(t_s, clock, stale, cell.laws.reaction_delay_s, cell.tick_s).cloned();
+        if has_new_path {
+            self.event(t_s, i, "", RunEvent::Replan);
+        }
+        if let Some((reason, by)) = held.as_ref().filter(|_| held != self.holds[i]) {
+            let event = if *reason == HoldReason::Stale { RunEvent::Stale } else { RunEvent::Wait };
+            self.event(t_s, i, by, event);
+        }
+        self.holds[i] = held;
+    }
+
+    /// The joint values of all robots at a time up to now: those of the last tick before it.
+    fn joint_values_at(&self, t_s: f64) -> Vec<Vec<f64>> {
+        let of_robot = |(track, state): (&RobotTrack, &ChainState)| {
+            let next = track.samples.partition_point(|s| s.t_s <= t_s);
+            match (next.checked_sub(1).and_then(|i| track.samples.get(i)), track.samples.get(next)) {
+                (Some(before), Some(_)) => before.q.clone(),
+                (None, Some(first)) => first.q.clone(),
+                (_, None) => state.q.clone(),
+            }
+        };
+        self.tracks.iter().zip(&self.states).map(of_robot).collect()
     }
 
     /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this
@@ -498,13 +615,16 @@ impl<'a> Simulation<'a> {
         let sources = self.frames.sources(&self.setups[i].sources, &self.states, t_s);
         let clock = &self.clocks[i];
         let state = &self.states[i];
+        let held_by = self.holds[i].as_ref().map(|(_, by)| by.clone());
+        // A robot that is held is not commanded to move: its constant joint values are no frozen reading.
+        let programmed_override = if held_by.is_some() { 0.0 } else { clock.programmed_override() };
         let snapshot = Snapshot {
             now_s: t_s,
             stamp_s: t_s,
             q: &state.q,
             qd: &state.qd,
             qdd: &state.qdd,
-            programmed_override: clock.programmed_override(),
+            programmed_override,
             intent: Some(self.avoiding[i].as_ref().map_or(clock.intent(), |a| a.intent(clock))),
             sources: &sources,
         };
@@ -514,23 +634,25 @@ impl<'a> Simulation<'a> {
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
-        let applied = if self.options.apply_override { report.speed_override } else { clock.programmed_override() };
+        let applied = if self.options.apply_override { report.speed_override } else { programmed_override };
+        let applied = applied.min(programmed_override);
         self.applied[i] = applied;
         self.log_events(i, t_s);
         // A region governs where it makes the robot slower than programmed.
-        let governs = self.options.apply_override.then(|| report.reason.region()).flatten();
+        let is_governed = self.options.apply_override && held_by.is_none();
+        let governs = is_governed.then(|| report.reason.region()).flatten();
         let region = governs.map(|r| self.setups[i].regions[r.0]);
         self.governing[i] = report.governing;
         let governing = region.and(report.governing);
         // The monitor counts its own regions, a recording those of the cell.
         let in_cell = |r: RegionId| RegionId(self.setups[i].regions[r.0].0);
-        let reason =
-            if self.options.apply_override { report.reason.with_region(in_cell) } else { OverrideReason::Free };
+        let reason = if is_governed { report.reason.with_region(in_cell) } else { OverrideReason::Free };
         self.record(i, t_s, applied, region, governing, reason);
         if let Some(event) = self.stop_states[i].update(&self.clocks[i], applied) {
             let region = region.map_or("", |r| self.cell.regions[r.0].region.name.as_str());
-            self.event(t_s, i, region, event);
-            self.record_stop(i, t_s, region, governing, event == RunEvent::Stop);
+            let by = held_by.as_deref().unwrap_or(region);
+            self.event(t_s, i, by, event);
+            self.record_stop(i, t_s, by, governing, event == RunEvent::Stop);
         }
         if self.stop_states[i].stopped {
             self.tracks[i].stopped_s += self.cell.tick_s;
@@ -686,6 +808,8 @@ impl<'a> Simulation<'a> {
         }
         let on_path = |i: usize| self.avoiding[i].as_ref().is_none_or(AvoidingRobot::is_on_path);
         let waiting = present.iter().any(|i| self.clocks[*i].waiting() && on_path(*i));
+        // A robot that is held may go on after the next picture.
+        let waiting = waiting || self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more);
         let in_motion = self.frames.is_any_moving(t_s);
         let can_continue = waiting
             || self.frames.is_any_moving_but_endless_belts(t_s)
@@ -752,6 +876,7 @@ impl<'a> Simulation<'a> {
             let region =
                 track.samples.last().and_then(|s| s.region).map(|r| self.cell.regions[r.0].region.name.as_str());
             let deadlocked = deadlocks.iter().any(|d| d.robots.contains(&track.name));
+            track.perception = self.guards.get_mut(i).and_then(Option::take).map(|g| g.finish(t_s));
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
             track.ending.release = release::release(self.cell, &self.setups[i], self.arbiter.as_deref(), i, track);
@@ -766,6 +891,7 @@ impl<'a> Simulation<'a> {
             robots,
             regions: self.regions.finish(t_s),
             objects: self.objects,
+            sensors: self.perceived.map(PerceivedObstacles::finish).unwrap_or_default(),
             deadlocks,
             events: self.events,
             tick_ns: TickTimes::of(self.tick_ns),

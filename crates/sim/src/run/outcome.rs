@@ -42,12 +42,13 @@ pub(super) fn ending(
         (false, false) => Outcome::Stopped,
     };
     let point = governing.filter(|_| region.is_some());
+    let held_by = track.perception.as_ref().and_then(|p| p.ends_held.as_ref()).map(|(_, by)| by.as_str());
     let obstacle = track.samples.len().checked_sub(1).and_then(|last| track.governing_obstacle(last));
     let volume = point.and_then(|p| configuration.volumes().get(p.volume.0));
     RobotEnding {
         outcome,
         stopped_at_s: stopped_at(track),
-        by: region.or(obstacle).map(str::to_owned),
+        by: region.or(held_by).or(obstacle).map(str::to_owned),
         part: volume.map(|v| v.name.clone()),
         part_kind: volume.map(|v| v.part.into()),
         point: point.map(|p| p.position),

@@ -5,7 +5,7 @@ use elbowroom_cell::{Cell, CellRegionId, Follow};
 use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
 
 use super::wait_for_graph::blockers;
-use crate::recording::{Outcome, RobotTrack};
+use crate::recording::{HoldReason, Outcome, RobotTrack};
 
 /// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to.
 pub(super) fn release(
@@ -17,6 +17,12 @@ pub(super) fn release(
 ) -> Option<String> {
     let last = track.samples.last()?;
     track.ending.stopped_at_s?;
+    if let Some((reason, by)) = track.perception.as_ref().and_then(|p| p.ends_held.as_ref()) {
+        return Some(match reason {
+            HoldReason::Obstacle => format!("{by} leaves its path"),
+            HoldReason::Stale => format!("{by} sees again"),
+        });
+    }
     match track.ending.outcome {
         Outcome::Finished | Outcome::Collided => None,
         Outcome::Deadlock => Some("one of the robots is moved out by hand".to_owned()),

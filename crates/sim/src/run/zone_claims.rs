@@ -76,7 +76,7 @@ impl ZoneClaims {
         for (step, what) in plan.steps.iter().enumerate() {
             let (key, duration): (*const (), f64) = match what {
                 PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
-                PlanStep::Play(p) => (Rc::as_ptr(p).cast(), p.duration()),
+                PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
                 _ => {
                     match what {
                         PlanStep::Grip(action) => held.apply(action),
@@ -126,7 +126,7 @@ fn at(step: &PlanStep, t: f64) -> Vec<f64> {
     let of_recording = |p: &Playback| p.q(t);
     match step {
         PlanStep::Move(m) => of_move(m),
-        PlanStep::Play(p) => of_recording(p),
+        PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => of_recording(p),
         _ => Vec::new(),
     }
 }

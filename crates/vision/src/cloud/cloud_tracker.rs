@@ -16,6 +16,11 @@ use crate::{ArmPart, CameraTrackerSettings, Obstacle, Point2, VisionError, polyg
 /// Whether the obstacles of a cloud can be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CloudStatus {
+    /// The background is being learnt; nothing is known yet.
+    Learning {
+        /// Clouds of the cell without obstacles still to come.
+        clouds_left: u32,
+    },
     /// The cloud was evaluated: where no obstacle is reported, none was measured.
     Valid,
     /// Too few points are valid: the obstacles are those of the last valid cloud. Unknown is not free: how long they can be
@@ -59,6 +64,8 @@ pub struct CloudReport {
     pub obstacles: Vec<Obstacle>,
     /// Number of points on the arm.
     pub arm_points: usize,
+    /// Number of points of the background.
+    pub background_points: usize,
     /// Number of points of the floor, above the ceiling, outside the monitored area or outside the voxel grid.
     pub outside_points: usize,
     /// Number of points in voxels or clusters with too few points. If there are many, the voxels are too small for the
@@ -94,6 +101,9 @@ pub struct CloudTracker {
     tracking: CameraTrackerSettings,
     arm: ArmFilter,
     voxels: VoxelGrid,
+    background: VoxelGrid,
+    /// Clouds of the background still to come.
+    clouds_left: u32,
     clusters: Clusters,
     /// The first `detection_count` of them are this cloud's.
     detections: Vec<Detection>,
@@ -112,8 +122,12 @@ impl CloudTracker {
     /// Settings out of range.
     pub fn new(settings: CloudTrackerSettings) -> Result<Self, VisionError> {
         settings.check()?;
+        let mut background = VoxelGrid::default();
+        background.clear();
         Ok(Self {
             tracking: settings.for_tracking(),
+            background,
+            clouds_left: settings.learning_clouds,
             settings,
             arm: ArmFilter::default(),
             voxels: VoxelGrid::default(),
@@ -130,6 +144,7 @@ impl CloudTracker {
                 age_s: f64::INFINITY,
                 obstacles: Vec::new(),
                 arm_points: 0,
+                background_points: 0,
                 outside_points: 0,
                 noise_points: 0,
                 voxels: 0,
@@ -170,11 +185,29 @@ impl CloudTracker {
             self.tracker.write_unobserved(&mut self.report.obstacles);
             return Ok(&self.report);
         }
+        if self.clouds_left > 0 {
+            self.learn(cloud, arm);
+            return Ok(&self.report);
+        }
         self.detect_and_track(cloud, arm);
         self.report.status = CloudStatus::Valid;
         self.report.age_s = 0.0;
         self.last_valid_s = Some(stamp_s);
         Ok(&self.report)
+    }
+
+    /// Adds the points that are not on the arm to the background.
+    fn learn(&mut self, cloud: &PointCloud, arm: &[ArmPart]) {
+        let (voxel_m, margin_m) = (self.settings.voxel_m, self.settings.arm_margin_m);
+        self.arm.place(arm, margin_m);
+        for &p in &cloud.points {
+            let p = self.settings.sensor_in_world.transform_point(p);
+            if self.settings.is_watched(p) && !self.arm.contains(p, margin_m) {
+                self.background.add_with_neighbours(p, voxel_m);
+            }
+        }
+        self.clouds_left -= 1;
+        self.report.status = CloudStatus::Learning { clouds_left: self.clouds_left };
     }
 
     fn detect_and_track(&mut self, cloud: &PointCloud, arm: &[ArmPart]) {
@@ -196,22 +229,22 @@ impl CloudTracker {
     /// Adds the points of objects to the voxel grid.
     fn filter(&mut self, points: &[Vec3]) {
         let settings = &self.settings;
-        let heights = settings.floor_z_m + settings.floor_thickness_m..=settings.floor_z_m + settings.ceiling_m;
         self.voxels.clear();
-        let (mut arm_points, mut outside_points) = (0, 0);
+        let (mut arm_points, mut background_points, mut outside_points) = (0, 0, 0);
         for &p in points {
             let p = settings.sensor_in_world.transform_point(p);
-            let is_inside = heights.contains(&p.z)
-                && (settings.area_m.is_empty() || polygon::contains(&settings.area_m, Point2::new(p.x, p.y)));
-            if !is_inside {
+            if !settings.is_watched(p) {
                 outside_points += 1;
             } else if self.arm.contains(p, settings.arm_margin_m) {
                 arm_points += 1;
+            } else if self.background.contains(p, settings.voxel_m) {
+                background_points += 1;
             } else if !self.voxels.add(p, settings.voxel_m) {
                 outside_points += 1;
             }
         }
-        (self.report.arm_points, self.report.outside_points) = (arm_points, outside_points);
+        (self.report.arm_points, self.report.background_points) = (arm_points, background_points);
+        self.report.outside_points = outside_points;
         self.report.voxels = self.voxels.list.len();
     }
 

@@ -1,8 +1,8 @@
 //! Settings of the point cloud tracker.
 
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
-use crate::{CameraTrackerSettings, Point2, VisionError};
+use crate::{CameraTrackerSettings, Point2, VisionError, polygon};
 
 /// Settings of a [`CloudTracker`](super::CloudTracker). Lengths are metres, world frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,9 @@ pub struct CloudTrackerSettings {
     /// Largest fraction of invalid points (see [`PointCloud::dropped`](super::PointCloud::dropped)); other clouds are
     /// rejected.
     pub max_dropped: f64,
+    /// So many first valid clouds show the cell without obstacles: points in and beside voxels in which these have points
+    /// belong to the background. 0: there is no background, and everything above the floor is an obstacle.
+    pub learning_clouds: u32,
     /// As [`CameraTrackerSettings::max_speed_mps`].
     pub max_speed_mps: f64,
     /// As [`CameraTrackerSettings::enter_frames`].
@@ -61,6 +64,7 @@ impl Default for CloudTrackerSettings {
             hysteresis_m: 0.02,
             max_corners: 12,
             max_dropped: 0.9,
+            learning_clouds: 0,
             max_speed_mps: 4.0,
             enter_frames: 1,
             leave_frames: 3,
@@ -92,6 +96,12 @@ impl CloudTrackerSettings {
             return Err(VisionError::Setting { name: "sensor_in_world", value: f64::NAN, expected });
         }
         Ok(())
+    }
+
+    /// True where a point (world) is above the floor, below the ceiling and over the monitored area.
+    pub(super) fn is_watched(&self, p: Vec3) -> bool {
+        let heights = self.floor_z_m + self.floor_thickness_m..=self.floor_z_m + self.ceiling_m;
+        heights.contains(&p.z) && (self.area_m.is_empty() || polygon::contains(&self.area_m, Point2::new(p.x, p.y)))
     }
 
     /// The settings of the tracking itself.

@@ -60,6 +60,18 @@ impl VoxelGrid {
         true
     }
 
+    /// Counts a point in its voxel and in the 26 around it.
+    pub(super) fn add_with_neighbours(&mut self, p: Vec3, voxel_m: f64) {
+        for step in (0..27).map(|i| Vec3::new(f64::from(i / 9 - 1), f64::from(i / 3 % 3 - 1), f64::from(i % 3 - 1))) {
+            self.add(p + step * voxel_m, voxel_m);
+        }
+    }
+
+    /// True where the voxel of a point contains points.
+    pub(super) fn contains(&self, p: Vec3, voxel_m: f64) -> bool {
+        !self.list.is_empty() && key(p, voxel_m).is_some_and(|key| self.table[self.slot(key)] != 0)
+    }
+
     /// Calls with the indices of those of the 26 neighbours that precede `index` in space, so that each pair is visited
     /// once.
     pub(super) fn neighbours(&self, index: usize, mut visit: impl FnMut(usize)) {

@@ -1,0 +1,63 @@
+//! `[cloud.NAME]`: a sensor of points above or beside the cell: point clouds, or pictures of depths.
+
+use elbowroom_formats::FormatError;
+use elbowroom_vision::cloud::{CloudTracker, CloudTrackerSettings};
+use elbowroom_vision::{Camera, VisionError};
+
+use super::read::Table;
+use super::sensor;
+use crate::{Cell, CellSensor, SensorKind};
+
+type Result<T> = std::result::Result<T, FormatError>;
+
+const KEYS: [&str; 11] = [
+    "clouds",
+    "depth",
+    "floor_thickness",
+    "ceiling",
+    "voxel",
+    "min_points",
+    "min_voxels",
+    "mask_margin",
+    "to_floor",
+    "uncertainty",
+    "max_speed",
+];
+const LEARNING: &str = "learning_clouds";
+const POSE: &str = "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (of the sensor, in whose frame the points are)";
+const DEPTH: &str = "depth = { size = [640, 480], focal_px = [600, 600], step = 1 }   (step: the length of depth 1)";
+
+pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
+    t.only(&[&KEYS[..], &[LEARNING], &sensor::KEYS[..]].concat())?;
+    let units = cell.units;
+    let of_vision = |e: VisionError| t.error(format!("`{}`: {e}", t.name));
+    let default = CloudTrackerSettings::default();
+    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
+    let positive = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
+    let count = |key: &str, default: u32, least: u32| t.get(key).map_or(Ok(default), |v| v.whole(least, 10_000));
+    let settings = CloudTrackerSettings {
+        sensor_in_world: units.pose(&t.need("pose", POSE)?)?,
+        area_m: sensor::area(t, units)?,
+        floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
+        floor_thickness_m: length("floor_thickness", default.floor_thickness_m)?,
+        ceiling_m: positive("ceiling", default.ceiling_m)?,
+        voxel_m: positive("voxel", default.voxel_m)?,
+        min_points: count("min_points", default.min_points, 1)?,
+        min_voxels: count("min_voxels", default.min_voxels, 1)?,
+        arm_margin_m: length("mask_margin", default.arm_margin_m)?,
+        extend_to_floor: t.flag_or("to_floor", default.extend_to_floor)?,
+        uncertainty_m: length("uncertainty", default.uncertainty_m)?,
+        max_speed_mps: positive("max_speed", default.max_speed_mps)?,
+        learning_clouds: count(LEARNING, default.learning_clouds, 0)?,
+        ..default
+    };
+    CloudTracker::new(settings.clone()).map_err(of_vision)?;
+    let depth = t.get("depth").map(|v| {
+        let lens = v.table(DEPTH)?;
+        lens.only(&["size", "focal_px", "centre_px", "center_px", "distortion", "step"])?;
+        let camera = Camera::new(sensor::intrinsics(&lens)?, settings.sensor_in_world).map_err(of_vision)?;
+        Ok((camera, units.positive_length(&lens.need("step", DEPTH)?)?))
+    });
+    let depth = depth.transpose()?;
+    sensor::sensor(name, t, cell, "clouds", SensorKind::Cloud { settings, depth })
+}

@@ -1,0 +1,52 @@
+//! The robots that a sensor sees.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_robot::Robot;
+use elbowroom_spatial::Pose;
+use elbowroom_vision::ArmPart;
+
+use crate::error::PerceptionError;
+use crate::mapped_arm::append_parts;
+
+/// A robot that a sensor sees.
+#[derive(Debug, Clone)]
+pub struct WatchedRobot {
+    /// Links, joints, colliders.
+    pub robot: Robot,
+    /// Pose of the root link in the world.
+    pub base_in_world: Pose,
+}
+
+/// All robots that a sensor sees.
+#[derive(Debug)]
+pub(super) struct WatchedRobots {
+    robots: Vec<WatchedRobot>,
+    states: Vec<ChainState>,
+}
+
+impl WatchedRobots {
+    pub fn new(robots: Vec<WatchedRobot>) -> Self {
+        Self { states: robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(), robots }
+    }
+
+    /// The colliders of all links that joints move, in the world; `q` are the joint values of each robot.
+    ///
+    /// # Errors
+    /// Joint values that do not match the robots.
+    pub fn parts(&mut self, q: &[&[f64]]) -> Result<Vec<ArmPart>, PerceptionError> {
+        self.validate(q)?;
+        let mut parts = Vec::new();
+        for ((robot, state), q) in self.robots.iter().zip(&mut self.states).zip(q) {
+            append_parts(&robot.robot, robot.base_in_world, state, q, &mut parts);
+        }
+        Ok(parts)
+    }
+
+    fn validate(&self, q: &[&[f64]]) -> Result<(), PerceptionError> {
+        let dof: usize = self.robots.iter().map(|r| r.robot.chain.dof()).sum();
+        let fits = q.len() == self.robots.len()
+            && self.robots.iter().zip(q).all(|(r, q)| q.len() == r.robot.chain.dof())
+            && q.iter().copied().flatten().all(|value| value.is_finite());
+        if fits { Ok(()) } else { Err(PerceptionError::Values { found: q.iter().map(|q| q.len()).sum(), dof }) }
+    }
+}

@@ -1,0 +1,85 @@
+//! The rest of a robot's step as a polyline in joint space.
+
+use crate::motion::ProgramClock;
+
+/// Time (s) between samples of the path.
+const SAMPLE_S: f64 = 0.01;
+/// Largest distance (rad or m, Euclidean) from a sample to the polyline.
+const CHORD: f64 = 5e-4;
+/// Samples within this distance (rad or m) of a line are on it: above rounding, below the deviation of a rounded corner.
+const ON_LINE: f64 = 1e-7;
+
+/// The path from the present to the end of a step.
+#[derive(Debug)]
+pub(super) struct PathAhead {
+    /// Times in the step (s, at override 1) and joint values.
+    pub samples: Vec<(f64, Vec<f64>)>,
+    /// Indices of the samples that are corners of the polyline; the first and the last are.
+    corners: Vec<usize>,
+}
+
+impl PathAhead {
+    /// Of the present step; `None` where it has no motion.
+    pub fn of(clock: &ProgramClock) -> Option<Self> {
+        let samples = clock.path_ahead(SAMPLE_S);
+        let last = samples.len().checked_sub(1)?;
+        let mut corners = vec![0];
+        let mut start = 0;
+        for end in 2..=last {
+            let on_chord = |s: &(f64, Vec<f64>)| distance_to_segment(&s.1, &samples[start].1, &samples[end].1) <= CHORD;
+            if !samples[start + 1..end].iter().all(on_chord) {
+                start = end - 1;
+                corners.push(start);
+            }
+        }
+        if last > 0 {
+            corners.push(last);
+        }
+        Some(Self { samples, corners })
+    }
+
+    /// The corners of the polyline.
+    pub fn polyline(&self) -> Vec<&[f64]> {
+        self.corners.iter().map(|i| &self.samples[*i].1[..]).collect()
+    }
+
+    /// The time in the step (s) of the last sample before a share of the segment that ends at a corner.
+    pub fn time_before(&self, corner: usize, share: f64) -> f64 {
+        let Some(first) = corner.checked_sub(1).map(|c| self.corners[c]) else { return self.samples[0].0 };
+        let last = self.corners[corner];
+        let (from, to) = (&self.samples[first].1, &self.samples[last].1);
+        let is_before = |s: &&(f64, Vec<f64>)| share_along(&s.1, from, to) <= share;
+        self.samples[first..=last].iter().take_while(is_before).last().map_or(self.samples[first].0, |s| s.0)
+    }
+
+    /// The time in the step (s) and the joint values `length` (rad or m) ahead, where the path is straight up to there.
+    pub fn straight_ahead(&self, along: &[f64], length: f64) -> Option<(f64, Vec<f64>)> {
+        let here = &self.samples.first()?.1;
+        let beyond = self.samples.iter().find(|(_, q)| distance(q, here) >= length)?;
+        let is_on_line = |q: &[f64]| {
+            let far = distance(q, here);
+            let on_line = here.iter().zip(along).map(|(h, a)| h + a * far);
+            on_line.zip(q).all(|(a, b)| (a - b).abs() <= ON_LINE)
+        };
+        let passed = self.samples.iter().take_while(|(t_s, _)| *t_s <= beyond.0);
+        let end = here.iter().zip(along).map(|(h, a)| h + a * length).collect();
+        passed.into_iter().all(|(_, q)| is_on_line(q)).then_some((beyond.0, end))
+    }
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Share of the segment from `a` to `b` at the point of it nearest to `q`.
+fn share_along(q: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let square: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
+    let along: f64 = q.iter().zip(a).zip(b).map(|((q, a), b)| (q - a) * (b - a)).sum();
+    if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+fn distance_to_segment(q: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let share = share_along(q, a, b);
+    let nearest: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect();
+    distance(q, &nearest)
+}

@@ -1,0 +1,203 @@
+//! Replanning of a planned move around obstacles that sensors see: in motion without a stop, or from rest.
+
+use std::rc::Rc;
+use std::time::Duration;
+
+use elbowroom_analysis::CoverCache;
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_cell::trajectory::{Playback, motion_bounds};
+use elbowroom_cell::{CellRobot, TrajectoryRow};
+use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectSettings,
+    TimedMotion,
+};
+use elbowroom_proximity::Shape;
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Scene, SceneState};
+
+use super::path_ahead::PathAhead;
+use super::surroundings::{PlacedScene, Surroundings};
+use crate::motion::ProgramClock;
+
+/// Largest number of validated states per search: it bounds the planning time independently of the machine.
+const MAX_STATES: u64 = 1_000_000;
+/// Wall-clock limit per search, s; rarely reached.
+const TIME_LIMIT_S: u64 = 1;
+/// Paths keep this distance from everything, m: more than the check of paths asks for, so that noise of the outlines does not
+/// block them at once.
+pub(super) const CLEARANCE_M: f64 = 0.02;
+/// A robot that rests nearer to something than that, because it could not stop earlier, leaves with this distance, m: more than
+/// the check of paths asks for.
+const CLEARANCE_AT_REST_M: f64 = 6e-3;
+/// Shares of each warning zone that paths keep from a region, in the order in which they are tried: so much of the override
+/// remains.
+const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
+/// A new path leaves the present one so many stopping distances ahead: its corner is rounded over at most half of the stretch
+/// from one stopping distance behind the robot, so that the robot could still stop before the rounding.
+const LEAVE_AFTER: f64 = 3.0;
+/// A slower robot has no direction of motion, rad/s or m/s.
+const MIN_SPEED: f64 = 1e-6;
+/// The robot enters a new path where that passes its configuration within this distance, rad or m.
+const ENTRY_DISTANCE: f64 = 1e-6;
+/// The rate at the entry may exceed the programmed override by this much, which is rounding.
+const RATE_ROUNDING: f64 = 1e-3;
+
+/// A new path for the present step, and where the robot enters it.
+#[derive(Debug)]
+pub(super) struct ReplannedMove {
+    pub play: Rc<Playback>,
+    /// Time of the new path at the entry, s.
+    pub entry_s: f64,
+    /// Rate at the entry.
+    pub rate: f64,
+    /// True where the robot does not stop in between.
+    pub in_motion: bool,
+}
+
+/// Where a new path begins.
+struct Departure {
+    /// Waypoints before the start of the search.
+    before: Vec<Vec<f64>>,
+    /// Start of the search.
+    from: Vec<f64>,
+}
+
+/// Plans for one robot.
+#[derive(Debug)]
+pub(super) struct PathReplanner<'a> {
+    robot: RobotId,
+    at: &'a CellRobot,
+    tick_s: f64,
+    motion_bounds: Vec<f64>,
+    /// For scenes in which the robot carries nothing.
+    model: Option<CoverModel>,
+}
+
+impl<'a> PathReplanner<'a> {
+    pub fn new(robot: RobotId, at: &'a CellRobot, tick_s: f64) -> Self {
+        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), model: None }
+    }
+
+    /// A new path to the end of the planned move. In motion the robot must be able to leave the present path before
+    /// `free_until_s` (time in the step).
+    pub fn replan<'c>(
+        &mut self,
+        clock: &ProgramClock,
+        ahead: &PathAhead,
+        free_until_s: f64,
+        surroundings: &Surroundings<'_>,
+        (base, solids): (&Scene, &[Shape]),
+        mut regions: impl FnMut(f64) -> Option<RegionConstraint<'c>>,
+    ) -> Option<ReplannedMove> {
+        let (play, speed) = clock.planned_move()?;
+        let goal = play.q(play.duration());
+        let limits = self.limits(speed);
+        let velocity: Vec<f64> = clock.velocity().collect();
+        let speed = norm(&velocity);
+        let is_moving = speed > MIN_SPEED;
+        let here = clock.point().q.clone();
+        let departure = if is_moving {
+            let along: Vec<f64> = velocity.iter().map(|v| v / speed).collect();
+            let length = acceleration_distance(speed, &along, &limits);
+            let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length)?;
+            if passed_s >= free_until_s {
+                return None;
+            }
+            let behind = here.iter().zip(&along).map(|(q, a)| q - a * length).collect();
+            Departure { before: vec![behind], from }
+        } else {
+            Departure { before: Vec::new(), from: here.clone() }
+        };
+        let mut placed = surroundings.everything(base, solids).ok()?;
+        placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
+        let clearances = if is_moving { &[CLEARANCE_M][..] } else { &[CLEARANCE_M, CLEARANCE_AT_REST_M] };
+        let tried = clearances.iter().flat_map(|clearance_m| WARNING_SHARES.map(|share| (*clearance_m, share)));
+        let motion = tried.into_iter().find_map(|(clearance_m, share)| {
+            self.search(&placed, &departure, &goal, &limits, (clearance_m, regions(share)))
+        })?;
+        let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+        let play = Rc::new(Playback::new(rows, &self.motion_bounds));
+        if !is_moving {
+            return Some(ReplannedMove { play, entry_s: 0.0, rate: clock.programmed_override(), in_motion: false });
+        }
+        let (entry_s, rate) = entry(&play, &here, &velocity)?;
+        let most = clock.programmed_override();
+        (rate <= most + RATE_ROUNDING).then(|| ReplannedMove { play, entry_s, rate: rate.min(most), in_motion: true })
+    }
+
+    fn limits(&self, speed: f64) -> KinematicLimits {
+        let of = |value: fn(&elbowroom_cell::JointLimits) -> f64| self.at.limits.iter().map(value).collect::<Vec<_>>();
+        KinematicLimits {
+            velocity: of(|l| l.velocity).into_iter().map(|v| v * speed).collect(),
+            acceleration: of(|l| l.acceleration),
+            jerk: of(|l| l.jerk),
+        }
+    }
+
+    fn search(
+        &mut self,
+        placed: &PlacedScene,
+        departure: &Departure,
+        goal: &[f64],
+        limits: &KinematicLimits,
+        (clearance_m, constraint): (f64, Option<RegionConstraint<'_>>),
+    ) -> Option<TimedMotion> {
+        let PlacedScene { scene, state, .. } = placed;
+        let mut exact = RrtConnect::new(scene, self.robot).ok()?;
+        if let Some(constraint) = constraint {
+            exact = exact.with_constraint(constraint);
+        }
+        let settings = RrtConnectSettings {
+            time_limit: Duration::from_secs(TIME_LIMIT_S),
+            max_states: MAX_STATES,
+            clearance_m,
+            ..RrtConnectSettings::default()
+        };
+        let tick_s = self.tick_s;
+        let Some(model) = self.cover_model(scene, state, clearance_m) else {
+            // A link without bounds cannot be covered; the exact scene plans for it.
+            let path = exact.plan(state, goal, &settings).ok()?;
+            let path = with_departure(path, departure);
+            let motion = exact.time_parametrize(state, &path, limits, tick_s, &settings).ok()?;
+            return TimedMotion::of(&motion, tick_s).ok();
+        };
+        let obstacles = CoverObstacles::new(model, scene, state, clearance_m);
+        let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
+        let path = planner.plan(state, goal, &settings).ok()?;
+        let path = with_departure(path, departure);
+        planner.time_parametrize(state, &path, limits, tick_s, &settings).ok()
+    }
+
+    fn cover_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) -> Option<&CoverModel> {
+        if !self.model.as_ref().is_some_and(|m| m.serves(scene, state, clearance_m)) {
+            let covers = CoverCache::of_user();
+            self.model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &covers).ok();
+        }
+        self.model.as_ref()
+    }
+}
+
+fn with_departure(path: PlannedPath, departure: &Departure) -> PlannedPath {
+    PlannedPath { waypoints: departure.before.iter().cloned().chain(path.waypoints).collect(), ..path }
+}
+
+/// Where a new path passes a configuration in the direction of a velocity: its time (s), and the rate at which its speed is that
+/// of the robot. `None` where it does not.
+fn entry(play: &Playback, here: &[f64], velocity: &[f64]) -> Option<(f64, f64)> {
+    let speed = norm(velocity);
+    let passed = |t_s: f64| {
+        let q = play.q(t_s);
+        q.iter().zip(here).zip(velocity).map(|((q, h), v)| (q - h) * v / speed).sum::<f64>()
+    };
+    let entry_s = first_root(passed, play.duration())?;
+    let point = play.at(entry_s);
+    let is_near = point.q.iter().zip(here).all(|(a, b)| (a - b).abs() <= ENTRY_DISTANCE);
+    let there = norm(&point.dq);
+    let ahead: f64 = point.dq.iter().zip(velocity).map(|(a, b)| a * b).sum();
+    (is_near && there > 0.0 && ahead > 0.0).then(|| (entry_s, speed / there))
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

@@ -1,0 +1,82 @@
+//! Everything around a robot at one instant of a run, as scenes.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::Shape;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Attachment, Object, Scene, SceneError, SceneState};
+use elbowroom_spatial::Pose;
+
+use super::perceived_obstacles::PerceivedObstacle;
+
+/// Robots, objects and obstacles at one instant.
+#[derive(Debug)]
+pub(super) struct Surroundings<'w> {
+    pub states: &'w [ChainState],
+    /// The objects of the cell, where they are.
+    pub objects: Vec<Object>,
+    /// Per object: how a robot carries it.
+    pub attachments: Vec<Option<Attachment>>,
+    pub perceived: Vec<PerceivedObstacle>,
+}
+
+/// A scene with its state.
+pub(super) struct PlacedScene {
+    pub scene: Scene,
+    pub state: SceneState,
+    /// The objects from this one on are perceived obstacles.
+    first_perceived: usize,
+}
+
+impl PlacedScene {
+    /// Index of the perceived obstacle that an object is.
+    pub fn perceived(&self, object: ObjectId) -> Option<usize> {
+        object.0.checked_sub(self.first_perceived)
+    }
+}
+
+impl Surroundings<'_> {
+    /// A robot with what it carries, the other robots, and the perceived obstacles as these solids.
+    ///
+    /// # Errors
+    /// Solids or joint values that the scene refuses.
+    pub fn obstacles_only(&self, base: &Scene, robot: RobotId, solids: &[Shape]) -> Result<PlacedScene, SceneError> {
+        self.scene(base, |attachment| attachment.is_some_and(|a| a.robot == robot), solids)
+    }
+
+    /// All robots and objects, and the perceived obstacles as these solids.
+    ///
+    /// # Errors
+    /// As [`obstacles_only`](Self::obstacles_only).
+    pub fn everything(&self, base: &Scene, solids: &[Shape]) -> Result<PlacedScene, SceneError> {
+        self.scene(base, |_| true, solids)
+    }
+
+    fn scene(
+        &self,
+        base: &Scene,
+        keeps: impl Fn(Option<&Attachment>) -> bool,
+        solids: &[Shape],
+    ) -> Result<PlacedScene, SceneError> {
+        let kept: Vec<(&Object, &Option<Attachment>)> =
+            self.objects.iter().zip(&self.attachments).filter(|(_, a)| keeps(a.as_ref())).collect();
+        let mut objects: Vec<Object> = kept.iter().map(|(o, _)| (*o).clone()).collect();
+        let first_perceived = objects.len();
+        let solids = self.perceived.iter().zip(solids);
+        objects.extend(solids.map(|(obstacle, shape)| Object {
+            name: obstacle.name.clone(),
+            shape: shape.clone(),
+            in_world: Pose::IDENTITY,
+        }));
+        let scene = base.with_objects(objects)?;
+        let mut state = SceneState::new(&scene);
+        for (i, robot) in self.states.iter().enumerate() {
+            state.set_q(&scene, RobotId(i), &robot.q)?;
+        }
+        for (i, (_, attachment)) in kept.into_iter().enumerate() {
+            if let Some(attachment) = attachment {
+                state.attach_at(&scene, ObjectId(i), attachment.clone())?;
+            }
+        }
+        Ok(PlacedScene { scene, state, first_perceived })
+    }
+}
