@@ -1,6 +1,8 @@
 //! `elbowroom run` with cameras and point clouds: a crate that no file names crosses the way of an arm. Pictures, clouds and cell
 //! are files, everything runs through the command line, and the truth is kept apart.
 
+#![allow(clippy::print_stdout, reason = "figures of the evidence")]
+
 mod common;
 
 use std::fmt::Write;

@@ -13,8 +13,8 @@ pub fn explanation(robot: &RobotTrack, index: usize, recording: &Recording) -> S
     parts.extend(hits.max_by(|a, b| a.t_s.total_cmp(&b.t_s)).map(|c| collision_text(c, robot)));
     let state = robot.avoidance.as_ref().and_then(|a| a.samples.get(index)).map(|a| a.state);
     parts.extend(state.filter(|d| *d != AvoiderState::Following).map(|d| d.name().to_owned()));
-    let holds = robot.perception.iter().flat_map(|p| &p.holds);
-    let hold = holds.filter(|h| h.from_s <= sample.t_s && sample.t_s <= h.to_s).last();
+    let mut holds = robot.perception.iter().flat_map(|p| &p.holds);
+    let hold = holds.rfind(|h| h.from_s <= sample.t_s && sample.t_s <= h.to_s);
     parts.extend(hold.map(|h| match h.reason {
         HoldReason::Obstacle => format!("{} blocks its path", h.by),
         HoldReason::Stale => format!("{} sees nothing", h.by),
