@@ -51,7 +51,7 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
     csv.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect()).collect()
 }
 
-/// 1: guard an unseen arm with a gripper; 2: find out why it stopped; 3: let it leave.
+/// 1: guard an unseen arm with a gripper; 2: find out why it stopped; 3: check whether entry is excluded.
 #[test]
 fn guard_an_arm_with_a_gripper_and_find_out_why_it_stopped() {
     let Some(data) = data() else { return };
