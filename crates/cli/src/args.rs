@@ -48,6 +48,12 @@ pub(crate) enum Command {
     Region(crate::region::args::RegionCommand),
     /// List the example cells, or copy them to a folder to start from
     Example(ExampleArgs),
+    /// Guard real controllers over a network (needs the feature `live`)
+    Live(crate::live::LiveArgs),
+    /// Show a cell in a browser (needs the feature `live`)
+    View(crate::live::ViewArgs),
+    /// Run the monitor again over a recording, and compare (needs the feature `live`)
+    Replay(crate::live::ReplayArgs),
     /// Print a completion script for a shell
     ///
     /// For bash: elbowroom completions bash > ~/.local/share/bash-completion/completions/elbowroom

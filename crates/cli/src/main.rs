@@ -9,6 +9,7 @@ mod convert;
 mod example;
 mod former_fields;
 mod inspect;
+mod live;
 mod map;
 mod output;
 mod plan;
@@ -48,6 +49,9 @@ fn main() -> ExitCode {
         Some(Command::WatchCamera(args)) => watch::watch(&args),
         Some(Command::Region(command)) => region::region(&command),
         Some(Command::Example(args)) => example::copy(&args),
+        Some(Command::Live(args)) => live::live(&args),
+        Some(Command::View(args)) => live::view(&args),
+        Some(Command::Replay(args)) => live::replay(&args),
         Some(Command::Completions { shell }) => completions(shell),
     };
     match result {

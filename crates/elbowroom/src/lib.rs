@@ -23,6 +23,9 @@
 //! | [`inspect`] | the contents of a robot model or mesh file |
 //! | [`report`] | HTML reports, plots, images, and the text summary of a run |
 //!
+//! With the feature `live`: `live` (the service on a network), `view` (the cell in a browser), `rosbag` (MCAP recordings),
+//! `ros2` (messages and keys of ROS 2), `status` (what a monitored robot publishes).
+//!
 //! # A guarded controller
 //!
 //! A controller calls [`monitor::Monitor::tick`] with each joint snapshot and applies the returned speed override:
@@ -143,13 +146,23 @@ pub use elbowroom_formats as formats;
 pub use elbowroom_inspect as inspect;
 pub use elbowroom_interlock as interlock;
 pub use elbowroom_kinematics as kinematics;
+#[cfg(feature = "live")]
+pub use elbowroom_live as live;
 pub use elbowroom_monitor as monitor;
 pub use elbowroom_perception as perception;
 pub use elbowroom_planner as planner;
 pub use elbowroom_proximity as proximity;
 pub use elbowroom_report as report;
 pub use elbowroom_robot as robot;
+#[cfg(feature = "live")]
+pub use elbowroom_ros2 as ros2;
+#[cfg(feature = "live")]
+pub use elbowroom_rosbag as rosbag;
 pub use elbowroom_scene as scene;
 pub use elbowroom_sim as sim;
 pub use elbowroom_spatial as spatial;
+#[cfg(feature = "live")]
+pub use elbowroom_status as status;
+#[cfg(feature = "live")]
+pub use elbowroom_view as view;
 pub use elbowroom_vision as vision;

@@ -12,7 +12,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
-const LAYERS: [&str; 26] = [
+const LAYERS: [&str; 30] = [
     "testkit",
     "spatial",
     "proximity",
@@ -35,6 +35,10 @@ const LAYERS: [&str; 26] = [
     "sim",
     "inspect",
     "report",
+    "status",
+    "ros2",
+    "rosbag",
+    "view",
     "live",
     "elbowroom",
     "cli",

@@ -1,0 +1,60 @@
+//! Arguments of the commands of the feature `live`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom live cell.toml --simulate                  the whole cell in one process, with simulated controllers")]
+#[allow(clippy::struct_excessive_bools)] // each is a command-line flag
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct LiveArgs {
+    /// The cell file (docs/cell-file.md has every key)
+    pub(crate) cell: PathBuf,
+    /// Guard only these robots in this process
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) robots: Vec<String>,
+    /// Accept connections at this address
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) listen: Option<String>,
+    /// Connect to the process at this address
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) connect: Option<String>,
+    /// Grant exchange regions in this process; without --robots, nothing else
+    #[arg(long)]
+    pub(crate) arbiter: bool,
+    /// Show the cell in a browser at this address
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) web: Option<String>,
+    /// Record everything into this MCAP file
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) record: Option<PathBuf>,
+    /// Run the programs of the cell file in place of the controllers
+    #[arg(long)]
+    pub(crate) simulate: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom view cell.toml                       prints an address to open in a browser")]
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct ViewArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The address to serve at; port 0 takes any free one
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:0")]
+    pub(crate) web: String,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom replay run.mcap                      the same overrides to the bit, or the first that differs")]
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct ReplayArgs {
+    /// The recording
+    pub(crate) recording: PathBuf,
+    /// Print one JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,1 @@
+//! The running service: a monitor per controller, an arbiter, on a network.

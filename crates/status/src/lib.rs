@@ -1,0 +1,9 @@
+//! What a monitored robot and a cell publish, as JSON: the same document on the network, in the browser and in recordings.
+//!
+//! Metres, radians and seconds; poses in the world frame, quaternions as `[x, y, z, w]`. `docs/live.md` has the schema.
+
+mod cell_status;
+mod robot_status;
+
+pub use cell_status::{CellStatus, EventStatus, PlacedStatus, SlotStatus};
+pub use robot_status::{PointStatus, PoseStatus, RegionStatus, RobotStatus};

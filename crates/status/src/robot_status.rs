@@ -1,0 +1,146 @@
+//! The status of one robot.
+
+use std::collections::BTreeMap;
+
+use elbowroom_monitor::{Monitor, RegionId, Snapshot, TickReport, VirtualTcp};
+use elbowroom_spatial::Pose;
+use serde::{Deserialize, Serialize};
+
+/// The status of one robot after a tick of its monitor.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct RobotStatus {
+    /// Time since the service started, s.
+    pub t_s: f64,
+    /// Name of the robot.
+    pub robot: String,
+    /// Joint positions in the order of the chain, rad or m; empty while none are known.
+    pub q: Vec<f64>,
+    /// The speed override to apply, 0..1.
+    #[serde(rename = "override")]
+    pub speed_override: f64,
+    /// Why, in words.
+    pub reason: String,
+    /// The region that limits the override, where one does.
+    pub region: Option<String>,
+    /// Per exchange region `outside`, `waiting`, `granted`, `committed` or `inside`.
+    pub exchange: BTreeMap<String, String>,
+    /// Sequence number of the joint state that this answers.
+    pub sequence: u64,
+    /// Pose of the TCP in the world, where joint values are known.
+    pub tcp: Option<PoseStatus>,
+    /// Digital outputs, bit i is channel i.
+    pub outputs: u64,
+    /// The point that requests the smallest override, where one limits it.
+    pub governing: Option<PointStatus>,
+    /// Per region near the robot the closest point of the robot.
+    pub virtual_tcps: Vec<PointStatus>,
+    /// Every region of the robot.
+    pub regions: Vec<RegionStatus>,
+}
+
+/// A pose in the world.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PoseStatus {
+    /// Position, m.
+    pub position_m: [f64; 3],
+    /// Rotation as a unit quaternion `[x, y, z, w]`.
+    pub quaternion_xyzw: [f64; 4],
+}
+
+/// A point of a robot and the closest point of a region.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PointStatus {
+    /// The link, tool or load.
+    pub part: String,
+    /// The region.
+    pub region: String,
+    /// Distance, 0 inside, m.
+    pub distance_m: f64,
+    /// The point of the robot in the world, m.
+    pub point_m: [f64; 3],
+    /// The point of the region in the world, m.
+    pub on_region_m: [f64; 3],
+}
+
+/// A region, for one robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RegionStatus {
+    /// Its name.
+    pub name: String,
+    /// It is switched on.
+    pub active: bool,
+    /// The robot is inside.
+    pub inside: bool,
+    /// The robot is inside or in the warning zone.
+    pub warned: bool,
+    /// It stops this robot: it is forbidden, or taken by another robot.
+    pub closed: bool,
+    /// Where its shape is in the world.
+    pub pose: PoseStatus,
+}
+
+impl From<&Pose> for PoseStatus {
+    fn from(pose: &Pose) -> Self {
+        Self { position_m: pose.translation.to_array(), quaternion_xyzw: pose.rotation.to_quaternion_xyzw() }
+    }
+}
+
+impl RobotStatus {
+    /// The status after a tick: what the monitor found at this snapshot. `t_s` is the time since the service started; `tcp` the
+    /// pose of the TCP in the world.
+    pub fn of_tick(
+        t_s: f64,
+        monitor: &Monitor,
+        snapshot: &Snapshot<'_>,
+        report: &TickReport,
+        tcp: Option<&Pose>,
+    ) -> Self {
+        let regions = monitor.configuration().regions();
+        let name = |r: RegionId| regions[r.0].name.clone();
+        let exchange = |r: RegionId| monitor.exchange_state(r).map(|state| (name(r), state.name().to_owned()));
+        let ids = || (0..regions.len()).map(RegionId);
+        Self {
+            t_s,
+            robot: monitor.configuration().robot().to_owned(),
+            q: snapshot.q.to_vec(),
+            speed_override: report.speed_override,
+            reason: report.reason.named(regions).to_string(),
+            region: report.reason.region().map(name),
+            exchange: ids().filter_map(exchange).collect(),
+            sequence: 0,
+            tcp: tcp.map(PoseStatus::from),
+            outputs: report.outputs,
+            governing: report.governing.map(|point| PointStatus::of(monitor, &point)),
+            virtual_tcps: monitor.virtual_tcps(snapshot).map(|point| PointStatus::of(monitor, &point)).collect(),
+            regions: ids().map(|r| RegionStatus::of(monitor, r)).collect(),
+        }
+    }
+}
+
+impl PointStatus {
+    /// A virtual TCP of a monitor.
+    pub fn of(monitor: &Monitor, point: &VirtualTcp) -> Self {
+        let configuration = monitor.configuration();
+        Self {
+            part: configuration.volumes()[point.volume.0].name.clone(),
+            region: configuration.regions()[point.region.0].name.clone(),
+            distance_m: point.distance_m,
+            point_m: point.position.to_array(),
+            on_region_m: point.on_region.to_array(),
+        }
+    }
+}
+
+impl RegionStatus {
+    /// A region in the last tick of a monitor.
+    pub fn of(monitor: &Monitor, region: RegionId) -> Self {
+        Self {
+            name: monitor.configuration().regions()[region.0].name.clone(),
+            active: monitor.is_active(region),
+            inside: monitor.is_inside(region),
+            warned: monitor.is_warned(region),
+            closed: monitor.is_closed(region),
+            pose: PoseStatus::from(&monitor.region_in_world(region)),
+        }
+    }
+}

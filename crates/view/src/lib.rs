@@ -1,0 +1,1 @@
+//! A cell in a browser: the page and the server behind it.
