@@ -3,6 +3,6 @@
 use super::ReplayArgs;
 use crate::output::{ExitStatus, Failure};
 
-pub(crate) fn replay(_: &ReplayArgs) -> Result<ExitStatus, Failure> {
-    Err(Failure::Wrong("not built yet".into()))
+pub(crate) fn replay(args: &ReplayArgs) -> Result<ExitStatus, Failure> {
+    Err(Failure::Wrong(format!("{}: recordings cannot be read yet", args.recording.display())))
 }
