@@ -124,14 +124,14 @@ impl Cell {
         for carriage in &mut self.carriages {
             carriage.tick(now);
         }
+        let inside = || self.carriages.iter().filter(|c| c.is_inside());
+        // Two that are inside at the start halt once the arbiter has heard both, and they its answer.
+        let may_halt_still = self.ticks <= 2 * SEND_TICKS;
+        assert!(inside().count() <= 1 || may_halt_still || inside().all(|c| c.speed_override() == 0.0));
         if self.ticks.is_multiple_of(SEND_TICKS) {
             (0..self.carriages.len()).for_each(|r| self.exchange(r, now));
         }
         self.ticks += 1;
-        let inside = || self.carriages.iter().filter(|c| c.is_inside());
-        // Two that are inside at the start halt once the arbiter has heard both, and they its answer.
-        let may_halt_still = self.ticks <= 2 * SEND_TICKS;
-        assert!(inside().count() <= 1 || may_halt_still || inside().all(|c| c.speed_override() == 0.0), "{:?}", self.carriages.iter().map(|c| (self.ticks, c.x, c.v, c.report, c.robot.guard().must_halt(SLOT))).collect::<Vec<_>>());
     }
 
     pub fn is_halted(&self) -> bool {
