@@ -47,10 +47,16 @@ struct GuardedSlot {
     released: Option<Token>,
     /// When the message was sent whose answer last confirmed the token.
     confirmed: Option<Micros>,
-    release_requested: bool,
-    halt: bool,
+    orders: Orders,
     /// The grant is not obeyed any more. It is given up once the robot is then observed to be able to stop outside.
     is_closing: bool,
+}
+
+/// What the arbiter asked for last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Orders {
+    release_requested: bool,
+    halt: bool,
 }
 
 impl GuardedSlot {
@@ -60,8 +66,7 @@ impl GuardedSlot {
         token: None,
         released: None,
         confirmed: None,
-        release_requested: false,
-        halt: false,
+        orders: Orders { release_requested: false, halt: false },
         is_closing: false,
     };
 
@@ -118,7 +123,7 @@ impl Guard {
 
     /// True where the robot must stop because another one was found inside.
     pub fn must_halt(&self, slot: SlotId) -> bool {
-        self.slots[slot.0].halt
+        self.slots[slot.0].orders.halt
     }
 
     /// Takes what the monitor found at a slot in a tick, after it has decided with [`Guard::may_enter`].
@@ -155,7 +160,7 @@ impl Guard {
     pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
         let slot = &self.slots[slot.0];
         let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);
-        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.halt
+        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.orders.halt
     }
 
     /// The next message to the arbiter.
@@ -168,7 +173,7 @@ impl Guard {
     /// Writes the next message to the arbiter. Does not allocate where `message` has as many slots as the cell.
     pub fn state_into(&mut self, now: Micros, message: &mut StateMessage) {
         for slot in &mut self.slots {
-            let is_asked = slot.release_requested || slot.halt;
+            let is_asked = slot.orders.release_requested || slot.orders.halt;
             let may_release = slot.occupancy == Occupancy::Outside || slot.occupancy == Occupancy::Warning && is_asked;
             slot.is_closing |= slot.token.is_some() && may_release;
         }
@@ -234,7 +239,7 @@ impl GuardedSlot {
     }
 
     fn take(&mut self, answer: SlotAnswer, sent: Option<Micros>) {
-        (self.release_requested, self.halt) = (answer.release_requested, answer.halt);
+        self.orders = Orders { release_requested: answer.release_requested, halt: answer.halt };
         match answer.granted {
             Some(token) if self.released >= Some(token) => {}
             Some(token) => {

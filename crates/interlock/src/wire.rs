@@ -153,7 +153,9 @@ fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; 4], bytes
     bytes.extend_from_slice(&[VERSION, kind]);
     bytes.extend_from_slice(&robot.to_le_bytes());
     bytes.extend_from_slice(&count.to_le_bytes());
-    words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+    for word in words {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
     true
 }
 

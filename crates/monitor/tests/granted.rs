@@ -139,10 +139,9 @@ fn a_halt_stops_whatever_is_granted_but_not_for_a_region_that_is_switched_off() 
 fn invalid_input_leaves_what_was_found() {
     let (grants, mut robot) = granted();
     robot.seek(ExchangeState::Waiting);
-    let (x, _) = (robot.x, robot.x = f64::NAN);
+    robot.x = f64::NAN;
     assert!(matches!(robot.tick(0.0).reason, OverrideReason::Fault(_)));
     assert_eq!((grants.occupancy(SLOT), grants.state(SLOT)), (Occupancy::Warning, ExchangeState::Waiting));
-    robot.x = x;
 }
 
 #[test]
