@@ -97,7 +97,9 @@ impl Service {
         let slots = configure::slots(&cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
         let checksum = configuration_number(&cell);
         let mut nodes = Vec::new();
-        for (i, setup) in configure::setups(&cell)?.into_iter().enumerate().filter(|(i, _)| robots.contains(&RobotId(*i))) {
+        for (i, setup) in
+            configure::setups(&cell)?.into_iter().enumerate().filter(|(i, _)| robots.contains(&RobotId(*i)))
+        {
             let monitor = NodeMonitor::new(&setup, RobotSlot(i), slots, checksum, Boot(boot_number()));
             let monitor = monitor.map_err(|e| FormatError::new(&cell.file, cell.robots[i].line, e.to_string()))?;
             nodes.push(Node::start(NodeParts {

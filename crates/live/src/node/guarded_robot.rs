@@ -6,9 +6,7 @@ use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{
-    AccessClass, Fault, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId,
-};
+use elbowroom_monitor::{AccessClass, Fault, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId};
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 

@@ -68,21 +68,22 @@ impl InputGate {
     /// # Errors
     /// Why they do not count.
     pub fn pass(&mut self, state: &JointState, arrived: Micros) -> Result<Micros, Rejected> {
-        let starts = match self.starts(state, arrived) {
-            Ok(starts) => starts,
-            Err(why) => return Err(self.reject(why)),
-        };
+        if let Err(why) = self.check(state, arrived) {
+            return Err(self.reject(why));
+        }
         let now = self.now(arrived);
         let raw_us = i64::try_from(state.stamp_us).unwrap_or(i64::MAX);
-        if starts {
+        let based = |base_us: i64| Micros(raw_us.saturating_add(base_us).max(0) as u64);
+        let is_ahead = based(self.base_us) - now > MOST_AHEAD;
+        if is_ahead && !self.was_silent(arrived) {
+            return Err(self.reject(Rejected::Stamp));
+        }
+        if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
             self.base_us = (now.0 as i64).saturating_sub(raw_us);
             self.least = [None, None];
             self.span_began = arrived;
         }
-        let stamp = Micros(raw_us.saturating_add(self.base_us).max(0) as u64);
-        if stamp - now > MOST_AHEAD {
-            return Err(self.reject(Rejected::Stamp));
-        }
+        let stamp = based(self.base_us);
         self.last = Some(Last { boot: state.boot, sequence: state.sequence, arrived });
         if arrived - self.span_began > SPAN {
             self.least = [None, self.least[0]];
@@ -102,17 +103,19 @@ impl InputGate {
         self.shown
     }
 
-    /// Whether the message is the first one of a start of the controller.
-    fn starts(&self, state: &JointState, arrived: Micros) -> Result<bool, Rejected> {
+    fn check(&self, state: &JointState, arrived: Micros) -> Result<(), Rejected> {
         if state.checksum != 0 && state.checksum != self.checksum {
             return Err(Rejected::OtherConfiguration);
         }
-        let Some(last) = self.last else { return Ok(true) };
-        let was_silent = arrived - last.arrived >= FORGOTTEN;
-        if state.boot == last.boot {
-            return if state.sequence > last.sequence { Ok(was_silent) } else { Err(Rejected::Late) };
+        match self.last {
+            Some(last) if state.boot == last.boot && state.sequence <= last.sequence => Err(Rejected::Late),
+            Some(last) if state.boot < last.boot && !self.was_silent(arrived) => Err(Rejected::FormerStart),
+            _ => Ok(()),
         }
-        if state.boot < last.boot && !was_silent { Err(Rejected::FormerStart) } else { Ok(true) }
+    }
+
+    fn was_silent(&self, now: Micros) -> bool {
+        self.last.is_none_or(|last| now - last.arrived >= FORGOTTEN)
     }
 
     fn reject(&mut self, why: Rejected) -> Rejected {
@@ -191,6 +194,15 @@ mod tests {
         assert_eq!(gate.pass(&state(1, 2, u64::MAX), Micros(2_000)), Err(Rejected::Stamp));
         assert_eq!(gate.pass(&state(1, 3, 5_000_000), Micros(4_000)), Err(Rejected::Stamp));
         assert_eq!(gate.pass(&state(1, 4, 6_000), Micros(6_000)), Ok(Micros(6_000)));
+    }
+
+    #[test]
+    fn a_pause_costs_no_message() {
+        let mut gate = InputGate::new(0);
+        gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
+        // The controller was about to send when it was paused for 2 s; then it goes on with the present time.
+        gate.pass(&state(1, 2, 2_000), Micros(2_002_000)).unwrap();
+        assert_eq!(gate.pass(&state(1, 3, 2_004_000), Micros(2_004_000)), Ok(Micros(2_004_000)));
     }
 
     #[test]

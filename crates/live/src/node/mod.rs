@@ -210,7 +210,8 @@ impl Ticking {
     fn put(&mut self, report: &TickReport, now: Micros) {
         let answer = self.guarded.answer(report);
         let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
-        let is_report_due = self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
+        let is_report_due =
+            self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
         let Self { guarded, outbox, health, published, reported, .. } = self;
         outbox.put(|outgoing| {
             outgoing.answer = Some(answer);

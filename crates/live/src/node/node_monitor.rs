@@ -24,7 +24,13 @@ impl NodeMonitor {
     ///
     /// # Errors
     /// As for [`GuardedMonitor::new`].
-    pub fn new(setup: &MonitorSetup, robot: RobotSlot, slots: usize, checksum: u64, boot: Boot) -> Result<Self, ConfigError> {
+    pub fn new(
+        setup: &MonitorSetup,
+        robot: RobotSlot,
+        slots: usize,
+        checksum: u64,
+        boot: Boot,
+    ) -> Result<Self, ConfigError> {
         let configuration = setup.configuration.clone();
         let is_exchange = |kind: RegionKind| matches!(kind, RegionKind::Exchange { .. });
         if !configuration.regions().iter().any(|r| is_exchange(r.kind)) {
