@@ -23,7 +23,7 @@
     clock.textContent = Units.seconds(t);
     scrub.setAttribute('aria-valuetext', isLive ? `now, ${clock.textContent}` : clock.textContent);
     now.setAttribute('aria-pressed', String(isLive));
-    play.textContent = isPlaying ? '⏸' : '▶';
+    play.textContent = isPlaying ? 'pause' : 'play';
     play.setAttribute('aria-label', isPlaying ? 'pause' : 'play');
     play.setAttribute('aria-pressed', String(!isPlaying));
     document.body.classList.toggle('replay', !isLive);

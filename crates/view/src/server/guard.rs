@@ -50,7 +50,12 @@ pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Ne
         Some((status, why)) => (status, why).into_response(),
         None => next.run(request).await,
     };
+    let is_upgrade = response.status() == StatusCode::SWITCHING_PROTOCOLS;
     let headers = response.headers_mut();
+    if !is_upgrade {
+        // One request per connection: none is kept for nothing.
+        headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
     headers.insert(header::CONTENT_SECURITY_POLICY, hosts.policy.clone());
     for (name, value) in [
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -95,7 +100,7 @@ mod tests {
     #[test]
     fn only_pages_of_this_server_are_own() {
         let hosts = Hosts::new(crate::settings::hosts("127.0.0.1:8080".parse().unwrap()));
-        let is_own = |pairs| hosts.is_own_page(&headers(pairs));
+        let is_own = |pairs: &[_]| hosts.is_own_page(&headers(pairs));
         assert!(is_own(&[("host", "127.0.0.1:8080"), ("origin", "http://127.0.0.1:8080")]));
         assert!(is_own(&[("host", "localhost:8080"), ("origin", "http://localhost:8080")]));
         assert!(is_own(&[("host", "[::1]:8080"), ("origin", "http://[::1]:8080")]));
