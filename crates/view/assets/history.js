@@ -14,6 +14,12 @@ const History = (() => {
     if (old) frames.splice(0, old);
   }
 
+  // Frames of the time before this page was opened.
+  function addEarlier(earlier) {
+    const first = frames.length ? frames[0].t_s : Infinity;
+    frames = earlier.filter((frame) => frame.t_s < first).concat(frames);
+  }
+
   // The last frame at or before a time, else the first one.
   function at(t) {
     let low = 0, high = frames.length - 1;
@@ -24,5 +30,5 @@ const History = (() => {
     return frames[low];
   }
 
-  return { add, at, first: () => (frames.length ? frames[0].t_s : 0), last: () => (frames.length ? frames[frames.length - 1].t_s : 0), count: () => frames.length };
+  return { add, addEarlier, at, first: () => (frames.length ? frames[0].t_s : 0), last: () => (frames.length ? frames[frames.length - 1].t_s : 0), count: () => frames.length };
 })();

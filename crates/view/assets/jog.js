@@ -7,7 +7,7 @@ const Jog = (() => {
   const robots = isOn ? Data.robots.map(build) : [];
 
   function build(robot, index) {
-    const set = element('fieldset', {}, element('legend', { textContent: robot.name }));
+    const set = element('details', { open: index === 0 }, element('summary', { textContent: robot.name }));
     byId('jog').append(set);
     const own = { q: [...robot.start], touched: -Infinity, index, tcp: null };
     own.joints = robot.sliders.map((slider, k) => joint(set, own, slider, k));
@@ -39,7 +39,7 @@ const Jog = (() => {
     holder.setAttribute('aria-label', `tool centre point of ${robot.name}`);
     set.append(holder);
     const inputs = ['x mm', 'y mm', 'z mm', 'roll °', 'pitch °', 'yaw °'].map((name, k) => {
-      const input = element('input', { type: 'number', step: k < 3 ? 1 : 1, id: `tcp-${own.index}-${k}` });
+      const input = element('input', { type: 'number', step: 'any', id: `tcp-${own.index}-${k}` });
       holder.append(element('label', { htmlFor: input.id }, name, input));
       input.addEventListener('change', () => {
         const values = inputs.map((i) => Number(i.value));

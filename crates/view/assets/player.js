@@ -64,11 +64,16 @@
   }
 
   // Frames that come between two pictures are not drawn; the program is told what has been shown.
-  let waiting = null;
+  let waiting = null, isEarlierKnown = false;
+  async function fetchEarlier() {
+    const response = await fetch('/history', { headers: { Authorization: `Bearer ${Link.token}` } }).catch(() => null);
+    if (response && response.ok) { History.addEarlier(await response.json()); showTime(); }
+  }
   Link.onFrame((frame) => {
     heard = performance.now();
     newest = frame;
     History.add(frame);
+    if (!isEarlierKnown) { isEarlierKnown = true; fetchEarlier(); }
     if (Link.state() === 'stale') Link.setState('open');
     if (waiting) { waiting = frame; return; }
     waiting = frame;
@@ -112,7 +117,7 @@
   window.elbowroom = {
     state: () => {
       if (!shown) return { connection: Link.state(), mode: Data.mode, cell: Data.cell, t_s: null, robots: [], regions: [], objects: [], slots: [], events: [] };
-      const { frame, regions } = shown;
+      const { frame } = shown, regions = [...shown.regions, ...shown.added];
       return {
         connection: Link.state(), mode: Data.mode, cell: Data.cell, checksum: Data.checksum, t_s: isLive ? frame.t_s : t, live: isLive, number: frame.number,
         message: frame.message, nearest: pair(frame.nearest),

@@ -56,14 +56,13 @@ const Tables = (() => {
       const [a, b, c] = row.cells;
       text(a, robot);
       text(b, what);
-      text(c, Units.millimetres(metres));
+      text(c, kind === 'region' ? Units.toRegion(metres) : Units.millimetres(metres));
       c.className = distanceClass(metres);
       Object.assign(row.dataset, { robot, kind, metres });
     });
   }
 
   const regions = table(byId('regions'), 'regions', ['region', 'kind', 'state']);
-  byId('regions-card').hidden = !Data.regions.length;
   const stateText = (r) => {
     const who = (list) => list.join(', ');
     if (r.state === 'off') return 'off';
@@ -73,12 +72,13 @@ const Tables = (() => {
     return 'clear';
   };
   function showRegions(list) {
+    byId('regions-card').hidden = !list.length;
     rows(regions, list.length, 3).forEach((row, i) => {
       const [name, kind, state] = row.cells, r = list[i];
-      if (!name.firstChild) {
+      if (name.textContent !== r.name) {
         const chip = element('i', { className: 'chip' });
-        chip.style.background = Data.regions[i].color;
-        name.append(chip, r.name);
+        chip.style.background = Data.regions[i]?.color ?? 'gray';
+        name.replaceChildren(chip, r.name);
       }
       text(kind, r.kind);
       text(state, stateText(r));
@@ -113,7 +113,7 @@ const Tables = (() => {
   function show(instant) {
     instant.frame.robots.forEach(showRobot);
     showDistances(instant.frame);
-    showRegions(instant.regions);
+    showRegions([...instant.regions, ...instant.added]);
     showSlots(instant.frame.slots);
   }
 

@@ -4,6 +4,7 @@ const Units = (() => {
   // Plus 0, which makes −0 a 0.
   const rounded = (value, digits) => (Number(value.toFixed(digits)) + 0).toFixed(digits);
   const millimetres = (metres) => (metres === 0 ? 'contact' : `${rounded(1000 * metres, metres < 0.1 ? 2 : 1)} mm`);
+  const toRegion = (metres) => (metres === 0 ? 'inside' : millimetres(metres));
   const seconds = (s) => `${rounded(s, 2)} s`;
 
   // Roll, pitch and yaw (degrees) of a quaternion x y z w, and back: Rz(yaw) · Ry(pitch) · Rx(roll).
@@ -19,5 +20,5 @@ const Units = (() => {
     return [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy];
   }
 
-  return { DEGREE, rounded, millimetres, seconds, angles, quaternion };
+  return { DEGREE, rounded, millimetres, toRegion, seconds, angles, quaternion };
 })();

@@ -31,6 +31,7 @@ mod event_log;
 mod feed;
 mod frame;
 mod geometry;
+mod history;
 mod inbox;
 mod server;
 mod settings;

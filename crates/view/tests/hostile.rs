@@ -40,6 +40,7 @@ fn a_wrong_token_sees_nothing() {
     let address = server.address();
     for headers in ["", "Authorization: Bearer \r\n", "Authorization: Bearer abc\r\n", "Authorization: Basic abc\r\n"] {
         assert_eq!(status(&get(address, "/geometry", headers)), 401, "{headers}");
+        assert_eq!(status(&get(address, "/history", headers)), 401, "{headers}");
     }
     let right = format!("Authorization: Bearer {}\r\n", token(&server));
     assert_eq!(status(&get(address, "/geometry", &right)), 200);

@@ -13,6 +13,7 @@ use tokio::sync::watch;
 
 use super::distances::Distances;
 use crate::frame::Frame;
+use crate::history::History;
 use crate::inbox::Inbox;
 use crate::source::ViewSource;
 
@@ -54,6 +55,7 @@ pub(crate) fn run(
     model: &Model,
     source: &mut dyn ViewSource,
     inbox: &Inbox,
+    history: &History,
     frames: &watch::Sender<SentFrame>,
     period: Duration,
 ) {
@@ -86,7 +88,11 @@ pub(crate) fn run(
         let frame = Frame { number, message: message.clone(), ..measured(&mut distances, &status) };
         last = Some(status);
         match serde_json::to_string(&frame) {
-            Ok(text) => _ = frames.send_replace(SentFrame { number, text: text.into() }),
+            Ok(text) => {
+                let text = Utf8Bytes::from(text);
+                history.add(frame.t_s, &text);
+                frames.send_replace(SentFrame { number, text });
+            }
             Err(_) => continue, // a map with keys that are no texts: there is none
         }
         // One receiver is that of the server.

@@ -18,6 +18,7 @@ use super::places::Places;
 use super::session;
 use super::token::Token;
 use crate::engine::SentFrame;
+use crate::history::History;
 use crate::inbox::Inbox;
 use crate::settings::Limits;
 
@@ -29,6 +30,7 @@ pub(crate) struct Shared {
     pub(crate) limits: Limits,
     pub(crate) geometry: Bytes,
     pub(crate) inbox: Arc<Inbox>,
+    pub(crate) history: Arc<History>,
     pub(crate) frames: watch::Receiver<SentFrame>,
     /// Connections without a token.
     pub(crate) places: Places,
@@ -45,6 +47,7 @@ pub(crate) fn routes(shared: Arc<Shared>, assets: Vec<Asset>) -> Router {
     });
     with_assets
         .route("/geometry", get(geometry))
+        .route("/history", get(history))
         .route("/socket", get(socket))
         .fallback(|| async { (StatusCode::NOT_FOUND, "not here\n") })
         .layer(middleware::from_fn_with_state(hosts, guard))
@@ -57,12 +60,32 @@ fn compressed(kind: &'static str, gzip: Bytes) -> Response {
 
 /// The geometry says what the cell is: only with the token.
 async fn geometry(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
-    let given = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
-    let token = given.and_then(|value| value.strip_prefix("Bearer "));
-    if !token.is_some_and(|token| shared.token.is(token)) {
-        return (StatusCode::UNAUTHORIZED, "the token is missing or another one\n").into_response();
+    if !has_token(&shared, &headers) {
+        return no_token();
     }
     compressed("application/octet-stream", shared.geometry.clone())
+}
+
+/// So do the frames of the last minutes.
+async fn history(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
+    if !has_token(&shared, &headers) {
+        return no_token();
+    }
+    let packed = tokio::task::spawn_blocking(move || shared.history.packed()).await;
+    match packed {
+        Ok(Ok(packed)) => compressed("application/json", packed.into()),
+        _ => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}
+
+fn has_token(shared: &Shared, headers: &HeaderMap) -> bool {
+    let given = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
+    let token = given.and_then(|value| value.strip_prefix("Bearer "));
+    token.is_some_and(|token| shared.token.is(token))
+}
+
+fn no_token() -> Response {
+    (StatusCode::UNAUTHORIZED, "the token is missing or another one\n").into_response()
 }
 
 async fn socket(State(shared): State<Arc<Shared>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {

@@ -18,6 +18,7 @@ use super::{assets, connection};
 use crate::engine::{self, JogCell, Model, SentFrame};
 use crate::feed::StatusFeed;
 use crate::geometry;
+use crate::history::History;
 use crate::inbox::Inbox;
 use crate::settings::hosts;
 use crate::source::{RunningCell, ViewSource};
@@ -70,12 +71,14 @@ impl Server {
         let token = Token::random()?;
         let (frame_sender, frames) = watch::channel(SentFrame::default());
         let (stop, stopped) = watch::channel(false);
+        let history = Arc::new(History::default());
         let shared = Arc::new(Shared {
             token: token.clone(),
             hosts: Hosts::new(hosts(address)),
             limits,
             geometry: geometry::packed(&model.cell, source.mode())?.into(),
             inbox: inbox.clone(),
+            history: history.clone(),
             frames,
             places: Places::new(limits.connections),
             browsers: Arc::new(Semaphore::new(limits.browsers)),
@@ -83,9 +86,9 @@ impl Server {
         });
         let router = routes(shared.clone(), assets::assets()?);
         runtime.spawn(connection::accept(listener, router, shared, stopped));
-        let to_engine = inbox.clone();
+        let (to_engine, kept) = (inbox.clone(), history);
         let engine = std::thread::Builder::new().name("view engine".into()).spawn(move || {
-            engine::run(&model, &mut source, &to_engine, &frame_sender, limits.frame_period);
+            engine::run(&model, &mut source, &to_engine, &kept, &frame_sender, limits.frame_period);
         })?;
         Ok(Self { address, token, inbox, stop, engine: Some(engine), runtime: Some(runtime) })
     }
