@@ -7,23 +7,27 @@ use elbowroom_cell::Cell;
 use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
-use elbowroom_sim::{InputFault, InputFaultKind, RunOptions};
+use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions};
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
 }
 
-fn recorded(cell: &Cell, options: &RunOptions) -> Vec<u8> {
+fn recorded(cell: &Cell, options: &RunOptions) -> (Vec<u8>, Recording) {
     let mut file = Cursor::new(Vec::new());
     let mut recorder = RunRecorder::new(CellWriter::new(&mut file, cell, 0).unwrap(), cell);
-    simulate_observed(cell, options, &mut |_| {}, Some(&mut recorder)).unwrap();
+    let outcome = simulate_observed(cell, options, &mut |_| {}, Some(&mut recorder)).unwrap();
     recorder.finish().unwrap();
-    file.into_inner()
+    (file.into_inner(), outcome.recording)
 }
 
 fn replayed(cell: &Cell, options: &RunOptions) -> Replay {
-    let bytes = recorded(cell, options);
-    let found = replay(&bytes[..]).unwrap();
+    let (bytes, _) = recorded(cell, options);
+    replayed_bytes(cell, &bytes)
+}
+
+fn replayed_bytes(cell: &Cell, bytes: &[u8]) -> Replay {
+    let found = replay(bytes).unwrap();
     println!("{}: {} bytes, {} messages, {} ticks", found.cell, bytes.len(), found.messages, found.ticks);
     assert_eq!(found.checksum, cell.checksum);
     assert!(!found.cut_off);
@@ -108,6 +112,9 @@ follow = { encoder = "belt" }
 shape = "sphere"
 centre = [0, 0, 0]
 radius = 120
+kind = "monitored"
+slow_to = 30
+output = 5
 warning = 150
 follow = { robot = "right", frame = "flange" }
 robots = ["left"]
@@ -146,7 +153,13 @@ steps = [
 #[test]
 fn ten_minutes_of_everything_replay_to_the_bit() {
     let cell = Cell::parse("everything.toml", EVERYTHING).unwrap();
-    let found = replayed(&cell, &RunOptions::default());
+    let (bytes, recording) = recorded(&cell, &RunOptions::default());
+    // Otherwise the replay would prove little.
+    for event in ["granted", "waiting", "released", "on", "off", "warn_in", "output_on", "stop", "resume"] {
+        let count = recording.events.iter().filter(|e| e.event.name() == event).count();
+        assert!(count > 10, "{event} happened {count} times");
+    }
+    let found = replayed_bytes(&cell, &bytes);
     assert_eq!(found.differences, 0, "{:?}", found.robots);
     let until_s = found.robots.iter().map(|r| r.until_s).fold(0.0, f64::max);
     assert!(until_s > 599.0, "it ended after {until_s} s");
@@ -155,7 +168,7 @@ fn ten_minutes_of_everything_replay_to_the_bit() {
 #[test]
 fn another_answer_is_found() {
     let cell = Cell::load(examples().join("figure12/cell.toml")).unwrap();
-    let bytes = recorded(&cell, &RunOptions::default());
+    let (bytes, _) = recorded(&cell, &RunOptions::default());
     let changed = with_another_override(&bytes);
     let found = replay(&changed[..]).unwrap();
     assert_eq!(found.differences, 1);
@@ -189,7 +202,7 @@ fn with_another_override(bytes: &[u8]) -> Vec<u8> {
 #[test]
 fn a_recording_that_ends_anywhere_is_read_up_to_there() {
     let cell = Cell::load(examples().join("figure12/cell.toml")).unwrap();
-    let bytes = recorded(&cell, &RunOptions::default());
+    let (bytes, _) = recorded(&cell, &RunOptions::default());
     let whole = replay(&bytes[..]).unwrap();
     let mut last = 0;
     for part in 1..=20 {
