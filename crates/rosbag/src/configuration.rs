@@ -263,3 +263,6 @@ fn read_source(message: &msgs::Source) -> Result<SourceSpec, String> {
 fn one<T: Copy>(values: &[T]) -> Option<T> {
     values.first().copied()
 }
+
+#[cfg(test)]
+mod tests;
