@@ -154,6 +154,7 @@ impl Arbiter {
         outputs.events.push(ArbiterEvent::Cleared(robot));
         for s in 0..self.slots.len() {
             self.slots[s].queue.retain(|other| *other != robot);
+            self.slots[s].intruders.retain(|other| *other != robot);
             if self.slots[s].is_held_by(robot) {
                 self.free(SlotId(s));
             }
@@ -220,8 +221,10 @@ impl Arbiter {
                 (false, true) => queue.retain(|other| *other != robot),
                 _ => {}
             }
-            if report.occupancy.occupies() {
-                self.found_inside(slot, robot, outputs);
+            match report.occupancy {
+                Occupancy::Committed | Occupancy::Inside => self.found_inside(slot, robot, outputs),
+                Occupancy::Outside | Occupancy::Warning => self.slots[slot.0].intruders.retain(|r| *r != robot),
+                Occupancy::Unknown => {}
             }
         }
     }
@@ -247,7 +250,11 @@ impl Arbiter {
                     self.hold(slot, robot);
                 }
             }
-            Some(holder) => outputs.events.push(ArbiterEvent::Conflict(slot, holder.robot, robot)),
+            Some(holder) if !self.slots[slot.0].intruders.contains(&robot) => {
+                self.slots[slot.0].intruders.push(robot);
+                outputs.events.push(ArbiterEvent::Conflict(slot, holder.robot, robot));
+            }
+            Some(_) => {}
         }
     }
 
@@ -262,6 +269,7 @@ impl Arbiter {
         let record = &mut self.slots[slot.0];
         record.holder = Some(Holder { robot, token });
         record.queue.retain(|other| *other != robot);
+        record.intruders.retain(|other| *other != robot);
     }
 
     /// Grants each free slot to the first robot that waits for it, if all others are known to be outside. Returns the robots.
@@ -359,9 +367,8 @@ impl Arbiter {
 
     /// Whether two robots claim the slot and this is one of them.
     fn must_halt(&self, slot: SlotId, robot: RobotSlot) -> bool {
-        let Some(holder) = self.slots[slot.0].holder.map(|holder| holder.robot) else { return false };
-        let intrudes = |r: RobotSlot| r != holder && self.robots[r.0].occupancy(slot).occupies();
-        if robot == holder { (0..self.robots.len()).map(RobotSlot).any(intrudes) } else { intrudes(robot) }
+        let slot = &self.slots[slot.0];
+        !slot.intruders.is_empty() && (slot.is_held_by(robot) || slot.intruders.contains(&robot))
     }
 }
 

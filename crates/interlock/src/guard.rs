@@ -41,24 +41,32 @@ pub struct Guard {
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct GuardedSlot {
     occupancy: Occupancy,
+    /// The robot needs the slot where it is near. Near a region that is switched off it does not.
+    is_needed: bool,
     token: Option<Token>,
     released: Option<Token>,
     /// When the message was sent whose answer last confirmed the token.
     confirmed: Option<Micros>,
-    release_requested: bool,
-    halt: bool,
+    orders: Orders,
     /// The grant is not obeyed any more. It is given up once the robot is then observed to be able to stop outside.
     is_closing: bool,
+}
+
+/// What the arbiter asked for last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Orders {
+    release_requested: bool,
+    halt: bool,
 }
 
 impl GuardedSlot {
     const NEW: Self = Self {
         occupancy: Occupancy::Unknown,
+        is_needed: true,
         token: None,
         released: None,
         confirmed: None,
-        release_requested: false,
-        halt: false,
+        orders: Orders { release_requested: false, halt: false },
         is_closing: false,
     };
 
@@ -115,7 +123,7 @@ impl Guard {
 
     /// True where the robot must stop because another one was found inside.
     pub fn must_halt(&self, slot: SlotId) -> bool {
-        self.slots[slot.0].halt
+        self.slots[slot.0].orders.halt
     }
 
     /// Takes what the monitor found at a slot in a tick, after it has decided with [`Guard::may_enter`].
@@ -132,30 +140,49 @@ impl Guard {
         }
     }
 
+    /// Takes whether the robot needs a slot in whose warning zone it is; it does until this says otherwise. It does not where
+    /// all its regions there are switched off. A slot that it has it keeps until it is outside.
+    pub fn need(&mut self, slot: SlotId, is_needed: bool) {
+        self.slots[slot.0].is_needed = is_needed;
+    }
+
+    /// Takes that it is not known any more where the robot is: nobody else is granted a slot that it can be in.
+    pub fn lose_sight(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.occupancy = Occupancy::Unknown);
+    }
+
+    /// Number of slots of the cell.
+    pub fn slots(&self) -> usize {
+        self.slots.len()
+    }
+
     /// True where the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
     pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
         let slot = &self.slots[slot.0];
-        let is_fresh = slot.confirmed.is_some_and(|sent| now - sent <= self.validity);
-        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.halt
+        let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);
+        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.orders.halt
     }
 
     /// The next message to the arbiter.
     pub fn state(&mut self, now: Micros) -> StateMessage {
+        let mut message = StateMessage::with_slots(self.slots.len());
+        self.state_into(now, &mut message);
+        message
+    }
+
+    /// Writes the next message to the arbiter. Does not allocate where `message` has as many slots as the cell.
+    pub fn state_into(&mut self, now: Micros, message: &mut StateMessage) {
         for slot in &mut self.slots {
-            let is_asked = slot.release_requested || slot.halt;
+            let is_asked = slot.orders.release_requested || slot.orders.halt;
             let may_release = slot.occupancy == Occupancy::Outside || slot.occupancy == Occupancy::Warning && is_asked;
             slot.is_closing |= slot.token.is_some() && may_release;
         }
         self.sequence += 1;
         self.sent[self.sequence as usize % REMEMBERED] = now;
-        StateMessage {
-            robot: self.robot,
-            boot: self.boot,
-            sequence: self.sequence,
-            checksum: self.checksum,
-            arbiter: self.arbiter,
-            slots: self.slots.iter().map(GuardedSlot::report).collect(),
-        }
+        (message.robot, message.boot, message.sequence) = (self.robot, self.boot, self.sequence);
+        (message.checksum, message.arbiter) = (self.checksum, self.arbiter);
+        message.slots.clear();
+        message.slots.extend(self.slots.iter().map(GuardedSlot::report));
     }
 
     /// Takes a message of an arbiter.
@@ -205,14 +232,14 @@ impl GuardedSlot {
     fn report(&self) -> SlotReport {
         SlotReport {
             occupancy: self.occupancy,
-            wants: self.occupancy > Occupancy::Outside,
+            wants: self.occupancy > Occupancy::Outside && self.is_needed,
             token: self.token,
             released: self.released,
         }
     }
 
     fn take(&mut self, answer: SlotAnswer, sent: Option<Micros>) {
-        (self.release_requested, self.halt) = (answer.release_requested, answer.halt);
+        self.orders = Orders { release_requested: answer.release_requested, halt: answer.halt };
         match answer.granted {
             Some(token) if self.released >= Some(token) => {}
             Some(token) => {

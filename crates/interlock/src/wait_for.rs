@@ -45,7 +45,7 @@ mod tests {
 
     fn slot(holder: Option<usize>, queue: &[usize]) -> SlotRecord {
         let holder = holder.map(|robot| Holder { robot: RobotSlot(robot), token: None });
-        SlotRecord { holder, queue: queue.iter().map(|r| RobotSlot(*r)).collect(), release_requested: false }
+        SlotRecord { holder, queue: queue.iter().map(|r| RobotSlot(*r)).collect(), ..SlotRecord::default() }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
-use elbowroom_monitor::Configuration;
+use elbowroom_monitor::Monitor;
 use elbowroom_ros2::CellMessages;
 use elbowroom_ros2::msgs::builtin_interfaces::Time;
 use elbowroom_ros2::msgs::control_msgs::{JointTrajectoryControllerState, SpeedScalingFactor};
@@ -151,8 +151,8 @@ impl<W: Write + Seek> CellWriter<W> {
     ///
     /// # Errors
     /// [`BagError::Write`].
-    pub fn configuration(&mut self, robot: u32, configuration: &Configuration, t_s: f64) -> Result<(), BagError> {
-        self.configuration_message(&configuration::encode(robot, configuration), t_s)
+    pub fn configuration(&mut self, robot: u32, monitor: &Monitor, t_s: f64) -> Result<(), BagError> {
+        self.configuration_message(&configuration::of_monitor(robot, monitor), t_s)
     }
 
     pub(crate) fn configuration_message(&mut self, message: &MonitorConfiguration, t_s: f64) -> Result<(), BagError> {

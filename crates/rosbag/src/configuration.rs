@@ -4,15 +4,20 @@
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Guards, Laws, Life, Part, Presence, Region, RegionKind, SlotId, SourceId,
-    SourceLimits, SourceSpec, StoppingSettings, Volume,
+    Configuration, ConfigurationParts, Guards, Laws, Life, Monitor, Part, Presence, Region, RegionKind, SlotId,
+    SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume,
 };
 use elbowroom_ros2::msgs::elbowroom_msgs as msgs;
 
 use crate::solid;
 
-/// The message of a configuration.
-pub(crate) fn encode(robot: u32, configuration: &Configuration) -> msgs::MonitorConfiguration {
+/// The message of what a monitor was built from.
+pub(crate) fn of_monitor(robot: u32, monitor: &Monitor) -> msgs::MonitorConfiguration {
+    let granted_from_outside = monitor.slot_grants().is_some();
+    msgs::MonitorConfiguration { granted_from_outside, ..encode(robot, monitor.configuration()) }
+}
+
+fn encode(robot: u32, configuration: &Configuration) -> msgs::MonitorConfiguration {
     let Laws { direction_aware, recovery, stopping_distance, override_rate, stale_s } = configuration.laws().clone();
     let stopping = stopping_distance.as_ref();
     msgs::MonitorConfiguration {
@@ -25,6 +30,7 @@ pub(crate) fn encode(robot: u32, configuration: &Configuration) -> msgs::Monitor
         joints: configuration.chain().joints().iter().map(joint).collect(),
         volumes: configuration.volumes().iter().map(volume).collect(),
         regions: configuration.regions().iter().map(region).collect(),
+        granted_from_outside: false,
         sources: configuration.sources().iter().map(source).collect(),
         direction_aware,
         recovery,

@@ -80,16 +80,16 @@ impl Recorder {
 
     /// The recorder of a robot (its index in the cell), and what its monitor is built from. Everything that its ticks need is
     /// allocated here.
-    pub fn robot(&self, robot: u32, configuration: &Configuration, t_s: f64) -> TickRecorder {
+    pub fn robot(&self, robot: u32, monitor: &Monitor, t_s: f64) -> TickRecorder {
         let (back, free) = sync_channel(TICKS_PER_ROBOT);
         for _ in 0..TICKS_PER_ROBOT {
-            let buffer = TickBuffer { tick: empty_tick(configuration), back: back.clone() };
+            let buffer = TickBuffer { tick: empty_tick(monitor.configuration()), back: back.clone() };
             // It has the room.
             let _ = back.try_send(Box::new(buffer));
         }
         let (queue, shared) = (self.queue.clone(), self.shared.clone());
         let recorder = TickRecorder { ticks: TickWriter::new(robot), queue, free, shared, robot };
-        recorder.configuration(configuration, t_s);
+        recorder.configuration(monitor, t_s);
         recorder
     }
 
@@ -138,8 +138,8 @@ impl TickRecorder {
     }
 
     /// The monitor was built again, from another configuration. Not part of the tick: it allocates.
-    pub fn configuration(&self, configuration: &Configuration, t_s: f64) {
-        let message = Box::new(configuration::encode(self.robot, configuration));
+    pub fn configuration(&self, monitor: &Monitor, t_s: f64) {
+        let message = Box::new(configuration::of_monitor(self.robot, monitor));
         if self.queue.try_send(Item::Configuration(message, t_s)).is_err() {
             // Without it the ticks that follow cannot be replayed.
             self.shared.lost_ticks.fetch_add(1, Relaxed);
@@ -170,6 +170,7 @@ fn empty_tick(configuration: &Configuration) -> MonitorTick {
         intent: Vec::with_capacity(joints),
         sources: Vec::<SourceState>::with_capacity(sources),
         granted: Vec::with_capacity(configuration.regions().len()),
+        halted: Vec::with_capacity(configuration.regions().len()),
         switched: Vec::with_capacity(configuration.regions().len()),
         attached: Vec::with_capacity(configuration.volumes().len()),
         ..MonitorTick::default()

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use elbowroom_monitor::{
-    AccessClass, Configuration, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotId, Snapshot, SourceState,
-    TickReport, VolumeId, ZoneArbiter,
+    AccessClass, Configuration, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotGrants, SlotId,
+    Snapshot, SourceState, TickReport, VolumeId, ZoneArbiter,
 };
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorConfiguration, MonitorTick};
 
@@ -20,7 +20,7 @@ const OTHERS: RobotSlot = RobotSlot(1);
 /// The monitor of one robot, with what the replay has found.
 pub(crate) struct ReplayedMonitor {
     monitor: Monitor,
-    arbiter: Option<Arc<ZoneArbiter>>,
+    interlock: Option<Interlock>,
     slots: Vec<SlotId>,
     next: u64,
     found: RobotReplay,
@@ -29,14 +29,14 @@ pub(crate) struct ReplayedMonitor {
 
 impl ReplayedMonitor {
     pub(crate) fn new(message: &MonitorConfiguration) -> Result<Self, BagError> {
-        let (monitor, arbiter, slots) = build(message)?;
+        let (monitor, interlock, slots) = build(message)?;
         let found = RobotReplay { name: message.name.clone(), ..RobotReplay::default() };
-        Ok(Self { monitor, arbiter, slots, next: 0, found, sources: Vec::new() })
+        Ok(Self { monitor, interlock, slots, next: 0, found, sources: Vec::new() })
     }
 
     /// Goes on with another configuration, as the service did.
     pub(crate) fn configure(&mut self, message: &MonitorConfiguration) -> Result<(), BagError> {
-        (self.monitor, self.arbiter, self.slots) = build(message)?;
+        (self.monitor, self.interlock, self.slots) = build(message)?;
         Ok(())
     }
 
@@ -96,19 +96,15 @@ impl ReplayedMonitor {
         Ok(())
     }
 
-    /// Lets the arbiter answer as it did: all other robots are outside of a slot that the robot was granted, and inside of
-    /// any other. What the other robots did in truth does not matter to this monitor.
+    /// Grants what was granted.
     fn grant(&self, tick: &MonitorTick) {
-        let Some(arbiter) = &self.arbiter else { return };
+        let contains = |slots: &[u32], slot: &SlotId| slots.iter().any(|s| *s as usize == slot.0);
         for slot in &self.slots {
-            let is_granted = tick.granted.iter().any(|s| *s as usize == slot.0);
-            if is_granted {
-                arbiter.publish(*slot, OTHERS, Occupancy::Outside, tick.now_s);
-            } else {
-                if arbiter.holder(*slot) == Some(SELF) {
-                    arbiter.publish(*slot, SELF, Occupancy::Outside, tick.now_s);
-                }
-                arbiter.publish(*slot, OTHERS, Occupancy::Inside, tick.now_s);
+            let is_granted = contains(&tick.granted, slot);
+            match &self.interlock {
+                Some(Interlock::Granted(grants)) => grants.write(*slot, is_granted, contains(&tick.halted, slot)),
+                Some(Interlock::Shared(arbiter, _)) => answer(arbiter, *slot, is_granted, tick.now_s),
+                None => {}
             }
         }
     }
@@ -136,7 +132,20 @@ impl ReplayedMonitor {
     }
 }
 
-type Built = (Monitor, Option<Arc<ZoneArbiter>>, Vec<SlotId>);
+/// Lets the arbiter answer as it did: all other robots are outside of a slot that the robot was granted, and inside of any
+/// other. What the other robots did in truth does not matter to this monitor.
+fn answer(arbiter: &ZoneArbiter, slot: SlotId, is_granted: bool, now_s: f64) {
+    if is_granted {
+        arbiter.publish(slot, OTHERS, Occupancy::Outside, now_s);
+        return;
+    }
+    if arbiter.holder(slot) == Some(SELF) {
+        arbiter.publish(slot, SELF, Occupancy::Outside, now_s);
+    }
+    arbiter.publish(slot, OTHERS, Occupancy::Inside, now_s);
+}
+
+type Built = (Monitor, Option<Interlock>, Vec<SlotId>);
 
 fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
     let error = |why: String| BagError::Configuration { robot: message.name.clone(), why };
@@ -149,13 +158,16 @@ fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
         return Err(error(format!("slot {} is beyond the {MAX_SLOTS} that a replay has", slot.0)));
     }
     let count = slots.iter().map(|s| s.0 + 1).max();
-    let arbiter = count.map(|count| {
+    let interlock = count.map(|count| {
+        if message.granted_from_outside {
+            return Interlock::Granted(Arc::new(SlotGrants::new(count)));
+        }
         // It knows when others are silent from what the recorded arbiter answered.
-        Arc::new(ZoneArbiter::new(&["self", "others"], &vec!["slot"; count]).silence_timeout(f64::INFINITY))
+        let arbiter = ZoneArbiter::new(&["self", "others"], &vec!["slot"; count]).silence_timeout(f64::INFINITY);
+        Interlock::Shared(Arc::new(arbiter), SELF)
     });
-    let client = arbiter.clone().map(|arbiter| (arbiter, SELF));
-    let monitor = Monitor::new(configuration, client).map_err(|e| error(e.to_string()))?;
-    Ok((monitor, arbiter, slots))
+    let monitor = Monitor::new(configuration, interlock.clone()).map_err(|e| error(e.to_string()))?;
+    Ok((monitor, interlock, slots))
 }
 
 /// The slots of the exchange regions, each once.

@@ -66,7 +66,7 @@ impl<W: Write + Seek> RunRecorder<W> {
         let now_s = tick.snapshot.now_s;
         if !std::mem::replace(&mut self.is_configured[robot], true) {
             let index = u32::try_from(robot).unwrap_or(u32::MAX);
-            self.writer.configuration(index, tick.monitor.configuration(), now_s)?;
+            self.writer.configuration(index, tick.monitor, now_s)?;
         }
         self.robots[robot].write(&mut self.tick, tick.snapshot, tick.report, tick.monitor);
         if now_s >= self.next_status_s {

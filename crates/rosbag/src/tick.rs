@@ -1,6 +1,6 @@
 //! A tick as a message.
 
-use elbowroom_monitor::{Monitor, OverrideReason, RegionId, RegionKind, Snapshot, SourceState, TickReport};
+use elbowroom_monitor::{Monitor, OverrideReason, RegionId, RegionKind, SlotId, Snapshot, SourceState, TickReport};
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorTick, SourceState as SourceMessage};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
@@ -22,18 +22,22 @@ pub(crate) fn write(to: &mut MonitorTick, robot: u32, snapshot: &Snapshot<'_>, r
     copy(&mut to.intent, snapshot.intent.unwrap_or_default());
     to.sources.clear();
     to.sources.extend(snapshot.sources.iter().map(source));
+    let grants = monitor.slot_grants();
     to.granted.clear();
-    to.granted.extend(granted(monitor));
+    // Who shares an arbiter was granted what it holds now.
+    to.granted.extend(slots(monitor, |r, slot| grants.map_or_else(|| monitor.holds(r), |g| g.may_enter(slot))));
+    to.halted.clear();
+    to.halted.extend(slots(monitor, |_, slot| grants.is_some_and(|g| g.must_halt(slot))));
     to.speed_override = report.speed_override;
     (to.reason, to.region) = reason(report.reason);
     to.outputs = report.outputs;
 }
 
-/// The slots that the robot holds, each once.
-fn granted(monitor: &Monitor) -> impl Iterator<Item = u32> {
+/// The slots of exchange regions for which this is so, each once.
+fn slots(monitor: &Monitor, is_so: impl Fn(RegionId, SlotId) -> bool) -> impl Iterator<Item = u32> {
     let regions = monitor.configuration().regions();
-    let slot = |r: usize| match regions[r].kind {
-        RegionKind::Exchange { slot } if monitor.holds(RegionId(r)) => u32::try_from(slot.0).ok(),
+    let slot = move |r: usize| match regions[r].kind {
+        RegionKind::Exchange { slot } if is_so(RegionId(r), slot) => u32::try_from(slot.0).ok(),
         _ => None,
     };
     (0..regions.len()).filter_map(move |r| slot(r).filter(|s| !(0..r).any(|before| slot(before) == Some(*s))))
@@ -72,6 +76,7 @@ pub(crate) fn reason(reason: OverrideReason) -> (u8, i32) {
         OverrideReason::Waiting(_) => 3,
         OverrideReason::Rate => 4,
         OverrideReason::Fault(_) => 5,
+        OverrideReason::Halted(_) => 6,
     };
     (code, reason.region().and_then(|r| i32::try_from(r.0).ok()).unwrap_or(-1))
 }

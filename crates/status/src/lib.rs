@@ -4,6 +4,8 @@
 
 mod cell_status;
 mod robot_status;
+mod status_sample;
 
 pub use cell_status::{CellStatus, EventStatus, PlacedStatus, SlotStatus};
-pub use robot_status::{PointStatus, PoseStatus, RegionStatus, RobotStatus};
+pub use robot_status::{HealthStatus, PointStatus, PoseStatus, RegionStatus, RobotStatus};
+pub use status_sample::StatusSample;

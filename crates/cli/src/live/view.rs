@@ -3,6 +3,6 @@
 use super::ViewArgs;
 use crate::output::{ExitStatus, Failure};
 
-pub(crate) fn view(_: &ViewArgs) -> Result<ExitStatus, Failure> {
-    Err(Failure::Wrong("not built yet".into()))
+pub(crate) fn view(args: &ViewArgs) -> Result<ExitStatus, Failure> {
+    Err(Failure::Wrong(format!("{}: cannot be shown in a browser yet", args.cell.display())))
 }

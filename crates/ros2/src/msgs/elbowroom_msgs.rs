@@ -148,6 +148,8 @@ message! {
         volumes: Vec<GuardedVolume>,
         /// The regions.
         regions: Vec<Region>,
+        /// Exchange regions are granted from outside of the process.
+        granted_from_outside: bool,
         /// What regions follow.
         sources: Vec<Source>,
         /// The law that knows directions is on.
@@ -234,11 +236,13 @@ message! {
         intent: Vec<f64>,
         /// What regions follow.
         sources: Vec<SourceState>,
-        /// The exchange slots that were granted to the robot when the tick ended.
+        /// The exchange slots that were granted to the robot in the tick.
         granted: Vec<u32>,
+        /// The exchange slots because of which it had to halt.
+        halted: Vec<u32>,
         /// The answer: the override to apply, 0..1.
         speed_override: f64,
-        /// The answer's reason: 0 free, 1 region, 2 speed zone, 3 waiting, 4 rate, 5 fault.
+        /// The answer's reason: 0 free, 1 region, 2 speed zone, 3 waiting, 4 rate, 5 fault, 6 halted.
         reason: u8,
         /// Index of the region that limits the override; else -1.
         region: i32,

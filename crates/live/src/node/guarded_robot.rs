@@ -1,0 +1,211 @@
+//! One robot, its monitor, and what its regions follow: the tick, without threads or a network.
+
+use std::sync::Arc;
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, Follow, Frames};
+use elbowroom_interlock::Micros;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{
+    AccessClass, Fault, Monitor, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId,
+};
+use elbowroom_spatial::{FrameMotion, Pose};
+use elbowroom_status::StatusSample;
+
+use super::inbox::{Contents, Heard};
+use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, OverrideAnswer};
+use crate::regions_table::{RegionTable, TABLE_VALIDITY};
+
+/// One guarded robot. Everything is allocated when it is made: [`Self::tick`] neither allocates nor waits.
+pub(super) struct GuardedRobot {
+    cell: Arc<Cell>,
+    setup: MonitorSetup,
+    pub(super) monitor: Monitor,
+    state: JointState,
+    stamp: Option<Micros>,
+    /// Chains of the robots of the cell; only those that are followed are up to date.
+    chains: Vec<ChainState>,
+    stamps: Vec<Option<Micros>>,
+    sources: Vec<SourceState>,
+    attached: Vec<AttachedVolume>,
+    regions: RegionTable,
+    all_on: RegionTable,
+    answers: u64,
+    checksum: u64,
+    pub(super) sample: StatusSample,
+}
+
+impl GuardedRobot {
+    pub(super) fn new(cell: Arc<Cell>, setup: MonitorSetup, monitor: Monitor, checksum: u64) -> Self {
+        Self {
+            chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
+            stamps: vec![None; cell.robots.len()],
+            sources: Vec::with_capacity(setup.sources.len()),
+            attached: Vec::with_capacity(MAX_ATTACHED),
+            state: JointState::with_capacity(),
+            stamp: None,
+            regions: RegionTable::initial(&cell),
+            all_on: RegionTable::all_on(&cell),
+            answers: 0,
+            checksum,
+            sample: StatusSample::new(&monitor),
+            monitor,
+            setup,
+            cell,
+        }
+    }
+
+    /// Takes what has arrived, in the time that the lock of the inbox is held.
+    pub(super) fn take(&mut self, inbox: &mut Contents, now: Micros) {
+        if std::mem::take(&mut inbox.own.is_new) {
+            std::mem::swap(&mut self.state, &mut inbox.own.state);
+            self.stamp = inbox.own.stamp;
+        }
+        for (robot, heard) in inbox.followed.iter_mut().enumerate() {
+            if let Some(heard) = heard
+                && std::mem::take(&mut heard.is_new)
+            {
+                follow(&self.cell, robot, heard, &mut self.chains[robot]);
+                self.stamps[robot] = heard.stamp;
+            }
+        }
+        let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
+        let table = if is_known { &inbox.regions } else { &self.all_on };
+        if self.regions.active != table.active {
+            self.regions.active.copy_from_slice(&table.active);
+        }
+    }
+
+    /// Time of the last joint values; `None` before the first.
+    pub(super) fn stamp(&self) -> Option<Micros> {
+        self.stamp
+    }
+
+    /// The override for the joint values that arrived last.
+    pub(super) fn tick(&mut self, now: Micros) -> TickReport {
+        self.switch_regions();
+        let is_attached = self.attach();
+        self.place_sources(now);
+        let seconds = |t: Micros| t.0 as f64 * 1e-6;
+        let Some(stamp) = self.stamp else { return self.silent() };
+        let snapshot = Snapshot {
+            now_s: seconds(now),
+            stamp_s: seconds(stamp),
+            q: &self.state.q,
+            qd: &self.state.qd,
+            qdd: &[],
+            programmed_override: self.state.programmed_override,
+            intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
+            sources: &self.sources,
+        };
+        let mut report = self.monitor.tick(&snapshot);
+        if !is_attached {
+            // The robot carries what its monitor cannot know.
+            (report.speed_override, report.reason) = (0.0, OverrideReason::Fault(Fault::WrongLength));
+        }
+        self.sample.fill(&self.monitor, &snapshot, &report);
+        self.sample.add_events(&self.monitor);
+        report
+    }
+
+    /// Before the first joint values.
+    fn silent(&mut self) -> TickReport {
+        let reason = OverrideReason::Fault(Fault::Stale);
+        let report =
+            TickReport { stamp_s: 0.0, speed_override: 0.0, reason, governing: None, outputs: 0, measured_pairs: 0 };
+        self.sample.fill_without_input(&report);
+        report
+    }
+
+    /// The answer to the controller.
+    pub(super) fn answer(&mut self, report: &TickReport) -> OverrideAnswer {
+        self.answers += 1;
+        OverrideAnswer {
+            checksum: self.checksum,
+            boot: self.state.boot,
+            echo: self.state.sequence,
+            sequence: self.answers,
+            speed_override: report.speed_override,
+            outputs: report.outputs,
+            reason: match report.reason {
+                OverrideReason::Free => 0,
+                OverrideReason::Region(_) => 1,
+                OverrideReason::SpeedZone(_) => 2,
+                OverrideReason::Waiting(_) => 3,
+                OverrideReason::Rate => 4,
+                OverrideReason::Fault(_) => 5,
+            },
+            region: report.reason.region().map_or(u16::MAX, |r| r.0 as u16),
+        }
+    }
+
+    /// The number of the message that the last answer was for.
+    pub(super) fn sequence(&self) -> u64 {
+        self.state.sequence
+    }
+
+    fn switch_regions(&mut self) {
+        for (local, region) in self.setup.regions.iter().enumerate() {
+            let (id, on) = (RegionId(local), self.regions.active[region.0]);
+            if self.monitor.is_active(id) != on {
+                // Permanent regions are always on in a table, so that nothing is refused.
+                let _ = self.monitor.switch(id, on, AccessClass::Programmer);
+            }
+        }
+    }
+
+    /// Attaches and detaches the optional volumes as the controller says. False where it names one that there is not.
+    fn attach(&mut self) -> bool {
+        let Self { monitor, attached, state, .. } = self;
+        if *attached == state.attached {
+            return true;
+        }
+        let wanted = |volume: VolumeId| state.attached.iter().any(|a| a.volume == volume);
+        for gone in attached.iter().filter(|a| !wanted(a.volume)) {
+            // It was attached before, so that it can be detached.
+            let _ = monitor.detach(gone.volume);
+        }
+        attached.clear();
+        for volume in &state.attached {
+            if monitor.attach(volume.volume, &volume.in_link).is_ok() {
+                attached.push(*volume);
+            }
+        }
+        attached.len() == state.attached.len()
+    }
+
+    fn place_sources(&mut self, now: Micros) {
+        let Self { cell, setup, chains, stamps, sources, .. } = self;
+        let frames = Frames::new(cell);
+        let now_s = now.0 as f64 * 1e-6;
+        sources.clear();
+        for follow in &setup.sources {
+            let source = match follow {
+                Follow::Robot { robot, .. } => match stamps[robot.0] {
+                    Some(stamp) => {
+                        SourceState { stamp_s: stamp.0 as f64 * 1e-6, ..frames.source(follow, chains, now_s) }
+                    }
+                    None => SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY },
+                },
+                _ => frames.source(follow, chains, now_s),
+            };
+            sources.push(source);
+        }
+    }
+}
+
+/// Moves the chain of a followed robot to where it was heard to be.
+fn follow(cell: &Cell, robot: usize, heard: &Heard, chain: &mut ChainState) {
+    let state = &heard.state;
+    if state.q.len() != chain.q.len() {
+        return;
+    }
+    chain.q.copy_from_slice(&state.q);
+    if state.qd.len() == chain.qd.len() {
+        chain.qd.copy_from_slice(&state.qd)
+    } else {
+        chain.qd.fill(0.0)
+    }
+    chain.qdd.fill(0.0);
+    cell.robots[robot].robot.chain.forward_motion(chain);
+}

@@ -1,0 +1,147 @@
+//! A process of a live cell: nodes, arbiter, simulated controllers, in any combination.
+
+use std::sync::Arc;
+
+use elbowroom_cell::{Cell, configure};
+use elbowroom_formats::FormatError;
+use elbowroom_robot::RobotId;
+use thiserror::Error;
+
+use crate::clock::{Clock, boot_number};
+use crate::network::{Network, NetworkError, ZenohNetwork, ZenohSettings};
+use crate::node::{Node, NodeParts, StatusHandler};
+use crate::region_keeper::RegionKeeper;
+use crate::simulated_controllers::SimulatedControllers;
+
+/// The address of a service that is told none.
+pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
+
+/// What a process of a live cell does.
+#[derive(Clone, Default)]
+pub struct ServiceOptions {
+    /// The robots that it guards; empty: all, or none where it is only the arbiter.
+    pub robots: Vec<String>,
+    /// Accepts connections here.
+    pub listen: Option<String>,
+    /// Connects here.
+    pub connect: Option<String>,
+    /// Grants exchange regions, and keeps which regions are switched on.
+    pub arbiter: bool,
+    /// Runs the programs of the cell file in place of the controllers.
+    pub simulate: bool,
+    /// Called with every status of a robot of this process.
+    pub on_status: Option<StatusHandler>,
+}
+
+/// Why a service does not start.
+#[derive(Debug, Error)]
+pub enum ServiceError {
+    /// The cell cannot be guarded.
+    #[error(transparent)]
+    Cell(#[from] FormatError),
+    /// The network cannot be used.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// A robot that the cell does not have.
+    #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
+    Robot {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+}
+
+/// A running process of a live cell; it ends when it is dropped.
+pub struct Service {
+    // In the order in which they end: controllers stop first.
+    controllers: Option<SimulatedControllers>,
+    nodes: Vec<Node>,
+    keeper: Option<RegionKeeper>,
+    network: Arc<ZenohNetwork>,
+}
+
+/// The number by which the processes of a cell know that they have loaded the same configuration: the first 8 bytes of its
+/// checksum.
+pub fn configuration_number(cell: &Cell) -> u64 {
+    cell.checksum.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0)
+}
+
+impl Service {
+    /// Starts what the options say.
+    ///
+    /// # Errors
+    /// [`ServiceError`]; then nothing runs.
+    pub fn start(cell: Cell, options: &ServiceOptions) -> Result<Self, ServiceError> {
+        let cell = Arc::new(cell);
+        let robots = guarded_robots(&cell, options)?;
+        let is_whole_cell = options.robots.is_empty() && !options.arbiter;
+        let listen = match (&options.listen, &options.connect) {
+            (None, None) => Some(DEFAULT_ADDRESS.to_owned()),
+            (listen, _) => listen.clone(),
+        };
+        let network = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
+        let shared: Arc<dyn Network> = network.clone();
+        let clock = Clock::start();
+        let keeper = if options.arbiter || is_whole_cell {
+            Some(RegionKeeper::start(&cell, &shared, boot_number())?)
+        } else {
+            None
+        };
+        let setups = configure::setups(&cell)?;
+        let monitors = configure::monitors(&cell, &setups)?;
+        let mut nodes = Vec::new();
+        for ((i, setup), monitor) in setups.into_iter().enumerate().zip(monitors) {
+            if !robots.contains(&RobotId(i)) {
+                continue;
+            }
+            nodes.push(Node::start(NodeParts {
+                cell: cell.clone(),
+                robot: RobotId(i),
+                setup,
+                monitor,
+                checksum: configuration_number(&cell),
+                clock,
+                network: shared.clone(),
+                on_status: options.on_status.clone(),
+            })?);
+        }
+        let controllers =
+            if options.simulate { Some(SimulatedControllers::start(&cell, &robots, &shared, clock)?) } else { None };
+        Ok(Self { controllers, nodes, keeper, network })
+    }
+
+    /// Number of robots that this process guards.
+    pub fn guarded(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// True where this process keeps the regions and grants them.
+    pub fn is_arbiter(&self) -> bool {
+        self.keeper.is_some()
+    }
+
+    /// Whether the simulated controllers still run; true where there are none.
+    pub fn is_running(&self) -> bool {
+        self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)
+    }
+
+    /// The network.
+    pub fn network(&self) -> &Arc<ZenohNetwork> {
+        &self.network
+    }
+}
+
+fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>, ServiceError> {
+    if options.robots.is_empty() {
+        return Ok(if options.arbiter { Vec::new() } else { (0..cell.robots.len()).map(RobotId).collect() });
+    }
+    let find = |name: &String| {
+        let found = cell.robots.iter().position(|r| r.name == *name);
+        found.map(RobotId).ok_or_else(|| ServiceError::Robot {
+            name: name.clone(),
+            known: cell.robots.iter().map(|r| r.name.clone()).collect(),
+        })
+    };
+    options.robots.iter().map(find).collect()
+}
