@@ -12,7 +12,7 @@ use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::{Marker, MarkerArray};
 use elbowroom_ros2::rmw_zenoh::Attachment;
 use elbowroom_ros2::{CdrError, Message};
-use elbowroom_testkit::split_mix;
+use elbowroom_testkit::random::split_mix;
 
 struct Random(u64);
 

@@ -3,14 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
 
-use mcap::McapError;
-use mcap::records::Record;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-
 use crate::BagError;
-
-/// Largest record, bytes.
-const MAX_RECORD_BYTES: usize = 1 << 30;
+use crate::records::{self, Framed, MAGIC, Record};
 
 /// A message of a recording.
 #[derive(Debug, Clone)]
@@ -29,31 +23,36 @@ pub struct BagMessage {
 /// what it has, and [`BagReader::is_cut_off`] is true then.
 pub struct BagReader<R: Read> {
     file: R,
-    reader: LinearReader,
+    /// What is left of the present chunk.
+    chunk: Vec<u8>,
+    at: usize,
     topics: HashMap<u16, String>,
     metadata: BTreeMap<String, BTreeMap<String, String>>,
     attachments: Vec<String>,
     messages: u64,
-    has_ended: bool,
-    is_cut_off: bool,
+    state: State,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Begin,
+    Data,
+    End,
+    CutOff,
 }
 
 impl<R: Read> BagReader<R> {
     /// Reads from a file.
     pub fn new(file: R) -> Self {
-        let options = LinearReaderOptions::default()
-            .with_prevalidate_chunk_crcs(true)
-            .with_validate_data_section_crc(false)
-            .with_record_length_limit(MAX_RECORD_BYTES);
         Self {
             file,
-            reader: LinearReader::new_with_options(options),
+            chunk: Vec::new(),
+            at: 0,
             topics: HashMap::new(),
             metadata: BTreeMap::new(),
             attachments: Vec::new(),
             messages: 0,
-            has_ended: false,
-            is_cut_off: false,
+            state: State::Begin,
         }
     }
 
@@ -62,56 +61,75 @@ impl<R: Read> BagReader<R> {
     /// # Errors
     /// [`BagError::Foreign`] and [`BagError::Damaged`].
     pub fn next_message(&mut self) -> Result<Option<BagMessage>, BagError> {
-        while !self.has_ended {
-            let request = match self.reader.next_event() {
-                None => break,
-                Some(Ok(LinearReadEvent::ReadRequest(count))) => count,
-                Some(Ok(LinearReadEvent::Record { data, opcode })) => {
-                    let record = mcap::parse_record(opcode, data).map(Record::into_owned);
-                    match record.map_err(|e| damaged(self.messages, e))? {
-                        Record::Message { header, data } => {
-                            let message = self.message(header.channel_id, header.log_time, data.into_owned());
-                            return message.map(Some);
-                        }
-                        other => self.note(other),
-                    }
-                    continue;
-                }
-                Some(Err(McapError::UnexpectedEof)) => {
-                    (self.is_cut_off, self.has_ended) = (true, true);
-                    break;
-                }
-                Some(Err(McapError::BadMagic)) if self.messages == 0 => return Err(BagError::Foreign),
-                Some(Err(e)) => return Err(damaged(self.messages, e)),
-            };
-            let buffer = self.reader.insert(request);
-            let count = self.file.read(buffer).map_err(|e| damaged(self.messages, McapError::Io(e)))?;
-            self.reader.notify_read(count);
+        if self.state == State::Begin {
+            self.begin()?;
         }
-        self.has_ended = true;
+        while self.state == State::Data {
+            let messages = self.messages;
+            let found = if self.at < self.chunk.len() { self.from_chunk() } else { self.from_file() };
+            if let Some(message) = found.map_err(|why| BagError::Damaged { messages, why })? {
+                return Ok(Some(message));
+            }
+        }
         Ok(None)
     }
 
-    fn message(&mut self, channel: u16, time_ns: u64, payload: Vec<u8>) -> Result<BagMessage, BagError> {
-        let Some(topic) = self.topics.get(&channel).cloned() else {
-            return Err(damaged(self.messages, McapError::UnknownChannel(0, channel)));
-        };
-        let index = self.messages;
-        self.messages += 1;
-        Ok(BagMessage { index, topic, time_ns, payload })
+    fn begin(&mut self) -> Result<(), BagError> {
+        let mut magic = Vec::new();
+        let read = (&mut self.file).take(MAGIC.len() as u64).read_to_end(&mut magic);
+        read.map_err(|e| BagError::Damaged { messages: 0, why: format!("the file cannot be read: {e}") })?;
+        if magic != MAGIC {
+            return Err(BagError::Foreign);
+        }
+        self.state = State::Data;
+        Ok(())
     }
 
-    fn note(&mut self, record: Record<'static>) {
-        match record {
-            Record::Channel(channel) => {
-                self.topics.insert(channel.id, channel.topic);
+    fn from_file(&mut self) -> Result<Option<BagMessage>, String> {
+        match records::next(&mut self.file)? {
+            Framed::CutOff => {
+                self.state = State::CutOff;
+                Ok(None)
             }
-            Record::Metadata(metadata) => {
-                self.metadata.insert(metadata.name, metadata.metadata);
+            Framed::Record { opcode, body } => {
+                let record = records::parse(opcode, &body)?;
+                self.take(record)
             }
-            Record::Attachment { header, .. } => self.attachments.push(header.name),
-            _ => {}
         }
+    }
+
+    fn from_chunk(&mut self) -> Result<Option<BagMessage>, String> {
+        let chunk = std::mem::take(&mut self.chunk);
+        let (opcode, body, rest) = records::first(&chunk[self.at..])?;
+        let at = chunk.len() - rest.len();
+        let found = match records::parse(opcode, body)? {
+            Record::Chunk(_) => return Err("a chunk is inside of another one".into()),
+            record => self.take(record),
+        };
+        (self.chunk, self.at) = (chunk, at);
+        found
+    }
+
+    fn take(&mut self, record: Record<'_>) -> Result<Option<BagMessage>, String> {
+        match record {
+            Record::Message { channel, time_ns, payload } => {
+                let topic = self.topics.get(&channel).cloned();
+                let topic = topic.ok_or_else(|| format!("a message is on channel {channel}, which there is not"))?;
+                let index = self.messages;
+                self.messages += 1;
+                return Ok(Some(BagMessage { index, topic, time_ns, payload: payload.to_vec() }));
+            }
+            Record::Channel { id, topic } => _ = self.topics.insert(id, topic.to_owned()),
+            Record::Chunk(contents) => (self.chunk, self.at) = (contents, 0),
+            Record::Metadata { name, values } => {
+                let values = values.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+                self.metadata.insert(name.to_owned(), values);
+            }
+            Record::Attachment { name } => self.attachments.push(name.to_owned()),
+            Record::End => self.state = State::End,
+            Record::Other => {}
+        }
+        Ok(None)
     }
 
     /// Number of messages up to now.
@@ -129,12 +147,8 @@ impl<R: Read> BagReader<R> {
         &self.attachments
     }
 
-    /// True where the file ended before its end was written.
+    /// True where the file ended before the end of its data was written.
     pub fn is_cut_off(&self) -> bool {
-        self.is_cut_off
+        self.state == State::CutOff
     }
-}
-
-fn damaged(messages: u64, source: McapError) -> BagError {
-    BagError::Damaged { messages, source }
 }

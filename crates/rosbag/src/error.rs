@@ -22,12 +22,12 @@ pub enum BagError {
     )]
     Foreign,
     /// The bytes of the file are not as they were written.
-    #[error("is damaged behind {messages} messages: {source}")]
+    #[error("is damaged behind message {messages}: {why}")]
     Damaged {
-        /// Messages that could be read before.
+        /// Number of messages that could be read before.
         messages: u64,
         /// What is wrong.
-        source: mcap::McapError,
+        why: String,
     },
     /// A message is not what its channel says.
     #[error("message {message} on {topic} is not a {what}: {source}")]

@@ -31,6 +31,7 @@ mod cell_writer;
 mod configuration;
 mod error;
 mod recorder;
+mod records;
 mod replay;
 mod replay_result;
 mod replayed_monitor;

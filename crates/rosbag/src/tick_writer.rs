@@ -51,8 +51,11 @@ impl TickWriter {
         self.sequence += 1;
     }
 
-    /// A tick that is not recorded: its number is missing then.
+    /// A tick that is not recorded: its number is missing then, and the replay ends there. What was switched is not kept for
+    /// it either, so that nothing grows while a file does not answer.
     pub(crate) fn skip(&mut self) {
+        self.switched.clear();
+        self.attached.clear();
         self.sequence += 1;
     }
 }

@@ -10,7 +10,7 @@ use elbowroom_cell::Cell;
 use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
 use elbowroom_sim::RunOptions;
 use elbowroom_sim::run::simulate_observed;
-use elbowroom_testkit::split_mix;
+use elbowroom_testkit::random::split_mix;
 
 const CHANGES: usize = 20_000;
 

@@ -78,7 +78,9 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
     recorder.finish().unwrap();
     let found = replay(&file.bytes.lock().unwrap().get_ref()[..]).unwrap();
     let robot = &found.robots[0];
-    assert_eq!((found.lost_ticks, found.differences, robot.skipped), (lost, 0, 1));
+    assert_eq!((found.lost_ticks, found.differences), (lost, 0));
+    // What was recorded behind the first hole is not compared.
+    assert!(robot.ticks >= 100 && robot.skipped >= 1);
     assert_eq!(robot.ticks + lost + robot.skipped, 100_001);
 }
 

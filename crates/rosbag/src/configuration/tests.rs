@@ -5,7 +5,7 @@ use std::path::Path;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_ros2::Message;
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorConfiguration, MonitorTick, SourceState};
-use elbowroom_testkit::split_mix;
+use elbowroom_testkit::random::split_mix;
 
 use super::{decode, encode};
 use crate::replayed_monitor::ReplayedMonitor;
