@@ -21,7 +21,7 @@ use crate::zone_client::{RegionStatus, ZoneClient};
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{
     AccessClass, AttachError, ConfigError, Configuration, Event, EventKind, ExchangeState, Fault, Interlock, Life,
-    OverrideReason, RegionId, RegionKind, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId,
+    OverrideReason, RegionId, RegionKind, SlotGrants, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId,
 };
 
 /// Smallest override by which actual velocities are divided to infer those of the program.
@@ -316,6 +316,12 @@ impl Monitor {
 
     fn may_enter(&self, region: RegionId, now_s: f64) -> bool {
         self.exchange(region).is_some_and(|(client, slot)| client.may_enter(slot, now_s))
+    }
+
+    /// The grants that come from outside of the process: those of [`Interlock::Granted`]. `None` where the robots share an
+    /// arbiter, and without exchange regions.
+    pub fn slot_grants(&self) -> Option<&SlotGrants> {
+        self.zone_client.as_ref()?.slot_grants()
     }
 
     /// State of the robot with respect to an exchange region in the last tick; `None` for any other region.
