@@ -1,5 +1,6 @@
 //! A process of a live cell: nodes, arbiter, simulated controllers, in any combination.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use elbowroom_cell::{Cell, configure};
@@ -7,12 +8,15 @@ use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
 use elbowroom_monitor::{RegionKind, RobotSlot};
 use elbowroom_robot::RobotId;
+use elbowroom_rosbag::{BagError, CellWriter, Recorder};
+use elbowroom_view::{Server, ServerSettings, StatusFeed, ViewError};
 use thiserror::Error;
 
 use crate::arbiter_service::{ArbiterService, EventHandler};
+use crate::cell_observer::CellObserver;
 use crate::clock::{Clock, boot_number};
 use crate::network::{Network, NetworkError, ZenohNetwork, ZenohSettings};
-use crate::node::{Node, NodeMonitor, NodeParts, StatusHandler};
+use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::RegionKeeper;
 use crate::simulated_controllers::SimulatedControllers;
 
@@ -32,8 +36,10 @@ pub struct ServiceOptions {
     pub arbiter: bool,
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
-    /// Called with every status of a robot of this process.
-    pub on_status: Option<StatusHandler>,
+    /// Shows the cell in a browser at this address.
+    pub web: Option<String>,
+    /// Records everything that this process guards into this file.
+    pub record: Option<PathBuf>,
     /// Called with every event of the arbiter of this process, in words.
     pub on_event: Option<EventHandler>,
 }
@@ -47,6 +53,12 @@ pub enum ServiceError {
     /// The network cannot be used.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// The page cannot be served.
+    #[error("--web: {0}")]
+    Web(#[from] ViewError),
+    /// The recording cannot be written.
+    #[error("--record: {0}")]
+    Recording(#[from] BagError),
     /// A robot that the cell does not have.
     #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Robot {
@@ -64,6 +76,8 @@ pub struct Service {
     nodes: Vec<Node>,
     arbiter: Option<ArbiterService>,
     keeper: Option<RegionKeeper>,
+    observer: Option<CellObserver>,
+    server: Option<Server>,
     network: Arc<ZenohNetwork>,
 }
 
@@ -96,12 +110,14 @@ impl Service {
         }
         let slots = configure::slots(&cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
         let checksum = configuration_number(&cell);
+        let recorder = options.record.as_ref().map(|file| start_recorder(file, &cell)).transpose()?;
         let mut nodes = Vec::new();
         for (i, setup) in
             configure::setups(&cell)?.into_iter().enumerate().filter(|(i, _)| robots.contains(&RobotId(*i)))
         {
             let monitor = NodeMonitor::new(&setup, RobotSlot(i), slots, checksum, Boot(boot_number()));
             let monitor = monitor.map_err(|e| FormatError::new(&cell.file, cell.robots[i].line, e.to_string()))?;
+            let tick_recorder = recorder.as_ref().map(|r| r.robot(i as u32, monitor.monitor(), clock.seconds()));
             nodes.push(Node::start(NodeParts {
                 cell: cell.clone(),
                 robot: RobotId(i),
@@ -111,12 +127,27 @@ impl Service {
                 clock,
                 network: shared.clone(),
                 interlocks: shared.clone(),
-                on_status: options.on_status.clone(),
+                recorder: tick_recorder,
             })?);
         }
         let controllers =
             if options.simulate { Some(SimulatedControllers::start(&cell, &robots, &shared, clock)?) } else { None };
-        Ok(Self { controllers, nodes, arbiter, keeper, network })
+        let web = match &options.web {
+            Some(address) => {
+                let feed = StatusFeed::new();
+                let server = Server::watch(&cell, &feed, ServerSettings::at(address)?)?;
+                Some((server, feed))
+            }
+            None => None,
+        };
+        let observer = if web.is_some() || recorder.is_some() {
+            let feed = web.as_ref().map(|(_, feed)| feed.clone());
+            Some(CellObserver::start(&cell, &shared, clock, feed, recorder)?)
+        } else {
+            None
+        };
+        let server = web.map(|(server, _)| server);
+        Ok(Self { controllers, nodes, arbiter, keeper, observer, server, network })
     }
 
     /// Number of robots that this process guards.
@@ -139,10 +170,34 @@ impl Service {
         self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)
     }
 
+    /// The address of the page in a browser, where there is one.
+    pub fn web_address(&self) -> Option<String> {
+        self.server.as_ref().map(Server::url)
+    }
+
+    /// Ends everything, and completes the recording.
+    ///
+    /// # Errors
+    /// [`ServiceError::Recording`] where it could not be written.
+    pub fn stop(self) -> Result<(), ServiceError> {
+        let Self { controllers, nodes, arbiter, keeper, observer, server, network } = self;
+        drop((controllers, nodes, arbiter, keeper));
+        let recorder = observer.and_then(CellObserver::stop);
+        if let Some(server) = server {
+            server.stop();
+        }
+        drop(network);
+        recorder.map_or(Ok(()), |recorder| Ok(recorder.finish()?))
+    }
+
     /// The network.
     pub fn network(&self) -> &Arc<ZenohNetwork> {
         &self.network
     }
+}
+
+fn start_recorder(file: &Path, cell: &Cell) -> Result<Recorder, BagError> {
+    Recorder::start(CellWriter::create(file, cell, boot_number())?)
 }
 
 /// The cell as a service guards it. A controller goes on for `stale_ms` after the last override that it has heard, so that

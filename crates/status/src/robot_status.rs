@@ -6,8 +6,8 @@ use elbowroom_monitor::{Configuration, Monitor, RegionId, Snapshot, TickReport, 
 use elbowroom_spatial::Pose;
 use serde::{Deserialize, Serialize};
 
-use crate::StatusSample;
-use crate::status_sample::RegionSample;
+use crate::event_status::EventStatus;
+use crate::status_sample::{RegionSample, StatusSample};
 
 /// The status of one robot after a tick of its monitor.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -41,6 +41,9 @@ pub struct RobotStatus {
     pub regions: Vec<RegionStatus>,
     /// How the service is doing.
     pub health: HealthStatus,
+    /// What happened since the status before.
+    #[serde(default)]
+    pub events: Vec<EventStatus>,
 }
 
 /// How the service of one robot is doing.
@@ -140,6 +143,7 @@ impl RobotStatus {
             virtual_tcps: sample.virtual_tcps.iter().map(point).collect(),
             regions: of_region().map(|(s, r)| RegionStatus::of(&r.name, s)).collect(),
             health: HealthStatus::default(),
+            events: Vec::new(),
         }
     }
 }

@@ -23,7 +23,8 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         connect: args.connect.clone(),
         arbiter: args.arbiter,
         simulate: args.simulate,
-        on_status: None,
+        web: args.web.clone(),
+        record: args.record.clone(),
         on_event: Some(Arc::new(|event: &str| note(event))),
     };
     let stop = stop_signal()?;
@@ -37,7 +38,12 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         checksum.get(..16).unwrap_or_default(),
         keys.status("ROBOT"),
     ));
-    wait(&stop, args.duration.map(Duration::from_secs_f64), &service)
+    if let Some(url) = service.web_address() {
+        note(url);
+    }
+    let status = wait(&stop, args.duration.map(Duration::from_secs_f64), &service)?;
+    service.stop().map_err(|e| Failure::Wrong(e.to_string()))?;
+    Ok(status)
 }
 
 /// A message when the process is asked to end.

@@ -7,6 +7,7 @@ use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{AccessClass, Fault, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId};
+use elbowroom_rosbag::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
@@ -40,10 +41,17 @@ pub(super) struct GuardedRobot {
     answers: u64,
     checksum: u64,
     pub(super) sample: StatusSample,
+    recorder: Option<TickRecorder>,
 }
 
 impl GuardedRobot {
-    pub(super) fn new(cell: Arc<Cell>, setup: MonitorSetup, monitor: NodeMonitor, checksum: u64) -> Self {
+    pub(super) fn new(
+        cell: Arc<Cell>,
+        setup: MonitorSetup,
+        monitor: NodeMonitor,
+        checksum: u64,
+        recorder: Option<TickRecorder>,
+    ) -> Self {
         Self {
             chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             ages: vec![None; cell.robots.len()],
@@ -59,6 +67,7 @@ impl GuardedRobot {
             checksum,
             sample: StatusSample::new(monitor.monitor()),
             monitor,
+            recorder,
             setup,
             cell,
         }
@@ -110,6 +119,9 @@ impl GuardedRobot {
             sources: &self.sources,
         };
         let mut report = self.monitor.tick(&snapshot, now);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.tick(&snapshot, &report, self.monitor.monitor());
+        }
         let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
         if !is_attached {
             // The robot carries what its monitor cannot know.
@@ -190,13 +202,16 @@ impl GuardedRobot {
             if monitor.is_active(id) != on {
                 // Permanent regions are always on in a table, so that nothing is refused.
                 let _ = monitor.switch(id, on, AccessClass::Programmer);
+                if let Some(recorder) = &mut self.recorder {
+                    recorder.switched(id, on);
+                }
             }
         }
     }
 
     /// Attaches and detaches the optional volumes as the controller says. False where it names one that there is not.
     fn attach(&mut self) -> bool {
-        let Self { monitor, attached, state, .. } = self;
+        let Self { monitor, attached, state, recorder, .. } = self;
         if *attached == state.attached {
             return true;
         }
@@ -205,11 +220,17 @@ impl GuardedRobot {
         for gone in attached.iter().filter(|a| !wanted(a.volume)) {
             // It was attached before, so that it can be detached.
             let _ = monitor.detach(gone.volume);
+            if let Some(recorder) = recorder {
+                recorder.detached(gone.volume);
+            }
         }
         attached.clear();
         for volume in &state.attached {
             if monitor.attach(volume.volume, &volume.in_link).is_ok() {
                 attached.push(*volume);
+                if let Some(recorder) = recorder {
+                    recorder.attached(volume.volume, &volume.in_link);
+                }
             }
         }
         attached.len() == state.attached.len()

@@ -79,7 +79,9 @@ impl InputGate {
             return Err(self.reject(Rejected::Stamp));
         }
         if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
-            self.base_us = (now.0 as i64).saturating_sub(raw_us);
+            // The first one starts where this process's clock stands.
+            let from = if self.last.is_none() { arrived } else { now };
+            self.base_us = (from.0 as i64).saturating_sub(raw_us);
             self.least = [None, None];
             self.span_began = arrived;
         }

@@ -23,6 +23,8 @@ use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
 
+use elbowroom_rosbag::TickRecorder;
+
 use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
@@ -38,9 +40,6 @@ pub use node_monitor::NodeMonitor;
 const STATUS_PERIOD: Micros = Micros(20_000);
 /// How often a guard writes to the arbiter; at once where something changed.
 const REPORT_PERIOD: Micros = Micros(10_000);
-
-/// What a node does with its statuses and events, beside publishing them.
-pub type StatusHandler = Arc<dyn Fn(&RobotStatus, &[EventStatus]) + Send + Sync>;
 
 /// What a node needs.
 pub struct NodeParts {
@@ -60,8 +59,8 @@ pub struct NodeParts {
     pub network: Arc<dyn Network>,
     /// The way to the arbiter.
     pub interlocks: Arc<dyn Network>,
-    /// Called on the thread that sends.
-    pub on_status: Option<StatusHandler>,
+    /// Records every tick.
+    pub recorder: Option<TickRecorder>,
 }
 
 /// A running node; it ends when it is dropped.
@@ -78,7 +77,7 @@ impl Node {
     /// # Errors
     /// [`NetworkError`] where a key cannot be used.
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
-        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, on_status } = parts;
+        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
         let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
         let inbox = Arc::new(Inbox::new(checksum, followed.clone(), RegionTable::initial(&cell)));
@@ -96,9 +95,8 @@ impl Node {
             chain: ChainState::new(setup.configuration.chain()),
             cell: cell.clone(),
             robot,
-            on_status,
         };
-        let guarded = GuardedRobot::new(cell.clone(), setup, monitor, checksum);
+        let guarded = GuardedRobot::new(cell.clone(), setup, monitor, checksum, recorder);
         let ticking = Ticking {
             stale: Micros::from_seconds(cell.laws.laws.stale_s),
             guarded,
@@ -242,7 +240,6 @@ struct Sender {
     chain: ChainState,
     cell: Arc<Cell>,
     robot: RobotId,
-    on_status: Option<StatusHandler>,
 }
 
 impl Sender {
@@ -284,12 +281,9 @@ impl Sender {
         if self.sample.joint_positions().is_empty() {
             status.reason = "no joint values from the controller yet".to_owned();
         }
-        let events = self.events(t_s);
+        status.events = self.events(t_s);
         if let Ok(json) = serde_json::to_vec(&status) {
             self.statuses.publish(&json);
-        }
-        if let Some(on_status) = &self.on_status {
-            on_status(&status, &events);
         }
     }
 

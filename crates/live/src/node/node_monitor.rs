@@ -41,7 +41,7 @@ impl NodeMonitor {
         Ok(Self { monitor: Inner::Guarded(Box::new(guarded)), told: vec![Occupancy::Unknown; slots] })
     }
 
-    pub(super) fn monitor(&self) -> &Monitor {
+    pub(crate) fn monitor(&self) -> &Monitor {
         match &self.monitor {
             Inner::Alone(monitor) => monitor,
             Inner::Guarded(guarded) => guarded.monitor(),
