@@ -63,7 +63,7 @@
     showTime();
   }
 
-  // Frames that come between two pictures are not drawn; the program is told what has been shown.
+  // Frames that come between two pictures are not drawn; the program gets the number of what has been shown.
   let waiting = null, isEarlierKnown = false;
   async function fetchEarlier() {
     const response = await fetch('/history', { headers: { Authorization: `Bearer ${Link.token}` } }).catch(() => null);

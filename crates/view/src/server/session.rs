@@ -8,7 +8,7 @@ use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket};
 use serde::Deserialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
-use super::routes::Shared;
+use super::shared::Shared;
 use crate::source::Command;
 
 /// Codes of the close message; the page shows the reason.

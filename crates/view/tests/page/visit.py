@@ -135,7 +135,7 @@ def main():
         browser = playwright.chromium.launch(
             executable_path=chromium,
             headless=True,
-            args=["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"],
+            args=["--no-sandbox", "--enable-unsafe-swiftshader"],
         )
         seen["browser"] = browser.version
         context = browser.new_context(
