@@ -63,7 +63,7 @@
     showTime();
   }
 
-  // Frames that come between two pictures are not drawn; the program is told what has been shown.
+  // Frames that come between two pictures are not drawn; the program gets the number of what has been shown.
   let waiting = null, isEarlierKnown = false;
   async function fetchEarlier() {
     const response = await fetch('/history', { headers: { Authorization: `Bearer ${Link.token}` } }).catch(() => null);
@@ -110,7 +110,7 @@
     const time = performance.now(), pictures = Scene.stage.rendered();
     rate = (1000 * (pictures - counted)) / (time - since);
     [counted, since] = [pictures, time];
-    if (Data.mode === 'watch' && Link.state() === 'open' && heard && time - heard > STALE_MS) Link.setState('stale');
+    if (Data.mode === 'watch' && Link.state() === 'open' && heard && !waiting && time - heard > STALE_MS) Link.setState('stale');
   }, 1000);
 
   // What the page shows, for tests and scripts: SI units.
@@ -129,7 +129,7 @@
         regions: regions.map(({ pose, ...region }) => ({ ...region, position_m: pose.slice(9) })),
         objects: shown.objects.map(({ name, pose }) => ({ name, position_m: pose.slice(9) })),
         slots: frame.slots, events: Tables.events(),
-        frames_kept: History.count(), pictures_per_s: rate, measured_in_s: frame.measured_in_s,
+        frames_kept: History.count(), pictures: Scene.stage.rendered(), pictures_per_s: rate, clock_s: performance.now() / 1000, pixel_ratio: Scene.stage.works ? Scene.stage.pixelRatio() : null, measured_in_s: frame.measured_in_s,
       };
     },
     handles: Drag.handles,

@@ -31,7 +31,7 @@ const Tables = (() => {
     return { percent, reason, numbers, fill, bar };
   });
 
-  function showRobot(robot, i) {
+  function showRobot(robot, i, drawn) {
     const { percent, reason, numbers, fill, bar } = cards[i], v = robot.override;
     fill.style.width = `${100 * v}%`;
     fill.style.background = `hsl(${120 * v} 75% 42%)`;
@@ -39,8 +39,8 @@ const Tables = (() => {
     text(percent, `${(100 * v).toFixed(1)} %`);
     const exchange = Object.entries(robot.exchange).filter(([, state]) => state !== 'outside').map(([name, state]) => `${name}: ${state}`);
     text(reason, [robot.reason, ...exchange].join(' · '));
-    const at = robot.tcp ? robot.tcp.position_m.map((x) => Units.rounded(1000 * x, 1)).join(', ') : 'unknown';
-    text(numbers, `TCP ${at} mm`);
+    const tcp = robot.tcp ? robot.tcp.position_m : drawn.tcp;
+    text(numbers, drawn.isKnown ? `TCP ${tcp.map((x) => Units.rounded(1000 * x, 1)).join(', ')} mm` : 'joint values unknown');
   }
 
   const distances = table(byId('distances'), 'distances', ['robot', 'nearest', 'distance']);
@@ -111,7 +111,7 @@ const Tables = (() => {
   }
 
   function show(instant) {
-    instant.frame.robots.forEach(showRobot);
+    instant.frame.robots.forEach((robot, i) => showRobot(robot, i, instant.robots[i]));
     showDistances(instant.frame);
     showRegions([...instant.regions, ...instant.added]);
     showSlots(instant.frame.slots);

@@ -11,7 +11,7 @@ pub struct Frame {
     /// Time since the service started, s.
     pub t_s: f64,
     /// The nearest pair of all, as `elbowroom query CELL --ask distance` at these joint values; `None` without pairs.
-    pub nearest: Option<Nearest>,
+    pub nearest: Option<PairSeparation>,
     /// In the order of the cell file.
     pub robots: Vec<FrameRobot>,
     /// Objects that have moved since the start.
@@ -31,16 +31,16 @@ pub struct FrameRobot {
     #[serde(flatten)]
     pub status: RobotStatus,
     /// The nearest pair with another robot or an object, as `query --no-self`.
-    pub nearest: Option<Nearest>,
+    pub nearest: Option<PairSeparation>,
     /// The nearest pair of its own links.
-    pub nearest_self: Option<Nearest>,
+    pub nearest_self: Option<PairSeparation>,
     /// Its regions, switched on or not, in the order of the cell file.
     pub distances: Vec<RegionDistance>,
 }
 
 /// A pair of links or objects with its distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Nearest {
+pub struct PairSeparation {
     /// `robot/link`, or the object.
     pub a: String,
     /// `robot/link`, or the object.

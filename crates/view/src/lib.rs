@@ -1,7 +1,7 @@
 //! A cell in a browser: the page, the server behind it, and what it shows.
 //!
 //! [`Server::watch`] shows a running cell: the caller publishes a [`CellStatus`](elbowroom_status::CellStatus) whenever it has one,
-//! and is never delayed by a browser. [`Server::jog`] shows a cell that stands still, whose robots a person moves in the page
+//! and is never delayed by a browser. [`Server::jog`] shows a cell at rest, whose robots a person moves in the page
 //! (`elbowroom view`). Both compute the distances that the page shows with the engine, from the joint values of the status, so
 //! that they equal those of `elbowroom query`. `docs/view.md` says what the page shows and how it is protected.
 //!
@@ -39,6 +39,6 @@ mod source;
 
 pub use error::ViewError;
 pub use feed::StatusFeed;
-pub use frame::{Frame, FrameRobot, Nearest, RegionDistance};
+pub use frame::{Frame, FrameRobot, PairSeparation, RegionDistance};
 pub use server::Server;
 pub use settings::{Limits, ServerSettings};

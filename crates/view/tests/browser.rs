@@ -13,16 +13,24 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use common::{cell, settings};
+use common::cell;
 use elbowroom_analysis::query::{Level, QueryKind, QueryStates, evaluate};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, configure};
 use elbowroom_monitor::{RegionId, RegionSweep};
 use elbowroom_status::{CellStatus, EventStatus, RobotStatus, SlotStatus};
-use elbowroom_view::{Server, StatusFeed};
+use elbowroom_view::{Server, ServerSettings, StatusFeed};
 use serde_json::{Value, json};
 
 /// What the page may differ by from the engine, m.
 const AGREED_M: f64 = 1e-6;
+
+/// True at the start of the cell.
+const AT_START: &str = "s.robots.every((r, i) => r.q.every((q, k) => Math.abs(q - [[110, 30, 40, 0, 50, 0], [-60, 30]][i][k] * Math.PI / 180) < 1e-9)) && !s.message";
+
+/// Any free port. With the usual limits: a browser on a busy machine takes its time.
+fn settings() -> ServerSettings {
+    ServerSettings::at("127.0.0.1:0").unwrap()
+}
 
 /// The browser, and the Python that drives it.
 fn tools() -> Option<(PathBuf, PathBuf)> {
@@ -66,7 +74,7 @@ fn which(program: &Path) -> PathBuf {
     std::env::split_paths(&path).map(|folder| folder.join(program)).find(|p| p.is_file()).unwrap_or(program.to_owned())
 }
 
-/// Pictures, where somebody wants to look at them.
+/// Pictures, where somebody wants them.
 fn screenshots(name: &str) -> Vec<Value> {
     let Some(folder) = std::env::var_os("ELBOWROOM_SCREENSHOTS").map(PathBuf::from) else { return Vec::new() };
     vec![json!({ "do": "screenshot", "file": folder.join(format!("{name}.png")) })]
@@ -120,13 +128,13 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
         json!({ "do": "slide", "id": "joint-0-1", "to": 0.7 }),
         json!({ "do": "set", "id": "joint-0-0", "value": 0.9, "until": "Math.abs(s.robots[0].q[0] - 0.9) < 1e-12" }),
         json!({ "do": "set", "id": "joint-1-0-number", "value": -20, "kind": "change", "until": "Math.abs(s.robots[1].q[0] + Math.PI / 9) < 1e-12" }),
-        json!({ "do": "press", "key": "h" }),
+        json!({ "do": "press", "key": "h", "until": AT_START }),
         json!({ "do": "drag", "robot": 0, "by": [25, 14] }),
         json!({ "do": "drag", "robot": 0, "axis": 2, "by": [0, 20] }),
         json!({ "do": "set", "id": "tcp-0-2", "value": 400, "kind": "change", "until": "Math.abs(s.robots[0].tcp.position_m[2] - 0.4) < 1e-6 || s.message" }),
         json!({ "do": "set", "id": "tcp-0-0", "value": 9000, "kind": "change", "until": "s.message" }),
         json!({ "do": "text", "at": "#message" }),
-        json!({ "do": "press", "key": "h" }),
+        json!({ "do": "press", "key": "h", "until": AT_START }),
     ];
     steps.extend(screenshots("jog"));
     let seen = visit(&server.url(), &json!({}), &steps).unwrap();
@@ -140,7 +148,7 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
         |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-9);
     assert!(near(&q(0), &start));
     // 0.7 of the way from -90° to 90°, less what the thumb of the slider takes.
-    assert!((q(1)[0][1].to_degrees() - 36.0).abs() < 6.0, "{}", q(1)[0][1].to_degrees());
+    assert!((q(1)[0][1].to_degrees() - 36.0).abs() < 10.0, "{}", q(1)[0][1].to_degrees());
     assert!(near(&q(4), &start));
     let tcp =
         |k: usize| -> [f64; 3] { serde_json::from_value(seen[k]["robots"][0]["tcp"]["position_m"].clone()).unwrap() };
@@ -168,7 +176,7 @@ fn everything_has_a_name_and_is_reached_by_the_keyboard() {
     let mut steps = vec![json!({ "do": "audit" }), json!({ "do": "tab", "times": 30 })];
     // A slider is moved by the arrow keys, the colours by D.
     steps.push(json!({ "do": "focus", "at": "#joint-0-0" }));
-    steps.push(json!({ "do": "press", "key": "ArrowRight" }));
+    steps.push(json!({ "do": "press", "key": "ArrowRight", "until": "s.robots[0].q[0] > 1.93" }));
     steps.push(json!({ "do": "press", "key": "d" }));
     steps.push(json!({ "do": "audit" }));
     steps.extend(screenshots("dark"));
@@ -264,6 +272,7 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
         exchange: [("pallet".to_owned(), if i == 1 { "waiting" } else { "outside" }.to_owned())].into(),
         ..RobotStatus::default()
     };
+    let event = EventStatus { t_s, robot: "east".into(), region: "pallet".into(), event: "waiting".into() };
     CellStatus {
         t_s,
         cell: cell.name.clone(),
@@ -274,7 +283,17 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
             queue: vec!["east".into()],
         }],
         events: vec![EventStatus { t_s, robot: "east".into(), region: "pallet".into(), event: "waiting".into() }],
+        // One per second, at 100 statuses per second.
+        events: if (100.0 * t_s) as u64 % 100 == 0 { vec![event] } else { Vec::new() },
         ..CellStatus::default()
+    }
+}
+
+struct OnDrop<'a>(&'a AtomicBool);
+
+impl Drop for OnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 }
 
@@ -290,17 +309,19 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     let mut steps = vec![
         json!({ "do": "wait", "until": "s.t_s > 3" }),
         json!({ "do": "sleep", "ms": 5000 }),
-        json!({ "do": "press", "key": " " }),
+        json!({ "do": "press", "key": " ", "until": "!s.live" }),
         json!({ "do": "sleep", "ms": 700 }),
         json!({ "do": "press", "key": "ArrowLeft" }),
         json!({ "do": "set", "id": "scrub", "value": 1.0 }),
-        json!({ "do": "press", "key": "l" }),
+        json!({ "do": "press", "key": "l", "until": "s.live" }),
         json!({ "do": "text", "at": "#slots" }),
         json!({ "do": "text", "at": "#events" }),
         json!({ "do": "audit" }),
     ];
     steps.extend(screenshots("running"));
     let seen = std::thread::scope(|scope| {
+        // Ends the other thread, also where the visit fails.
+        let _end = OnDrop(&ended);
         scope.spawn(|| {
             // The service has run for a while when the page is opened.
             let begin = Instant::now();
@@ -310,9 +331,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
             }
         });
         std::thread::sleep(Duration::from_secs(2));
-        let seen = visit(&server.url(), &json!({}), &steps);
-        ended.store(true, Ordering::Relaxed);
-        seen.unwrap()
+        visit(&server.url(), &json!({}), &steps).unwrap()
     });
     let t = |k: usize| seen[k]["t_s"].as_f64().unwrap();
     for state in &seen[..7] {
@@ -320,12 +339,14 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
         assert_eq!((&state["mode"], &state["connection"]), (&json!("watch"), &json!("open")));
     }
     assert!(t(1) > t(0) + 3.0);
+    let passed = |key: &str| seen[1][key].as_f64().unwrap() - seen[0][key].as_f64().unwrap();
     println!(
-        "{:.1} pictures per second with four arms; the distances of an instant took {:.2} ms",
-        seen[1]["pictures_per_s"].as_f64().unwrap(),
+        "{:.1} pictures per second with four arms, pixels of 1/{}; the distances of an instant took {:.2} ms",
+        passed("pictures") / passed("clock_s"),
+        seen[1]["pixel_ratio"],
         1e3 * seen[1]["measured_in_s"].as_f64().unwrap()
     );
-    assert!(seen[1]["pictures_per_s"].as_f64().unwrap() > 1.0, "it moves");
+    assert!(passed("pictures") >= 2.0, "it moves");
     // Paused it stays, a step back is a step back, and the time line leads to any time.
     assert_eq!((t(2), &seen[2]["live"]), (t(3), &json!(false)));
     assert!((t(3) - t(4) - 0.1).abs() < 0.02, "{} {}", t(3), t(4));

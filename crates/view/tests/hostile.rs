@@ -32,7 +32,7 @@ fn a_wrong_token_sees_nothing() {
         assert_eq!(page.next().unwrap_err(), "4401 the token is another one");
     }
     let mut silent = Page::nameless(&server);
-    assert_eq!(silent.next().unwrap_err(), "4401 no token has come");
+    assert_eq!(silent.next().unwrap_err(), "1013 no token has come");
     // A command before the token is none.
     let mut hasty = Page::nameless(&server);
     hasty.send(&json!({ "type": "home" }));

@@ -168,7 +168,7 @@ fn regions_are_entered_left_and_held() {
     page.send(&json!({ "type": "home" }));
     let home = page.frame_where(|frame| frame["robots"][1]["q"] == begin["robots"][1]["q"]);
     assert_eq!(home["slots"][0]["holder"], json!(null));
-    // A new page is told what has happened.
+    // A new page gets what has happened.
     let mut late = Page::of(&server);
     let events = loop {
         let document = late.next().unwrap();

@@ -4,9 +4,18 @@
 // WebGL all functions do nothing.
 function createStage(corners, lineCount) {
   const canvas = byId('canvas'), holder = canvas.parentElement, labels = byId('labels');
+  // Without a graphics card the processor draws: then smooth edges and shining surfaces cost more than half of the time.
+  const isSoftware = (() => {
+    const gl = document.createElement('canvas').getContext('webgl2');
+    if (!gl) return false;
+    const info = gl.getExtension('WEBGL_debug_renderer_info');
+    const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+    gl.getExtension('WEBGL_lose_context')?.loseContext();
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
+  })();
   let renderer;
   try {
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware });
   } catch (error) {
     byId('no-webgl').hidden = false;
     return { works: false, show: () => {}, fit: () => {}, look: () => {}, rendered: () => 0, onRender: () => {}, theme: () => {}, request: () => {}, add: () => {} };
@@ -61,7 +70,8 @@ function createStage(corners, lineCount) {
   sun.position.set(2, -3, 5);
   scene.add(sun);
 
-  const solidMaterial = (color) => new THREE.MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.08, side: THREE.DoubleSide });
+  const lit = (look, shine) => (isSoftware ? new THREE.MeshLambertMaterial(look) : new THREE.MeshStandardMaterial({ ...look, ...shine }));
+  const solidMaterial = (color) => lit({ color, side: THREE.DoubleSide }, { roughness: 0.55, metalness: 0.08 });
   const glass = (color, opacity) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
   function setPose(object, p) {
@@ -82,7 +92,7 @@ function createStage(corners, lineCount) {
   });
   const regions = Data.regions.map((region) => {
     const group = new THREE.Group();
-    const solid = new THREE.Mesh(meshOf(region.solid), new THREE.MeshStandardMaterial({ color: region.color, roughness: 0.7, transparent: true, opacity: 0.55 }));
+    const solid = new THREE.Mesh(meshOf(region.solid), lit({ color: region.color, transparent: true, opacity: 0.55 }, { roughness: 0.7 }));
     const edges = new THREE.LineSegments(new THREE.EdgesGeometry(solid.geometry, 40), new THREE.LineBasicMaterial({ color: region.color }));
     const shell = region.shell === null ? null : new THREE.Mesh(meshOf(region.shell), glass(region.color, 0.13));
     group.add(solid, edges);
@@ -250,6 +260,29 @@ function createStage(corners, lineCount) {
     request();
   }
 
+  // Pixels are larger while pictures follow each other slowly, and as fine as the screen's again when the scene rests.
+  const COARSEST = 0.5, SLOW_MS = 40, QUICK_MS = 20, REST_MS = 500;
+  const finest = () => Math.min(2, window.devicePixelRatio || 1);
+  let ratio = finest(), slow = 0, quick = 0, resting = 0;
+  function setRatio(to) {
+    ratio = Math.min(finest(), Math.max(COARSEST, to));
+    slow = 0;
+    quick = 0;
+    renderer.setPixelRatio(ratio);
+  }
+  function adapt() {
+    const begin = performance.now();
+    requestAnimationFrame(() => {
+      const took = performance.now() - begin;
+      slow = took > SLOW_MS ? slow + 1 : Math.max(0, slow - 1);
+      quick = took < QUICK_MS ? quick + 1 : 0;
+      if (slow >= 4 && ratio > COARSEST) setRatio(ratio * 0.8);
+      else if (quick >= 120 && ratio < finest()) setRatio(ratio * 1.25);
+    });
+    clearTimeout(resting);
+    if (ratio < finest()) resting = setTimeout(() => { if (!waiting) { setRatio(finest()); request(); } }, REST_MS);
+  }
+
   let waiting = false, rendered = 0, beforeRender = () => {};
   function request() {
     if (waiting) return;
@@ -259,6 +292,7 @@ function createStage(corners, lineCount) {
       rendered += 1;
       beforeRender();
       renderer.render(scene, camera);
+      adapt();
       placeLabels();
     });
   }
@@ -278,7 +312,7 @@ function createStage(corners, lineCount) {
 
   new ResizeObserver(() => {
     const { clientWidth: w, clientHeight: h } = holder;
-    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    renderer.setPixelRatio(ratio);
     renderer.setSize(w, h, false);
     camera.aspect = w / Math.max(1, h);
     camera.updateProjectionMatrix();
@@ -289,6 +323,7 @@ function createStage(corners, lineCount) {
     works: true, show, fit, look, theme, request, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
     rendered: () => rendered,
+    pixelRatio: () => ratio,
     onRender: (f) => { beforeRender = f; },
   };
 }

@@ -10,7 +10,7 @@ use elbowroom_scene::{Checker, CheckerOptions, PairDistance, Scene, SceneState, 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_status::{CellStatus, PoseStatus, RobotStatus};
 
-use crate::frame::{Frame, FrameRobot, Nearest, RegionDistance};
+use crate::frame::{Frame, FrameRobot, PairSeparation, RegionDistance};
 
 /// Measures statuses of a cell.
 pub(crate) struct Distances<'s> {
@@ -115,8 +115,8 @@ impl<'s> Distances<'s> {
         Some(PairDistance { metres: 0.0, ..at.unwrap_or(found) })
     }
 
-    fn named(&self, d: &PairDistance) -> Nearest {
-        Nearest {
+    fn named(&self, d: &PairDistance) -> PairSeparation {
+        PairSeparation {
             a: self.model.geometry_name(d.a),
             b: self.model.geometry_name(d.b),
             distance_m: if d.metres > 0.0 { d.metres } else { 0.0 },

@@ -1,4 +1,4 @@
-//! A cell that stands still, whose robots a person moves.
+//! A cell at rest, whose robots a person moves.
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -10,12 +10,12 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 
-use super::routes::Shared;
+use super::shared::Shared;
 
 /// After an error of the listener, such as too many open files.
 const RETRY: Duration = Duration::from_millis(20);
 
-/// Accepts connections until told to stop.
+/// Accepts connections until it is stopped.
 pub(crate) async fn accept(
     listener: TcpListener,
     router: Router,

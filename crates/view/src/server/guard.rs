@@ -1,4 +1,4 @@
-//! Which requests are looked at: known hosts, pages of this server, no bodies.
+//! Which requests are answered: known hosts, pages of this server, no bodies.
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};

@@ -6,6 +6,7 @@ mod guard;
 mod places;
 mod routes;
 mod session;
+mod shared;
 mod start;
 mod token;
 

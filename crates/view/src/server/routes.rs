@@ -10,33 +10,11 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::middleware;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use tokio::sync::{Semaphore, watch};
 
 use super::assets::Asset;
-use super::guard::{Hosts, guard};
-use super::places::Places;
+use super::guard::guard;
 use super::session;
-use super::token::Token;
-use crate::engine::SentFrame;
-use crate::history::History;
-use crate::inbox::Inbox;
-use crate::settings::Limits;
-
-/// What requests share.
-#[derive(Debug)]
-pub(crate) struct Shared {
-    pub(crate) token: Token,
-    pub(crate) hosts: Hosts,
-    pub(crate) limits: Limits,
-    pub(crate) geometry: Bytes,
-    pub(crate) inbox: Arc<Inbox>,
-    pub(crate) history: Arc<History>,
-    pub(crate) frames: watch::Receiver<SentFrame>,
-    /// Connections without a token.
-    pub(crate) places: Places,
-    pub(crate) browsers: Arc<Semaphore>,
-    pub(crate) mode: &'static str,
-}
+use super::shared::Shared;
 
 /// Only these paths exist, so there is no other to escape to.
 pub(crate) fn routes(shared: Arc<Shared>, assets: Vec<Asset>) -> Router {

@@ -8,11 +8,13 @@ use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket};
 use serde::Deserialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
-use super::routes::Shared;
+use super::shared::Shared;
 use crate::source::Command;
 
 /// Codes of the close message; the page shows the reason.
 const WRONG_TOKEN: u16 = 4401;
+/// Try again later: a browser on a busy computer may be too slow once.
+const LATE: u16 = 1013;
 const NOT_UNDERSTOOD: u16 = 4400;
 const TOO_MANY: u16 = 4429;
 const ENDED: u16 = 1001;
@@ -41,7 +43,7 @@ type Ended = Option<(u16, &'static str)>;
 pub(crate) async fn run(mut socket: WebSocket, shared: Arc<Shared>) {
     let mut place = shared.places.enter();
     let admitted = tokio::select! {
-        admitted = timeout(shared.limits.head, admit(&mut socket, &shared)) => admitted.unwrap_or(Err(Some((WRONG_TOKEN, "no token has come")))),
+        admitted = timeout(shared.limits.head, admit(&mut socket, &shared)) => admitted.unwrap_or(Err(Some((LATE, "no token has come")))),
         () = place.vacated() => return,
     };
     let ended = match admitted {

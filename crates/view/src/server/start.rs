@@ -12,7 +12,8 @@ use tokio::sync::{Semaphore, watch};
 
 use super::guard::Hosts;
 use super::places::Places;
-use super::routes::{Shared, routes};
+use super::routes::routes;
+use super::shared::Shared;
 use super::token::Token;
 use super::{assets, connection};
 use crate::engine::{self, JogCell, Model, SentFrame};
@@ -44,7 +45,7 @@ impl Server {
         Self::start(Model::of(cell)?, RunningCell, feed.inbox.clone(), settings)
     }
 
-    /// Shows a cell that stands still; its robots are moved in the page.
+    /// Shows a cell at rest; its robots are moved in the page.
     ///
     /// # Errors
     /// As [`Self::watch`].

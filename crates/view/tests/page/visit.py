@@ -12,6 +12,8 @@ import time
 from playwright.sync_api import sync_playwright
 
 TIMEOUT_MS = 60_000
+# A software renderer on a busy machine draws few pictures per second.
+QUIET_S = 2.0
 
 # Names and sizes of everything that can be operated.
 AUDIT = """() => {
@@ -58,10 +60,13 @@ def drag(page, step):
     for k in range(1, steps + 1):
         page.mouse.move(x + step["by"][0] * k / steps, y + step["by"][1] * k / steps)
     page.mouse.up()
-    # Every move of the pointer is a command; the last one has been answered when nothing comes any more.
-    number = before
+    return settled(page, before)
+
+
+def settled(page, number):
+    """Every move of the pointer is a command; the last one has been answered when nothing comes any more."""
     quiet_since = time.monotonic()
-    while time.monotonic() - quiet_since < 0.7:
+    while time.monotonic() - quiet_since < QUIET_S:
         page.wait_for_timeout(50)
         now = state(page)["number"]
         if now != number:
@@ -80,8 +85,7 @@ def slide(page, step):
     for k in range(1, 9):
         page.mouse.move(box["x"] + box["width"] * (0.5 + (step["to"] - 0.5) * k / 8), y)
     page.mouse.up()
-    page.wait_for_timeout(700)
-    return state(page)
+    return settled(page, None)
 
 
 def perform(page, step):
@@ -99,8 +103,7 @@ def perform(page, step):
             return drag(page, step)
         case "press":
             page.keyboard.press(step["key"])
-            page.wait_for_timeout(300)
-            return state(page)
+            return wait_for(page, step["until"]) if "until" in step else state(page)
         case "focus":
             page.locator(step["at"]).focus()
             return None
@@ -132,7 +135,7 @@ def main():
         browser = playwright.chromium.launch(
             executable_path=chromium,
             headless=True,
-            args=["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"],
+            args=["--no-sandbox", "--enable-unsafe-swiftshader"],
         )
         seen["browser"] = browser.version
         context = browser.new_context(
@@ -146,11 +149,15 @@ def main():
         page.on("requestfailed", lambda r: seen["problems"].append(f"{r.url}: {r.failure}"))
         foreign = []
         page.on("request", lambda r: foreign.append(r.url) if not r.url.startswith((url.split("#")[0], "ws://", "data:")) else None)
-        page.goto(url)
-        if visit.get("ready", True):
-            page.wait_for_function("() => document.documentElement.dataset.ready", timeout=TIMEOUT_MS)
-        for step in visit["steps"]:
-            seen["steps"].append(perform(page, step))
+        try:
+            page.goto(url)
+            if visit.get("ready", True):
+                page.wait_for_function("() => document.documentElement.dataset.ready", timeout=TIMEOUT_MS)
+            for step in visit["steps"]:
+                seen["steps"].append(perform(page, step))
+        except Exception:
+            print("on the console:", seen["problems"], "on the page:", page.inner_text("body")[:300], file=sys.stderr)
+            raise
         seen["foreign"] = foreign
         browser.close()
     # Software rendering says so on the console.
