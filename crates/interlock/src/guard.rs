@@ -20,7 +20,7 @@ pub enum Ignored {
 }
 
 /// The times at which this many messages were sent are remembered; an answer to an older one confirms nothing.
-const REMEMBERED: usize = 64;
+const REMEMBERED: usize = if cfg!(test) { 8 } else { 64 };
 
 /// The guard of one robot: reports where it is, and knows which slots it may enter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -222,7 +222,7 @@ impl Guard {
     }
 
     /// When the message with this sequence number was sent.
-    fn sent_at(&self, sequence: u64) -> Option<Micros> {
+    pub(crate) fn sent_at(&self, sequence: u64) -> Option<Micros> {
         let age = self.sequence.checked_sub(sequence)?;
         (sequence > 0 && age < REMEMBERED as u64).then(|| self.sent[sequence as usize % REMEMBERED])
     }
@@ -254,7 +254,7 @@ impl GuardedSlot {
     }
 }
 
-/// What the model check needs to see and to renumber.
+/// What the model check needs to see and to rewrite.
 #[cfg(test)]
 impl Guard {
     pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
@@ -262,28 +262,59 @@ impl Guard {
         self.slots.iter_mut().filter_map(|slot| slot.confirmed.as_mut()).for_each(f);
     }
 
-    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(&mut Option<Token>)) {
-        for slot in &mut self.slots {
-            f(&mut slot.token);
-            f(&mut slot.released);
+    /// The grant that is obeyed and the last one given up, per slot.
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(usize, &mut Option<Token>)) {
+        for (s, slot) in self.slots.iter_mut().enumerate() {
+            f(s, &mut slot.token);
+            f(s, &mut slot.released);
         }
+    }
+
+    pub(crate) fn released_mut(&mut self, slot: usize) -> &mut Option<Token> {
+        &mut self.slots[slot].released
     }
 
     pub(crate) fn serial_mut(&mut self) -> &mut u64 {
         &mut self.serial
     }
 
-    pub(crate) fn sequence_now(&self) -> u64 {
-        self.sequence
+    pub(crate) fn set_robot(&mut self, robot: RobotSlot) {
+        self.robot = robot;
     }
 
-    /// Gives each of these sequence numbers its index; the times of all others are forgotten.
-    pub(crate) fn renumber(&mut self, seen: &[u64]) {
-        let mut sent = vec![Micros(0); REMEMBERED];
-        for (rank, sequence) in seen.iter().enumerate().skip(1).filter(|(_, n)| **n <= self.sequence) {
-            sent[rank] = self.sent_at(*sequence).unwrap_or(Micros(0));
+    /// Whether an answer to this message may still confirm a grant.
+    pub(crate) fn confirms(&self, sequence: u64, now: Micros) -> bool {
+        self.sent_at(sequence).is_some_and(|sent| now - sent <= self.validity)
+    }
+
+    /// A confirmation that is too old to be obeyed is none.
+    pub(crate) fn forget_expired(&mut self, now: Micros) {
+        let validity = self.validity;
+        for slot in &mut self.slots {
+            slot.confirmed = slot.confirmed.filter(|sent| now - *sent <= validity);
         }
-        self.sequence = seen.binary_search(&self.sequence).unwrap_or(0) as u64;
-        self.sent = sent;
+    }
+
+    /// Whether a message would change nothing, now and ever after.
+    pub(crate) fn is_past(&self, message: &GrantsMessage) -> bool {
+        let late = message.arbiter < self.arbiter || message.arbiter == self.arbiter && message.serial <= self.serial;
+        message.robot_boot < self.boot || message.robot_boot == self.boot && late
+    }
+
+    /// Sets when the messages up to the last one were sent.
+    pub(crate) fn set_sent(&mut self, times: &[Option<Micros>]) {
+        self.sent.fill(Micros(0));
+        for (sequence, time) in times.iter().enumerate() {
+            self.sent[sequence] = time.unwrap_or(Micros(0));
+        }
+        self.sequence = times.len() as u64 - 1;
+    }
+
+    /// A fault for the model check to find: a grant is given up as soon as that is decided.
+    pub(crate) fn give_up_at_once(&mut self) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_closing) {
+            slot.released = slot.token.or(slot.released);
+            (slot.token, slot.confirmed, slot.is_closing) = (None, None, false);
+        }
     }
 }

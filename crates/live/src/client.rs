@@ -21,6 +21,9 @@ pub struct ControllerState<'a> {
     pub programmed_override: f64,
     /// Gripped parts and exchanged tools.
     pub attached: &'a [AttachedVolume],
+    /// When the joints were read, on the same clock as all other times, where it is known better than that it is now: the nominal
+    /// time of a periodic tick.
+    pub stamp: Option<Micros>,
 }
 
 /// The connection of one controller to its node, without the network: bytes go out with [`Self::joint_state`] and come in with
@@ -106,7 +109,7 @@ impl ControllerClient {
     pub fn joint_state(&mut self, now: Micros, state: &ControllerState<'_>) -> &[u8] {
         let message = &mut self.state;
         message.sequence += 1;
-        message.stamp_us = now.0;
+        message.stamp_us = state.stamp.unwrap_or(now).0;
         message.programmed_override = state.programmed_override;
         for (to, from) in [(&mut message.q, state.q), (&mut message.qd, state.qd), (&mut message.intent, state.intent)]
         {

@@ -3,6 +3,7 @@
 //!
 //! `docs/live.md` has the keys, the bytes and the bounds; `docs/interlocks.md` the protocol of exchange regions.
 
+mod arbiter_service;
 mod client;
 mod clock;
 mod keys;
@@ -14,6 +15,7 @@ mod regions_table;
 mod service;
 mod simulated_controllers;
 
+pub use arbiter_service::{ArbiterService, EventHandler};
 pub use client::{ControllerClient, ControllerState, Refused};
 pub use clock::{Clock, boot_number};
 pub use keys::Keys;

@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_formats::FormatError;
+use elbowroom_interlock::Boot;
+use elbowroom_monitor::{RegionKind, RobotSlot};
 use elbowroom_robot::RobotId;
 use thiserror::Error;
 
+use crate::arbiter_service::{ArbiterService, EventHandler};
 use crate::clock::{Clock, boot_number};
 use crate::network::{Network, NetworkError, ZenohNetwork, ZenohSettings};
-use crate::node::{Node, NodeParts, StatusHandler};
+use crate::node::{Node, NodeMonitor, NodeParts, StatusHandler};
 use crate::region_keeper::RegionKeeper;
 use crate::simulated_controllers::SimulatedControllers;
 
@@ -31,6 +34,8 @@ pub struct ServiceOptions {
     pub simulate: bool,
     /// Called with every status of a robot of this process.
     pub on_status: Option<StatusHandler>,
+    /// Called with every event of the arbiter of this process, in words.
+    pub on_event: Option<EventHandler>,
 }
 
 /// Why a service does not start.
@@ -57,6 +62,7 @@ pub struct Service {
     // In the order in which they end: controllers stop first.
     controllers: Option<SimulatedControllers>,
     nodes: Vec<Node>,
+    arbiter: Option<ArbiterService>,
     keeper: Option<RegionKeeper>,
     network: Arc<ZenohNetwork>,
 }
@@ -73,7 +79,7 @@ impl Service {
     /// # Errors
     /// [`ServiceError`]; then nothing runs.
     pub fn start(cell: Cell, options: &ServiceOptions) -> Result<Self, ServiceError> {
-        let cell = Arc::new(cell);
+        let cell = Arc::new(stopping_in_time(cell));
         let robots = guarded_robots(&cell, options)?;
         let is_whole_cell = options.robots.is_empty() && !options.arbiter;
         let listen = match (&options.listen, &options.connect) {
@@ -83,32 +89,34 @@ impl Service {
         let network = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
         let shared: Arc<dyn Network> = network.clone();
         let clock = Clock::start();
-        let keeper = if options.arbiter || is_whole_cell {
-            Some(RegionKeeper::start(&cell, &shared, boot_number())?)
-        } else {
-            None
-        };
-        let setups = configure::setups(&cell)?;
-        let monitors = configure::monitors(&cell, &setups)?;
+        let (mut keeper, mut arbiter) = (None, None);
+        if options.arbiter || is_whole_cell {
+            keeper = Some(RegionKeeper::start(&cell, &shared, boot_number())?);
+            arbiter = ArbiterService::start(&cell, &shared, boot_number(), options.on_event.clone())?;
+        }
+        let slots = configure::slots(&cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
+        let checksum = configuration_number(&cell);
         let mut nodes = Vec::new();
-        for ((i, setup), monitor) in setups.into_iter().enumerate().zip(monitors) {
-            if !robots.contains(&RobotId(i)) {
-                continue;
-            }
+        for (i, setup) in
+            configure::setups(&cell)?.into_iter().enumerate().filter(|(i, _)| robots.contains(&RobotId(*i)))
+        {
+            let monitor = NodeMonitor::new(&setup, RobotSlot(i), slots, checksum, Boot(boot_number()));
+            let monitor = monitor.map_err(|e| FormatError::new(&cell.file, cell.robots[i].line, e.to_string()))?;
             nodes.push(Node::start(NodeParts {
                 cell: cell.clone(),
                 robot: RobotId(i),
                 setup,
                 monitor,
-                checksum: configuration_number(&cell),
+                checksum,
                 clock,
                 network: shared.clone(),
+                interlocks: shared.clone(),
                 on_status: options.on_status.clone(),
             })?);
         }
         let controllers =
             if options.simulate { Some(SimulatedControllers::start(&cell, &robots, &shared, clock)?) } else { None };
-        Ok(Self { controllers, nodes, keeper, network })
+        Ok(Self { controllers, nodes, arbiter, keeper, network })
     }
 
     /// Number of robots that this process guards.
@@ -121,6 +129,11 @@ impl Service {
         self.keeper.is_some()
     }
 
+    /// True where this process grants exchange regions, of which the cell has some.
+    pub fn grants_regions(&self) -> bool {
+        self.arbiter.is_some()
+    }
+
     /// Whether the simulated controllers still run; true where there are none.
     pub fn is_running(&self) -> bool {
         self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)
@@ -130,6 +143,18 @@ impl Service {
     pub fn network(&self) -> &Arc<ZenohNetwork> {
         &self.network
     }
+}
+
+/// The cell as a service guards it. A controller goes on for `stale_ms` after the last override that it has heard, so that
+/// stopping distances assume this much more; and regions that controllers exchange need stopping distances.
+fn stopping_in_time(mut cell: Cell) -> Cell {
+    let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
+    let laws = &mut cell.laws;
+    if laws.stopping_reaction_s.is_none() && has_exchange {
+        laws.stopping_reaction_s = Some(laws.reaction_s);
+    }
+    laws.stopping_reaction_s = laws.stopping_reaction_s.map(|reaction_s| reaction_s + laws.laws.stale_s);
+    cell
 }
 
 fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>, ServiceError> {

@@ -89,9 +89,12 @@ fn run(
     let _ = started.send(Ok(()));
     let period = Duration::from_secs_f64(cell.tick_s);
     let mut due = Instant::now();
+    // The joints of a simulated robot are those of the nominal time of its tick, however late the thread is.
+    let (began, begin) = (clock.micros(), due);
     while !is_closed.load(Ordering::SeqCst) {
         for controller in &mut controllers {
-            controller.tick(cell.tick_s, clock.micros());
+            let nominal = began + Micros((due - begin).as_micros() as u64);
+            controller.tick(cell.tick_s, nominal, clock.micros());
         }
         due += period;
         let now = Instant::now();
@@ -151,7 +154,7 @@ impl SimulatedController {
     }
 
     /// Moves on by a tick under the override that counts now, and tells the node where the robot is.
-    fn tick(&mut self, dt_s: f64, now: Micros) {
+    fn tick(&mut self, dt_s: f64, nominal: Micros, now: Micros) {
         let speed_override = self.client.lock().unwrap_or_else(PoisonError::into_inner).speed_override(now);
         self.program.advance(dt_s, speed_override);
         for switch in self.program.take_switches() {
@@ -174,6 +177,7 @@ impl SimulatedController {
             intent: self.program.intent(),
             programmed_override: self.program.programmed_override(),
             attached: &[],
+            stamp: Some(nominal),
         };
         self.bytes.clear();
         let mut client = self.client.lock().unwrap_or_else(PoisonError::into_inner);

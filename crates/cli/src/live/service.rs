@@ -1,5 +1,6 @@
 //! `elbowroom live`: guards real controllers over a network.
 
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -23,6 +24,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         arbiter: args.arbiter,
         simulate: args.simulate,
         on_status: None,
+        on_event: Some(Arc::new(|event: &str| note(event))),
     };
     let stop = stop_signal()?;
     let checksum = cell.checksum.clone();
@@ -42,7 +44,9 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
 fn stop_signal() -> Result<Receiver<()>, Failure> {
     let (stop, stopped) = mpsc::channel();
     // The receiver is gone only when the process ends.
-    let handler = move || drop(stop.send(()));
+    let handler = move || {
+        let _ = stop.send(());
+    };
     ctrlc::set_handler(handler).map_err(|e| Failure::Wrong(format!("Ctrl-C cannot be handled: {e}")))?;
     Ok(stopped)
 }

@@ -22,7 +22,8 @@ pub struct OverrideAnswer {
     pub speed_override: f64,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,
-    /// Why the override has this value: 0 free, 1 region, 2 speed zone, 3 waiting for an exchange region, 4 rate, 5 fault.
+    /// Why the override has this value: 0 free, 1 region, 2 speed zone, 3 waiting for an exchange region, 4 rate, 5 fault,
+    /// 6 halted: another robot is in the same exchange region.
     pub reason: u8,
     /// Index in the node's configuration of the region that limits the override; 0xFFFF where none does.
     pub region: u16,

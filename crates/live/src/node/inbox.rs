@@ -3,7 +3,8 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use elbowroom_interlock::{GrantsMessage, Micros};
+use elbowroom_interlock::Micros;
+use elbowroom_interlock::wire::MAX_BYTES;
 
 use super::input_gate::InputGate;
 use crate::messages::JointState;
@@ -24,13 +25,12 @@ pub(super) struct Contents {
     pub(super) own: Heard,
     /// The joint states of the robots that its regions follow, by their index in the cell; `None` for all others.
     pub(super) followed: Vec<Option<Heard>>,
-    /// The last message of the arbiter, where it is new.
-    pub(super) grants: Option<GrantsMessage>,
+    /// The bytes of the last message of the arbiter, and whether it is new.
+    pub(super) grants: Vec<u8>,
+    pub(super) has_grants: bool,
     /// Which regions are on, and when that was heard last.
     pub(super) regions: RegionTable,
     pub(super) regions_heard: Option<Micros>,
-    /// Messages that could not be read.
-    pub(super) unreadable: u64,
     pub(super) is_closed: bool,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Heard {
     gate: InputGate,
     scratch: JointState,
     pub(super) state: JointState,
-    /// Time of the joint values on this process's clock; `None` before the first ones.
+    /// Time of the joint values on their controller's clock; `None` before the first ones.
     pub(super) stamp: Option<Micros>,
     /// It has arrived since the last tick.
     pub(super) is_new: bool,
@@ -62,6 +62,11 @@ impl Heard {
         self.gate.rejected
     }
 
+    /// Where the controller's clock stands when this process's clock shows `local`.
+    pub(super) fn now(&mut self, local: Micros) -> Micros {
+        self.gate.now(local)
+    }
+
     /// Takes a message; false where it cannot be read or does not count.
     fn take(&mut self, bytes: &[u8], arrived: Micros) -> bool {
         if self.scratch.decode(bytes).is_err() {
@@ -80,10 +85,10 @@ impl Inbox {
         let contents = Contents {
             own: Heard::new(checksum),
             followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum))).collect(),
-            grants: None,
+            grants: Vec::with_capacity(MAX_BYTES),
+            has_grants: false,
             regions,
             regions_heard: None,
-            unreadable: 0,
             is_closed: false,
         };
         Self { contents: Mutex::new(contents), news: Condvar::new() }
@@ -97,6 +102,16 @@ impl Inbox {
     pub(super) fn take_joint_state(&self, bytes: &[u8], arrived: Micros) {
         if self.lock().own.take(bytes, arrived) {
             self.news.notify_one();
+        }
+    }
+
+    /// A message of the arbiter. It has effect in the next tick, which is soon.
+    pub(super) fn take_grants(&self, bytes: &[u8]) {
+        let mut contents = self.lock();
+        if bytes.len() <= MAX_BYTES {
+            contents.grants.clear();
+            contents.grants.extend_from_slice(bytes);
+            contents.has_grants = true;
         }
     }
 

@@ -7,6 +7,8 @@ use crate::messages::JointState;
 
 /// A controller that was silent for this long may have started again with a lower number: its clock was set back.
 const FORGOTTEN: Micros = Micros(1_000_000);
+/// A stamp farther ahead than this is no stamp of a clock.
+const MOST_AHEAD: Micros = Micros(1_000_000);
 /// The least delay of messages is that of the last two such spans, so that clocks of different rates do not drift apart.
 const SPAN: Micros = Micros(2_000_000);
 
@@ -22,20 +24,28 @@ pub enum Rejected {
     /// The controller expects another configuration.
     #[error("the controller expects another configuration: load the same cell file on both sides")]
     OtherConfiguration,
+    /// Its stamp is far ahead of the controller's clock.
+    #[error("the stamp is more than a second ahead of the controller's clock, which must not jump")]
+    Stamp,
 }
 
-/// Passes the joint states of one controller in order, and maps their stamps to this process's clock.
+/// Passes the joint states of one controller in order, and tells how old they are.
 ///
-/// The clocks of two processes have nothing in common but their rates. The difference of stamp and arrival is smallest for the
-/// message with the least delay; by this, every other one is that much older than its arrival. A constant delay is not
-/// noticed: the controller's watchdog bounds the way there and back.
+/// Stamps stay on the controller's clock, so that their differences are exact whatever the network does. Where that clock stands
+/// now is known from the message with the least delay: a constant delay is not noticed (the controller's watchdog bounds the way
+/// there and back), every further one makes a message that much older. A controller that starts again goes on with the time of
+/// the former one.
 #[derive(Debug, Clone, Default)]
 pub struct InputGate {
     checksum: u64,
     last: Option<Last>,
-    /// The least difference of arrival and stamp in this span and the one before.
-    offset: [Option<i64>; 2],
+    /// Added to stamps: continues the time of a former start of the controller.
+    base_us: i64,
+    /// The least difference of arrival and stamp in this span and the one before, µs.
+    least: [Option<i64>; 2],
     span_began: Micros,
+    /// The latest time that was shown: it never goes back.
+    shown: Micros,
     /// Messages that did not count.
     pub rejected: u64,
 }
@@ -53,40 +63,64 @@ impl InputGate {
         Self { checksum, ..Self::default() }
     }
 
-    /// The time of the joint values on this process's clock.
+    /// The time of the joint values on the controller's clock.
     ///
     /// # Errors
     /// Why they do not count.
     pub fn pass(&mut self, state: &JointState, arrived: Micros) -> Result<Micros, Rejected> {
-        let checked = self.check(state, arrived);
-        if checked.is_err() {
-            self.rejected += 1;
-            return Err(checked.unwrap_err());
+        if let Err(why) = self.check(state, arrived) {
+            return Err(self.reject(why));
         }
-        if self.last.is_none_or(|last| last.boot != state.boot) {
-            self.offset = [None, None];
+        let now = self.now(arrived);
+        let raw_us = i64::try_from(state.stamp_us).unwrap_or(i64::MAX);
+        let based = |base_us: i64| Micros(raw_us.saturating_add(base_us).max(0) as u64);
+        let is_ahead = based(self.base_us) - now > MOST_AHEAD;
+        if is_ahead && !self.was_silent(arrived) {
+            return Err(self.reject(Rejected::Stamp));
+        }
+        if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
+            self.base_us = (now.0 as i64).saturating_sub(raw_us);
+            self.least = [None, None];
             self.span_began = arrived;
         }
+        let stamp = based(self.base_us);
         self.last = Some(Last { boot: state.boot, sequence: state.sequence, arrived });
         if arrived - self.span_began > SPAN {
-            self.offset = [None, self.offset[0]];
+            self.least = [None, self.least[0]];
             self.span_began = arrived;
         }
-        let offset = (arrived.0 as i64).saturating_sub(state.stamp_us as i64);
-        self.offset[0] = Some(self.offset[0].map_or(offset, |least| least.min(offset)));
-        let least = self.offset.iter().flatten().min().copied().unwrap_or(offset);
-        Ok(Micros((state.stamp_us as i64).saturating_add(least).max(0) as u64))
+        let delay_us = arrived.0 as i64 - stamp.0 as i64;
+        self.least[0] = Some(self.least[0].map_or(delay_us, |least| least.min(delay_us)));
+        Ok(stamp)
+    }
+
+    /// Where the controller's clock stands when this process's clock shows `local`. It never goes back, and is never before the
+    /// last stamp.
+    pub fn now(&mut self, local: Micros) -> Micros {
+        if let Some(least) = self.least.iter().flatten().min() {
+            self.shown = self.shown.max(Micros((local.0 as i64 - least).max(0) as u64));
+        }
+        self.shown
     }
 
     fn check(&self, state: &JointState, arrived: Micros) -> Result<(), Rejected> {
         if state.checksum != 0 && state.checksum != self.checksum {
             return Err(Rejected::OtherConfiguration);
         }
-        let Some(last) = self.last else { return Ok(()) };
-        if state.boot == last.boot {
-            return if state.sequence > last.sequence { Ok(()) } else { Err(Rejected::Late) };
+        match self.last {
+            Some(last) if state.boot == last.boot && state.sequence <= last.sequence => Err(Rejected::Late),
+            Some(last) if state.boot < last.boot && !self.was_silent(arrived) => Err(Rejected::FormerStart),
+            _ => Ok(()),
         }
-        if state.boot < last.boot && arrived - last.arrived < FORGOTTEN { Err(Rejected::FormerStart) } else { Ok(()) }
+    }
+
+    fn was_silent(&self, now: Micros) -> bool {
+        self.last.is_none_or(|last| now - last.arrived >= FORGOTTEN)
+    }
+
+    fn reject(&mut self, why: Rejected) -> Rejected {
+        self.rejected += 1;
+        why
     }
 }
 
@@ -113,17 +147,62 @@ mod tests {
         assert!(gate.pass(&state(3, 1, 0), Micros(2_000_000)).is_ok(), "the clock of the controller was set back");
     }
 
+    /// The `n`-th message of a controller whose clock shows 1 s more, sent every 2 ms, and its arrival.
+    fn sent(n: u64, delay_us: u64) -> (JointState, Micros) {
+        (state(1, n, 1_000_000 + n * 2_000), Micros(n * 2_000 + delay_us))
+    }
+
     #[test]
     fn a_delayed_message_is_as_old_as_it_is_late() {
         let mut gate = InputGate::new(0);
-        // The controller's clock shows 1 s more; the way takes 100 µs, once 30 ms.
-        let sent = |n: u64, delay: u64| (state(1, n, 1_000_000 + n * 2_000), Micros(n * 2_000 + delay));
         for n in 1..50 {
             let (state, arrived) = sent(n, 100);
-            assert_eq!(gate.pass(&state, arrived), Ok(arrived));
+            let stamp = gate.pass(&state, arrived).unwrap();
+            assert_eq!(gate.now(arrived) - stamp, Micros(0));
         }
         let (state, arrived) = sent(50, 30_000);
-        assert_eq!(gate.pass(&state, arrived), Ok(Micros(50 * 2_000 + 100)));
+        let stamp = gate.pass(&state, arrived).unwrap();
+        assert_eq!(gate.now(arrived) - stamp, Micros(29_900));
+    }
+
+    #[test]
+    fn stamps_keep_their_differences_and_now_never_goes_back() {
+        let mut gate = InputGate::new(0);
+        let (mut last, mut shown) = (None, Micros(0));
+        for n in 1..5_000 {
+            let (state, arrived) = sent(n, n * 7919 % 1_900);
+            let stamp = gate.pass(&state, arrived).unwrap();
+            assert!(last.is_none_or(|last| stamp - last == Micros(2_000)));
+            let now = gate.now(arrived);
+            assert!(now >= shown && now >= stamp);
+            (last, shown) = (Some(stamp), now);
+        }
+    }
+
+    #[test]
+    fn a_controller_that_starts_again_goes_on_with_the_time_of_the_former_one() {
+        let mut gate = InputGate::new(0);
+        let before = gate.pass(&state(1, 1, 50_000_000), Micros(0)).unwrap();
+        let after = gate.pass(&state(2, 1, 3), Micros(400_000)).unwrap();
+        assert_eq!(after - before, Micros(400_000));
+    }
+
+    #[test]
+    fn a_clock_that_jumps_is_no_clock() {
+        let mut gate = InputGate::new(0);
+        gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
+        assert_eq!(gate.pass(&state(1, 2, u64::MAX), Micros(2_000)), Err(Rejected::Stamp));
+        assert_eq!(gate.pass(&state(1, 3, 5_000_000), Micros(4_000)), Err(Rejected::Stamp));
+        assert_eq!(gate.pass(&state(1, 4, 6_000), Micros(6_000)), Ok(Micros(6_000)));
+    }
+
+    #[test]
+    fn a_pause_costs_no_message() {
+        let mut gate = InputGate::new(0);
+        gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
+        // The controller was about to send when it was paused for 2 s; then it goes on with the present time.
+        gate.pass(&state(1, 2, 2_000), Micros(2_002_000)).unwrap();
+        assert_eq!(gate.pass(&state(1, 3, 2_004_000), Micros(2_004_000)), Ok(Micros(2_004_000)));
     }
 
     #[test]
@@ -133,7 +212,7 @@ mod tests {
         for n in 1..60_000_u64 {
             let arrived = Micros(n * 2_000);
             let stamp = gate.pass(&state(1, n, n * 1_998), arrived).unwrap();
-            assert!(arrived - stamp <= Micros(5_000), "{arrived:?} {stamp:?}");
+            assert!(gate.now(arrived) - stamp <= Micros(5_000), "{arrived:?} {stamp:?}");
         }
     }
 }

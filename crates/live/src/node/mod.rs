@@ -6,6 +6,7 @@
 mod guarded_robot;
 mod inbox;
 mod input_gate;
+mod node_monitor;
 mod outbox;
 
 use std::sync::Arc;
@@ -14,9 +15,10 @@ use std::time::Duration;
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_interlock::{Micros, StateMessage};
+use elbowroom_interlock::Micros;
+use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Configuration, Monitor, TickReport};
+use elbowroom_monitor::{Configuration, TickReport};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
@@ -30,9 +32,12 @@ use inbox::Inbox;
 use outbox::Outbox;
 
 pub use input_gate::{InputGate, Rejected};
+pub use node_monitor::NodeMonitor;
 
 /// How often a status is published, at most.
 const STATUS_PERIOD: Micros = Micros(20_000);
+/// How often a guard writes to the arbiter; at once where something changed.
+const REPORT_PERIOD: Micros = Micros(10_000);
 
 /// What a node does with its statuses and events, beside publishing them.
 pub type StatusHandler = Arc<dyn Fn(&RobotStatus, &[EventStatus]) + Send + Sync>;
@@ -46,13 +51,15 @@ pub struct NodeParts {
     /// Its setup.
     pub setup: MonitorSetup,
     /// Its monitor, of this setup.
-    pub monitor: Monitor,
+    pub monitor: NodeMonitor,
     /// [`configuration_number`](crate::configuration_number) of the cell.
     pub checksum: u64,
     /// The clock of the process.
     pub clock: Clock,
     /// Joint states, overrides and statuses.
     pub network: Arc<dyn Network>,
+    /// The way to the arbiter.
+    pub interlocks: Arc<dyn Network>,
     /// Called on the thread that sends.
     pub on_status: Option<StatusHandler>,
 }
@@ -71,25 +78,21 @@ impl Node {
     /// # Errors
     /// [`NetworkError`] where a key cannot be used.
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
-        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, on_status } = parts;
+        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, on_status } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
         let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
         let inbox = Arc::new(Inbox::new(checksum, followed.clone(), RegionTable::initial(&cell)));
-        let nothing = StateMessage {
-            robot: elbowroom_monitor::RobotSlot(robot.0),
-            boot: elbowroom_interlock::Boot::NONE,
-            sequence: 0,
-            checksum,
-            arbiter: elbowroom_interlock::Boot::NONE,
-            slots: Vec::new(),
-        };
-        let outbox = Arc::new(Outbox::new(&monitor, nothing));
-        let subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
+        let outbox = Arc::new(Outbox::new(monitor.monitor()));
+        let mut subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
+        let grants = inbox.clone();
+        let handler = Box::new(move |bytes: &[u8]| grants.take_grants(bytes));
+        subscriptions.push(interlocks.subscribe(&keys.interlock_grants(&name), handler)?);
         let sender = Sender {
             answers: network.publisher(&keys.speed_override(&name), Urgency::RealTime)?,
             statuses: network.publisher(&keys.status(&name), Urgency::Display)?,
+            states: interlocks.publisher(&keys.interlock_state(&name), Urgency::RealTime)?,
             configuration: setup.configuration.clone(),
-            sample: StatusSample::new(&monitor),
+            sample: StatusSample::new(monitor.monitor()),
             chain: ChainState::new(setup.configuration.chain()),
             cell: cell.clone(),
             robot,
@@ -104,6 +107,7 @@ impl Node {
             clock,
             health: HealthStatus::default(),
             published: None,
+            reported: None,
         };
         let sending = outbox.clone();
         let threads = [
@@ -169,6 +173,8 @@ struct Ticking {
     stale: Micros,
     health: HealthStatus,
     published: Option<Micros>,
+    /// When the guard wrote to the arbiter last.
+    reported: Option<Micros>,
 }
 
 impl Ticking {
@@ -189,7 +195,7 @@ impl Ticking {
             self.guarded.take(&mut contents, now);
             (now, has_joints)
         };
-        let is_stale = self.guarded.stamp().is_none_or(|stamp| now - stamp > self.stale);
+        let is_stale = self.guarded.age().is_none_or(|age| age > self.stale);
         if has_joints || is_stale {
             let report = self.guarded.tick(now);
             self.health.ticks += 1;
@@ -204,9 +210,16 @@ impl Ticking {
     fn put(&mut self, report: &TickReport, now: Micros) {
         let answer = self.guarded.answer(report);
         let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
-        let Self { guarded, outbox, health, published, .. } = self;
+        let is_report_due =
+            self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
+        let Self { guarded, outbox, health, published, reported, .. } = self;
         outbox.put(|outgoing| {
             outgoing.answer = Some(answer);
+            if is_report_due {
+                outgoing.state.clear();
+                outgoing.state.extend_from_slice(guarded.interlock_state(now));
+                *reported = Some(now);
+            }
             if is_status_due && !outgoing.has_sample {
                 std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
                 outgoing.has_sample = true;
@@ -222,6 +235,8 @@ impl Ticking {
 struct Sender {
     answers: Box<dyn Publisher>,
     statuses: Box<dyn Publisher>,
+    /// To the arbiter.
+    states: Box<dyn Publisher>,
     configuration: Configuration,
     sample: StatusSample,
     chain: ChainState,
@@ -233,12 +248,15 @@ struct Sender {
 impl Sender {
     fn run(mut self, outbox: &Outbox) {
         let mut bytes = Vec::with_capacity(256);
+        let mut state = Vec::with_capacity(MAX_BYTES);
         loop {
+            state.clear();
             let (answer, status) = {
                 let mut outgoing = outbox.wait();
                 if outgoing.is_closed {
                     return;
                 }
+                std::mem::swap(&mut state, &mut outgoing.state);
                 let status = std::mem::take(&mut outgoing.has_sample);
                 if status {
                     std::mem::swap(&mut self.sample, &mut outgoing.sample);
@@ -249,6 +267,9 @@ impl Sender {
             if let Some(answer) = answer {
                 answer.encode(&mut bytes);
                 self.answers.publish(&bytes);
+            }
+            if !state.is_empty() {
+                self.states.publish(&state);
             }
             if let Some((t_s, sequence, health)) = status {
                 self.publish_status(t_s, sequence, health);

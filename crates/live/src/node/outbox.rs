@@ -2,7 +2,7 @@
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use elbowroom_interlock::StateMessage;
+use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_monitor::Monitor;
 use elbowroom_status::{HealthStatus, StatusSample};
 
@@ -18,9 +18,8 @@ pub(super) struct Outbox {
 #[derive(Debug)]
 pub(super) struct Outgoing {
     pub(super) answer: Option<OverrideAnswer>,
-    /// The guard's message, valid where `has_state`.
-    pub(super) state: StateMessage,
-    pub(super) has_state: bool,
+    /// The guard's message to the arbiter; empty where there is none.
+    pub(super) state: Vec<u8>,
     /// The last tick, valid where `has_sample`.
     pub(super) sample: StatusSample,
     pub(super) has_sample: bool,
@@ -32,16 +31,15 @@ pub(super) struct Outgoing {
 
 impl Outgoing {
     fn is_empty(&self) -> bool {
-        self.answer.is_none() && !self.has_state && !self.has_sample && !self.is_closed
+        self.answer.is_none() && self.state.is_empty() && !self.has_sample && !self.is_closed
     }
 }
 
 impl Outbox {
-    pub(super) fn new(monitor: &Monitor, state: StateMessage) -> Self {
+    pub(super) fn new(monitor: &Monitor) -> Self {
         let contents = Outgoing {
             answer: None,
-            state,
-            has_state: false,
+            state: Vec::with_capacity(MAX_BYTES),
             sample: StatusSample::new(monitor),
             has_sample: false,
             t_s: 0.0,
