@@ -145,7 +145,9 @@ fn rank_serials(state: &mut CellState, robot: usize) {
     seen.dedup();
     let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && **other < of).count() as u64 + 1;
     *guard.serial_mut() = rank(obeyed);
-    messages.iter_mut().for_each(|m| m.serial = rank((m.arbiter, m.serial)));
+    for message in messages {
+        message.serial = rank((message.arbiter, message.serial));
+    }
 }
 
 /// The grant of a slot that the arbiter has given last.

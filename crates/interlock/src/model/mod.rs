@@ -128,7 +128,7 @@ impl CellModel {
             RobotSettings { stop_time, ..RobotSettings::new("robot", slots) }
         };
         let robots = (0..self.programs.len()).map(robot).collect();
-        ArbiterSettings { validity, silence, ..ArbiterSettings::new(robots, self.slots) }
+        ArbiterSettings { silence, validity, ..ArbiterSettings::new(robots, self.slots) }
     }
 
     fn guard(&self, robot: usize, boot: Boot) -> Guard {
