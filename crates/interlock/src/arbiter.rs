@@ -430,18 +430,24 @@ impl Arbiter {
         message.arbiter <= self.boot && message.boot == record.boot && message.sequence <= record.sequence
     }
 
-    /// The same arbiter where robot `r` has the index `to[r]`.
-    pub(crate) fn reindexed(&self, to: &[usize]) -> Self {
-        let mut other = self.clone();
+    /// Gives robot `r` the index `to[r]`.
+    pub(crate) fn reindex(&mut self, to: &[usize]) {
+        crate::model::permute(&mut self.robots, to);
         let map = |robot: &mut RobotSlot| *robot = RobotSlot(to[robot.0]);
-        for (from, to) in to.iter().enumerate() {
-            other.robots[*to] = self.robots[from].clone();
-        }
-        for slot in &mut other.slots {
+        for slot in &mut self.slots {
             slot.holder.iter_mut().for_each(|holder| map(&mut holder.robot));
             slot.queue.iter_mut().chain(&mut slot.intruders).for_each(map);
         }
-        other
+    }
+
+    /// Everything about a robot, without its index.
+    pub(crate) fn hash_robot(&self, robot: RobotSlot, hasher: &mut impl std::hash::Hasher) {
+        use std::hash::Hash;
+        self.robots[robot.0].hash(hasher);
+        for slot in &self.slots {
+            let place = |robots: &[RobotSlot]| robots.iter().position(|other| *other == robot);
+            (slot.is_held_by(robot), place(&slot.queue), place(&slot.intruders)).hash(hasher);
+        }
     }
 
     /// A fault for the model check to find.

@@ -1,8 +1,11 @@
-//! Exclusion and progress under random schedules of faults, with simulated arms. `ELBOWROOM_SCHEDULES=100000` runs that many.
+//! Exclusion and progress under random schedules of faults, with simulated arms. `ELBOWROOM_SCHEDULES=100000` runs that many,
+//! `ELBOWROOM_SCHEDULES=500..501` that one.
 
 #![allow(clippy::print_stdout, reason = "figures of a test")]
 
 mod common;
+
+use std::ops::Range;
 
 use common::{Findings, PlantedFault, World};
 
@@ -18,30 +21,35 @@ fn wrong(findings: &Findings) -> [u64; 3] {
     [findings.double_occupancies, findings.stuck, findings.unresolved_deadlocks]
 }
 
-fn run(schedules: u64) -> Findings {
+fn run(seeds: Range<u64>) -> Findings {
     let mut all = Findings::default();
-    for seed in 0..schedules {
+    for seed in seeds.clone() {
         let findings = schedule(seed, PlantedFault::None);
         if wrong(&findings) != [0; 3] {
             println!("seed {seed}: {findings:?}");
         }
         all.add(&findings);
     }
-    println!("{schedules} schedules of {LENGTH_MS} ms: {all:?}");
+    println!("schedules {seeds:?} of {LENGTH_MS} ms: {all:?}");
     all
 }
 
-fn schedules(default: u64) -> u64 {
-    std::env::var("ELBOWROOM_SCHEDULES").ok().and_then(|n| n.parse().ok()).unwrap_or(default)
+/// `ELBOWROOM_SCHEDULES`: how many, or which (`20000..30000`).
+fn seeds(default: u64) -> Range<u64> {
+    let text = std::env::var("ELBOWROOM_SCHEDULES").unwrap_or_default();
+    let (from, to) = text.split_once("..").unwrap_or(("0", &text));
+    from.parse().unwrap_or(0)..to.parse().unwrap_or(default)
 }
 
 #[test]
 fn no_region_is_ever_shared_and_nobody_is_stuck() {
-    let findings = run(schedules(300));
+    let seeds = seeds(300);
+    let are_many = seeds.clone().count() >= 100;
+    let findings = run(seeds);
     assert_eq!(wrong(&findings), [0; 3]);
     let happened =
         [findings.passages, findings.clears, findings.restarts, findings.second_arbiters, findings.switched_off];
-    assert!(happened.iter().all(|n| *n > 0), "{findings:?}");
+    assert!(!are_many || happened.iter().all(|n| *n > 0), "{findings:?}");
 }
 
 #[test]

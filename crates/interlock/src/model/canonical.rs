@@ -2,11 +2,13 @@
 //! past a limit, and of robots with the same program not which is which.
 
 use std::collections::BTreeSet;
-use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use elbowroom_monitor::RobotSlot;
 
 use super::state::{CellState, NOW};
 use super::what_counts;
-use crate::{Boot, Micros, Token};
+use crate::{Boot, Micros, SlotReport, Token};
 
 /// Counters of the arbiter are above all ranks.
 const SERIAL: u64 = 100;
@@ -19,8 +21,9 @@ pub(super) fn pass(state: &mut CellState, step: Micros) {
     each_time(state, |time| *time = *time - step);
 }
 
-/// Rewrites a state to the one that stands for all that behave the same. Older than `oldest` is no different from that.
-pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, symmetries: &[Vec<usize>]) {
+/// Rewrites a state to the one that stands for all that behave the same. Older than `oldest` is no different from that;
+/// robots of the same class have the same program.
+pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usize]) {
     each_time(state, |time| *time = (*time).max(NOW - oldest));
     state.arbiter.forget_unread();
     for robot in 0..state.guards.len() {
@@ -36,14 +39,33 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, symmetries: &[
         rank_tokens(state, slot, &held);
     }
     state.arbiter.set_counters(SERIAL, TOKENS);
-    if symmetries.len() > 1 {
-        // Of equal hashes either is right.
-        let hasher = BuildHasherDefault::<DefaultHasher>::default();
-        let all = symmetries.iter().map(|to| state.reindexed(to));
-        if let Some(first) = all.min_by_key(|state| hasher.hash_one(state)) {
-            *state = first;
-        }
+    sort_robots(state, classes);
+}
+
+/// Robots of the same class are in an order that their states give them. Those with equal keys do not differ.
+fn sort_robots(state: &mut CellState, classes: &[usize]) {
+    state.set_indices(|_| 0);
+    let key = |r: usize| {
+        let mut hasher = DefaultHasher::new();
+        state.robots[r].hash(&mut hasher);
+        state.guards[r].hash(&mut hasher);
+        state.to_arbiter[r].hash(&mut hasher);
+        state.to_guard[r].hash(&mut hasher);
+        state.arbiter.hash_robot(RobotSlot(r), &mut hasher);
+        (classes[r], hasher.finish())
+    };
+    let keys: Vec<_> = (0..classes.len()).map(key).collect();
+    let mut order: Vec<usize> = (0..classes.len()).collect();
+    // Robots keep the indices that robots of their class have.
+    order.sort_by_key(|r| keys[*r]);
+    let mut indices: Vec<usize> = (0..classes.len()).collect();
+    indices.sort_by_key(|r| classes[*r]);
+    let mut to = vec![0; classes.len()];
+    for (robot, index) in order.into_iter().zip(indices) {
+        to[robot] = index;
     }
+    state.reindex(&to);
+    state.set_indices(|r| r);
 }
 
 fn each_time(state: &mut CellState, mut f: impl FnMut(&mut Micros)) {
@@ -62,6 +84,11 @@ fn drop_past_messages(state: &mut CellState, robot: usize) {
     }
     if faults.arbiter_crashes == 0 {
         to_arbiter[robot].retain(|m| !arbiter.is_past(m));
+    }
+    // Only an arbiter that starts again would take it, and not trust it; nor does this one trust what was for a former one.
+    for message in to_arbiter[robot].iter_mut().filter(|m| arbiter.is_past(m) || m.arbiter < arbiter.boot()) {
+        message.slots.fill(SlotReport::UNKNOWN);
+        message.arbiter = Boot::NONE;
     }
     for report in to_arbiter[robot].iter_mut().flat_map(|m| &mut m.slots) {
         report.occupancy = what_counts(report.occupancy);
@@ -118,7 +145,9 @@ fn rank_serials(state: &mut CellState, robot: usize) {
     seen.dedup();
     let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && **other < of).count() as u64 + 1;
     *guard.serial_mut() = rank(obeyed);
-    messages.iter_mut().for_each(|m| m.serial = rank((m.arbiter, m.serial)));
+    for message in messages {
+        message.serial = rank((message.arbiter, message.serial));
+    }
 }
 
 /// The grant of a slot that the arbiter has given last.

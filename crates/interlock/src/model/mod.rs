@@ -15,6 +15,7 @@ use stateright::{Model, Property};
 
 use crate::{Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, StateMessage, Token};
 use programs::Program;
+pub(crate) use state::permute;
 use state::{CellState, FaultBudget, NOW, RobotState};
 
 /// A step of time.
@@ -71,8 +72,8 @@ struct CellModel {
     clock: Clock,
     faults: FaultBudget,
     planted: PlantedFault,
-    /// Orders of the robots that are no different from the first one.
-    symmetries: Vec<Vec<usize>>,
+    /// Robots of the same class have the same program.
+    classes: Vec<usize>,
 }
 
 /// What a robot does in a tick.
@@ -112,11 +113,12 @@ pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
 
 impl CellModel {
     fn new(programs: &[&[&str]]) -> Self {
-        let symmetries = programs::symmetries(programs);
+        let class = |program| programs.iter().position(|other| other == program).unwrap_or(0);
+        let classes = programs.iter().map(class).collect();
         let programs: Vec<_> = programs.iter().map(|words| Program::new(words)).collect();
         let slots = programs[0].slots();
         let (clock, faults, planted) = (Clock::Coarse, FaultBudget::default(), PlantedFault::None);
-        Self { programs, slots, under_way: 1, clock, faults, planted, symmetries }
+        Self { programs, slots, under_way: 1, clock, faults, planted, classes }
     }
 
     fn settings(&self) -> ArbiterSettings {
@@ -126,7 +128,7 @@ impl CellModel {
             RobotSettings { stop_time, ..RobotSettings::new("robot", slots) }
         };
         let robots = (0..self.programs.len()).map(robot).collect();
-        ArbiterSettings { validity, silence, ..ArbiterSettings::new(robots, self.slots) }
+        ArbiterSettings { silence, validity, ..ArbiterSettings::new(robots, self.slots) }
     }
 
     fn guard(&self, robot: usize, boot: Boot) -> Guard {
@@ -272,7 +274,7 @@ impl Model for CellModel {
             faults: self.faults,
         };
         self.know_each_other(&mut state);
-        canonical::canonicalize(&mut state, self.clock.oldest(), &self.symmetries);
+        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
         vec![state]
     }
 
@@ -301,7 +303,7 @@ impl Model for CellModel {
     fn next_state(&self, before: &CellState, action: Action) -> Option<CellState> {
         let mut state = before.clone();
         self.act(&mut state, action)?;
-        canonical::canonicalize(&mut state, self.clock.oldest(), &self.symmetries);
+        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
         (state != *before).then_some(state)
     }
 

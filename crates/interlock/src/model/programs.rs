@@ -35,16 +35,3 @@ impl Program {
         self.slots[slot.0][place]
     }
 }
-
-/// Orders of the robots in which each has the program of the one whose place it takes, the unchanged order first.
-pub(super) fn symmetries(programs: &[&[&str]]) -> Vec<Vec<usize>> {
-    let mut orders: Vec<Vec<usize>> = vec![Vec::new()];
-    for program in programs {
-        let extended = orders.iter().flat_map(|order| {
-            let free = (0..programs.len()).filter(|to| !order.contains(to) && programs[*to] == *program);
-            free.map(|to| order.iter().copied().chain([to]).collect())
-        });
-        orders = extended.collect();
-    }
-    orders
-}

@@ -1,5 +1,7 @@
 //! State of a model.
 
+use elbowroom_monitor::RobotSlot;
+
 use crate::{Arbiter, GrantsMessage, Guard, Micros, StateMessage};
 
 /// Time of every state.
@@ -38,19 +40,29 @@ impl CellState {
         self.guards[0].slots()
     }
 
-    /// The same state where robot `r` has the index `to[r]`.
-    pub(super) fn reindexed(&self, to: &[usize]) -> Self {
-        let mut other = self.clone();
-        other.arbiter = self.arbiter.reindexed(to);
-        for (from, to) in to.iter().copied().enumerate() {
-            other.robots[to] = self.robots[from];
-            other.guards[to] = self.guards[from].clone();
-            other.guards[to].set_robot(elbowroom_monitor::RobotSlot(to));
-            other.to_arbiter[to] = self.to_arbiter[from].clone();
-            other.to_arbiter[to].iter_mut().for_each(|m| m.robot.0 = to);
-            other.to_guard[to] = self.to_guard[from].clone();
-            other.to_guard[to].iter_mut().for_each(|m| m.robot.0 = to);
-        }
-        other
+    /// Gives robot `r` the index `to[r]`.
+    pub(super) fn reindex(&mut self, to: &[usize]) {
+        self.arbiter.reindex(to);
+        permute(&mut self.robots, to);
+        permute(&mut self.guards, to);
+        permute(&mut self.to_arbiter, to);
+        permute(&mut self.to_guard, to);
     }
+
+    /// Sets the index that guards and messages have of their robots.
+    pub(super) fn set_indices(&mut self, index: impl Fn(usize) -> usize) {
+        for r in 0..self.guards.len() {
+            let robot = RobotSlot(index(r));
+            self.guards[r].set_robot(robot);
+            self.to_arbiter[r].iter_mut().for_each(|m| m.robot = robot);
+            self.to_guard[r].iter_mut().for_each(|m| m.robot = robot);
+        }
+    }
+}
+
+/// Moves the element at each index to the index `to` has for it.
+pub(crate) fn permute<T>(elements: &mut Vec<T>, to: &[usize]) {
+    let mut moved: Vec<(usize, T)> = to.iter().copied().zip(elements.drain(..)).collect();
+    moved.sort_by_key(|(to, _)| *to);
+    elements.extend(moved.into_iter().map(|(_, element)| element));
 }

@@ -7,6 +7,8 @@ use super::arm::{Arm, REGIONS};
 
 /// A circle that could be resolved must be within this time, in which nothing fails.
 const RESOLVED_WITHIN_MS: u64 = 300;
+/// How often it is looked for circles.
+const LOOK_MS: u64 = 10;
 
 /// Watches one arbiter.
 #[derive(Debug, Default)]
@@ -18,6 +20,9 @@ pub struct DeadlockWatch {
 impl DeadlockWatch {
     /// True once for each circle that lasts too long.
     pub fn is_unresolved(&mut self, arbiter: &Arbiter, arms: &[Arm], ms: u64) -> bool {
+        if !ms.is_multiple_of(LOOK_MS) {
+            return false;
+        }
         let robots = resolvable_circle(arbiter, arms);
         if robots.is_empty() || robots != self.robots {
             *self = Self { robots, since_ms: ms };

@@ -35,8 +35,11 @@ pub struct Findings {
     /// A message from before a clear, which came after it, said that the robot is where another one is by now: both halt until
     /// the next message.
     pub conflicts: u64,
-    /// Arms that did not get on in the last part, in which no fault happens, although none is preferred to them.
+    /// Arms that did not get on in the last part, in which no fault happens, although none is preferred to them; nor in
+    /// twenty seconds more.
     pub stuck: u64,
+    /// Arms that did in those: many slow arms share the regions, and turn back on the way.
+    pub late: u64,
     /// Arms that did not get on in the last part while preferred ones did.
     pub starved: u64,
     /// Circles of waiting robots that could have been resolved, and were not.
@@ -54,6 +57,7 @@ impl Findings {
         self.double_occupancies += other.double_occupancies;
         self.conflicts += other.conflicts;
         self.stuck += other.stuck;
+        self.late += other.late;
         self.starved += other.starved;
         self.unresolved_deadlocks += other.unresolved_deadlocks;
         self.passages += other.passages;
@@ -159,17 +163,24 @@ impl World {
                 self.findings.unresolved_deadlocks += 1;
             }
         }
-        self.count_stuck(calm);
+        let late = self.count_stuck(calm);
+        while self.findings.stuck > 0 && self.ms < length_ms + 20_000 {
+            self.step();
+            self.count_stuck(calm);
+        }
+        self.findings.late = late.saturating_sub(self.findings.stuck);
         self.findings.clone()
     }
 
-    fn count_stuck(&mut self, since_ms: u64) {
+    fn count_stuck(&mut self, since_ms: u64) -> u64 {
+        (self.findings.starved, self.findings.stuck) = (0, 0);
         let priority = |r: usize| self.settings.robots[r].priority;
         let gets_on: Vec<bool> = self.arms.iter().map(|arm| arm.passed_at_ms >= since_ms).collect();
         for r in (0..gets_on.len()).filter(|r| !gets_on[*r]) {
             let is_starved = (0..gets_on.len()).any(|other| gets_on[other] && priority(other) > priority(r));
             *(if is_starved { &mut self.findings.starved } else { &mut self.findings.stuck }) += 1;
         }
+        self.findings.stuck
     }
 
     fn chance(&mut self, p: f64) -> bool {
@@ -212,7 +223,9 @@ impl World {
         if self.fails(0.000_2) {
             // The network falls apart.
             let members: Vec<usize> = (0..self.arms.len()).filter(|_| self.chance(0.5)).collect();
-            members.into_iter().for_each(|r| self.cut(r));
+            for r in members {
+                self.cut(r);
+            }
         }
         if self.fails(0.000_3) {
             self.pause_arbiter();
@@ -341,7 +354,9 @@ impl World {
                 if (self.ms + r as u64).is_multiple_of(SEND_MS) {
                     let message = self.guards[r].state(self.processes[r].clock(self.ms));
                     let ids: Vec<u64> = self.arbiters.iter().map(|arbiter| arbiter.id).collect();
-                    ids.into_iter().for_each(|id| self.send(r, &Packet::State(id, message.clone())));
+                    for id in ids {
+                        self.send(r, &Packet::State(id, message.clone()));
+                    }
                 }
             }
             self.move_arm(r);
@@ -370,7 +385,7 @@ impl World {
                 continue;
             }
             match self.packets.swap_remove(i).1 {
-                Packet::State(id, message) => self.arbiter_receives(id, message),
+                Packet::State(id, message) => self.arbiter_receives(id, &message),
                 Packet::Grants(message) if self.processes[message.robot.0].runs(ms) => {
                     let _ = self.guards[message.robot.0].receive(&message);
                 }
@@ -379,16 +394,16 @@ impl World {
         }
     }
 
-    fn arbiter_receives(&mut self, id: u64, message: StateMessage) {
+    fn arbiter_receives(&mut self, id: u64, message: &StateMessage) {
         let (ms, planted) = (self.ms, self.planted);
         let Some(ArbiterProcess { arbiter, process, .. }) = self.arbiter(id).filter(|a| a.process.runs(ms)) else {
             return;
         };
         let now = process.clock(ms);
-        let outputs = arbiter.receive(&message, now);
+        let outputs = arbiter.receive(message, now);
         for reply in &outputs.replies {
             let takes_back = planted == PlantedFault::UnilateralRelease && reply.robot == message.robot;
-            if let Some(forged) = given_up(&message, reply).filter(|_| takes_back) {
+            if let Some(forged) = given_up(message, reply).filter(|_| takes_back) {
                 arbiter.receive(&forged, now);
             }
         }
