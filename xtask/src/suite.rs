@@ -152,7 +152,9 @@ fn install_python(context: &Context) -> Result<(), String> {
 
 fn clippy(context: &Context) -> Result<(), String> {
     let args = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
-    shell::cargo(context.root, &args, &network(context))
+    shell::cargo(context.root, &args, &network(context))?;
+    let live = ["clippy", "-p", "elbowroom-cli", "--features", "live", "--all-targets", "--", "-D", "warnings"];
+    shell::cargo(context.root, &live, &network(context))
 }
 
 fn tests(context: &Context) -> Result<(), String> {
@@ -166,6 +168,8 @@ fn tests(context: &Context) -> Result<(), String> {
     }
     announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)?;
+    // The command with the network, as processes.
+    shell::cargo(context.root, &["test", "-p", "elbowroom-cli", "--features", "live", "--test", "live"], &env)?;
     if python.is_some() || context.offline {
         return Ok(());
     }

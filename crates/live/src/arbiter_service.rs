@@ -12,9 +12,9 @@ use elbowroom_monitor::{RobotSlot, SlotId};
 use elbowroom_status::SlotStatus;
 
 use crate::clock::Clock;
+use crate::configuration_number::configuration_number;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
-use crate::service::configuration_number;
 
 /// Messages that wait for the arbiter; further ones are dropped, and the guards send again.
 const WAITING: usize = 1024;
@@ -29,6 +29,8 @@ pub struct ArbiterService {
     subscriptions: Vec<Subscription>,
     inbox: Option<SyncSender<Vec<u8>>>,
     thread: Option<JoinHandle<()>>,
+    // A network may end with its last owner.
+    _network: Arc<dyn Network>,
 }
 
 impl ArbiterService {
@@ -67,7 +69,7 @@ impl ArbiterService {
             on_event,
         };
         let thread = std::thread::Builder::new().name("arbiter".into()).spawn(move || running.run(&waiting));
-        Ok(Some(Self { subscriptions, inbox: Some(inbox), thread: thread.ok() }))
+        Ok(Some(Self { subscriptions, inbox: Some(inbox), thread: thread.ok(), _network: network.clone() }))
     }
 }
 

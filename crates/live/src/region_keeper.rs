@@ -32,6 +32,8 @@ pub struct RegionKeeper {
     subscription: Option<Subscription>,
     wake: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
+    // A network may end with its last owner.
+    _network: Arc<dyn Network>,
 }
 
 impl RegionKeeper {
@@ -70,7 +72,7 @@ impl RegionKeeper {
             }
         };
         let thread = std::thread::Builder::new().name("regions".into()).spawn(publish);
-        Ok(Self { subscription: Some(subscription), wake: Some(wake), thread: thread.ok() })
+        Ok(Self { subscription: Some(subscription), wake: Some(wake), thread: thread.ok(), _network: network.clone() })
     }
 }
 

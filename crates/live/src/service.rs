@@ -9,18 +9,19 @@ use elbowroom_interlock::Boot;
 use elbowroom_monitor::{RegionKind, RobotSlot};
 use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{BagError, CellWriter, Recorder};
-use elbowroom_view::{Server, ServerSettings, StatusFeed, ViewError};
-use thiserror::Error;
+use elbowroom_view::{Server, ServerSettings, StatusFeed};
 
 use crate::arbiter_service::{ArbiterService, EventHandler};
 use crate::cell_observer::CellObserver;
 use crate::clock::{Clock, boot_number};
-use crate::network::{Network, NetworkError, ZenohNetwork, ZenohSettings};
+use crate::configuration_number::configuration_number;
+use crate::network::{Network, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::RegionKeeper;
+use crate::service_error::ServiceError;
 use crate::simulated_controllers::SimulatedControllers;
 
-/// The address of a service that is told none.
+/// The address of a service without another one.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
 
 /// What a process of a live cell does.
@@ -44,31 +45,6 @@ pub struct ServiceOptions {
     pub on_event: Option<EventHandler>,
 }
 
-/// Why a service does not start.
-#[derive(Debug, Error)]
-pub enum ServiceError {
-    /// The cell cannot be guarded.
-    #[error(transparent)]
-    Cell(#[from] FormatError),
-    /// The network cannot be used.
-    #[error(transparent)]
-    Network(#[from] NetworkError),
-    /// The page cannot be served.
-    #[error("--web: {0}")]
-    Web(#[from] ViewError),
-    /// The recording cannot be written.
-    #[error("--record: {0}")]
-    Recording(#[from] BagError),
-    /// A robot that the cell does not have.
-    #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
-    Robot {
-        /// The name.
-        name: String,
-        /// Those that there are.
-        known: Vec<String>,
-    },
-}
-
 /// A running process of a live cell; it ends when it is dropped.
 pub struct Service {
     // In the order in which they end: controllers stop first.
@@ -79,12 +55,6 @@ pub struct Service {
     observer: Option<CellObserver>,
     server: Option<Server>,
     network: Arc<ZenohNetwork>,
-}
-
-/// The number by which the processes of a cell know that they have loaded the same configuration: the first 8 bytes of its
-/// checksum.
-pub fn configuration_number(cell: &Cell) -> u64 {
-    cell.checksum.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0)
 }
 
 impl Service {

@@ -13,10 +13,11 @@ use elbowroom_sim::motion::{PlanStep, ProgramClock, ProgramPlan, plan};
 
 use crate::client::{ControllerClient, ControllerState};
 use crate::clock::{Clock, boot_number};
+use crate::configuration_number::configuration_number;
 use crate::keys::Keys;
 use crate::network::{Network, Publisher, Subscription, Urgency};
 use crate::region_keeper::SwitchRequest;
-use crate::service::{ServiceError, configuration_number};
+use crate::service_error::ServiceError;
 
 /// A thread that was late by more than this many ticks does not catch up: its robots have stood still meanwhile.
 const MOST_LATE_TICKS: u32 = 5;

@@ -22,7 +22,7 @@ const TICKS_PER_ROBOT: usize = 1024;
 /// The writer looks this often: a thread that waited in the queue would have to be woken by the tick.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Records a live service. A thread of its own writes; what comes faster than it can write is left out and counted.
+/// Records a live service. A thread of its own writes; what is faster than it can write is left out and counted.
 pub struct Recorder {
     queue: SyncSender<Item>,
     shared: Arc<Shared>,
@@ -43,7 +43,7 @@ enum Item {
     Configuration(Box<MonitorConfiguration>, f64),
 }
 
-/// A tick on its way to the file, and the way back.
+/// A tick on its way to the file, and back.
 struct TickBuffer {
     tick: MonitorTick,
     back: SyncSender<Box<TickBuffer>>,

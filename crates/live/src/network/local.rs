@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use super::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
 /// A network within one process. Clones are the same network.
 ///

@@ -1,6 +1,6 @@
 //! A network of UDP datagrams, for controllers without Zenoh: `docs/live.md` has the layout.
 //!
-//! A subscriber tells every process that it knows which key it wants, each second; a publisher sends to those who told it
+//! A subscriber tells every process that it knows which key it wants, each second; a publisher sends to those who did so
 //! within the last three seconds. A datagram is `EU`, version 1, kind (1 subscribe, 2 publish), length of the key (one byte), key,
 //! contents.
 
@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
 const HEADER: [u8; 3] = [b'E', b'U', 1];
 const SUBSCRIBE: u8 = 1;
@@ -35,7 +35,7 @@ pub struct UdpNetwork {
 
 struct Shared {
     socket: UdpSocket,
-    /// Who is told what this process wants.
+    /// Who hears what this process wants.
     peers: Vec<SocketAddr>,
     state: Mutex<State>,
     is_closed: AtomicBool,

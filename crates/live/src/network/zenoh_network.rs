@@ -7,7 +7,7 @@ use zenoh::bytes::Encoding;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait};
 
-use super::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
 /// How a process takes part.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -69,6 +69,8 @@ pub struct Node {
     outbox: Arc<Outbox>,
     threads: Vec<JoinHandle<()>>,
     _subscriptions: Vec<Subscription>,
+    // A network may end with its last owner.
+    _networks: [Arc<dyn Network>; 2],
 }
 
 impl Node {
@@ -114,7 +116,7 @@ impl Node {
         ];
         // Without threads the system cannot do anything else either.
         let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
-        Ok(Self { inbox, outbox, threads, _subscriptions: subscriptions })
+        Ok(Self { inbox, outbox, threads, _subscriptions: subscriptions, _networks: [network, interlocks] })
     }
 }
 

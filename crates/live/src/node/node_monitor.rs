@@ -8,8 +8,8 @@ use elbowroom_monitor::{ConfigError, Monitor, Occupancy, RegionKind, RobotSlot, 
 #[derive(Debug)]
 pub struct NodeMonitor {
     monitor: Inner,
-    /// Per slot what the arbiter was told last.
-    told: Vec<Occupancy>,
+    /// Per slot the occupancy that was reported last.
+    reported: Vec<Occupancy>,
 }
 
 #[derive(Debug)]
@@ -34,11 +34,14 @@ impl NodeMonitor {
         let configuration = setup.configuration.clone();
         let is_exchange = |kind: RegionKind| matches!(kind, RegionKind::Exchange { .. });
         if !configuration.regions().iter().any(|r| is_exchange(r.kind)) {
-            return Ok(Self { monitor: Inner::Alone(Box::new(Monitor::new(configuration, None)?)), told: Vec::new() });
+            return Ok(Self {
+                monitor: Inner::Alone(Box::new(Monitor::new(configuration, None)?)),
+                reported: Vec::new(),
+            });
         }
         let guard = Guard::new(robot, slots, checksum, boot);
         let guarded = GuardedMonitor::new(configuration, guard)?;
-        Ok(Self { monitor: Inner::Guarded(Box::new(guarded)), told: vec![Occupancy::Unknown; slots] })
+        Ok(Self { monitor: Inner::Guarded(Box::new(guarded)), reported: vec![Occupancy::Unknown; slots] })
     }
 
     pub(crate) fn monitor(&self) -> &Monitor {
@@ -81,10 +84,10 @@ impl NodeMonitor {
     pub(super) fn has_news(&mut self) -> bool {
         let Inner::Guarded(guarded) = &self.monitor else { return false };
         let mut has_news = false;
-        for (slot, told) in self.told.iter_mut().enumerate() {
+        for (slot, reported) in self.reported.iter_mut().enumerate() {
             let occupancy = guarded.grants().occupancy(SlotId(slot));
-            has_news |= *told != occupancy;
-            *told = occupancy;
+            has_news |= *reported != occupancy;
+            *reported = occupancy;
         }
         has_news
     }

@@ -1,0 +1,9 @@
+//! A number for the configuration of a cell.
+
+use elbowroom_cell::Cell;
+
+/// The number by which the processes of a cell know that they have loaded the same configuration: the first 8 bytes of its
+/// checksum.
+pub fn configuration_number(cell: &Cell) -> u64 {
+    cell.checksum.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0)
+}

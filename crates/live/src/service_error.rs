@@ -1,0 +1,33 @@
+//! Why a service does not start or end.
+
+use elbowroom_formats::FormatError;
+use elbowroom_rosbag::BagError;
+use elbowroom_view::ViewError;
+use thiserror::Error;
+
+use crate::network::NetworkError;
+
+/// Why a service does not start.
+#[derive(Debug, Error)]
+pub enum ServiceError {
+    /// The cell cannot be guarded.
+    #[error(transparent)]
+    Cell(#[from] FormatError),
+    /// The network cannot be used.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// The page cannot be served.
+    #[error("--web: {0}")]
+    Web(#[from] ViewError),
+    /// The recording cannot be written.
+    #[error("--record: {0}")]
+    Recording(#[from] BagError),
+    /// A robot that the cell does not have.
+    #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
+    Robot {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+}
