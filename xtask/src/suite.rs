@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use xtask::{Failure, browser, python, shell};
+use xtask::{Failure, browser, playwright, python, shell};
 
 use crate::{layers, snippets, terms};
 
@@ -47,10 +47,18 @@ const STEPS: [Step; 12] = [
         what: "committed figures of docs/laws.md are what the laws give",
         check: |c| devtools(c, &["figures", "--check"]),
     },
-    Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
+    Step {
+        name: "python",
+        what: "target/venv with the references for kinematics and recordings",
+        check: install_python,
+    },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
-    Step { name: "browser", what: "the report in headless Chromium: controls, distances, console", check: open_report },
+    Step {
+        name: "browser",
+        what: "report and view in headless Chromium: controls, distances, console",
+        check: open_pages,
+    },
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
@@ -152,7 +160,9 @@ fn tests(context: &Context) -> Result<(), String> {
     let mut env = network(context);
     match &python {
         Some(path) => env.push(("ELBOWROOM_PYTHON", path)),
-        None => println!("target/venv is not ready: the comparison with Pinocchio is skipped"),
+        None => println!(
+            "target/venv is not ready: the comparisons with Pinocchio and with readers of recordings are skipped"
+        ),
     }
     announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)?;
@@ -160,19 +170,27 @@ fn tests(context: &Context) -> Result<(), String> {
         return Ok(());
     }
     let first = "run the step `python` first (cargo xtask test --only python)";
-    Err(format!("all that ran passed, but without the comparison with Pinocchio: {first}, or say --offline"))
+    Err(format!("all that ran passed, but without the comparisons with Python: {first}, or say --offline"))
 }
 
-/// The tests of the page, which pass without a browser, with one.
-fn open_report(context: &Context) -> Result<(), String> {
+/// The tests of the pages, which pass without a browser, with one.
+fn open_pages(context: &Context) -> Result<(), String> {
     let found = if context.offline { browser::find(context.root) } else { Some(browser::install(context.root)?) };
     let Some(browser) = found else {
-        println!("--offline: no Chromium is there, and none is installed: the report is not opened in a browser");
+        println!("--offline: no Chromium is there, and none is installed: report and view are not opened in a browser");
         return Ok(());
     };
-    let path = browser.to_string_lossy();
+    let driver =
+        if context.offline { playwright::ready(context.root) } else { Some(playwright::install(context.root)?) };
+    let (path, driver) = (browser.to_string_lossy(), driver.map(|path| path.to_string_lossy().into_owned()));
     let mut env = network(context);
     env.push(("ELBOWROOM_CHROMIUM", &path));
+    match &driver {
+        Some(python) => env.push(("ELBOWROOM_PLAYWRIGHT", python)),
+        None => {
+            println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser")
+        }
+    }
     shell::cargo(context.root, &["test", "--workspace", "--test", "browser"], &env)
 }
 

@@ -138,6 +138,11 @@ impl Configuration {
         &self.regions
     }
 
+    /// What regions follow; a [`SourceId`](crate::SourceId) is an index into them.
+    pub fn sources(&self) -> &[SourceSpec] {
+        &self.sources
+    }
+
     /// The laws.
     pub fn laws(&self) -> &Laws {
         &self.laws

@@ -21,7 +21,7 @@ use crate::zone_client::{RegionStatus, ZoneClient};
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{
     AccessClass, AttachError, ConfigError, Configuration, Event, EventKind, ExchangeState, Fault, Interlock, Life,
-    OverrideReason, RegionId, RegionKind, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId,
+    OverrideReason, RegionId, RegionKind, SlotGrants, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId,
 };
 
 /// Smallest override by which actual velocities are divided to infer those of the program.
@@ -232,6 +232,30 @@ impl Monitor {
         self.sweep.detach(&self.config, volume)
     }
 
+    /// Forgets where the robot was: the next joint values may be anywhere, and are not [too fast](Fault::TooFast). Call it where
+    /// the robot is known to be at rest, after it was moved while nobody looked. Never allocates.
+    ///
+    /// ```
+    /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+    /// # use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Monitor, Snapshot, Volume};
+    /// # use elbowroom_spatial::{Pose, Vec3};
+    /// # let rail = Joint { name: "rail".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1),
+    /// #     origin: Pose::IDENTITY, axis: Vec3::X, limits: Limits::range(0.0, 2.0), mimic: None };
+    /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
+    /// # let mut monitor = Monitor::new(Configuration::new(ConfigurationParts { robot: "rail".into(), chain,
+    /// #     base_in_world: Pose::IDENTITY, volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![],
+    /// #     sources: vec![], laws: Laws::default() })?, None)?;
+    /// monitor.tick(&Snapshot::stationary(0.0, &[0.0]));
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.002, &[1.0])).speed_override, 0.0); // 1 m in 2 ms
+    /// monitor.forget_position();
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.004, &[1.0])).speed_override, 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn forget_position(&mut self) {
+        self.watchdog.forget_position();
+        self.sweep.reset();
+    }
+
     /// True where a volume is a part of the robot at present.
     pub fn is_attached(&self, volume: VolumeId) -> bool {
         volume.0 < self.config.volumes.len() && self.now.attached.contains(volume.0)
@@ -292,6 +316,12 @@ impl Monitor {
 
     fn may_enter(&self, region: RegionId, now_s: f64) -> bool {
         self.exchange(region).is_some_and(|(client, slot)| client.may_enter(slot, now_s))
+    }
+
+    /// The grants that come from outside of the process: those of [`Interlock::Granted`]. `None` where the robots share an
+    /// arbiter, and without exchange regions.
+    pub fn slot_grants(&self) -> Option<&SlotGrants> {
+        self.zone_client.as_ref()?.slot_grants()
     }
 
     /// State of the robot with respect to an exchange region in the last tick; `None` for any other region.

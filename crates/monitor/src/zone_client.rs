@@ -4,7 +4,7 @@ use crate::event::EventLog;
 use crate::zone_state::ZoneState;
 use crate::{
     ConfigError, Configuration, EventKind, ExchangeState, Grant, Interlock, Occupancy, RegionId, RegionKind, RobotSlot,
-    SlotId, ZoneArbiter,
+    SlotGrants, SlotId, ZoneArbiter,
 };
 
 /// What a tick found at one region.
@@ -108,6 +108,11 @@ impl ZoneClient {
                 grants.found(slot, occupancy, session.exchange_state(), is_near_active_region);
             }
         }
+    }
+
+    /// The grants that the caller writes; `None` where the robots share an arbiter.
+    pub(crate) fn slot_grants(&self) -> Option<&SlotGrants> {
+        if let Interlock::Granted(grants) = &self.interlock { Some(grants) } else { None }
     }
 
     /// Invalidates the published occupancy of a slot, because one of its regions was switched on.

@@ -12,19 +12,21 @@ use crate::scene::ReportScene;
 use crate::scene_data::PageData;
 use crate::summary::duration;
 use crate::tables::{self, escape};
-use crate::{plots, scene_data};
+use crate::{plots, scene_data, shared_assets};
 
 const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
-const THREE: &str = include_str!("../assets/three/three.bundle.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
 /// In order: each uses those before it.
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 11] = [
+    shared_assets::DOM,
+    shared_assets::PACKING,
     include_str!("../assets/report/data.js"),
-    include_str!("../assets/report/kinematics.js"),
+    shared_assets::KINEMATICS,
     include_str!("../assets/report/distance.js"),
     include_str!("../assets/report/cell.js"),
     include_str!("../assets/report/figures.js"),
+    shared_assets::STAGE,
     include_str!("../assets/report/scene.js"),
     include_str!("../assets/report/panel.js"),
     include_str!("../assets/report/player.js"),
@@ -115,7 +117,7 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "scene_data" => out.write_all(deflated(content.data.json.to_string().as_bytes())?.as_bytes())?,
             "arrays" => out.write_all(deflated(&content.data.arrays)?.as_bytes())?,
             "plotly" => out.write_all(deflated(PLOTLY.as_bytes())?.as_bytes())?,
-            "three" => out.write_all(deflated(THREE.as_bytes())?.as_bytes())?,
+            "three" => out.write_all(deflated(shared_assets::THREE.as_bytes())?.as_bytes())?,
             "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
             unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
         }

@@ -12,6 +12,7 @@
 //!
 //! [`write_perception_html`] writes the page of a run with a camera, [`map_pictures`] images of slices of a joint-space
 //! map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
+//! [`cell_data`] and [`shared_assets`] are for other pages with the 3-D scene of a cell.
 //!
 //! ```
 //! use elbowroom_cell::Cell;
@@ -52,6 +53,7 @@ mod results;
 mod run_data;
 mod scene;
 mod scene_data;
+pub mod shared_assets;
 mod spans;
 mod sparkline;
 mod summary;
@@ -60,4 +62,5 @@ mod tables;
 pub use html::{HtmlReport, write_html};
 pub use perception_page::{stage_table, write_perception_html};
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
+pub use scene_data::{PageData, cell_data};
 pub use summary::{TextSummary, summary};

@@ -1,5 +1,6 @@
 //! Data of the 3-D scene and of its distances for the scripts of the page: models once, joint values per frame.
 
+use elbowroom_cell::{Cell, CellRegion};
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_monitor::{Guards, Part, Presence, Volume};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
@@ -28,11 +29,12 @@ pub struct PageData {
 pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
     let regions = runs.first().map_or(&[][..], |(_, rec)| &rec.regions[..]);
     let (mut packer, mut meshes) = (ArrayPacker::default(), PageMeshes::default());
-    let mut pack = Pack { packer: &mut packer, meshes: &mut meshes };
+    let mut pack = Pack { packer: &mut packer, meshes: &mut meshes, measured: true };
+    let moves = |o: &ReportObject| runs.iter().any(|(_, rec)| rec.objects.iter().any(|t| t.name == o.name));
     let json = json!({
         "robots": scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>(),
-        "objects": scene.objects.iter().map(|o| object(o, runs, &mut pack)).collect::<Vec<_>>(),
-        "regions": regions.iter().enumerate().map(|(i, r)| region(scene, i, r, &mut pack)).collect::<Vec<_>>(),
+        "objects": scene.objects.iter().map(|o| object(o, moves(o), &mut pack)).collect::<Vec<_>>(),
+        "regions": regions.iter().enumerate().map(|(i, r)| region(scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
         "runs": runs.iter().map(|(label, rec)| run_data::run(scene, label, rec, pack.packer)).collect::<Vec<_>>(),
     });
     let mut json = json;
@@ -40,9 +42,52 @@ pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
     PageData { json, arrays: packer.bytes().to_vec() }
 }
 
+/// Geometry of a cell at its start, for a page that computes no distances.
+pub fn cell_data(cell: &Cell) -> PageData {
+    let scene = ReportScene::of_cell(cell);
+    let (mut packer, mut meshes) = (ArrayPacker::default(), PageMeshes::default());
+    let mut pack = Pack { packer: &mut packer, meshes: &mut meshes, measured: false };
+    let moves = |i: usize| cell.moving_objects.iter().any(|m| m.object.0 == i);
+    let objects = scene.objects.iter().enumerate().map(|(i, o)| object(o, moves(i), &mut pack)).collect::<Vec<_>>();
+    let mut json = json!({
+        "robots": scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>(),
+        "objects": objects,
+        "regions": cell.regions.iter().enumerate().map(|(i, r)| region(&scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
+    });
+    json["meshes"] = meshes.entries().into();
+    PageData { json, arrays: packer.bytes().to_vec() }
+}
+
 struct Pack<'a> {
     packer: &'a mut ArrayPacker,
     meshes: &'a mut PageMeshes,
+    /// True where the page computes distances: it needs the shapes.
+    measured: bool,
+}
+
+/// A region of a recording or of a cell.
+struct PageRegion<'a> {
+    name: &'a str,
+    kind: &'static str,
+    shape: &'a Shape,
+    warning_m: f64,
+    guards: Guards,
+    robots: &'a [RobotId],
+}
+
+impl<'a> From<&'a RegionTrack> for PageRegion<'a> {
+    fn from(r: &'a RegionTrack) -> Self {
+        let (warning_m, guards) = (r.warning_m, r.guards);
+        Self { name: &r.name, kind: r.kind.name(), shape: &r.shape, warning_m, guards, robots: &r.robots }
+    }
+}
+
+impl<'a> From<&'a CellRegion> for PageRegion<'a> {
+    fn from(r: &'a CellRegion) -> Self {
+        let CellRegion { region, robots, .. } = r;
+        let (name, kind, shape) = (&region.name, region.kind.name(), &region.shape);
+        Self { name, kind, shape, warning_m: region.warning_m, guards: region.guards, robots }
+    }
 }
 
 impl Pack<'_> {
@@ -52,6 +97,9 @@ impl Pack<'_> {
 
     /// A solid as the page measures it; null where its mesh is too large for that.
     fn shape(&mut self, shape: &Shape) -> Value {
+        if !self.measured {
+            return Value::Null;
+        }
         match shape {
             Shape::Sphere(s) => json!({ "kind": "sphere", "radius": s.radius }),
             Shape::Capsule(c) => json!({ "kind": "capsule", "half": c.half_length, "radius": c.radius }),
@@ -128,8 +176,7 @@ fn sliders(chain: &Chain) -> Vec<Value> {
     chain.active_joints().iter().map(slider).collect()
 }
 
-fn object(object: &ReportObject, runs: &[(&str, &Recording)], pack: &mut Pack<'_>) -> Value {
-    let moves = runs.iter().any(|(_, rec)| rec.objects.iter().any(|t| t.name == object.name));
+fn object(object: &ReportObject, moves: bool, pack: &mut Pack<'_>) -> Value {
     let color = if moves { palette::MOVING } else { palette::OBJECT };
     let shape = pack.shape(&object.shape);
     let mesh = match &shape["mesh"] {
@@ -141,17 +188,17 @@ fn object(object: &ReportObject, runs: &[(&str, &Recording)], pack: &mut Pack<'_
     })
 }
 
-fn region(scene: &ReportScene, index: usize, region: &RegionTrack, pack: &mut Pack<'_>) -> Value {
+fn region(scene: &ReportScene, index: usize, region: &PageRegion<'_>, pack: &mut Pack<'_>) -> Value {
     let of_robot = |(i, robot): (usize, &ReportRobot)| {
         let applies = region.robots.contains(&RobotId(i));
         if applies { volumes_for(robot, region.guards) } else { Vec::new() }
     };
-    let shell = region_surface::warning(&region.shape, region.warning_m);
+    let shell = region_surface::warning(region.shape, region.warning_m);
     json!({
-        "name": region.name, "kind": region.kind.name(), "color": palette::of_region(index),
-        "solid": pack.mesh(&region_surface::solid(&region.shape), MeshUse::Drawn),
+        "name": region.name, "kind": region.kind, "color": palette::of_region(index),
+        "solid": pack.mesh(&region_surface::solid(region.shape), MeshUse::Drawn),
         "shell": shell.map(|s| pack.mesh(&s, MeshUse::Drawn)),
-        "shape": pack.shape(&region.shape),
+        "shape": pack.shape(region.shape),
         "measured": scene.robots.iter().enumerate().map(of_robot).collect::<Vec<_>>(),
         "guards_load": Part::Load.counts_for(region.guards),
     })

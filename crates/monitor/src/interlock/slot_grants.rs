@@ -86,11 +86,13 @@ impl SlotGrants {
         self.slots[slot.0].is_near_active_region.load(SeqCst)
     }
 
-    pub(crate) fn may_enter(&self, slot: SlotId) -> bool {
+    /// What [`SlotGrants::write`] wrote last: the robot may enter the slot's regions.
+    pub fn may_enter(&self, slot: SlotId) -> bool {
         self.slots[slot.0].may_enter.load(SeqCst)
     }
 
-    pub(crate) fn must_halt(&self, slot: SlotId) -> bool {
+    /// What [`SlotGrants::write`] wrote last: the robot must halt.
+    pub fn must_halt(&self, slot: SlotId) -> bool {
         self.slots[slot.0].must_halt.load(SeqCst)
     }
 

@@ -24,18 +24,7 @@ const Data = await (async () => {
 
   const [figures, scene, arrays] = await Promise.all([text('plot-data'), text('scene-data'), inflate('array-data'), load('plotly'), load('three')]);
 
-  // Differences to the row before, all low bytes first; 0 stands for NaN.
-  function read({ at, n, width, step, zero }) {
-    const levels = new Uint32Array(n), values = new Float64Array(n);
-    for (let i = 0; i < n; i++) {
-      const coded = (arrays[at + i] | (arrays[at + n + i] << 8) | (arrays[at + 2 * n + i] << 16) | (arrays[at + 3 * n + i] << 24)) >>> 0;
-      const difference = (coded >>> 1) ^ -(coded & 1);
-      levels[i] = difference + (i >= width ? levels[i - width] : 0);
-      values[i] = levels[i] === 0 ? NaN : zero + step * levels[i];
-    }
-    return values;
-  }
-
+  const read = (entry) => Packing.read(arrays, entry);
   const data = JSON.parse(scene);
   data.meshes = data.meshes.map(({ v, i }) => ({ v: read(v), i: Uint32Array.from(read(i)) }));
   for (const run of data.runs) {
@@ -48,11 +37,3 @@ const Data = await (async () => {
   }
   return { ...data, figures: JSON.parse(figures) };
 })();
-
-const byId = (id) => document.getElementById(id);
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const element = (tag, properties = {}, ...children) => {
-  const node = Object.assign(document.createElement(tag), properties);
-  node.append(...children);
-  return node;
-};

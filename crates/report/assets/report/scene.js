@@ -1,153 +1,9 @@
-// The 3-D scene: meshes are uploaded once, an instant only sets poses and colours.
+// The 3-D scene of a run: the cell at an instant, with the paths of the tool centre points.
 const Stage = (() => {
-  const canvas = byId('canvas'), holder = canvas.parentElement, labels = byId('labels');
-  let renderer;
-  try {
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-  } catch (error) {
-    byId('no-webgl').hidden = false;
-    return { show: () => {}, fit: () => {} };
-  }
-
-  // Vertex normals are shared where faces meet at less than 40 degrees and split elsewhere: smooth surfaces, sharp edges.
-  function geometry({ v, i: index }) {
-    const faces = index.length / 3;
-    const normals = new Float32Array(index.length);
-    const around = new Map();
-    const a = new THREE.Vector3(), b = new THREE.Vector3(), c = new THREE.Vector3();
-    for (let f = 0; f < faces; f++) {
-      a.fromArray(v, 3 * index[3 * f]);
-      b.fromArray(v, 3 * index[3 * f + 1]).sub(a);
-      c.fromArray(v, 3 * index[3 * f + 2]).sub(a);
-      b.cross(c).toArray(normals, 3 * f);
-      for (let k = 0; k < 3; k++) {
-        const corner = index[3 * f + k];
-        if (around.has(corner)) around.get(corner).push(f);
-        else around.set(corner, [f]);
-      }
-    }
-    const position = new Float32Array(9 * faces);
-    const normal = new Float32Array(9 * faces);
-    for (let f = 0; f < faces; f++) {
-      a.fromArray(normals, 3 * f);
-      const size = a.length();
-      for (let k = 0; k < 3; k++) {
-        const corner = index[3 * f + k];
-        c.set(0, 0, 0);
-        for (const other of around.get(corner)) {
-          b.fromArray(normals, 3 * other);
-          if (a.dot(b) >= 0.766 * size * b.length()) c.add(b);
-        }
-        c.normalize().toArray(normal, 9 * f + 3 * k);
-        position.set(v.subarray(3 * corner, 3 * corner + 3), 9 * f + 3 * k);
-      }
-    }
-    const out = new THREE.BufferGeometry();
-    out.setAttribute('position', new THREE.BufferAttribute(position, 3));
-    out.setAttribute('normal', new THREE.BufferAttribute(normal, 3));
-    return out;
-  }
-  const geometries = Data.meshes.map(() => null);
-  const meshOf = (index) => (geometries[index] ||= geometry(Data.meshes[index]));
-
-  const scene = new THREE.Scene();
-  const camera = new THREE.PerspectiveCamera(40, 1, 0.01, 200);
-  camera.up.set(0, 0, 1);
-  scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8f96, 2.3));
-  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
-  sun.position.set(2, -3, 5);
-  scene.add(sun);
-
-  const solidMaterial = (color) => new THREE.MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.08, side: THREE.DoubleSide });
-  const glass = (color, opacity) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
-
-  function setPose(object, p) {
-    object.matrixAutoUpdate = false;
-    object.matrix.set(p[0], p[1], p[2], p[9], p[3], p[4], p[5], p[10], p[6], p[7], p[8], p[11], 0, 0, 0, 1);
-    object.matrixWorldNeedsUpdate = true;
-  }
-
-  const robots = Data.robots.map((robot) => robot.solids.map((solid) => {
-    const mesh = new THREE.Mesh(meshOf(solid.mesh), solidMaterial(solid.color));
-    scene.add(mesh);
-    return { mesh, solid };
-  }));
-  const objects = Data.objects.map((object) => {
-    const thing = new THREE.Mesh(meshOf(object.mesh), solidMaterial(object.color));
-    scene.add(thing);
-    return thing;
-  });
-  const regions = Data.regions.map((region) => {
-    const group = new THREE.Group();
-    const solid = new THREE.Mesh(meshOf(region.solid), new THREE.MeshStandardMaterial({ color: region.color, roughness: 0.7, transparent: true, opacity: 0.55 }));
-    const edges = new THREE.LineSegments(new THREE.EdgesGeometry(solid.geometry, 40), new THREE.LineBasicMaterial({ color: region.color }));
-    const shell = region.shell === null ? null : new THREE.Mesh(meshOf(region.shell), glass(region.color, 0.13));
-    group.add(solid, edges);
-    if (shell) { shell.renderOrder = 2; group.add(shell); }
-    scene.add(group);
-    const label = element('div', { className: 'label', textContent: region.name });
-    label.style.borderColor = region.color;
-    labels.append(label);
-    return { group, solid, shell, edges, label };
-  });
-
-  // One line per robot: from its part to the region or object that governs, with the distance.
-  const lines = Data.robots.map(() => {
-    const ends = new THREE.BufferGeometry();
-    ends.setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3));
-    const material = new THREE.LineBasicMaterial({ color: '#c2185b', depthTest: false });
-    const line = new THREE.Line(ends, material);
-    line.frustumCulled = false;
-    line.renderOrder = 5;
-    const dots = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10), new THREE.MeshBasicMaterial({ color: '#c2185b', depthTest: false })));
-    dots.forEach((dot) => { dot.renderOrder = 6; scene.add(dot); });
-    scene.add(line);
-    const label = element('div', { className: 'label line' });
-    labels.append(label);
-    return { line, dots, label };
-  });
-
-  const overrideColor = (v, color = new THREE.Color()) => color.setHSL(0.33 * Math.min(1, Math.max(0, v)), 0.85, 0.45);
-  const tcpDots = Data.robots.map(() => {
-    const dot = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 12), new THREE.MeshBasicMaterial());
-    scene.add(dot);
-    return dot;
-  });
-
-  // Paths of the tool centre points, coloured by the override: red at 0, yellow at 0.5, green at 1.
-  const paths = Data.runs.map((run) => {
-    const group = new THREE.Group();
-    run.robots.forEach((track, i) => {
-      const robot = Data.robots[i], dof = robot ? robot.sliders.length : 0;
-      if (!robot) return;
-      const points = new Float32Array(3 * run.t.length), colors = new Float32Array(3 * run.t.length);
-      for (let frame = 0; frame < run.t.length; frame++) {
-        const q = track.q.subarray(dof * frame, dof * frame + dof);
-        points.set(Cell.tcp(track, Kinematics.links(robot, q), run.t[frame]).slice(9), 3 * frame);
-        overrideColor(track.override[frame]).toArray(colors, 3 * frame);
-      }
-      const line = new THREE.BufferGeometry();
-      line.setAttribute('position', new THREE.BufferAttribute(points, 3));
-      line.setAttribute('color', new THREE.BufferAttribute(colors, 3));
-      group.add(new THREE.Line(line, new THREE.LineBasicMaterial({ vertexColors: true })));
-    });
-    scene.add(group);
-    return group;
-  });
-
   // Corners of the boxes of everything: robots along the runs, objects, regions with their warning zones.
-  function corners() {
+  function corners(boxCorners) {
     const points = [];
-    const add = (mesh, p) => {
-      if (!mesh.box) {
-        const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-        mesh.v.forEach((x, k) => { low[k % 3] = Math.min(low[k % 3], x); high[k % 3] = Math.max(high[k % 3], x); });
-        mesh.box = { low, high };
-      }
-      const { low, high } = mesh.box;
-      const at = (k) => [k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]];
-      for (let k = 0; k < 8; k++) points.push(new THREE.Vector3(...Kinematics.apply(p, at(k))));
-    };
+    const add = (mesh, p) => points.push(...boxCorners(mesh, p));
     Data.runs.forEach((run, r) => {
       if (!run.t.length) return;
       for (let n = 0; n <= 24; n++) {
@@ -157,156 +13,49 @@ const Stage = (() => {
         if (n % 6 === 0) Data.regions.forEach((region, i) => add(Data.meshes[region.shell ?? region.solid], cell.regions[i].pose));
       }
     });
-    if (!points.length) points.push(new THREE.Vector3(-1, -1, 0), new THREE.Vector3(1, 1, 1));
     return points;
   }
-  const points = corners();
-  const bounds = points.reduce(({ low, high }, p) => ({ low: low.min(p), high: high.max(p) }), { low: points[0].clone(), high: points[0].clone() });
-  const center = bounds.low.clone().add(bounds.high).multiplyScalar(0.5);
-  const size = Math.max(0.5, bounds.low.distanceTo(bounds.high));
-  const cells = Math.max(4, Math.ceil(size) * 2);
-  const grid = new THREE.GridHelper(cells * 0.5, cells);
-  grid.rotation.x = Math.PI / 2;
-  grid.position.set(Math.round(center.x), Math.round(center.y), 0);
-  scene.add(grid, new THREE.AxesHelper(0.08 * size));
-  tcpDots.forEach((dot) => dot.scale.setScalar(size * 0.005));
-  lines.forEach(({ dots }) => dots.forEach((dot) => dot.scale.setScalar(size * 0.004)));
+  const stage = createStage(corners, Data.robots.length);
 
-  const controls = new THREE.OrbitControls(camera, canvas);
-  let isFitted = true;
-  controls.addEventListener('start', () => { isFitted = false; });
-  controls.addEventListener('change', () => request());
-
-  // Puts the camera where every corner is just in view: in its own axes, each pair of sides of the view bounds the position.
-  function fit() {
-    const towards = new THREE.Vector3(-0.78, 1.0, -0.62).normalize();
-    const right = towards.clone().cross(camera.up).normalize(), up = right.clone().cross(towards);
-    const tall = 0.92 * Math.tan((camera.fov * Math.PI) / 360), wide = tall * camera.aspect;
-    // |x − cx| ≤ slope · (z − cz) for every point: twice a bound of slope · cz ± cx.
-    const limit = (axis, slope) => {
-      const least = (sign) => Math.min(...points.map((p) => slope * p.dot(towards) + sign * p.dot(axis)));
-      const [less, more] = [least(-1), least(1)];
-      return { c: (more - less) / 2, z: (less + more) / (2 * slope) };
-    };
-    const x = limit(right, wide), y = limit(up, tall), z = Math.min(x.z, y.z);
-    camera.position.set(0, 0, 0).addScaledVector(right, x.c).addScaledVector(up, y.c).addScaledVector(towards, z);
-    const depth = center.clone().sub(camera.position).dot(towards);
-    controls.target.copy(camera.position).addScaledVector(towards, Math.max(0.1, depth));
-    camera.near = size / 500;
-    camera.far = size * 40;
-    camera.updateProjectionMatrix();
-    isFitted = true;
-    controls.update();
-    request();
-  }
-
-  // A label above a point of the world, moved up or down where it would cover another one; hidden where the point is out of view.
-  function put(label, point, placed) {
-    const p = point.clone().project(camera);
-    label.hidden = Math.abs(p.x) > 1 || Math.abs(p.y) > 1 || p.z > 1;
-    if (label.hidden) return;
-    const w = label.offsetWidth, h = label.offsetHeight;
-    const left = Math.min(Math.max(((p.x + 1) / 2) * holder.clientWidth - w / 2, 0), Math.max(0, holder.clientWidth - w));
-    const above = ((1 - p.y) / 2) * holder.clientHeight - 1.2 * h;
-    const covers = (top) => placed.some((o) => left < o.left + o.w && o.left < left + w && top < o.top + o.h && o.top < top + h);
-    const shifts = [0, 1, -1, 2, -2, 3, -3].map((n) => above + n * (h + 1));
-    const top = shifts.find((y) => !covers(y)) ?? above;
-    placed.push({ left, top, w, h });
-    label.style.transform = `translate(${left}px, ${top}px)`;
-  }
-
-  let shown = null;
-  function placeLabels() {
-    if (!shown) return;
-    const placed = [];
-    lines.forEach(({ label }, robot) => {
-      const pair = shown.lines[robot];
-      label.hidden = !pair;
-      if (pair) put(label, new THREE.Vector3(...pair.onA).add(new THREE.Vector3(...pair.onB)).multiplyScalar(0.5), placed);
+  // Paths of the tool centre points, coloured by the override: red at 0, yellow at 0.5, green at 1.
+  const paths = !stage.works ? [] : Data.runs.map((run) => {
+    const group = new THREE.Group();
+    run.robots.forEach((track, i) => {
+      const robot = Data.robots[i], dof = robot ? robot.sliders.length : 0;
+      if (!robot) return;
+      const points = new Float32Array(3 * run.t.length), colors = new Float32Array(3 * run.t.length);
+      for (let frame = 0; frame < run.t.length; frame++) {
+        const q = track.q.subarray(dof * frame, dof * frame + dof);
+        points.set(Cell.tcp(track, Kinematics.links(robot, q), run.t[frame]).slice(9), 3 * frame);
+        stage.overrideColor(track.override[frame]).toArray(colors, 3 * frame);
+      }
+      const line = new THREE.BufferGeometry();
+      line.setAttribute('position', new THREE.BufferAttribute(points, 3));
+      line.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+      group.add(new THREE.Line(line, new THREE.LineBasicMaterial({ vertexColors: true })));
     });
-    regions.forEach(({ label }, i) => {
-      const p = shown.cell.regions[i].pose;
-      put(label, new THREE.Vector3(p[9], p[10], p[11]), placed);
-    });
-  }
-
-  function showRegion(i, cell) {
-    const { group, solid, shell, edges, label } = regions[i];
-    const { pose, active } = cell.regions[i], { t, run } = cell;
-    setPose(group, pose);
-    const during = (spans) => !cell.moved && spans.some(([, begin, end]) => t >= begin && t <= end);
-    const inside = during(run.regions[i].inside), warned = during(run.regions[i].warning);
-    solid.material.opacity = active ? (inside ? 0.85 : 0.55) : 0.1;
-    solid.material.emissive.set(active && inside ? Data.regions[i].color : '#000000');
-    edges.visible = active;
-    if (shell) { shell.visible = active; shell.material.opacity = inside || warned ? 0.26 : 0.11; }
-    const state = !active ? ' (off)' : inside ? ' (inside)' : warned ? ' (warning)' : '';
-    label.textContent = Data.regions[i].name + state;
-    label.classList.toggle('off', !active);
-  }
-
-  function showLine(robot, pair) {
-    const { line, dots, label } = lines[robot];
-    line.visible = Boolean(pair);
-    dots.forEach((dot) => { dot.visible = Boolean(pair); });
-    if (!pair) return;
-    const ends = line.geometry.attributes.position;
-    ends.array.set([...pair.onA, ...pair.onB]);
-    ends.needsUpdate = true;
-    dots[0].position.set(...pair.onA);
-    dots[1].position.set(...pair.onB);
-    label.textContent = `${pair.part} – ${pair.target.name} ${millimetres(pair.distance)}`;
-  }
+    stage.add(group);
+    return group;
+  });
 
   // Shows a cell; per robot a line to show, or null.
   function show(runIndex, cell, pairs) {
-    shown = { cell, lines: pairs };
+    const { t, run } = cell;
+    const during = (spans) => !cell.moved && spans.some(([, begin, end]) => t >= begin && t <= end);
+    const region = ({ pose, active }, i) => {
+      const inside = during(run.regions[i].inside), warned = during(run.regions[i].warning);
+      return { pose, active, inside, warned, state: !active ? 'off' : inside ? 'inside' : warned ? 'warning' : '' };
+    };
+    const line = (pair) => pair && { ...pair, text: `${pair.part} – ${pair.target.name} ${millimetres(pair.distance)}` };
     paths.forEach((path, i) => { path.visible = i === runIndex; });
-    robots.forEach((solids, i) => {
-      solids.forEach(({ mesh, solid }) => {
-        mesh.visible = !cell.absent[i].includes(solid.link);
-        setPose(mesh, Kinematics.multiply(cell.links[i][solid.link], solid.pose));
-      });
-      tcpDots[i].position.set(...Cell.tcp(cell.run.robots[i], cell.links[i], cell.t).slice(9));
-      overrideColor(cell.moved ? 1 : cell.run.robots[i].override[cell.frame.frame], tcpDots[i].material.color);
-      showLine(i, pairs[i]);
-    });
-    objects.forEach((object, i) => setPose(object, cell.objects[i].pose));
-    regions.forEach((_, i) => showRegion(i, cell));
-    request();
-  }
-
-  let waiting = false;
-  function request() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      renderer.render(scene, camera);
-      placeLabels();
+    stage.show({
+      robots: cell.links.map((links, i) => ({
+        links, absent: cell.absent[i], tcp: Cell.tcp(run.robots[i], links, t).slice(9),
+        level: cell.moved ? 1 : run.robots[i].override[cell.frame.frame],
+      })),
+      objects: cell.objects, regions: cell.regions.map(region), lines: pairs.map(line),
     });
   }
 
-  function theme() {
-    const dark = window.matchMedia('(prefers-color-scheme: dark)').matches;
-    scene.background = new THREE.Color(dark ? '#1a2027' : '#f4f6f8');
-    grid.material.color.set(dark ? '#5a6673' : '#b9c2cb');
-    grid.material.vertexColors = false;
-    grid.material.needsUpdate = true;
-    lines.forEach(({ line, dots }) => [line, ...dots].forEach((part) => part.material.color.set(dark ? '#ff7ab0' : '#c2185b')));
-    request();
-  }
-  window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', theme);
-  theme();
-
-  new ResizeObserver(() => {
-    const { clientWidth: w, clientHeight: h } = holder;
-    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    renderer.setSize(w, h, false);
-    camera.aspect = w / Math.max(1, h);
-    camera.updateProjectionMatrix();
-    if (isFitted) fit(); else request();
-  }).observe(holder);
-
-  return { show, fit };
+  return { show, fit: stage.fit };
 })();

@@ -1,0 +1,329 @@
+// The 3-D scene: meshes are uploaded once, an instant only sets poses and colours.
+//
+// `corners` answers points of the world that the view shall show; `lineCount` is the number of lines with a distance. Without
+// WebGL all functions do nothing.
+function createStage(corners, lineCount) {
+  const canvas = byId('canvas'), holder = canvas.parentElement, labels = byId('labels');
+  // Without a graphics card the processor draws: then smooth edges and shining surfaces cost more than half of the time.
+  const isSoftware = (() => {
+    const gl = document.createElement('canvas').getContext('webgl2');
+    if (!gl) return false;
+    const info = gl.getExtension('WEBGL_debug_renderer_info');
+    const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+    gl.getExtension('WEBGL_lose_context')?.loseContext();
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
+  })();
+  let renderer;
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware });
+  } catch (error) {
+    byId('no-webgl').hidden = false;
+    return { works: false, show: () => {}, fit: () => {}, look: () => {}, rendered: () => 0, onRender: () => {}, theme: () => {}, request: () => {}, add: () => {} };
+  }
+
+  // Vertex normals are shared where faces meet at less than 40 degrees and split elsewhere: smooth surfaces, sharp edges.
+  function geometry({ v, i: index }) {
+    const faces = index.length / 3;
+    const normals = new Float32Array(index.length);
+    const around = new Map();
+    const a = new THREE.Vector3(), b = new THREE.Vector3(), c = new THREE.Vector3();
+    for (let f = 0; f < faces; f++) {
+      a.fromArray(v, 3 * index[3 * f]);
+      b.fromArray(v, 3 * index[3 * f + 1]).sub(a);
+      c.fromArray(v, 3 * index[3 * f + 2]).sub(a);
+      b.cross(c).toArray(normals, 3 * f);
+      for (let k = 0; k < 3; k++) {
+        const corner = index[3 * f + k];
+        if (around.has(corner)) around.get(corner).push(f);
+        else around.set(corner, [f]);
+      }
+    }
+    const position = new Float32Array(9 * faces);
+    const normal = new Float32Array(9 * faces);
+    for (let f = 0; f < faces; f++) {
+      a.fromArray(normals, 3 * f);
+      const size = a.length();
+      for (let k = 0; k < 3; k++) {
+        const corner = index[3 * f + k];
+        c.set(0, 0, 0);
+        for (const other of around.get(corner)) {
+          b.fromArray(normals, 3 * other);
+          if (a.dot(b) >= 0.766 * size * b.length()) c.add(b);
+        }
+        c.normalize().toArray(normal, 9 * f + 3 * k);
+        position.set(v.subarray(3 * corner, 3 * corner + 3), 9 * f + 3 * k);
+      }
+    }
+    const out = new THREE.BufferGeometry();
+    out.setAttribute('position', new THREE.BufferAttribute(position, 3));
+    out.setAttribute('normal', new THREE.BufferAttribute(normal, 3));
+    return out;
+  }
+  const geometries = Data.meshes.map(() => null);
+  const meshOf = (index) => (geometries[index] ||= geometry(Data.meshes[index]));
+
+  const scene = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(40, 1, 0.01, 200);
+  camera.up.set(0, 0, 1);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8f96, 2.3));
+  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  sun.position.set(2, -3, 5);
+  scene.add(sun);
+
+  const lit = (look, shine) => (isSoftware ? new THREE.MeshLambertMaterial(look) : new THREE.MeshStandardMaterial({ ...look, ...shine }));
+  const solidMaterial = (color) => lit({ color, side: THREE.DoubleSide }, { roughness: 0.55, metalness: 0.08 });
+  const glass = (color, opacity) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
+
+  function setPose(object, p) {
+    object.matrixAutoUpdate = false;
+    object.matrix.set(p[0], p[1], p[2], p[9], p[3], p[4], p[5], p[10], p[6], p[7], p[8], p[11], 0, 0, 0, 1);
+    object.matrixWorldNeedsUpdate = true;
+  }
+
+  const robots = Data.robots.map((robot) => robot.solids.map((solid) => {
+    const mesh = new THREE.Mesh(meshOf(solid.mesh), solidMaterial(solid.color));
+    scene.add(mesh);
+    return { mesh, solid };
+  }));
+  const objects = Data.objects.map((object) => {
+    const thing = new THREE.Mesh(meshOf(object.mesh), solidMaterial(object.color));
+    scene.add(thing);
+    return thing;
+  });
+  const regions = Data.regions.map((region) => {
+    const group = new THREE.Group();
+    const solid = new THREE.Mesh(meshOf(region.solid), lit({ color: region.color, transparent: true, opacity: 0.55 }, { roughness: 0.7 }));
+    const edges = new THREE.LineSegments(new THREE.EdgesGeometry(solid.geometry, 40), new THREE.LineBasicMaterial({ color: region.color }));
+    const shell = region.shell === null ? null : new THREE.Mesh(meshOf(region.shell), glass(region.color, 0.13));
+    group.add(solid, edges);
+    if (shell) { shell.renderOrder = 2; group.add(shell); }
+    scene.add(group);
+    const label = element('div', { className: 'label', textContent: region.name });
+    label.style.borderColor = region.color;
+    labels.append(label);
+    return { group, solid, shell, edges, label };
+  });
+
+  // Lines between two points, with the distance.
+  const lines = Array.from({ length: lineCount }, () => {
+    const ends = new THREE.BufferGeometry();
+    ends.setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3));
+    const material = new THREE.LineBasicMaterial({ color: '#c2185b', depthTest: false });
+    const line = new THREE.Line(ends, material);
+    line.frustumCulled = false;
+    line.renderOrder = 5;
+    const dots = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10), new THREE.MeshBasicMaterial({ color: '#c2185b', depthTest: false })));
+    dots.forEach((dot) => { dot.renderOrder = 6; scene.add(dot); });
+    scene.add(line);
+    const label = element('div', { className: 'label line' });
+    labels.append(label);
+    return { line, dots, label };
+  });
+
+  const overrideColor = (v, color = new THREE.Color()) => color.setHSL(0.33 * Math.min(1, Math.max(0, v)), 0.85, 0.45);
+  const tcpDots = Data.robots.map(() => {
+    const dot = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 12), new THREE.MeshBasicMaterial());
+    scene.add(dot);
+    return dot;
+  });
+
+  // Corners of the box of a mesh at a pose.
+  function boxCorners(mesh, p) {
+    if (!mesh.box) {
+      const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+      mesh.v.forEach((x, k) => { low[k % 3] = Math.min(low[k % 3], x); high[k % 3] = Math.max(high[k % 3], x); });
+      mesh.box = { low, high };
+    }
+    const { low, high } = mesh.box;
+    const at = (k) => [k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]];
+    return Array.from({ length: 8 }, (_, k) => new THREE.Vector3(...Kinematics.apply(p, at(k))));
+  }
+  const points = corners(boxCorners);
+  if (!points.length) points.push(new THREE.Vector3(-1, -1, 0), new THREE.Vector3(1, 1, 1));
+  const bounds = points.reduce(({ low, high }, p) => ({ low: low.min(p), high: high.max(p) }), { low: points[0].clone(), high: points[0].clone() });
+  const center = bounds.low.clone().add(bounds.high).multiplyScalar(0.5);
+  const size = Math.max(0.5, bounds.low.distanceTo(bounds.high));
+  const cells = Math.max(4, Math.ceil(size) * 2);
+  const grid = new THREE.GridHelper(cells * 0.5, cells);
+  grid.rotation.x = Math.PI / 2;
+  grid.position.set(Math.round(center.x), Math.round(center.y), 0);
+  scene.add(grid, new THREE.AxesHelper(0.08 * size));
+  tcpDots.forEach((dot) => dot.scale.setScalar(size * 0.005));
+  lines.forEach(({ dots }) => dots.forEach((dot) => dot.scale.setScalar(size * 0.004)));
+
+  const controls = new THREE.OrbitControls(camera, canvas);
+  let isFitted = true;
+  controls.addEventListener('start', () => { isFitted = false; });
+  controls.addEventListener('change', () => request());
+
+  // Puts the camera where every corner is just in view: in its own axes, each pair of sides of the view bounds the position.
+  // The direction in which it looks when the view is fitted.
+  const oblique = [-0.78, 1.0, -0.62];
+  let direction = oblique;
+
+  // Looks along a direction.
+  function look(along) {
+    direction = along;
+    const towards = new THREE.Vector3(...along).normalize();
+    const right = towards.clone().cross(camera.up).normalize(), up = right.clone().cross(towards);
+    const tall = 0.92 * Math.tan((camera.fov * Math.PI) / 360), wide = tall * camera.aspect;
+    // |x − cx| ≤ slope · (z − cz) for every point: twice a bound of slope · cz ± cx.
+    const limit = (axis, slope) => {
+      const least = (sign) => Math.min(...points.map((p) => slope * p.dot(towards) + sign * p.dot(axis)));
+      const [less, more] = [least(-1), least(1)];
+      return { c: (more - less) / 2, z: (less + more) / (2 * slope) };
+    };
+    const x = limit(right, wide), y = limit(up, tall), z = Math.min(x.z, y.z);
+    camera.position.set(0, 0, 0).addScaledVector(right, x.c).addScaledVector(up, y.c).addScaledVector(towards, z);
+    const depth = center.clone().sub(camera.position).dot(towards);
+    controls.target.copy(camera.position).addScaledVector(towards, Math.max(0.1, depth));
+    camera.near = size / 500;
+    camera.far = size * 40;
+    camera.updateProjectionMatrix();
+    isFitted = true;
+    controls.update();
+    request();
+  }
+  const fit = () => look(oblique);
+
+  // A label above a point of the world, moved up or down where it would cover another one; hidden where the point is out of view.
+  function put(label, point, placed) {
+    const p = point.clone().project(camera);
+    label.hidden = Math.abs(p.x) > 1 || Math.abs(p.y) > 1 || p.z > 1;
+    if (label.hidden) return;
+    const w = label.offsetWidth, h = label.offsetHeight;
+    const left = Math.min(Math.max(((p.x + 1) / 2) * holder.clientWidth - w / 2, 0), Math.max(0, holder.clientWidth - w));
+    const above = ((1 - p.y) / 2) * holder.clientHeight - 1.2 * h;
+    const covers = (top) => placed.some((o) => left < o.left + o.w && o.left < left + w && top < o.top + o.h && o.top < top + h);
+    const shifts = [0, 1, -1, 2, -2, 3, -3].map((n) => above + n * (h + 1));
+    const top = shifts.find((y) => !covers(y)) ?? above;
+    placed.push({ left, top, w, h });
+    label.style.transform = `translate(${left}px, ${top}px)`;
+  }
+
+  let shown = null;
+  function placeLabels() {
+    if (!shown) return;
+    const placed = [];
+    lines.forEach(({ label }, i) => {
+      const line = shown.lines[i];
+      label.hidden = !line;
+      if (line) put(label, new THREE.Vector3(...line.onA).add(new THREE.Vector3(...line.onB)).multiplyScalar(0.5), placed);
+    });
+    regions.forEach(({ label }, i) => {
+      const p = shown.regions[i].pose;
+      put(label, new THREE.Vector3(p[9], p[10], p[11]), placed);
+    });
+  }
+
+  function showRegion(i, { pose, active, inside, warned, state }) {
+    const { group, solid, shell, edges, label } = regions[i];
+    setPose(group, pose);
+    solid.material.opacity = active ? (inside ? 0.85 : 0.55) : 0.1;
+    solid.material.emissive.set(active && inside ? Data.regions[i].color : '#000000');
+    edges.visible = active;
+    if (shell) { shell.visible = active; shell.material.opacity = inside || warned ? 0.26 : 0.11; }
+    label.textContent = Data.regions[i].name + (state ? ` (${state})` : '');
+    label.classList.toggle('off', !active);
+  }
+
+  function showLine(i, shownLine) {
+    const { line, dots, label } = lines[i];
+    line.visible = Boolean(shownLine);
+    dots.forEach((dot) => { dot.visible = Boolean(shownLine); });
+    if (!shownLine) return;
+    const ends = line.geometry.attributes.position;
+    ends.array.set([...shownLine.onA, ...shownLine.onB]);
+    ends.needsUpdate = true;
+    dots[0].position.set(...shownLine.onA);
+    dots[1].position.set(...shownLine.onB);
+    label.textContent = shownLine.text;
+  }
+
+  // Shows an instant: per robot { links, absent, tcp, level }, the level from 0 to 1 or null; per object { pose }; per region
+  // { pose, active, inside, warned, state }; per line { onA, onB, text } or null.
+  function show(instant) {
+    shown = instant;
+    robots.forEach((solids, i) => {
+      const { links, absent, tcp, level } = instant.robots[i];
+      solids.forEach(({ mesh, solid }) => {
+        mesh.visible = !absent.includes(solid.link);
+        setPose(mesh, Kinematics.multiply(links[solid.link], solid.pose));
+      });
+      tcpDots[i].visible = Boolean(tcp);
+      if (tcp) tcpDots[i].position.set(...tcp);
+      overrideColor(level ?? 1, tcpDots[i].material.color);
+    });
+    lines.forEach((_, i) => showLine(i, instant.lines[i]));
+    objects.forEach((object, i) => setPose(object, instant.objects[i].pose));
+    instant.regions.forEach((region, i) => showRegion(i, region));
+    request();
+  }
+
+  // Pixels are larger while pictures follow each other slowly, and as fine as the screen's again when the scene rests.
+  const COARSEST = 0.5, SLOW_MS = 40, QUICK_MS = 20, REST_MS = 500;
+  const finest = () => Math.min(2, window.devicePixelRatio || 1);
+  let ratio = finest(), slow = 0, quick = 0, resting = 0;
+  function setRatio(to) {
+    ratio = Math.min(finest(), Math.max(COARSEST, to));
+    slow = 0;
+    quick = 0;
+    renderer.setPixelRatio(ratio);
+  }
+  function adapt() {
+    const begin = performance.now();
+    requestAnimationFrame(() => {
+      const took = performance.now() - begin;
+      slow = took > SLOW_MS ? slow + 1 : Math.max(0, slow - 1);
+      quick = took < QUICK_MS ? quick + 1 : 0;
+      if (slow >= 4 && ratio > COARSEST) setRatio(ratio * 0.8);
+      else if (quick >= 120 && ratio < finest()) setRatio(ratio * 1.25);
+    });
+    clearTimeout(resting);
+    if (ratio < finest()) resting = setTimeout(() => { if (!waiting) { setRatio(finest()); request(); } }, REST_MS);
+  }
+
+  let waiting = false, rendered = 0, beforeRender = () => {};
+  function request() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      rendered += 1;
+      beforeRender();
+      renderer.render(scene, camera);
+      adapt();
+      placeLabels();
+    });
+  }
+
+  function theme() {
+    const chosen = document.documentElement.dataset.theme;
+    const dark = chosen ? chosen === 'dark' : window.matchMedia('(prefers-color-scheme: dark)').matches;
+    scene.background = new THREE.Color(dark ? '#1a2027' : '#f4f6f8');
+    grid.material.color.set(dark ? '#5a6673' : '#b9c2cb');
+    grid.material.vertexColors = false;
+    grid.material.needsUpdate = true;
+    lines.forEach(({ line, dots }) => [line, ...dots].forEach((part) => part.material.color.set(dark ? '#ff7ab0' : '#c2185b')));
+    request();
+  }
+  window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', theme);
+  theme();
+
+  new ResizeObserver(() => {
+    const { clientWidth: w, clientHeight: h } = holder;
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(w, h, false);
+    camera.aspect = w / Math.max(1, h);
+    camera.updateProjectionMatrix();
+    if (isFitted) look(direction); else request();
+  }).observe(holder);
+
+  return {
+    works: true, show, fit, look, theme, request, overrideColor, camera, canvas, controls, size,
+    add: (thing) => scene.add(thing),
+    rendered: () => rendered,
+    pixelRatio: () => ratio,
+    onRender: (f) => { beforeRender = f; },
+  };
+}

@@ -1,0 +1,97 @@
+//! What waits for the engine: the newest status, and the commands of the pages.
+
+use std::collections::VecDeque;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use elbowroom_status::CellStatus;
+
+use crate::event_log::EventLog;
+use crate::source::Command;
+
+/// Commands that wait at most; older ones are dropped.
+const MAX_COMMANDS: usize = 64;
+
+/// The newest of everything. Nobody holds its lock for longer than it takes to move a value.
+#[derive(Debug, Default)]
+pub(crate) struct Inbox {
+    waiting: Mutex<Waiting>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    status: Option<CellStatus>,
+    events: EventLog,
+    commands: VecDeque<Command>,
+    stopped: bool,
+}
+
+/// What the engine takes at once.
+#[derive(Debug, Default)]
+pub(crate) struct Taken {
+    pub(crate) status: Option<CellStatus>,
+    pub(crate) commands: VecDeque<Command>,
+    pub(crate) stopped: bool,
+}
+
+impl Inbox {
+    /// Replaces a status that nobody has taken; its events are kept.
+    pub(crate) fn publish(&self, mut status: CellStatus) {
+        let events = std::mem::take(&mut status.events);
+        let replaced = {
+            let mut waiting = self.lock();
+            waiting.events.extend(events);
+            waiting.status.replace(status)
+        };
+        self.changed.notify_one();
+        // Freed without the lock.
+        drop(replaced);
+    }
+
+    /// Adds a command. One that moves the same robot in the same way, and has not been carried out, is replaced.
+    pub(crate) fn command(&self, command: Command) {
+        let mut waiting = self.lock();
+        waiting.commands.retain(|other| !command.replaces(other));
+        if waiting.commands.len() == MAX_COMMANDS {
+            waiting.commands.pop_front();
+        }
+        waiting.commands.push_back(command);
+        drop(waiting);
+        self.changed.notify_one();
+    }
+
+    /// Ends [`Self::take`].
+    pub(crate) fn stop(&self) {
+        self.lock().stopped = true;
+        self.changed.notify_one();
+    }
+
+    /// What has come since the last call, at once or when something comes; empty after the time.
+    pub(crate) fn take(&self, at_most: Duration) -> Taken {
+        let waiting = self.lock();
+        let is_empty = |w: &mut Waiting| w.status.is_none() && w.commands.is_empty() && !w.stopped;
+        let (mut waiting, _) =
+            self.changed.wait_timeout_while(waiting, at_most, is_empty).unwrap_or_else(PoisonError::into_inner);
+        Taken {
+            status: waiting.status.take(),
+            commands: std::mem::take(&mut waiting.commands),
+            stopped: waiting.stopped,
+        }
+    }
+
+    /// Runs with the events so far.
+    pub(crate) fn with_events<R>(&self, use_them: impl FnOnce(&EventLog) -> R) -> R {
+        use_them(&self.lock().events)
+    }
+
+    /// Adds events.
+    pub(crate) fn add_events(&self, events: Vec<elbowroom_status::EventStatus>) {
+        self.lock().events.extend(events);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        // A panic elsewhere leaves the values whole.
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

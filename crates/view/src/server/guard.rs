@@ -1,0 +1,126 @@
+//! Which requests are answered: known hosts, pages of this server, no bodies.
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+
+/// The names under which the server is reached.
+#[derive(Debug, Clone)]
+pub(crate) struct Hosts {
+    hosts: Vec<String>,
+    policy: HeaderValue,
+}
+
+impl Hosts {
+    pub(crate) fn new(hosts: Vec<String>) -> Self {
+        // `'self'` includes the WebSocket in browsers of this decade; a policy cannot name a host in brackets.
+        let named = hosts.iter().filter(|host| !host.starts_with('['));
+        let sockets: String = named.map(|host| format!(" ws://{host}")).collect();
+        let policy = format!(
+            "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'{sockets}; \
+             base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        );
+        let policy = HeaderValue::from_str(&policy).unwrap_or(HeaderValue::from_static("default-src 'none'"));
+        Self { hosts, policy }
+    }
+
+    /// The one `Host` of a request, where it is one of this server: another one is a name that somebody made resolve to this
+    /// computer (DNS rebinding).
+    fn host<'h>(&self, headers: &'h HeaderMap) -> Option<&'h str> {
+        let host = only(headers, &header::HOST)?;
+        self.hosts.iter().any(|known| known == host).then_some(host)
+    }
+
+    /// True where a WebSocket is opened by a page of this server: browsers let any page open one to any server, and say which.
+    pub(crate) fn is_own_page(&self, headers: &HeaderMap) -> bool {
+        let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
+        origin.is_some() && origin == self.host(headers)
+    }
+}
+
+/// The value of a header that is there once.
+fn only<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
+    let mut values = headers.get_all(name).iter();
+    let value = values.next()?.to_str().ok()?;
+    values.next().is_none().then_some(value)
+}
+
+/// Refuses what no page of this server sends, and adds what tells browsers to keep it to themselves.
+pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Next) -> Response {
+    let mut response = match refusal(&hosts, &request) {
+        Some((status, why)) => (status, why).into_response(),
+        None => next.run(request).await,
+    };
+    let is_upgrade = response.status() == StatusCode::SWITCHING_PROTOCOLS;
+    let headers = response.headers_mut();
+    if !is_upgrade {
+        // One request per connection: none is kept for nothing.
+        headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
+    headers.insert(header::CONTENT_SECURITY_POLICY, hosts.policy.clone());
+    for (name, value) in [
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+        (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+        (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+fn refusal(hosts: &Hosts, request: &Request) -> Option<(StatusCode, &'static str)> {
+    let headers = request.headers();
+    if hosts.host(headers).is_none() {
+        return Some((StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n"));
+    }
+    if !matches!(*request.method(), Method::GET | Method::HEAD) {
+        return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET is served here\n"));
+    }
+    let length = headers.get(header::CONTENT_LENGTH);
+    if length.is_some_and(|length| length != "0") || headers.contains_key(header::TRANSFER_ENCODING) {
+        return Some((StatusCode::PAYLOAD_TOO_LARGE, "no request has a body here\n"));
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn headers(pairs: &[(&'static str, &'static str)]) -> HeaderMap {
+        let mut headers = HeaderMap::new();
+        for (name, value) in pairs {
+            headers.append(*name, HeaderValue::from_static(value));
+        }
+        headers
+    }
+
+    #[test]
+    fn only_pages_of_this_server_are_own() {
+        let hosts = Hosts::new(crate::settings::hosts("127.0.0.1:8080".parse().unwrap()));
+        let is_own = |pairs: &[_]| hosts.is_own_page(&headers(pairs));
+        assert!(is_own(&[("host", "127.0.0.1:8080"), ("origin", "http://127.0.0.1:8080")]));
+        assert!(is_own(&[("host", "localhost:8080"), ("origin", "http://localhost:8080")]));
+        assert!(is_own(&[("host", "[::1]:8080"), ("origin", "http://[::1]:8080")]));
+        for origin in [
+            "http://evil.example",
+            "null",
+            "",
+            "http://127.0.0.1:8081",
+            "https://127.0.0.1:8080",
+            "http://127.0.0.1:8080.evil.example",
+            "http://localhost:8080",
+            "http://127.0.0.1:8080/",
+        ] {
+            assert!(!is_own(&[("host", "127.0.0.1:8080"), ("origin", origin)]), "{origin}");
+        }
+        assert!(!is_own(&[("host", "127.0.0.1:8080")]));
+        assert!(!is_own(&[("host", "evil.example"), ("origin", "http://evil.example")]));
+        let two = [("host", "127.0.0.1:8080"), ("host", "evil.example"), ("origin", "http://127.0.0.1:8080")];
+        assert!(!is_own(&two));
+    }
+}

@@ -1,0 +1,76 @@
+//! Where the shown status comes from, and what a page may change.
+
+use elbowroom_status::{CellStatus, EventStatus};
+use serde::Deserialize;
+
+/// A command of a page.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
+pub(crate) enum Command {
+    /// Sets joint values, rad or m.
+    Jog {
+        /// Index of the robot in the cell.
+        robot: usize,
+        /// One value per joint.
+        q: Vec<f64>,
+    },
+    /// Moves the tool centre point in the world.
+    Tcp {
+        /// Index of the robot in the cell.
+        robot: usize,
+        /// Where to, m.
+        position_m: [f64; 3],
+        /// The rotation, `[x, y, z, w]`; none keeps the present one.
+        #[serde(default)]
+        quaternion_xyzw: Option<[f64; 4]>,
+    },
+    /// Moves all robots to their start.
+    Home {},
+}
+
+impl Command {
+    /// True where it makes an earlier command pointless.
+    pub(crate) fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::Jog { robot: a, .. } | Self::Tcp { robot: a, .. },
+                Self::Jog { robot: b, .. } | Self::Tcp { robot: b, .. },
+            ) => a == b,
+            (Self::Home {}, _) => true,
+            _ => false,
+        }
+    }
+}
+
+/// Where the shown status comes from.
+pub(crate) trait ViewSource {
+    /// What a page may do: `watch` or `jog`.
+    fn mode(&self) -> &'static str;
+
+    /// Carries out a command.
+    ///
+    /// # Errors
+    /// Why not, for the person at the page.
+    fn command(&mut self, command: Command) -> Result<(), String>;
+
+    /// The status after commands, with what happened; `None` where it does not come from here.
+    fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)>;
+}
+
+/// A running cell: its statuses come through the feed, and pages change nothing.
+#[derive(Debug)]
+pub(crate) struct RunningCell;
+
+impl ViewSource for RunningCell {
+    fn mode(&self) -> &'static str {
+        "watch"
+    }
+
+    fn command(&mut self, _: Command) -> Result<(), String> {
+        Err("this page shows a running cell: its robots are moved by their controllers".into())
+    }
+
+    fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)> {
+        None
+    }
+}

@@ -1,0 +1,41 @@
+//! Playwright, which drives the browser in the tests of the view. It brings no browser, and downloads none.
+
+use std::path::{Path, PathBuf};
+
+use crate::shell;
+
+/// Pinned, so that the tests are driven in the same way everywhere.
+const PACKAGE: &str = "playwright==1.65.2";
+/// Proves that what is installed is what is pinned, and starts.
+const PROBE: &str = "import importlib.metadata as m, playwright.sync_api; assert m.version('playwright') == '1.65.2'";
+const FOLDER: &str = "target/playwright";
+
+/// The Python that has it, where it is there.
+pub fn ready(root: &Path) -> Option<PathBuf> {
+    let python = root.join(FOLDER).join("bin/python");
+    shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
+}
+
+/// The Python that has it, from PyPI where it is not there.
+///
+/// # Errors
+/// Where it cannot be had; the message says what to do.
+pub fn install(root: &Path) -> Result<PathBuf, String> {
+    if let Some(python) = ready(root) {
+        println!("{FOLDER} has {PACKAGE}");
+        return Ok(python);
+    }
+    shell::run(root, "python3", &["-m", "venv", "--clear", FOLDER], &[]).map_err(|e| explain(&e))?;
+    let python = root.join(FOLDER).join("bin/python");
+    let args = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", PACKAGE];
+    let env = [("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1")];
+    shell::run(root, &python.to_string_lossy(), &args, &env).map_err(|e| explain(&e))?;
+    ready(root).ok_or_else(|| explain("it is installed, but does not start"))
+}
+
+fn explain(reason: &str) -> String {
+    format!(
+        "{reason}\n  The view is operated by {PACKAGE} in {FOLDER}. Install python3 (3.11 or later) with venv and give pip a \
+         registry, or run `cargo xtask test --offline`, which leaves these tests out and says so."
+    )
+}
