@@ -21,7 +21,7 @@ use state::{CellState, FaultBudget, NOW, RobotState};
 /// A step of time.
 const STEP: Micros = Micros(100);
 
-/// Whether ages between a request and the end of its grant are told apart.
+/// Whether ages between a request and the end of its grant are distinguished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Clock {
     /// Once time passes, grants have ended and robots are silent.
@@ -80,7 +80,7 @@ struct CellModel {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
     /// It ends what the last tick let it do.
-    Stay,
+    Remain,
     /// The tick finds it at the next place, for which it needs no grant.
     Advance,
     /// The tick lets it enter the next place, where the next tick will find it.
@@ -201,7 +201,7 @@ impl CellModel {
     /// All robots are outside, and the arbiter knows them.
     fn know_each_other(&self, state: &mut CellState) {
         for r in (0..2).flat_map(|_| 0..self.programs.len()) {
-            self.tick(state, r, Step::Stay);
+            self.tick(state, r, Step::Remain);
             let message = state.guards[r].state(NOW);
             for reply in state.arbiter.receive(&message, NOW).replies {
                 let _ = state.guards[reply.robot.0].receive(&reply);
@@ -280,7 +280,7 @@ impl Model for CellModel {
 
     fn actions(&self, state: &CellState, actions: &mut Vec<Action>) {
         for r in 0..self.programs.len() {
-            actions.extend([Step::Stay, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
+            actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
             actions.push(Action::Send(r));
             actions.extend((0..state.to_arbiter[r].len()).map(|i| Action::ToArbiter(r, i)));
             actions.extend((0..state.to_guard[r].len()).map(|i| Action::ToGuard(r, i)));
