@@ -1,4 +1,7 @@
-//! What the model check explores. `ELBOWROOM_MODEL_STATES` sets how many states; the default keeps the suite short.
+//! What the model check explores. The suite explores the first states of most cells. `ELBOWROOM_MODEL_STATES` sets another number,
+//! `ELBOWROOM_MODEL_SECONDS` a time, `ELBOWROOM_MODEL_CELL` the only cell.
+
+use std::time::{Duration, Instant};
 
 use stateright::{Checker, Model};
 
@@ -27,15 +30,21 @@ struct Explored {
     states: usize,
 }
 
-/// Explores at most about this many states.
+/// A whole number from the environment.
+fn setting(name: &str) -> Option<usize> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// Explores until about this many states were generated.
 fn explore(name: &str, model: CellModel, states: usize) -> Explored {
-    let limit = std::env::var("ELBOWROOM_MODEL_STATES").ok().and_then(|n| n.parse().ok()).unwrap_or(states);
-    let started = std::time::Instant::now();
-    let checker = model.checker().target_state_count(limit).spawn_bfs().join();
+    let limit = setting("ELBOWROOM_MODEL_STATES").unwrap_or(states);
+    let time = Duration::from_secs(setting("ELBOWROOM_MODEL_SECONDS").unwrap_or(3_600) as u64);
+    let started = Instant::now();
+    let checker = model.checker().target_state_count(limit).timeout(time).spawn_bfs().join();
     let counterexample = checker.discovery(EXCLUSION);
     let explored = Explored {
         holds: counterexample.is_none(),
-        is_complete: checker.state_count() < limit && counterexample.is_none(),
+        is_complete: checker.state_count() < limit && started.elapsed() < time && counterexample.is_none(),
         states: checker.unique_state_count(),
     };
     let part = if explored.is_complete { "all" } else { "the first" };
@@ -92,7 +101,6 @@ fn checks() -> Vec<Check> {
     ]
 }
 
-/// `ELBOWROOM_MODEL_CELL` names the only one to explore.
 #[test]
 fn no_slot_is_ever_shared() {
     let only = std::env::var("ELBOWROOM_MODEL_CELL").ok();
