@@ -47,7 +47,11 @@ const STEPS: [Step; 12] = [
         what: "committed figures of docs/laws.md are what the laws give",
         check: |c| devtools(c, &["figures", "--check"]),
     },
-    Step { name: "python", what: "target/venv with the reference for kinematics", check: install_python },
+    Step {
+        name: "python",
+        what: "target/venv with the references for kinematics and recordings",
+        check: install_python,
+    },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
     Step {
@@ -156,7 +160,9 @@ fn tests(context: &Context) -> Result<(), String> {
     let mut env = network(context);
     match &python {
         Some(path) => env.push(("ELBOWROOM_PYTHON", path)),
-        None => println!("target/venv is not ready: the comparison with Pinocchio is skipped"),
+        None => println!(
+            "target/venv is not ready: the comparisons with Pinocchio and with readers of recordings are skipped"
+        ),
     }
     announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)?;
@@ -164,7 +170,7 @@ fn tests(context: &Context) -> Result<(), String> {
         return Ok(());
     }
     let first = "run the step `python` first (cargo xtask test --only python)";
-    Err(format!("all that ran passed, but without the comparison with Pinocchio: {first}, or say --offline"))
+    Err(format!("all that ran passed, but without the comparisons with Python: {first}, or say --offline"))
 }
 
 /// The tests of the pages, which pass without a browser, with one.

@@ -63,6 +63,14 @@ pub struct Avoider<'s> {
     machine: StateMachine,
 }
 
+/// A detour that is planned, and not yet followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedDetour {
+    /// Where it begins, rad or m.
+    start_q: Vec<f64>,
+    waypoints: Vec<Vec<f64>>,
+}
+
 /// Memory of one tick.
 #[derive(Debug)]
 struct Workspace {
@@ -242,7 +250,15 @@ impl<'s> Avoider<'s> {
             escape: escaped - checked,
         };
         let braked = braked && escape != EscapeState::Escaping;
-        let output = AvoiderOutput { reaction: correction.reaction, braked, escape, times, ..AvoiderOutput::default() };
+        let escape_work_us = self.escapes.work_us();
+        let output = AvoiderOutput {
+            reaction: correction.reaction,
+            braked,
+            escape,
+            escape_work_us,
+            times,
+            ..AvoiderOutput::default()
+        };
         Ok(self.conclude(dt, reference, allowed, correction.progress, output))
     }
 
@@ -267,6 +283,20 @@ impl<'s> Avoider<'s> {
         options: &RrtConnectSettings,
         constraint: Option<&mut dyn PathConstraint>,
     ) -> Result<(), AvoidanceError> {
+        let detour = self.plan_detour(goal, options, constraint)?;
+        self.follow_detour(detour)
+    }
+
+    /// Plans as [`plan_to_constrained`](Self::plan_to_constrained), for [`follow_detour`](Self::follow_detour) to follow later: planning takes time.
+    ///
+    /// # Errors
+    /// As [`plan_to_constrained`](Self::plan_to_constrained).
+    pub fn plan_detour(
+        &mut self,
+        goal: &[f64],
+        options: &RrtConnectSettings,
+        constraint: Option<&mut dyn PathConstraint>,
+    ) -> Result<PlannedDetour, AvoidanceError> {
         if !self.is_stationary() {
             return Err(AvoidanceError::NotStationary);
         }
@@ -277,7 +307,19 @@ impl<'s> Avoider<'s> {
         }
         self.query.state.set_q(self.query.scene, self.query.robot, &self.command.q)?;
         let route = planner.plan_from_tight_ends(&self.query.state, goal, options)?;
-        self.machine.start_detour(Detour::new(route.waypoints));
+        Ok(PlannedDetour { start_q: self.command.q.clone(), waypoints: route.waypoints })
+    }
+
+    /// Follows a detour from the next tick on, until an obstacle has to be evaded.
+    ///
+    /// # Errors
+    /// The robot moves, or has moved since the detour was planned.
+    pub fn follow_detour(&mut self, detour: PlannedDetour) -> Result<(), AvoidanceError> {
+        let is_elsewhere = distance_s(&detour.start_q, &self.command.q, &self.limits) > SAME_CONFIGURATION_S;
+        if is_elsewhere || !self.is_stationary() {
+            return Err(AvoidanceError::NotStationary);
+        }
+        self.machine.start_detour(Detour::new(detour.waypoints));
         Ok(())
     }
 

@@ -45,8 +45,10 @@ pub enum AvoidanceError {
         /// Joints of the robot.
         joints: usize,
     },
-    /// A detour cannot start while the robot moves.
-    #[error("a detour starts at rest, and the robot moves: plan when `AvoiderOutput::requests_detour` is true")]
+    /// A detour cannot start while the robot moves, or from where it no longer is.
+    #[error(
+        "a detour starts at rest where it was planned, and the robot moves: plan when `AvoiderOutput::requests_detour` is true"
+    )]
     NotStationary,
     /// No detour was found.
     #[error(transparent)]

@@ -9,6 +9,7 @@ use elbowroom_scene::{
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::escape_trajectory::EscapeTrajectory;
+use crate::escape_work::EscapeWork;
 use crate::motion_bounds::MotionBounds;
 use crate::prediction::{motion_between, pose_after, q_after};
 use crate::{DynamicObstacles, Neighbour, ObservedObject};
@@ -64,8 +65,17 @@ pub(crate) struct PredictedHit {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotionCheck {
     pub(crate) hit: Option<PredictedHit>,
+    /// All of the motion was checked, up to the hit.
+    pub(crate) is_complete: bool,
     /// Smallest distance at the instants that were measured, m; infinite where nothing comes near.
     pub(crate) gap_m: f64,
+}
+
+impl MotionCheck {
+    /// The motion is proven to meet nothing.
+    pub(crate) fn is_free(&self) -> bool {
+        self.hit.is_none() && self.is_complete
+    }
 }
 
 /// Checks escapes of one robot. It has a scene of its own: the predicted one.
@@ -86,6 +96,10 @@ pub(crate) struct EscapeCheck<'s> {
     robots_to: Vec<Vec<f64>>,
     /// Largest distance of a point of an object from its origin, m.
     object_radii: Vec<f64>,
+    /// Evaluations of constraints so far.
+    margins: u64,
+    /// Work after which checks end without a proof.
+    deadline: EscapeWork,
 }
 
 /// True for an object that moves.
@@ -118,7 +132,30 @@ impl<'s> EscapeCheck<'s> {
                 .iter()
                 .map(|o| o.shape.aabb(&Pose::IDENTITY).max_distance(Vec3::ZERO))
                 .collect(),
+            margins: 0,
+            deadline: EscapeWork::UNLIMITED,
         }
+    }
+
+    /// All work so far.
+    pub(crate) fn work(&self) -> EscapeWork {
+        EscapeWork::of(&self.checker.stats(), self.margins)
+    }
+
+    /// Ends checks without a proof as soon as [`Self::work`] is as much.
+    pub(crate) fn set_deadline(&mut self, deadline: EscapeWork) {
+        self.deadline = deadline;
+    }
+
+    /// True where no more may be checked now.
+    pub(crate) fn is_overdue(&self) -> bool {
+        self.work() >= self.deadline
+    }
+
+    /// A sweep that ends, at the latest, when the work is used up: what it has not proven by then counts as a hit.
+    fn sweep_options(&self, clearance_m: f64) -> SweepOptions {
+        let options = SweepOptions { clearance_m, ..SweepOptions::default() };
+        SweepOptions { max_steps: options.max_steps.min((self.deadline - self.work()).exact_tests()), ..options }
     }
 
     /// Attaches an object to a link of any robot.
@@ -145,7 +182,7 @@ impl<'s> EscapeCheck<'s> {
         clearance_m: f64,
         counts: impl Fn(bool) -> bool,
     ) -> Result<MotionCheck, SceneError> {
-        let mut first = MotionCheck { hit: None, gap_m: f64::INFINITY };
+        let mut first = MotionCheck { hit: None, is_complete: true, gap_m: f64::INFINITY };
         let mut until_s = motion.horizon_s;
         for object in obstacles.objects.iter().filter(|o| moves(o) && counts(o.known)) {
             let own = Selection::Robot(self.robot);
@@ -153,6 +190,9 @@ impl<'s> EscapeCheck<'s> {
                 + object.motion.angular_velocity.length() * self.object_radii[object.object.0];
             let mut t = 0.0;
             while t < until_s {
+                if self.is_overdue() {
+                    return Ok(MotionCheck { is_complete: false, ..first });
+                }
                 let resting = self.set_time(motion, t)?;
                 self.state.place(self.scene, object.object, pose_after(object, motion.begins_s + t))?;
                 let distance = self.checker.between(own, Selection::Object(object.object)).distance(&self.state);
@@ -172,7 +212,7 @@ impl<'s> EscapeCheck<'s> {
                     SweepMove::Robot { robot: self.robot, to: &self.to },
                     SweepMove::Object { object: object.object, path: &path },
                 ];
-                let options = SweepOptions { clearance_m, ..SweepOptions::default() };
+                let options = self.sweep_options(clearance_m);
                 let mut pair = self.checker.between(own, Selection::Object(object.object));
                 if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
                     let (id, point) =
@@ -190,7 +230,9 @@ impl<'s> EscapeCheck<'s> {
         }
         let own = self.robot;
         for other in obstacles.robots.iter().filter(|n| n.robot != own && robot_moves(n) && counts(n.known)) {
-            if let Some(hit) = self.meets_robot(motion, other, clearance_m, until_s)? {
+            let met = self.meets_robot(motion, other, clearance_m, until_s)?;
+            first.is_complete &= !self.is_overdue();
+            if let Some(hit) = met {
                 until_s = hit.time_s;
                 first.hit = Some(hit);
             }
@@ -207,17 +249,17 @@ impl<'s> EscapeCheck<'s> {
         until_s: f64,
     ) -> Result<Option<PredictedHit>, SceneError> {
         let (own, mut t) = (self.robot, 0.0);
-        while t < until_s {
+        while t < until_s && !self.is_overdue() {
             let resting = self.set_time(motion, t)?;
             let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
             let end = (t + stretch_s).min(until_s);
             motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
+            let options = self.sweep_options(clearance_m);
             let to = &mut self.robots_to[other.robot.0];
             q_after(other, motion.begins_s + t, to);
             self.state.set_q(self.scene, other.robot, to)?;
             q_after(other, motion.begins_s + end, to);
             let moved = [SweepMove::Robot { robot: own, to: &self.to }, SweepMove::Robot { robot: other.robot, to }];
-            let options = SweepOptions { clearance_m, ..SweepOptions::default() };
             let mut pair = self.checker.between(Selection::Robot(own), Selection::Robot(other.robot));
             if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
                 let is_own = |id: GeometryId| matches!(id, GeometryId::Link { robot, .. } if robot == own);
@@ -238,22 +280,25 @@ impl<'s> EscapeCheck<'s> {
     }
 
     /// True where the motion keeps `clearance_m` to all that is fixed and between own links; what moves counts at its
-    /// predicted pose at the beginning of each stretch.
+    /// predicted pose at the beginning of each stretch. False where the work is used up.
     pub(crate) fn keeps_clear_of_fixed(
         &mut self,
         motion: &TimedMotion<'_>,
         obstacles: &DynamicObstacles<'_>,
         clearance_m: f64,
     ) -> Result<bool, SceneError> {
-        let options = SweepOptions { clearance_m, ..SweepOptions::default() };
         let mut t = 0.0;
         let end_s = (motion.trajectory.duration_s - motion.elapsed_s).min(motion.horizon_s);
         while t < end_s {
+            if self.is_overdue() {
+                return Ok(false);
+            }
             self.set_time(motion, t)?;
             self.set_moving(obstacles, motion.begins_s + t)?;
             let end = (t + self.stretch_s(motion, t, clearance_m)).min(end_s);
             motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
             let moved = [SweepMove::Robot { robot: self.robot, to: &self.to }];
+            let options = self.sweep_options(clearance_m);
             let mut pairs = self.checker.between(Selection::Robot(self.robot), Selection::All);
             if pairs.sweep(&self.state, &moved, &options)?.is_some() {
                 return Ok(false);
@@ -271,6 +316,10 @@ impl<'s> EscapeCheck<'s> {
         // A robot within the margin may leave, but not approach.
         let need_m = constraint.margin_m(&self.from, f64::INFINITY).min(0.0);
         while t < end_s {
+            if self.is_overdue() {
+                return false;
+            }
+            self.margins += 1;
             let end = (t + step_s).min(end_s);
             motion.trajectory.q_at(motion.elapsed_s + t, &mut self.from);
             motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);

@@ -17,6 +17,7 @@ use crate::DynamicObstacles;
 use crate::escape_check::{EscapeCheck, EscapeClearance, MotionCheck, PredictedHit, TimedMotion, moves, robot_moves};
 use crate::escape_targets::{EscapeDirections, target};
 use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
+use crate::escape_work::EscapeWork;
 
 /// Gap beyond which escapes are equally good, m.
 const ENOUGH_GAP_M: f64 = 0.15;
@@ -30,6 +31,8 @@ const UNHURRIED_S: f64 = 1.5;
 const PAUSE_TICKS: usize = 3;
 /// A better escape than the known one is looked for in every so many examined ticks.
 const IMPROVE_TICKS: usize = 4;
+/// Share of the work of a tick that may be spent before the escape that is known is proven again, where that is needed.
+const FIND_SHARE: f64 = 0.5;
 /// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
 const OFF_ESCAPE: f64 = 1e-3;
 
@@ -40,6 +43,10 @@ pub struct EscapeSettings {
     pub horizon_s: f64,
     /// Largest number of escapes that are examined in one tick.
     pub per_tick: usize,
+    /// Largest computing time of a tick, µs, counted in elementary tests times their measured costs: the same on every machine and
+    /// in every run. What is not proven by then is examined in later ticks. The check of a stop comes before, and is
+    /// made in any case.
+    pub work_us: u32,
     /// Clearance of an escape from what moves, m.
     pub clearance_m: f64,
     /// Clearance of an escape from what is fixed, m.
@@ -47,9 +54,9 @@ pub struct EscapeSettings {
 }
 
 impl Default for EscapeSettings {
-    /// 3 s; 3 escapes per tick; 50 mm and 10 mm.
+    /// 3 s; 3 escapes and 2 ms per tick; 50 mm and 10 mm.
     fn default() -> Self {
-        Self { horizon_s: 3.0, per_tick: 3, clearance_m: 0.05, fixed_clearance_m: 0.01 }
+        Self { horizon_s: 3.0, per_tick: 3, work_us: 2000, clearance_m: 0.05, fixed_clearance_m: 0.01 }
     }
 }
 
@@ -108,6 +115,10 @@ pub(crate) struct EscapeSearch<'s> {
     followed_s: Option<f64>,
     /// Number of the next target.
     index: usize,
+    /// The next target was begun before.
+    is_repeated: bool,
+    /// Work at the beginning of the tick.
+    begin: EscapeWork,
     /// Number of ticks in which the known escape was examined.
     examined: usize,
     chain: ChainState,
@@ -156,6 +167,8 @@ impl<'s> EscapeSearch<'s> {
             pause: 0,
             followed_s: None,
             index: 0,
+            is_repeated: false,
+            begin: EscapeWork::default(),
             examined: 0,
             chain: ChainState::new(&scene.robots()[robot.0].robot.chain),
             columns: vec![[0.0; 6]; n],
@@ -189,6 +202,7 @@ impl<'s> EscapeSearch<'s> {
         mut constraint: Option<&mut dyn PathConstraint>,
         next: &mut [f64],
     ) -> EscapeState {
+        self.begin = self.check.work();
         let evaded_moves = tick.obstacles.objects.iter().any(|o| !o.known && moves(o))
             || tick.obstacles.robots.iter().any(|n| !n.known && n.robot != self.robot && robot_moves(n));
         if self.settings.horizon_s <= 0.0 || !evaded_moves || tick.start.speed_share <= 0.0 {
@@ -224,23 +238,40 @@ impl<'s> EscapeSearch<'s> {
             fixed_m: self.settings.fixed_clearance_m.min(0.5 * tick.nearest.fixed_m),
         };
         self.set_next(tick, next);
+        self.check.set_deadline(EscapeWork::UNLIMITED);
         let stop = self.check_stop(tick, clearance.moving_m)?;
         let is_unhurried = stop.hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
         self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
         let Some(hit) = stop.hit else { return Ok(EscapeState::Free) };
+        self.set_deadline(1.0);
         self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
         if let Some(followed_s) = self.followed_s {
             return self.follow(tick, followed_s, &hit, clearance, constraint, next);
         }
+        // What has to be proven again if nothing is found needs its part of the work.
+        let has_to_be_proven = self.is_known && !self.is_fresh;
+        self.set_deadline(if has_to_be_proven { FIND_SHARE } else { 1.0 });
         if self.find(tick, &hit, clearance, constraint)? {
             return Ok(EscapeState::Known);
         }
+        self.set_deadline(1.0);
         // The command would lose the last escape: the robot takes it.
         self.is_known = self.is_known && (self.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
         if self.is_known {
             return self.follow(tick, 0.0, &hit, clearance, constraint, next);
         }
         Ok(EscapeState::Unknown)
+    }
+
+    /// Work of the last tick, µs.
+    pub(crate) fn work_us(&self) -> u64 {
+        (self.check.work() - self.begin).us()
+    }
+
+    /// Checks end when this share of the tick's work is used up.
+    fn set_deadline(&mut self, share: f64) {
+        let work = EscapeWork::from_us(self.settings.work_us).share(share);
+        self.check.set_deadline(self.begin.plus(work));
     }
 
     /// Moves the beginning of the known escape to the present state; true where it is still free.
@@ -253,7 +284,7 @@ impl<'s> EscapeSearch<'s> {
         self.known.set_target(&self.known_target, &tick.start);
         let horizon_s = self.settings.horizon_s;
         let motion = TimedMotion { trajectory: &self.known, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
-        Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.hit.is_none()
+        Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.is_free()
             && self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
             && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
     }
@@ -328,8 +359,14 @@ impl<'s> EscapeSearch<'s> {
             self.update_point(tick, hit);
         }
         for _ in 0..attempts {
+            if self.check.is_overdue() {
+                break;
+            }
             self.set_trial_target(tick, hit);
             self.examine_trial(tick, clearance, constraint)?;
+            // One that was not examined to its end is examined once more, in a later tick, with more of the tick's work.
+            self.is_repeated = self.check.is_overdue() && !self.is_repeated;
+            self.index -= usize::from(self.is_repeated);
         }
         Ok(self.best.is_some())
     }
@@ -348,7 +385,7 @@ impl<'s> EscapeSearch<'s> {
         let moving = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
         let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.duration_s };
         let is_worse = self.best.is_some_and(|best| !escape.is_better_than(&best));
-        if moving.hit.is_some()
+        if !moving.is_free()
             || is_worse
             || !self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
             || constraint.as_deref_mut().is_some_and(|c| !self.check.keeps_constraint(&motion, c))

@@ -85,7 +85,7 @@ pub fn search_escape_tree(
         let moving = check.meets_moving(&motion, obstacles, CLEARANCE_M, |_| true)?;
         let free_s = moving.hit.map_or(left_s, |hit| hit.time_s);
         let gap_m = gap_m.min(moving.gap_m);
-        if moving.hit.is_none() && check.keeps_clear_of_fixed(&motion, obstacles, CLEARANCE_M)? {
+        if moving.is_free() && check.keeps_clear_of_fixed(&motion, obstacles, CLEARANCE_M)? {
             return Ok(EscapeTreeReport { tries: n + 1, gap_m: Some(gap_m), longest_s: horizon_s });
         }
         // A random part of what is free of moving things, if it is free of fixed ones.

@@ -20,6 +20,7 @@ mod escape_search;
 mod escape_targets;
 mod escape_trajectory;
 mod escape_tree;
+mod escape_work;
 pub mod fuzzy;
 mod joint_command;
 mod joint_limit;
@@ -43,7 +44,7 @@ mod state_machine;
 mod sweep_check;
 mod velocity_bounds;
 
-pub use avoider::Avoider;
+pub use avoider::{Avoider, PlannedDetour};
 pub use border::Border;
 pub use dynamic_obstacles::{DynamicObstacles, Neighbour, ObservedObject};
 pub use error::AvoidanceError;

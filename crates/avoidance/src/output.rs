@@ -44,6 +44,8 @@ pub struct AvoiderOutput {
     pub braked: bool,
     /// What the search for escapes did.
     pub escape: EscapeState,
+    /// Computing time of the search for escapes, µs, counted in elementary tests times their measured costs: the same in every run.
+    pub escape_work_us: u64,
     /// A detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no dynamic obstacle
     /// near, or stalled for the stall timeout by stationary obstacles.
     pub requests_detour: bool,

@@ -86,6 +86,34 @@ fn what_still_hits_is_inescapable() {
 }
 
 #[test]
+fn the_work_of_a_tick_is_bounded_and_counted_alike_in_every_run() {
+    let scene = scene();
+    let tight_us: u32 = 600;
+    let ball = shot(&mut Random(5));
+    let work = |work_us: u32| {
+        let escape = EscapeSettings { work_us, ..EscapeSettings::default() };
+        let settings = AvoiderSettings { escape, ..AvoiderSettings::default() };
+        let mut simulation = Simulation::new(&scene, &LEAN);
+        simulation.avoider =
+            Avoider::new(&scene, RobotId(0), &LEAN, &limits(&scene), Rules::default(), settings).unwrap();
+        let mut step = || {
+            let output = simulation.step(&|_| (LEAN.to_vec(), vec![0.0; 3]), PathKind::PointToPoint, &[ball], 1.0);
+            (output.escape, output.escape_work_us)
+        };
+        (0..600).map(|_| step()).collect::<Vec<_>>()
+    };
+    let most = |ticks: &[(EscapeState, u64)]| ticks.iter().map(|t| t.1).max().unwrap();
+    let (free, tight) = (work(1_000_000), work(tight_us));
+    // The check of a stop is made in any case; a query that has begun ends.
+    let stop = most(&work(0));
+    assert!(most(&tight) <= u64::from(tight_us).max(stop) + 150, "{} {stop}", most(&tight));
+    assert!(most(&free) > most(&tight) + 150, "{} {}", most(&free), most(&tight));
+    // With less work per tick an escape is found, only later.
+    assert!(tight.iter().any(|t| t.0 == EscapeState::Known) && !work(0).iter().any(|t| t.0 == EscapeState::Known));
+    assert_eq!(work(tight_us), tight);
+}
+
+#[test]
 fn the_search_in_space_and_time_tells_what_can_be_escaped() {
     let scene = scene();
     let search = |from: Vec3, velocity: Vec3| {

@@ -92,6 +92,8 @@ pub struct AvoidanceSpec {
     pub noise_m: f64,
     /// Age of an observation when it arrives, s.
     pub delay_s: f64,
+    /// Time from the beginning of a plan until its path can be followed, s.
+    pub plan_s: f64,
 }
 
 /// The units of a cell file.

@@ -88,7 +88,7 @@ pub fn monitors_with(
     arbiter: Option<&Arc<ZoneArbiter>>,
 ) -> Result<Vec<Monitor>, FormatError> {
     let monitor = |(i, s): (usize, &MonitorSetup)| {
-        Monitor::new(s.configuration.clone(), arbiter.map(|b| (b.clone(), RobotSlot(i))))
+        Monitor::new(s.configuration.clone(), arbiter.map(|b| (b.clone(), RobotSlot(i)).into()))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
     };
     setups.iter().enumerate().map(monitor).collect()

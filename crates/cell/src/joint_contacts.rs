@@ -1,7 +1,7 @@
-//! Links that always touch where they are joined: `run` and `plan` leave them out, with a warning.
+//! Links that touch where they are joined: `run` and `plan` leave them out, with a warning.
 
 use elbowroom_formats::Warning;
-use elbowroom_robot::{GeometryId, JointContact, Robot, RobotId, joint_contacts};
+use elbowroom_robot::{GeometryId, JointContact, JointContactKind, Robot, RobotId, joint_contacts};
 use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
 
 use crate::{Cell, CellRobot};
@@ -50,10 +50,21 @@ fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
 /// Where and how often two links touch.
 pub(crate) fn reason(robot: &Robot, found: &JointContact) -> String {
     let joint = &robot.chain.joints()[found.joint.0].name;
-    let (samples, radius_mm) = (found.samples, (found.farthest_m.1 * 1e3).ceil());
-    format!(
-        "in all {samples} states sampled in the joint space, and only at `{joint}` (within {radius_mm} mm of its origin)"
-    )
+    let JointContact { contacts, samples, .. } = found;
+    let [nearest_mm, farthest_mm] = [found.nearest_m.1, found.farthest_m.1].map(|m| (m * 1e3).ceil());
+    match found.kind {
+        JointContactKind::AtJoint => format!(
+            "in all {samples} states sampled in the joint space, and only at `{joint}` (within {farthest_mm} mm of its origin)"
+        ),
+        JointContactKind::Linkage => format!(
+            "in all {samples} states sampled in the joint space, always at `{joint}` (within {nearest_mm} mm of its origin) and in \
+             some up to {farthest_mm} mm from it: parts of a linkage, or on one axis, as links that a joint connects"
+        ),
+        JointContactKind::Pivot => format!(
+            "in {contacts} of {samples} states sampled in the joint space, always at the same place of both: the pivot at which mimic \
+             joints close a linkage ({farthest_mm} mm from `{joint}` at most)"
+        ),
+    }
 }
 
 fn names<'r>(robot: &'r Robot, found: &JointContact) -> [&'r str; 2] {

@@ -41,6 +41,7 @@ mod poses;
 mod query_model;
 pub mod region_constraint;
 mod rest_pose_contacts;
+mod scene_pairs;
 pub mod seal;
 mod sensor;
 pub mod suggest;

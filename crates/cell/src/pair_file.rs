@@ -2,6 +2,7 @@
 
 mod counts;
 mod read;
+mod scene;
 mod survey;
 
 use std::fmt;

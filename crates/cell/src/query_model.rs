@@ -261,7 +261,8 @@ impl QueryModel {
 /// The warning and the hint for a single robot.
 fn joint_contact_warning(robot: &Robot, found: &JointContact) -> (String, String) {
     let [a, b] = [found.a, found.b].map(|link| &robot.chain.links()[link.0]);
-    let what = format!("links `{a}` and `{b}` touch {}: every state counts as a collision", reason(robot, found));
+    let states = if found.contacts == found.samples { "every state counts" } else { "these states count" };
+    let what = format!("links `{a}` and `{b}` touch {}: {states} as a collision", reason(robot, found));
     let hint = "if they are built so: --pairs FILE, which `elbowroom inspect MODEL --pairs FILE --accept` writes";
     (what, hint.to_owned())
 }

@@ -8,6 +8,7 @@ use common::{HEAD, rail};
 use elbowroom_cell::{Cell, QueryModel, object_tables};
 use elbowroom_formats::{FormatError, stl};
 use elbowroom_proximity::Shape;
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_spatial::{Pose, Vec3};
 
 const SCENE: &str = "shelf\n* board\n1 0 0.5\n0 0 0 1\n2\nbox\n0.6 0.4 0.1\n0 0 0\n0 0 0 1\n0 0 0 0\ncylinder\n0.05 0.8\n0.1 0 0\n\
@@ -92,7 +93,7 @@ fn what_a_cell_does_not_take_is_said() {
     let cell = parse(dir.path(), "[scene.desk]\nfile = \"desk.yaml\"\n").unwrap();
     let warnings: Vec<String> = cell.warnings.iter().map(ToString::to_string).collect();
     // `base` and `link_1` are adjacent and not tested anyway.
-    let expected = "is not applied: 1 of its pairs are tested, such as `base` and `can`";
+    let expected = "is applied: 1 of its pairs are not tested, such as `base` and `can`";
     assert!(warnings.iter().any(|w| w.contains(expected)), "{warnings:?}");
     assert!(
         warnings.iter().any(|w| w.contains("`robot_state` is not applied") && w.contains("start = [")),
@@ -101,6 +102,51 @@ fn what_a_cell_does_not_take_is_said() {
     let far = parse(dir.path(), "[scene.shelf]\nfile = \"shelf.scene\"\nat = [9e7, 0, 0]\n").unwrap();
     let far: Vec<_> = far.warnings.iter().filter(|w| w.what.contains("object \"board:1\"")).collect();
     assert_eq!((far.len(), far[0].line), (1, Some(8)), "at the table of the scene, of its first object: {far:?}");
+}
+
+/// The reason why the object `can` and another geometry are not tested.
+fn skipped(cell: &Cell, other: GeometryId) -> Option<&str> {
+    let can = cell.objects.iter().position(|o| o.name.starts_with("can")).unwrap();
+    cell.pair_rules.skipped(GeometryId::Object(ObjectId(can)), other)
+}
+
+#[test]
+fn pairs_that_a_scene_allows_are_not_tested() {
+    let dir = with_files();
+    let matrix = "allowed_collision_matrix:\n  entry_names: [base, link_1, can]\n  entry_values: [[true, true, true], [true, true, false], [true, false, true]]\n";
+    std::fs::write(dir.path().join("desk.yaml"), format!("{YAML}{matrix}")).unwrap();
+    let scene = "[scene.desk]\nfile = \"desk.yaml\"\n";
+    let cell = parse(dir.path(), scene).unwrap();
+    let link =
+        |robot, link| GeometryId::Link { robot: RobotId(robot), link: cell.robots[0].robot.chain.link(link).unwrap() };
+    assert_eq!(skipped(&cell, link(0, "base")), Some("allowed in desk.yaml"));
+    assert_eq!(skipped(&cell, link(0, "link_1")), None);
+    // Not where the cell says so, in the table or in the file of pairs.
+    let cell_2 = parse(dir.path(), &format!("{scene}allowed_collisions = false\n")).unwrap();
+    assert!(cell_2.pair_rules.is_empty() && !cell_2.warnings.iter().any(|w| w.what.contains("allowed_collision")));
+    std::fs::write(
+        dir.path().join("pairs.toml"),
+        "version = 1\npairs = [{ a = \"r/base\", b = \"can\", state = \"tested\", reason = \"it is firm\" }]\n",
+    )
+    .unwrap();
+    let text = format!("{HEAD}pairs = \"pairs.toml\"\n{}{scene}", rail("r", 0.0));
+    let cell_3 = Cell::parse(dir.path().join("cell.toml"), &text).unwrap();
+    assert_eq!(skipped(&cell_3, link(0, "base")), None);
+    // By default: with all that the matrix does not name, such as a link.
+    let by_default = "allowed_collision_matrix:\n  entry_names: [can]\n  entry_values: [[true]]\n  default_entry_names: [can]\n  default_entry_values: [true]\n";
+    std::fs::write(dir.path().join("desk.yaml"), format!("{YAML}{by_default}")).unwrap();
+    let cell_4 = parse(dir.path(), scene).unwrap();
+    assert!(skipped(&cell_4, link(0, "link_1")).is_some() && skipped(&cell_4, link(0, "base")).is_some());
+    // A link of two robots is not clear.
+    std::fs::write(dir.path().join("desk.yaml"), format!("{YAML}{matrix}")).unwrap();
+    let two = format!("{}[scene.desk]\nfile = \"desk.yaml\"\nframe = \"desk\"\n", rail("r2", 1000.0));
+    let cell_5 = parse(dir.path(), &two).unwrap();
+    assert_eq!((skipped(&cell_5, link(0, "base")), skipped(&cell_5, link(1, "base"))), (None, None));
+    assert!(
+        cell_5.warnings.iter().any(|w| w.what.contains("several robots have such a link")),
+        "{:?}",
+        cell_5.warnings
+    );
 }
 
 #[test]
@@ -136,6 +182,27 @@ fn wrong_scenes_are_refused_with_line_and_remedy() {
             10,
             "names the frame \"dsek\"",
             "desk   (did you mean it?",
+        ),
+        (
+            "[scene.s]\nfile = \"desk.yaml\"\nallowed_collisions = 1\n",
+            "cell.toml",
+            10,
+            "must be true or false",
+            "allowed_collisions = true",
+        ),
+        (
+            "[scene.s]\nfile = \"desk.yaml\"\nallowed_collisions = \"no\"\n",
+            "cell.toml",
+            10,
+            "must be true or false",
+            "allowed_collisions = true",
+        ),
+        (
+            "[scene.s]\nfile = \"desk.yaml\"\nallowed_collision = false\n",
+            "cell.toml",
+            10,
+            "no key `allowed_collision`",
+            "allowed_collisions",
         ),
         ("[scene.s]\nfile = \"desk.yaml\"\nframe = 3\n", "cell.toml", 10, "must be a text", "frame = "),
         ("[scene.s]\nfile = \"desk.yaml\"\nframe = \"\"\n", "cell.toml", 10, "names the frame \"\"", "desk"),

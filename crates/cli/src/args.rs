@@ -109,6 +109,9 @@ pub(crate) struct RunArgs {
     /// Run the programs this many times in a row
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) repeat: u32,
+    /// Record the run into this MCAP file, for viewers and `elbowroom replay` (in builds with the feature `live`)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mcap: Option<PathBuf>,
     /// Print one JSON document instead of the summary
     #[arg(long)]
     pub(crate) json: bool,

@@ -8,10 +8,11 @@ use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
 use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
-use elbowroom::sim::run::{RunProgress, simulate_with};
+use elbowroom::sim::run::{RunObserver, RunProgress, simulate_observed};
 use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
+use crate::live;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
 use crate::progress::Progress;
 
@@ -27,7 +28,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     if options.apply_override {
         warn_of_overruns(&cell)?;
     }
-    let outcome = with_progress(&cell, &options)?;
+    let outcome = match &args.mcap {
+        Some(file) => live::run_recorded(&cell, &options, file)?,
+        None => with_progress(&cell, &options)?,
+    };
     outcome.notes.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(dir) = &args.out {
         let without = if options.apply_override { planned(&cell, &options)? } else { None };
@@ -42,6 +46,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
         if let Some(dir) = &args.out {
             print(&format!("\nFiles: {}\n", dir.join("{report.html,trace.csv,events.csv}").display()))?;
+        }
+        if let Some(file) = &args.mcap {
+            print(&format!("\nRecording: {}\n", file.display()))?;
         }
     }
     Ok(if outcome.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
@@ -77,10 +84,20 @@ struct Document<'a> {
 
 /// Runs the cell with a progress bar that appears after 0.7 s.
 pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
+    with_observer(cell, options, None)
+}
+
+/// [`with_progress`] with an observer of the monitors.
+pub(crate) fn with_observer(
+    cell: &Cell,
+    options: &RunOptions,
+    observer: Option<&mut dyn RunObserver>,
+) -> Result<RunOutcome, Failure> {
     let progress = Progress::unknown();
-    let outcome = simulate_with(cell, options, &mut |p: RunProgress| {
+    let mut show = |p: RunProgress| {
         progress.go_on(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
-    });
+    };
+    let outcome = simulate_observed(cell, options, &mut show, observer);
     progress.end();
     Ok(outcome?)
 }

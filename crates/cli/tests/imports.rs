@@ -83,6 +83,26 @@ fn a_scene_becomes_a_cell_file() {
     write(here, "can.yaml", yaml);
     let wrote = elbowroom(here, &["convert", "can.yaml", "can.toml"]).expect(0);
     assert!(wrote.stderr.contains("the frame `base_link` of the scene is the world of the cell"), "{}", wrote.stderr);
+    let allowed = "allowed_collision_matrix: {entry_names: [can, hand], entry_values: [[true, true], [true, true]], default_entry_names: [can], default_entry_values: [true]}\n";
+    let two_cans = yaml.replace("collision_objects:\n", "collision_objects:\n    - {id: lid, header: {frame_id: base_link}, primitives: [{type: 2, dimensions: [1]}], primitive_poses: [{}]}\n");
+    write(here, "cans.yaml", &format!("{two_cans}{allowed}"));
+    let wrote = elbowroom(here, &["convert", "cans.yaml", "cans.toml"]).expect(0);
+    assert!(wrote.stderr.contains("wrote cans_pairs.toml: the pairs that the scene lets touch"), "{}", wrote.stderr);
+    assert!(!wrote.stderr.contains("allowed_collision"), "{}", wrote.stderr);
+    let pairs = std::fs::read_to_string(here.join("cans_pairs.toml")).unwrap();
+    // Objects as rows, links as comments.
+    assert!(
+        pairs.contains("  { a = \"can\", b = \"lid\", state = \"skipped\", reason = \"allowed in cans.yaml\" },"),
+        "{pairs}"
+    );
+    assert!(pairs.contains("# { a = \"can\", b = \"ROBOT/hand\""), "{pairs}");
+    let written = std::fs::read_to_string(here.join("cans.toml")).unwrap();
+    assert!(written.contains("\npairs = \"cans_pairs.toml\"\n"), "{written}");
+    let refused = elbowroom(here, &["convert", "cans.yaml", "cans2.toml"]).expect(0);
+    assert!(refused.stderr.contains("cans2_pairs.toml"), "{}", refused.stderr);
+    std::fs::remove_file(here.join("cans2.toml")).unwrap();
+    let again = elbowroom(here, &["convert", "cans.yaml", "cans2.toml"]);
+    assert!(again.expect(2).stderr.contains("cans2_pairs.toml: is there already"), "pairs are not overwritten");
     let other =
         "    - {id: cup, header: {frame_id: odom}, primitives: [{type: 2, dimensions: [1]}], primitive_poses: [{}]}\n";
     write(here, "two.yaml", &format!("{yaml}{other}"));

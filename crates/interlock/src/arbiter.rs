@@ -3,7 +3,7 @@
 use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
 
 use crate::slot_record::{Holder, SlotRecord};
-use crate::wait_for::{Wait, cycle};
+use crate::wait_for::WaitGraph;
 use crate::{ArbiterEvent, ArbiterSettings, Boot, GrantsMessage, Micros, SlotAnswer, SlotReport, StateMessage, Token};
 
 /// What a step of the arbiter gives.
@@ -25,8 +25,8 @@ pub struct Arbiter {
     tokens: u64,
     robots: Vec<RobotRecord>,
     slots: Vec<SlotRecord>,
-    /// The deadlock that was reported last.
-    deadlock: Vec<RobotSlot>,
+    /// The deadlocks that were reported and are still there.
+    deadlocks: Vec<Vec<RobotSlot>>,
 }
 
 /// What the arbiter knows of a robot.
@@ -66,7 +66,7 @@ impl Arbiter {
     pub fn new(settings: ArbiterSettings, boot: Boot) -> Self {
         let robots = vec![RobotRecord::new(settings.slots); settings.robots.len()];
         let slots = vec![SlotRecord::default(); settings.slots];
-        Self { settings, boot, started: None, serial: 0, tokens: 0, robots, slots, deadlock: Vec::new() }
+        Self { settings, boot, started: None, serial: 0, tokens: 0, robots, slots, deadlocks: Vec::new() }
     }
 
     /// Start of this arbiter.
@@ -119,7 +119,7 @@ impl Arbiter {
             self.settle(robot, &mut outputs);
         }
         let granted = self.grant_free_slots(now, &mut outputs);
-        self.resolve_cycle(&mut outputs);
+        self.resolve_circles(now, &mut outputs);
         outputs.replies.push(self.answer(robot));
         for other in granted.into_iter().filter(|other| *other != robot) {
             let answer = self.answer(other);
@@ -154,6 +154,7 @@ impl Arbiter {
         outputs.events.push(ArbiterEvent::Cleared(robot));
         for s in 0..self.slots.len() {
             self.slots[s].queue.retain(|other| *other != robot);
+            self.slots[s].intruders.retain(|other| *other != robot);
             if self.slots[s].is_held_by(robot) {
                 self.free(SlotId(s));
             }
@@ -214,14 +215,17 @@ impl Arbiter {
                 self.free(slot);
                 outputs.events.push(ArbiterEvent::Released(slot, robot));
             }
+            let waits = report.wants && !self.slots[slot.0].is_held_by(robot);
             let queue = &mut self.slots[slot.0].queue;
-            match (report.wants, queue.contains(&robot)) {
+            match (waits, queue.contains(&robot)) {
                 (true, false) => queue.push(robot),
                 (false, true) => queue.retain(|other| *other != robot),
                 _ => {}
             }
-            if report.occupancy.occupies() {
-                self.found_inside(slot, robot, outputs);
+            match report.occupancy {
+                Occupancy::Committed | Occupancy::Inside => self.found_inside(slot, robot, outputs),
+                Occupancy::Outside | Occupancy::Warning => self.slots[slot.0].intruders.retain(|r| *r != robot),
+                Occupancy::Unknown => {}
             }
         }
     }
@@ -247,7 +251,11 @@ impl Arbiter {
                     self.hold(slot, robot);
                 }
             }
-            Some(holder) => outputs.events.push(ArbiterEvent::Conflict(slot, holder.robot, robot)),
+            Some(holder) if !self.slots[slot.0].intruders.contains(&robot) => {
+                self.slots[slot.0].intruders.push(robot);
+                outputs.events.push(ArbiterEvent::Conflict(slot, holder.robot, robot));
+            }
+            Some(_) => {}
         }
     }
 
@@ -262,13 +270,14 @@ impl Arbiter {
         let record = &mut self.slots[slot.0];
         record.holder = Some(Holder { robot, token });
         record.queue.retain(|other| *other != robot);
+        record.intruders.retain(|other| *other != robot);
     }
 
     /// Grants each free slot to the first robot that waits for it, if all others are known to be outside. Returns the robots.
     fn grant_free_slots(&mut self, now: Micros, outputs: &mut Outputs) -> Vec<RobotSlot> {
         let mut granted = Vec::new();
         for slot in (0..self.slots.len()).map(SlotId) {
-            if self.slots[slot.0].holder.is_some() {
+            if self.slots[slot.0].holder.is_some() || self.slots[slot.0].queue.is_empty() {
                 continue;
             }
             let Some(robot) = self.first_waiting(slot).filter(|robot| self.may_grant(slot, *robot, now)) else {
@@ -281,12 +290,16 @@ impl Arbiter {
         granted
     }
 
-    /// The robot with the highest priority, of equals the one that has waited longest.
+    /// The robot with the highest priority, of equals the one that has waited longest. One that could not use the slot before
+    /// another one of the queue has had it comes after that: otherwise what was given up to resolve a circle would close it
+    /// again.
     fn first_waiting(&self, slot: SlotId) -> Option<RobotSlot> {
-        let priority = |robot: &RobotSlot| self.settings.robots[robot.0].priority;
-        let queue = &self.slots[slot.0].queue;
-        let highest = queue.iter().map(priority).max()?;
-        queue.iter().find(|robot| priority(robot) == highest).copied()
+        let slot = &self.slots[slot.0];
+        let graph = WaitGraph::new(&self.slots, self.robots.len());
+        let able = slot.queue.iter().enumerate().filter(|(_, robot)| !graph.would_close(slot, **robot));
+        let rank =
+            |(place, robot): &(usize, &RobotSlot)| (std::cmp::Reverse(self.settings.robots[robot.0].priority), *place);
+        able.min_by_key(rank).map(|(_, robot)| *robot)
     }
 
     /// Whether the slot may be granted: the robot itself is known, and every other one that can ever be in it is known to be
@@ -302,37 +315,39 @@ impl Arbiter {
             })
     }
 
-    /// Asks one robot of a circle of waiting robots to give up what another one of it waits for.
-    fn resolve_cycle(&mut self, outputs: &mut Outputs) {
+    /// Asks one robot of each circle to give up what another one of it waits for, or reports the deadlock.
+    fn resolve_circles(&mut self, now: Micros, outputs: &mut Outputs) {
         for slot in &mut self.slots {
             slot.release_requested = false;
         }
-        let waits = cycle(&self.slots, self.robots.len()).unwrap_or_default();
-        let able = waits.iter().filter(|wait| self.can_give_up(wait));
-        let rank = |wait: &&Wait| {
-            let age = self.slots[wait.slot.0].token_of(wait.holder);
-            (self.settings.robots[wait.holder.0].priority, std::cmp::Reverse(age))
+        let mut deadlocks = Vec::new();
+        for circle in WaitGraph::new(&self.slots, self.robots.len()).circles() {
+            match self.least_important(&circle, now) {
+                Some(slot) => self.slots[slot].release_requested = true,
+                None => deadlocks.push(circle),
+            }
+        }
+        let unreported = deadlocks.iter().filter(|circle| !self.deadlocks.contains(circle));
+        outputs.events.extend(unreported.cloned().map(ArbiterEvent::Deadlock));
+        self.deadlocks = deadlocks;
+    }
+
+    /// Of the slots that robots of a circle hold and others of it wait for, and that their holders can give up, that of the robot
+    /// with the lowest priority, of equals the one that was granted last.
+    fn least_important(&self, circle: &[RobotSlot], now: Micros) -> Option<usize> {
+        let holder = |slot: usize| self.slots[slot].holder.map(|h| h.robot).filter(|robot| circle.contains(robot));
+        let is_waited_for = |slot: usize| self.slots[slot].queue.iter().any(|robot| circle.contains(robot));
+        let held = (0..self.slots.len()).filter_map(|slot| Some((slot, holder(slot)?)));
+        let able = held.filter(|(slot, robot)| is_waited_for(*slot) && self.can_give_up(SlotId(*slot), *robot, now));
+        let rank = |(slot, robot): &(usize, RobotSlot)| {
+            (self.settings.robots[robot.0].priority, std::cmp::Reverse(self.slots[*slot].token_of(*robot)))
         };
-        match able.min_by_key(rank).map(|wait| wait.slot) {
-            Some(slot) => self.slots[slot.0].release_requested = true,
-            None => self.report_deadlock(&waits, outputs),
-        }
-        if waits.is_empty() {
-            self.deadlock.clear();
-        }
+        able.min_by_key(rank).map(|(slot, _)| slot)
     }
 
-    fn can_give_up(&self, wait: &Wait) -> bool {
-        matches!(self.robots[wait.holder.0].occupancy(wait.slot), Occupancy::Outside | Occupancy::Warning)
-    }
-
-    fn report_deadlock(&mut self, waits: &[Wait], outputs: &mut Outputs) {
-        let mut robots: Vec<RobotSlot> = waits.iter().map(|wait| wait.robot).collect();
-        robots.sort_unstable();
-        if !robots.is_empty() && robots != self.deadlock {
-            outputs.events.push(ArbiterEvent::Deadlock(robots.clone()));
-        }
-        self.deadlock = robots;
+    fn can_give_up(&self, slot: SlotId, robot: RobotSlot, now: Micros) -> bool {
+        let occupancy = self.robots[robot.0].occupancy(slot);
+        self.is_known(robot, now) && matches!(occupancy, Occupancy::Outside | Occupancy::Warning)
     }
 
     /// The message to a guard.
@@ -359,9 +374,8 @@ impl Arbiter {
 
     /// Whether two robots claim the slot and this is one of them.
     fn must_halt(&self, slot: SlotId, robot: RobotSlot) -> bool {
-        let Some(holder) = self.slots[slot.0].holder.map(|holder| holder.robot) else { return false };
-        let intrudes = |r: RobotSlot| r != holder && self.robots[r.0].occupancy(slot).occupies();
-        if robot == holder { (0..self.robots.len()).map(RobotSlot).any(intrudes) } else { intrudes(robot) }
+        let slot = &self.slots[slot.0];
+        !slot.intruders.is_empty() && (slot.is_held_by(robot) || slot.intruders.contains(&robot))
     }
 }
 
@@ -370,7 +384,7 @@ fn with_drift(time: Micros) -> Micros {
     time + Micros(time.0 / 50 + 1)
 }
 
-/// What the model check needs to see and to renumber.
+/// What the model check needs to see and to rewrite.
 #[cfg(test)]
 impl Arbiter {
     pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
@@ -378,24 +392,62 @@ impl Arbiter {
         self.robots.iter_mut().filter_map(|robot| robot.heard.as_mut()).for_each(f);
     }
 
-    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(&mut Option<Token>)) {
-        self.slots.iter_mut().filter_map(|slot| slot.holder.as_mut()).for_each(|holder| f(&mut holder.token));
-        for report in self.robots.iter_mut().flat_map(|robot| &mut robot.reports) {
-            f(&mut report.token);
-            f(&mut report.released);
+    /// Forgets what no later step reads: of reports all but whether the robot occupies the slot and obeys a grant, of messages
+    /// that cannot be trusted everything, and which deadlock was reported.
+    pub(crate) fn forget_unread(&mut self) {
+        let any = Some(Token { boot: Boot(1), number: 1 });
+        self.deadlocks.clear();
+        if self.robots.iter().all(|robot| robot.heard.is_some()) {
+            self.started = None;
+        }
+        for robot in &mut self.robots {
+            let is_trusted = robot.is_trusted;
+            for report in &mut robot.reports {
+                let occupancy = crate::model::what_counts(report.occupancy);
+                let seen = SlotReport { occupancy, token: report.token.and(any), ..SlotReport::UNKNOWN };
+                *report = if is_trusted { seen } else { SlotReport::UNKNOWN };
+            }
         }
     }
 
-    pub(crate) fn each_sequence(&mut self, robot: usize, f: &mut impl FnMut(&mut u64)) {
-        f(&mut self.robots[robot].sequence);
+    pub(crate) fn holder_token_mut(&mut self, slot: usize) -> Option<(RobotSlot, &mut Token)> {
+        let holder = self.slots[slot].holder.as_mut()?;
+        Some((holder.robot, holder.token.as_mut()?))
     }
 
-    pub(crate) fn serial_mut(&mut self) -> &mut u64 {
-        &mut self.serial
+    pub(crate) fn sequence_mut(&mut self, robot: usize) -> &mut u64 {
+        &mut self.robots[robot].sequence
     }
 
-    pub(crate) fn tokens_mut(&mut self) -> &mut u64 {
-        &mut self.tokens
+    /// Sets the counters of messages and grants, above all that were given.
+    pub(crate) fn set_counters(&mut self, serial: u64, tokens: u64) {
+        (self.serial, self.tokens) = (serial, tokens);
+    }
+
+    /// Whether a message would change nothing, now and as long as this arbiter runs.
+    pub(crate) fn is_past(&self, message: &StateMessage) -> bool {
+        let record = &self.robots[message.robot.0];
+        message.arbiter <= self.boot && message.boot == record.boot && message.sequence <= record.sequence
+    }
+
+    /// Gives robot `r` the index `to[r]`.
+    pub(crate) fn reindex(&mut self, to: &[usize]) {
+        crate::model::permute(&mut self.robots, to);
+        let map = |robot: &mut RobotSlot| *robot = RobotSlot(to[robot.0]);
+        for slot in &mut self.slots {
+            slot.holder.iter_mut().for_each(|holder| map(&mut holder.robot));
+            slot.queue.iter_mut().chain(&mut slot.intruders).for_each(map);
+        }
+    }
+
+    /// Everything about a robot, without its index.
+    pub(crate) fn hash_robot(&self, robot: RobotSlot, hasher: &mut impl std::hash::Hasher) {
+        use std::hash::Hash;
+        self.robots[robot.0].hash(hasher);
+        for slot in &self.slots {
+            let place = |robots: &[RobotSlot]| robots.iter().position(|other| *other == robot);
+            (slot.is_held_by(robot), place(&slot.queue), place(&slot.intruders)).hash(hasher);
+        }
     }
 
     /// A fault for the model check to find.

@@ -20,7 +20,7 @@ pub enum Ignored {
 }
 
 /// The times at which this many messages were sent are remembered; an answer to an older one confirms nothing.
-const REMEMBERED: usize = 64;
+const REMEMBERED: usize = if cfg!(test) { 8 } else { 64 };
 
 /// The guard of one robot: reports where it is, and knows which slots it may enter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -41,24 +41,32 @@ pub struct Guard {
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct GuardedSlot {
     occupancy: Occupancy,
+    /// The robot needs the slot where it is near. Near a region that is switched off it does not.
+    is_needed: bool,
     token: Option<Token>,
     released: Option<Token>,
     /// When the message was sent whose answer last confirmed the token.
     confirmed: Option<Micros>,
-    release_requested: bool,
-    halt: bool,
+    orders: Orders,
     /// The grant is not obeyed any more. It is given up once the robot is then observed to be able to stop outside.
     is_closing: bool,
+}
+
+/// What the arbiter asked for last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Orders {
+    release_requested: bool,
+    halt: bool,
 }
 
 impl GuardedSlot {
     const NEW: Self = Self {
         occupancy: Occupancy::Unknown,
+        is_needed: true,
         token: None,
         released: None,
         confirmed: None,
-        release_requested: false,
-        halt: false,
+        orders: Orders { release_requested: false, halt: false },
         is_closing: false,
     };
 
@@ -115,7 +123,7 @@ impl Guard {
 
     /// True where the robot must stop because another one was found inside.
     pub fn must_halt(&self, slot: SlotId) -> bool {
-        self.slots[slot.0].halt
+        self.slots[slot.0].orders.halt
     }
 
     /// Takes what the monitor found at a slot in a tick, after it has decided with [`Guard::may_enter`].
@@ -132,30 +140,49 @@ impl Guard {
         }
     }
 
+    /// Takes whether the robot needs a slot in whose warning zone it is; it does until this says otherwise. It does not where
+    /// all its regions there are switched off. A slot that it has it keeps until it is outside.
+    pub fn need(&mut self, slot: SlotId, is_needed: bool) {
+        self.slots[slot.0].is_needed = is_needed;
+    }
+
+    /// Takes that it is not known any more where the robot is: nobody else is granted a slot that it can be in.
+    pub fn lose_sight(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.occupancy = Occupancy::Unknown);
+    }
+
+    /// Number of slots of the cell.
+    pub fn slots(&self) -> usize {
+        self.slots.len()
+    }
+
     /// True where the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
     pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
         let slot = &self.slots[slot.0];
-        let is_fresh = slot.confirmed.is_some_and(|sent| now - sent <= self.validity);
-        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.halt
+        let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);
+        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.orders.halt
     }
 
     /// The next message to the arbiter.
     pub fn state(&mut self, now: Micros) -> StateMessage {
+        let mut message = StateMessage::with_slots(self.slots.len());
+        self.state_into(now, &mut message);
+        message
+    }
+
+    /// Writes the next message to the arbiter. Does not allocate where `message` has as many slots as the cell.
+    pub fn state_into(&mut self, now: Micros, message: &mut StateMessage) {
         for slot in &mut self.slots {
-            let is_asked = slot.release_requested || slot.halt;
+            let is_asked = slot.orders.release_requested || slot.orders.halt;
             let may_release = slot.occupancy == Occupancy::Outside || slot.occupancy == Occupancy::Warning && is_asked;
             slot.is_closing |= slot.token.is_some() && may_release;
         }
         self.sequence += 1;
         self.sent[self.sequence as usize % REMEMBERED] = now;
-        StateMessage {
-            robot: self.robot,
-            boot: self.boot,
-            sequence: self.sequence,
-            checksum: self.checksum,
-            arbiter: self.arbiter,
-            slots: self.slots.iter().map(GuardedSlot::report).collect(),
-        }
+        (message.robot, message.boot, message.sequence) = (self.robot, self.boot, self.sequence);
+        (message.checksum, message.arbiter) = (self.checksum, self.arbiter);
+        message.slots.clear();
+        message.slots.extend(self.slots.iter().map(GuardedSlot::report));
     }
 
     /// Takes a message of an arbiter.
@@ -195,7 +222,7 @@ impl Guard {
     }
 
     /// When the message with this sequence number was sent.
-    fn sent_at(&self, sequence: u64) -> Option<Micros> {
+    pub(crate) fn sent_at(&self, sequence: u64) -> Option<Micros> {
         let age = self.sequence.checked_sub(sequence)?;
         (sequence > 0 && age < REMEMBERED as u64).then(|| self.sent[sequence as usize % REMEMBERED])
     }
@@ -205,14 +232,14 @@ impl GuardedSlot {
     fn report(&self) -> SlotReport {
         SlotReport {
             occupancy: self.occupancy,
-            wants: self.occupancy > Occupancy::Outside,
+            wants: self.occupancy > Occupancy::Outside && self.is_needed,
             token: self.token,
             released: self.released,
         }
     }
 
     fn take(&mut self, answer: SlotAnswer, sent: Option<Micros>) {
-        (self.release_requested, self.halt) = (answer.release_requested, answer.halt);
+        self.orders = Orders { release_requested: answer.release_requested, halt: answer.halt };
         match answer.granted {
             Some(token) if self.released >= Some(token) => {}
             Some(token) => {
@@ -227,7 +254,7 @@ impl GuardedSlot {
     }
 }
 
-/// What the model check needs to see and to renumber.
+/// What the model check needs to see and to rewrite.
 #[cfg(test)]
 impl Guard {
     pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
@@ -235,28 +262,59 @@ impl Guard {
         self.slots.iter_mut().filter_map(|slot| slot.confirmed.as_mut()).for_each(f);
     }
 
-    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(&mut Option<Token>)) {
-        for slot in &mut self.slots {
-            f(&mut slot.token);
-            f(&mut slot.released);
+    /// The grant that is obeyed and the last one given up, per slot.
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(usize, &mut Option<Token>)) {
+        for (s, slot) in self.slots.iter_mut().enumerate() {
+            f(s, &mut slot.token);
+            f(s, &mut slot.released);
         }
+    }
+
+    pub(crate) fn released_mut(&mut self, slot: usize) -> &mut Option<Token> {
+        &mut self.slots[slot].released
     }
 
     pub(crate) fn serial_mut(&mut self) -> &mut u64 {
         &mut self.serial
     }
 
-    pub(crate) fn sequence_now(&self) -> u64 {
-        self.sequence
+    pub(crate) fn set_robot(&mut self, robot: RobotSlot) {
+        self.robot = robot;
     }
 
-    /// Gives each of these sequence numbers its index; the times of all others are forgotten.
-    pub(crate) fn renumber(&mut self, seen: &[u64]) {
-        let mut sent = vec![Micros(0); REMEMBERED];
-        for (rank, sequence) in seen.iter().enumerate().skip(1).filter(|(_, n)| **n <= self.sequence) {
-            sent[rank] = self.sent_at(*sequence).unwrap_or(Micros(0));
+    /// Whether an answer to this message may still confirm a grant.
+    pub(crate) fn confirms(&self, sequence: u64, now: Micros) -> bool {
+        self.sent_at(sequence).is_some_and(|sent| now - sent <= self.validity)
+    }
+
+    /// A confirmation that is too old to be obeyed is none.
+    pub(crate) fn forget_expired(&mut self, now: Micros) {
+        let validity = self.validity;
+        for slot in &mut self.slots {
+            slot.confirmed = slot.confirmed.filter(|sent| now - *sent <= validity);
         }
-        self.sequence = seen.binary_search(&self.sequence).unwrap_or(0) as u64;
-        self.sent = sent;
+    }
+
+    /// Whether a message would change nothing, now and ever after.
+    pub(crate) fn is_past(&self, message: &GrantsMessage) -> bool {
+        let late = message.arbiter < self.arbiter || message.arbiter == self.arbiter && message.serial <= self.serial;
+        message.robot_boot < self.boot || message.robot_boot == self.boot && late
+    }
+
+    /// Sets when the messages up to the last one were sent.
+    pub(crate) fn set_sent(&mut self, times: &[Option<Micros>]) {
+        self.sent.fill(Micros(0));
+        for (sequence, time) in times.iter().enumerate() {
+            self.sent[sequence] = time.unwrap_or(Micros(0));
+        }
+        self.sequence = times.len() as u64 - 1;
+    }
+
+    /// A fault for the model check to find: a grant is given up as soon as that is decided.
+    pub(crate) fn give_up_at_once(&mut self) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_closing) {
+            slot.released = slot.token.or(slot.released);
+            (slot.token, slot.confirmed, slot.is_closing) = (None, None, false);
+        }
     }
 }

@@ -37,6 +37,7 @@
 mod arbiter;
 mod event;
 mod guard;
+mod guarded_monitor;
 mod message;
 #[cfg(test)]
 mod model;
@@ -50,6 +51,7 @@ pub mod wire;
 pub use arbiter::{Arbiter, Outputs};
 pub use event::ArbiterEvent;
 pub use guard::{Guard, Ignored};
+pub use guarded_monitor::{GuardedMonitor, NotObeyed};
 pub use message::{GrantsMessage, SlotAnswer, SlotReport, StateMessage};
 pub use settings::{ArbiterSettings, RobotSettings};
 pub use time::Micros;

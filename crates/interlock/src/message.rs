@@ -21,6 +21,20 @@ pub struct StateMessage {
     pub slots: Vec<SlotReport>,
 }
 
+impl StateMessage {
+    /// A message of no guard, with memory for this number of slots, to be written into.
+    pub fn with_slots(slots: usize) -> Self {
+        Self {
+            robot: RobotSlot(0),
+            boot: Boot::NONE,
+            sequence: 0,
+            checksum: 0,
+            arbiter: Boot::NONE,
+            slots: vec![SlotReport::UNKNOWN; slots],
+        }
+    }
+}
+
 /// A robot with respect to one slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SlotReport {
@@ -54,6 +68,20 @@ pub struct GrantsMessage {
     pub echo: u64,
     /// Per slot of the cell.
     pub slots: Vec<SlotAnswer>,
+}
+
+impl GrantsMessage {
+    /// A message of no arbiter, with memory for this number of slots, to be written into.
+    pub fn with_slots(slots: usize) -> Self {
+        Self {
+            arbiter: Boot::NONE,
+            serial: 0,
+            robot: RobotSlot(0),
+            robot_boot: Boot::NONE,
+            echo: 0,
+            slots: vec![SlotAnswer::default(); slots],
+        }
+    }
 }
 
 /// What a robot is granted of one slot.

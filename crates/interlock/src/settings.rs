@@ -1,6 +1,6 @@
 //! What an arbiter knows of a cell.
 
-use elbowroom_monitor::SlotId;
+use elbowroom_monitor::{Configuration, RegionKind, SlotId};
 
 use crate::Micros;
 
@@ -45,4 +45,27 @@ impl RobotSettings {
         let slots = slots.into_iter().collect();
         Self { name: name.to_owned(), slots, stop_time: Micros(1_000_000), priority: 0 }
     }
+
+    /// Of the robot of a configuration: the slots of its exchange regions; at least 1 s to stop, longer where the stopping-distance
+    /// law says so; priority 0.
+    pub fn of(configuration: &Configuration) -> Self {
+        let slots = configuration.regions().iter().filter_map(|region| match region.kind {
+            RegionKind::Exchange { slot } => Some(slot),
+            _ => None,
+        });
+        let mut settings = Self::new(configuration.robot(), slots);
+        settings.slots.sort_unstable();
+        settings.slots.dedup();
+        settings.stop_time = settings.stop_time.max(Micros::from_seconds(stop_time_s(configuration)));
+        settings
+    }
+}
+
+/// Reaction and braking from the largest joint speeds, as far as they are known; 0 without the stopping-distance law.
+fn stop_time_s(configuration: &Configuration) -> f64 {
+    let chain = configuration.chain();
+    let Some(stopping) = &configuration.laws().stopping_distance else { return 0.0 };
+    let speeds = chain.active_joints().iter().map(|id| chain.joints()[id.0].limits.velocity.unwrap_or(0.0));
+    let braking_s = speeds.zip(&stopping.joint_deceleration).map(|(speed, deceleration)| speed / deceleration);
+    stopping.reaction_s + stopping.period_s + braking_s.fold(0.0, f64::max)
 }

@@ -10,6 +10,8 @@ pub(crate) struct SlotRecord {
     pub(crate) holder: Option<Holder>,
     /// Robots that wait, in the order of their requests.
     pub(crate) queue: Vec<RobotSlot>,
+    /// Robots that were found inside while another one held the slot, until they are seen outside or cleared.
+    pub(crate) intruders: Vec<RobotSlot>,
     /// The holder is asked to give the slot up.
     pub(crate) release_requested: bool,
 }

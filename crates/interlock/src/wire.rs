@@ -25,6 +25,8 @@ pub const MAX_BYTES: usize = 8 + 32 + MAX_SLOTS * 34 + 4;
 
 const MAGIC: [u8; 2] = *b"ER";
 const VERSION: u8 = 1;
+const STATE: u8 = 1;
+const GRANTS: u8 = 2;
 
 /// A message of either kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,6 +54,9 @@ pub enum WireError {
     /// Damaged.
     #[error("the checksum of the message is wrong")]
     Checksum,
+    /// A message of the other kind: sent to the wrong port.
+    #[error("the message is not from the side that it was expected from: guards send states, the arbiter sends grants")]
+    Kind,
     /// A value that no guard and no arbiter writes.
     #[error("the message has a value that means nothing")]
     Value,
@@ -59,23 +64,35 @@ pub enum WireError {
 
 /// The bytes of a message; `None` where it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
 pub fn encode(message: &Message) -> Option<Vec<u8>> {
-    let (kind, robot, slots, words) = match message {
-        Message::State(m) => (1, m.robot, m.slots.len(), [m.boot.0, m.sequence, m.checksum, m.arbiter.0]),
-        Message::Grants(m) => (2, m.robot, m.slots.len(), [m.arbiter.0, m.serial, m.robot_boot.0, m.echo]),
-    };
-    let (robot, count) = (u16::try_from(robot.0).ok()?, u16::try_from(slots).ok().filter(|_| slots <= MAX_SLOTS)?);
     let mut bytes = Vec::with_capacity(MAX_BYTES);
-    bytes.extend_from_slice(&MAGIC);
-    bytes.extend_from_slice(&[VERSION, kind]);
-    bytes.extend_from_slice(&robot.to_le_bytes());
-    bytes.extend_from_slice(&count.to_le_bytes());
-    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     match message {
-        Message::State(m) => m.slots.iter().for_each(|slot| write_report(slot, &mut bytes)),
-        Message::Grants(m) => m.slots.iter().for_each(|slot| write_answer(slot, &mut bytes)),
+        Message::State(m) => encode_state(m, &mut bytes),
+        Message::Grants(m) => encode_grants(m, &mut bytes),
     }
-    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-    Some(bytes)
+    .then_some(bytes)
+}
+
+/// Replaces `bytes` by those of a guard's message; false as [`encode`] gives `None`. Does not allocate where `bytes` has the
+/// capacity [`MAX_BYTES`].
+pub fn encode_state(m: &StateMessage, bytes: &mut Vec<u8>) -> bool {
+    let words = [m.boot.0, m.sequence, m.checksum, m.arbiter.0];
+    let fits = write_header(STATE, m.robot, m.slots.len(), words, bytes);
+    if fits {
+        m.slots.iter().for_each(|slot| write_report(slot, bytes));
+        write_checksum(bytes);
+    }
+    fits
+}
+
+/// Replaces `bytes` by those of the arbiter's message; otherwise as [`encode_state`].
+pub fn encode_grants(m: &GrantsMessage, bytes: &mut Vec<u8>) -> bool {
+    let words = [m.arbiter.0, m.serial, m.robot_boot.0, m.echo];
+    let fits = write_header(GRANTS, m.robot, m.slots.len(), words, bytes);
+    if fits {
+        m.slots.iter().for_each(|slot| write_answer(slot, bytes));
+        write_checksum(bytes);
+    }
+    fits
 }
 
 /// The message of these bytes.
@@ -83,6 +100,71 @@ pub fn encode(message: &Message) -> Option<Vec<u8>> {
 /// # Errors
 /// Why they are none. No bytes panic.
 pub fn decode(bytes: &[u8]) -> Result<Message, WireError> {
+    let (header, reader) = read_header(bytes)?;
+    match header.kind {
+        STATE => {
+            let mut message = StateMessage::with_slots(header.slots);
+            read_state(&header, reader, bytes, &mut message)?;
+            Ok(Message::State(message))
+        }
+        GRANTS => {
+            let mut message = GrantsMessage::with_slots(header.slots);
+            read_grants(&header, reader, bytes, &mut message)?;
+            Ok(Message::Grants(message))
+        }
+        _ => Err(WireError::Value),
+    }
+}
+
+/// Reads a guard's message into `message`. Does not allocate where that has memory for its slots.
+///
+/// # Errors
+/// Why the bytes are no such message; `message` means nothing then.
+pub fn decode_state(bytes: &[u8], message: &mut StateMessage) -> Result<(), WireError> {
+    let (header, reader) = read_header(bytes)?;
+    if header.kind == STATE { read_state(&header, reader, bytes, message) } else { Err(WireError::Kind) }
+}
+
+/// Reads the arbiter's message into `message`; otherwise as [`decode_state`].
+///
+/// # Errors
+/// As for [`decode_state`].
+pub fn decode_grants(bytes: &[u8], message: &mut GrantsMessage) -> Result<(), WireError> {
+    let (header, reader) = read_header(bytes)?;
+    if header.kind == GRANTS { read_grants(&header, reader, bytes, message) } else { Err(WireError::Kind) }
+}
+
+/// What both kinds begin with.
+struct Header {
+    kind: u8,
+    robot: RobotSlot,
+    slots: usize,
+    words: [u64; 4],
+}
+
+/// False where the message cannot be written.
+fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; 4], bytes: &mut Vec<u8>) -> bool {
+    bytes.clear();
+    let (Ok(robot), Ok(count)) = (u16::try_from(robot.0), u16::try_from(slots)) else { return false };
+    if slots > MAX_SLOTS {
+        return false;
+    }
+    bytes.extend_from_slice(&MAGIC);
+    bytes.extend_from_slice(&[VERSION, kind]);
+    bytes.extend_from_slice(&robot.to_le_bytes());
+    bytes.extend_from_slice(&count.to_le_bytes());
+    for word in words {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
+    true
+}
+
+fn write_checksum(bytes: &mut Vec<u8>) {
+    let crc = crc32fast::hash(bytes);
+    bytes.extend_from_slice(&crc.to_le_bytes());
+}
+
+fn read_header(bytes: &[u8]) -> Result<(Header, Reader<'_>), WireError> {
     let length = WireError::Length(bytes.len());
     if bytes.len() > MAX_BYTES {
         return Err(length);
@@ -99,7 +181,36 @@ pub fn decode(bytes: &[u8]) -> Result<Message, WireError> {
     if crc32fast::hash(content).to_le_bytes() != *crc {
         return Err(WireError::Checksum);
     }
-    reader.message(kind).ok_or(WireError::Value).and_then(|m| if reader.rest.is_empty() { Ok(m) } else { Err(length) })
+    let header = reader.header(kind).ok_or(length)?;
+    if header.slots > MAX_SLOTS { Err(WireError::Value) } else { Ok((header, reader)) }
+}
+
+fn read_state(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut StateMessage) -> Result<(), WireError> {
+    let [boot, sequence, checksum, arbiter] = header.words;
+    (m.robot, m.boot, m.arbiter) = (header.robot, Boot(boot), Boot(arbiter));
+    (m.sequence, m.checksum) = (sequence, checksum);
+    read_slots(header, reader, bytes, &mut m.slots, Reader::report)
+}
+
+fn read_grants(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut GrantsMessage) -> Result<(), WireError> {
+    let [arbiter, serial, robot_boot, echo] = header.words;
+    (m.robot, m.arbiter, m.robot_boot) = (header.robot, Boot(arbiter), Boot(robot_boot));
+    (m.serial, m.echo) = (serial, echo);
+    read_slots(header, reader, bytes, &mut m.slots, Reader::answer)
+}
+
+fn read_slots<'a, T>(
+    header: &Header,
+    mut reader: Reader<'a>,
+    bytes: &[u8],
+    slots: &mut Vec<T>,
+    read: impl Fn(&mut Reader<'a>) -> Option<T>,
+) -> Result<(), WireError> {
+    slots.clear();
+    for _ in 0..header.slots {
+        slots.push(read(&mut reader).ok_or(WireError::Value)?);
+    }
+    if reader.rest.is_empty() { Ok(()) } else { Err(WireError::Length(bytes.len())) }
 }
 
 fn write_token(token: Option<Token>, bytes: &mut Vec<u8>) {
@@ -134,26 +245,10 @@ impl Reader<'_> {
         Some(*first)
     }
 
-    fn message(&mut self, kind: u8) -> Option<Message> {
+    fn header(&mut self, kind: u8) -> Option<Header> {
         let robot = RobotSlot(usize::from(u16::from_le_bytes(self.take()?)));
-        let count = usize::from(u16::from_le_bytes(self.take()?));
-        let [a, b, c, d] = [self.word()?, self.word()?, self.word()?, self.word()?];
-        if count > MAX_SLOTS {
-            return None;
-        }
-        match kind {
-            1 => {
-                let slots = (0..count).map(|_| self.report()).collect::<Option<_>>()?;
-                let (boot, arbiter) = (Boot(a), Boot(d));
-                Some(Message::State(StateMessage { robot, boot, sequence: b, checksum: c, arbiter, slots }))
-            }
-            2 => {
-                let slots = (0..count).map(|_| self.answer()).collect::<Option<_>>()?;
-                let (arbiter, robot_boot) = (Boot(a), Boot(c));
-                Some(Message::Grants(GrantsMessage { arbiter, serial: b, robot, robot_boot, echo: d, slots }))
-            }
-            _ => None,
-        }
+        let slots = usize::from(u16::from_le_bytes(self.take()?));
+        Some(Header { kind, robot, slots, words: [self.word()?, self.word()?, self.word()?, self.word()?] })
     }
 
     fn word(&mut self) -> Option<u64> {

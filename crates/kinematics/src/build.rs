@@ -67,8 +67,11 @@ fn check_joint(joint: &mut Joint, links: usize) -> Result<(), ChainError> {
         return Ok(());
     }
     let [x, y, z] = joint.axis.to_array();
-    joint.axis =
-        joint.axis.try_normalize().ok_or_else(|| ChainError::BadAxis { joint: joint.name.clone(), x, y, z })?;
+    // An axis of length 1 within rounding stays as it is: the joints of a chain make the same chain again, bit by bit.
+    if !((joint.axis.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON) {
+        joint.axis =
+            joint.axis.try_normalize().ok_or_else(|| ChainError::BadAxis { joint: joint.name.clone(), x, y, z })?;
+    }
     if joint.kind == JointKind::Continuous {
         joint.limits.lower = f64::NEG_INFINITY;
         joint.limits.upper = f64::INFINITY;

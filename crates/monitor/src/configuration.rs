@@ -82,9 +82,16 @@ pub enum ConfigError {
     /// The robot's pose is not finite.
     #[error("the robot's base is not at a finite position")]
     Base,
-    /// There are exchange regions, but no zone arbiter that has their slots.
-    #[error("region `{0}` is an exchange region: it needs a ZoneArbiter that has its slot")]
+    /// There are exchange regions, but nothing that grants their slots.
+    #[error("region `{0}` is an exchange region: it needs an Interlock that has its slot")]
     NoArbiter(String),
+    /// An exchange region is shared with robots of other processes, and it is not known whether this one can stop outside.
+    #[error(
+        "region `{0}` is an exchange region between controllers: a grant may end while the robot moves, so it must be known \
+         where it can stop; write `stopping_distance = true` into `[monitor]` of the cell file, and the robot's measured \
+         `stop_time` into its table"
+    )]
+    NoStoppingDistance(String),
 }
 
 /// The per-joint rates of [`StoppingSettings`](crate::StoppingSettings).
@@ -129,6 +136,11 @@ impl Configuration {
     /// The regions; a [`RegionId`] is an index into them.
     pub fn regions(&self) -> &[Region] {
         &self.regions
+    }
+
+    /// What regions follow; a [`SourceId`](crate::SourceId) is an index into them.
+    pub fn sources(&self) -> &[SourceSpec] {
+        &self.sources
     }
 
     /// The laws.

@@ -86,7 +86,9 @@ pub use attached_volumes::AttachError;
 pub use configuration::{ConfigError, Configuration, ConfigurationParts};
 pub use configuration_edit::{ConfigurationEdit, EditError};
 pub use event::{Event, EventKind};
-pub use interlock::{Grant, Occupancy, RobotSlot, SlotId, ZoneArbiter, group_overlapping};
+pub use interlock::{
+    ExchangeState, Grant, Interlock, Occupancy, RobotSlot, SlotGrants, SlotId, ZoneArbiter, group_overlapping,
+};
 pub use laws::{Laws, StoppingSettings};
 pub use monitor::Monitor;
 pub use region::{Guards, Life, Region, RegionId, RegionKind, SourceId, VolumeId};
@@ -96,4 +98,3 @@ pub use report::{Fault, NamedReason, OverrideReason, TickReport, VirtualTcp};
 pub use snapshot::{Snapshot, SourceState};
 pub use source_limits::{SourceLimits, SourceSpec};
 pub use volume::{Part, Presence, Volume, VolumeModel, arm_volumes};
-pub use zone_client::ExchangeState;

@@ -1,7 +1,5 @@
 //! The monitor of one robot.
 
-use std::sync::Arc;
-
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::Pose;
 
@@ -19,11 +17,11 @@ use crate::source_check::{SourceCheck, SourceStatus};
 use crate::stopping::{StoppingInput, StoppingLaw};
 use crate::tick_context::{DirectionSettings, TickContext};
 use crate::watchdog::{Watchdog, WatchdogSettings};
-use crate::zone_client::{ExchangeState, RegionStatus, ZoneClient};
+use crate::zone_client::{RegionStatus, ZoneClient};
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{
-    AccessClass, AttachError, ConfigError, Configuration, Event, EventKind, Fault, Life, OverrideReason, RegionId,
-    RegionKind, RobotSlot, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId, ZoneArbiter,
+    AccessClass, AttachError, ConfigError, Configuration, Event, EventKind, ExchangeState, Fault, Interlock, Life,
+    OverrideReason, RegionId, RegionKind, SlotGrants, SlotId, Snapshot, SwitchError, TickReport, VirtualTcp, VolumeId,
 };
 
 /// Smallest override by which actual velocities are divided to infer those of the program.
@@ -34,6 +32,8 @@ const MIN_INFERENCE_OVERRIDE: f64 = 0.01;
 pub struct Monitor {
     config: Configuration,
     active: Vec<bool>,
+    /// Regions that are measured in this tick: the active ones, and all exchange regions of which it is known where they are.
+    measured: Vec<bool>,
     now: Placement,
     /// The placement after the lookahead time, for the direction-aware law.
     predicted: Option<Placement>,
@@ -44,6 +44,8 @@ pub struct Monitor {
     /// The motion since the previous tick.
     sweep: RegionSweep,
     zones: Vec<ZoneState>,
+    /// The same of all measured regions, the inactive ones included.
+    presence: Vec<ZoneState>,
     /// Regions in whose warning zone the robot is, in this tick and in the previous one.
     warned: Vec<u32>,
     previously_warned: Vec<u32>,
@@ -72,13 +74,13 @@ struct Decision<'a> {
 }
 
 impl Monitor {
-    /// A monitor that is ready to tick: everything is allocated here. Exchange regions need the zone arbiter that the robots
-    /// share, and the slot of this robot in it.
+    /// A monitor that is ready to tick: everything is allocated here. Exchange regions need the interlock that grants them.
     ///
     /// # Errors
-    /// [`ConfigError::NoArbiter`] where there are exchange regions, but no arbiter that has their slots.
-    pub fn new(config: Configuration, arbiter: Option<(Arc<ZoneArbiter>, RobotSlot)>) -> Result<Self, ConfigError> {
-        let zone_client = arbiter.and_then(|(arbiter, robot)| ZoneClient::new(arbiter, robot, &config));
+    /// [`ConfigError::NoArbiter`] where there are exchange regions, but nothing that grants their slots;
+    /// [`ConfigError::NoStoppingDistance`] where they are shared with other processes without the stopping-distance law.
+    pub fn new(config: Configuration, interlock: Option<Interlock>) -> Result<Self, ConfigError> {
+        let zone_client = interlock.map(|interlock| ZoneClient::new(interlock, &config)).transpose()?;
         if let (None, Some(region)) = (&zone_client, config.first_exchange()) {
             return Err(ConfigError::NoArbiter(region.name.clone()));
         }
@@ -87,12 +89,14 @@ impl Monitor {
         let needs_intent = laws.direction_aware || laws.stopping_distance.is_some();
         Ok(Self {
             active: config.regions.iter().map(|r| r.life == Life::Permanent).collect(),
+            measured: vec![false; regions],
             predicted: laws.direction_aware.then(|| Placement::new(&config)),
             intent: needs_intent.then(|| ChainState::new(&config.chain)),
             stopping_law: laws.stopping_distance.as_ref().map(|s| StoppingLaw::new(&config, s)),
             clearances: RegionClearances::new(&config, &now),
             sweep: RegionSweep::new(&config),
             zones: vec![ZoneState::default(); regions],
+            presence: vec![ZoneState::default(); regions],
             warned: Vec::with_capacity(regions),
             previously_warned: Vec::with_capacity(regions),
             outputs: DigitalOutputs::new(),
@@ -136,10 +140,11 @@ impl Monitor {
         }
         self.update_zones();
         if let Some(zone_client) = &mut self.zone_client {
-            let Self { active, zones, clearances, log, .. } = self;
+            let Self { active, measured, presence, clearances, log, .. } = self;
             let status = |r: RegionId| RegionStatus {
-                active: active[r.0],
-                zone: zones[r.0],
+                is_active: active[r.0],
+                is_measured: measured[r.0],
+                zone: presence[r.0],
                 stops_outside: clearances.get(r.0).is_none_or(|c| c.stops_outside),
             };
             zone_client.update(status, s.now_s, log);
@@ -227,6 +232,30 @@ impl Monitor {
         self.sweep.detach(&self.config, volume)
     }
 
+    /// Forgets where the robot was: the next joint values may be anywhere, and are not [too fast](Fault::TooFast). Call it where
+    /// the robot is known to be at rest, after it was moved while nobody looked. Never allocates.
+    ///
+    /// ```
+    /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+    /// # use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Monitor, Snapshot, Volume};
+    /// # use elbowroom_spatial::{Pose, Vec3};
+    /// # let rail = Joint { name: "rail".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1),
+    /// #     origin: Pose::IDENTITY, axis: Vec3::X, limits: Limits::range(0.0, 2.0), mimic: None };
+    /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
+    /// # let mut monitor = Monitor::new(Configuration::new(ConfigurationParts { robot: "rail".into(), chain,
+    /// #     base_in_world: Pose::IDENTITY, volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![],
+    /// #     sources: vec![], laws: Laws::default() })?, None)?;
+    /// monitor.tick(&Snapshot::stationary(0.0, &[0.0]));
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.002, &[1.0])).speed_override, 0.0); // 1 m in 2 ms
+    /// monitor.forget_position();
+    /// assert_eq!(monitor.tick(&Snapshot::stationary(0.004, &[1.0])).speed_override, 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn forget_position(&mut self) {
+        self.watchdog.forget_position();
+        self.sweep.reset();
+    }
+
     /// True where a volume is a part of the robot at present.
     pub fn is_attached(&self, volume: VolumeId) -> bool {
         volume.0 < self.config.volumes.len() && self.now.attached.contains(volume.0)
@@ -258,7 +287,8 @@ impl Monitor {
 
     /// The virtual TCPs of the last tick: for every region near the robot the point that requests the smallest override.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
-        self.clearances.near().iter().filter_map(|r| self.clearances.get(*r as usize)).map(|c| self.virtual_tcp(c, s))
+        let active = self.clearances.near().iter().map(|r| *r as usize).filter(|r| self.active[*r]);
+        active.filter_map(|r| self.clearances.get(r)).map(|c| self.virtual_tcp(c, s))
     }
 
     /// Distance (m) of the region to the closest volume that it guards against, at the state of the last tick; `None` where
@@ -286,6 +316,12 @@ impl Monitor {
 
     fn may_enter(&self, region: RegionId, now_s: f64) -> bool {
         self.exchange(region).is_some_and(|(client, slot)| client.may_enter(slot, now_s))
+    }
+
+    /// The grants that come from outside of the process: those of [`Interlock::Granted`]. `None` where the robots share an
+    /// arbiter, and without exchange regions.
+    pub fn slot_grants(&self) -> Option<&SlotGrants> {
+        self.zone_client.as_ref()?.slot_grants()
     }
 
     /// State of the robot with respect to an exchange region in the last tick; `None` for any other region.
@@ -341,10 +377,14 @@ impl Monitor {
 
     fn check_sources(&mut self, s: &Snapshot) -> Result<(), Fault> {
         self.source_check.update(&self.config.sources, s.sources, s.now_s, self.config.laws.stale_s);
-        for DynamicRegion { region, source } in self.now.dynamic_regions.iter().filter(|d| self.active[d.region]) {
+        for (r, measured) in self.measured.iter_mut().enumerate() {
+            *measured = self.active[r] || matches!(self.config.regions[r].kind, RegionKind::Exchange { .. });
+        }
+        for DynamicRegion { region, source } in &self.now.dynamic_regions {
             let region = RegionId(*region);
             match self.source_check.status(source.0) {
                 SourceStatus::Valid => {}
+                _ if !self.active[region.0] => self.measured[region.0] = false,
                 SourceStatus::Lost => return Err(Fault::Source { region }),
                 SourceStatus::Jumped => return Err(Fault::SourceJump { region }),
             }
@@ -390,7 +430,7 @@ impl Monitor {
     fn measure(&mut self, s: &Snapshot, dt_s: f64) {
         let Self {
             config,
-            active,
+            measured,
             now,
             predicted,
             intent,
@@ -445,18 +485,30 @@ impl Monitor {
             max_region_speed: max_region_speed(now, s.sources),
             settings: OverrideLawSettings::default(),
         };
-        clearances.measure(config, active, now, &override_law, sweep.extra_reach_for_travel());
+        clearances.measure(config, measured, now, &override_law, sweep.extra_reach_for_travel());
     }
 
     fn update_zones(&mut self) {
         std::mem::swap(&mut self.warned, &mut self.previously_warned);
         self.warned.clear();
-        let Self { config, clearances, sweep, just_switched, zones, warned, previously_warned, outputs, log, .. } =
-            self;
+        let Self {
+            config,
+            active,
+            clearances,
+            sweep,
+            just_switched,
+            zones,
+            presence,
+            warned,
+            previously_warned,
+            outputs,
+            log,
+            ..
+        } = self;
         let left = previously_warned.iter().filter(|r| clearances.get(**r as usize).is_none());
         for r in clearances.near().iter().chain(left) {
             let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
-            let from = zones[id.0];
+            let from = presence[id.0];
             let mut to = from.next(clearances.get(id.0).map_or(f64::INFINITY, |c| c.distance), region);
             if let Some(clearance) = clearances.get(id.0).filter(|_| !to.inside && !just_switched.contains(&id))
                 && let Some(passed_m) =
@@ -465,9 +517,11 @@ impl Monitor {
                 // A region that was passed is reported for one tick.
                 to = from.next(passed_m, region);
             }
-            if to != from {
-                outputs.change(id, region, from, to, log);
-                zones[id.0] = to;
+            presence[id.0] = to;
+            let reported = if active[id.0] { to } else { ZoneState::default() };
+            if reported != zones[id.0] {
+                outputs.change(id, region, zones[id.0], reported, log);
+                zones[id.0] = reported;
             }
             if to.warned {
                 warned.push(*r);
@@ -506,7 +560,11 @@ impl Monitor {
         let v0 = s.programmed_override;
         let mut decision =
             Decision { speed_override: v0, immediate_limit: v0, reason: OverrideReason::Free, governing: None };
-        for r in self.clearances.near() {
+        if let Some(region) = self.zone_client.as_ref().and_then(ZoneClient::halted_by) {
+            let (reason, governing) = (OverrideReason::Halted(region), self.clearances.get(region.0));
+            return Decision { speed_override: 0.0, immediate_limit: 0.0, reason, governing };
+        }
+        for r in self.clearances.near().iter().filter(|r| self.active[**r as usize]) {
             let Some(clearance) = self.clearances.get(*r as usize) else { continue };
             let id = RegionId(*r as usize);
             if self.may_enter(id, s.now_s) {

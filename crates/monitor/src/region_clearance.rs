@@ -17,7 +17,7 @@ pub(crate) struct RegionClearance {
     tick: u64,
     /// Distance of the closest guarded volume, m.
     pub(crate) distance: f64,
-    /// Lower bound of that distance in the previous tick, m, where the region was active then.
+    /// Lower bound of that distance in the previous tick, m, where the region was measured then.
     pub(crate) previous_distance: f64,
     /// The smallest override that a pair of the region requests.
     pub(crate) requested_override: f64,
@@ -100,20 +100,20 @@ impl RegionClearances {
         (clearance.tick == self.tick && self.tick > 0).then_some(clearance)
     }
 
-    /// Measures every active region against the volumes that it guards against, as far as `law` or `travel` need it.
+    /// Measures every region of `measured` against the volumes that it guards against, as far as `law` or `travel` need it.
     // Inlined into the tick, the loop would not keep its bounds in registers.
     #[inline(never)]
     pub(crate) fn measure(
         &mut self,
         config: &Configuration,
-        active: &[bool],
+        measured: &[bool],
         now: &Placement,
         law: &OverrideLaw<'_>,
         travel: TravelBound,
     ) {
         let mut measurement = Measurement {
             config,
-            active,
+            measured,
             now,
             law,
             region_bounds: &self.region_bounds,
@@ -141,7 +141,7 @@ impl RegionClearances {
 /// The measurement of one tick.
 struct Measurement<'a> {
     config: &'a Configuration,
-    active: &'a [bool],
+    measured: &'a [bool],
     now: &'a Placement,
     law: &'a OverrideLaw<'a>,
     region_bounds: &'a [Option<RoundedBox>],
@@ -160,7 +160,7 @@ impl Measurement<'_> {
     #[inline]
     fn visit(&mut self, r: usize, v: usize, extra_reach: f64) {
         let (region, volume) = (&self.config.regions[r], &self.config.volumes[v]);
-        if !self.active[r] || !volume.part.counts_for(region.guards) {
+        if !self.measured[r] || !volume.part.counts_for(region.guards) {
             return;
         }
         let clearance = &self.of_region[r];

@@ -53,6 +53,8 @@ pub enum OverrideReason {
     SpeedZone(RegionId),
     /// An exchange region that is not granted to this robot limits the override.
     Waiting(RegionId),
+    /// The interlock halts the robot: another robot was found inside an exchange region that only one of them may be in.
+    Halted(RegionId),
     /// The override is rising or falling at its largest rate.
     Rate,
     /// The input is invalid.
@@ -63,7 +65,7 @@ impl OverrideReason {
     /// The region that limits the override, where one does.
     pub fn region(self) -> Option<RegionId> {
         match self {
-            Self::Region(r) | Self::SpeedZone(r) | Self::Waiting(r) => Some(r),
+            Self::Region(r) | Self::SpeedZone(r) | Self::Waiting(r) | Self::Halted(r) => Some(r),
             Self::Free | Self::Rate | Self::Fault(_) => None,
         }
     }
@@ -90,6 +92,7 @@ impl OverrideReason {
             Self::Region(r) => Self::Region(index(r)),
             Self::SpeedZone(r) => Self::SpeedZone(index(r)),
             Self::Waiting(r) => Self::Waiting(index(r)),
+            Self::Halted(r) => Self::Halted(index(r)),
             Self::Fault(Fault::Source { region }) => Self::Fault(Fault::Source { region: index(region) }),
             Self::Fault(Fault::SourceJump { region }) => Self::Fault(Fault::SourceJump { region: index(region) }),
             Self::Free | Self::Rate | Self::Fault(_) => self,
@@ -124,6 +127,9 @@ impl fmt::Display for NamedReason<'_> {
             OverrideReason::Region(r) => write!(f, "near forbidden region {}", self.name(r)),
             OverrideReason::SpeedZone(r) => write!(f, "speed zone {}", self.name(r)),
             OverrideReason::Waiting(r) => write!(f, "waiting for exchange region {}", self.name(r)),
+            OverrideReason::Halted(r) => {
+                write!(f, "halted: two robots are in exchange region {}, move one of them out by hand", self.name(r))
+            }
             OverrideReason::Rate => write!(f, "override changing at its largest rate"),
             OverrideReason::Fault(Fault::Source { region }) => {
                 write!(f, "the source that region {} follows is lost", self.name(region))
@@ -237,6 +243,7 @@ mod tests {
                 OverrideReason::Region(region),
                 OverrideReason::SpeedZone(region),
                 OverrideReason::Waiting(region),
+                OverrideReason::Halted(region),
                 OverrideReason::Fault(Fault::Source { region }),
                 OverrideReason::Fault(Fault::SourceJump { region }),
             ]

@@ -131,6 +131,13 @@ impl Watchdog {
         motion
     }
 
+    /// Forgets the last valid snapshot: the next one may be anywhere.
+    pub(crate) fn forget_position(&mut self) {
+        self.last_valid = None;
+        self.explained_travel.fill(0.0);
+        (self.max_unchanged_s, self.min_unchanged_s) = (0.0, 0.0);
+    }
+
     /// Seconds since the last valid snapshot.
     pub(crate) fn since_last(&self, s: &Snapshot) -> f64 {
         self.last_valid.map_or(0.0, |last| (s.now_s - last.now_s).max(0.0))

@@ -1,44 +1,19 @@
-//! A monitor's client of the zone arbiter of the exchange regions.
-
-use std::sync::Arc;
+//! A monitor's side of the interlock of its exchange regions.
 
 use crate::event::EventLog;
 use crate::zone_state::ZoneState;
-use crate::{Configuration, EventKind, Grant, Occupancy, RegionId, RegionKind, RobotSlot, SlotId, ZoneArbiter};
-
-/// State of a robot with respect to an exchange region and those that share its slot (`docs/laws.md`, section 11).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ExchangeState {
-    /// Beyond the warning zone.
-    Outside,
-    /// In the warning zone, without the grant.
-    Waiting,
-    /// Granted, and able to stop outside.
-    Granted,
-    /// Not inside, but possibly unable to stop outside.
-    Committed,
-    /// Inside.
-    Inside,
-}
-
-impl ExchangeState {
-    /// The name in files and messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Outside => "outside",
-            Self::Waiting => "waiting",
-            Self::Granted => "granted",
-            Self::Committed => "committed",
-            Self::Inside => "inside",
-        }
-    }
-}
+use crate::{
+    ConfigError, Configuration, EventKind, ExchangeState, Grant, Interlock, Occupancy, RegionId, RegionKind, RobotSlot,
+    SlotGrants, SlotId, ZoneArbiter,
+};
 
 /// What a tick found at one region.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionStatus {
-    /// The region is active.
-    pub(crate) active: bool,
+    /// The region is active. One that is switched off limits nothing, but the robot that is in it keeps its slot.
+    pub(crate) is_active: bool,
+    /// False where the source that it follows is lost: then it is not known where it is.
+    pub(crate) is_measured: bool,
     pub(crate) zone: ZoneState,
     /// The robot can stop outside the region.
     pub(crate) stops_outside: bool,
@@ -47,19 +22,22 @@ pub(crate) struct RegionStatus {
 /// The client of one robot.
 #[derive(Debug)]
 pub(crate) struct ZoneClient {
-    arbiter: Arc<ZoneArbiter>,
-    robot: RobotSlot,
+    interlock: Interlock,
     slots: Vec<SlotSession>,
     /// True where the deceleration is stated, so that a moving robot can be proven to stop outside.
     proves_stops: bool,
 }
 
-/// One slot of the arbiter, as used by the robot.
+/// One slot, as used by the robot.
 #[derive(Debug)]
 struct SlotSession {
     slot: SlotId,
     regions: Vec<RegionId>,
     occupancy: Occupancy,
+    /// One of its regions is active, and the robot is in it, in its warning zone or unable to stop outside.
+    is_near_active_region: bool,
+    /// The region whose halt the robot obeys: the first active one. A region that is switched off limits nothing.
+    first_active: Option<RegionId>,
     grant: Option<Grant>,
     state: SlotState,
     /// Time since which the robot holds the slot outside of all warning zones.
@@ -79,84 +57,98 @@ enum SlotState {
 }
 
 impl ZoneClient {
-    /// `None` where the arbiter does not have a slot or the robot.
-    pub(crate) fn new(arbiter: Arc<ZoneArbiter>, robot: RobotSlot, config: &Configuration) -> Option<Self> {
+    /// # Errors
+    /// The interlock lacks a slot or the robot, or what it needs is not configured.
+    pub(crate) fn new(interlock: Interlock, config: &Configuration) -> Result<Self, ConfigError> {
+        let proves_stops = config.laws.stopping_distance.is_some();
         let mut slots: Vec<SlotSession> = Vec::new();
         for (r, region) in config.regions.iter().enumerate() {
             let RegionKind::Exchange { slot } = region.kind else { continue };
-            if slot.0 >= arbiter.slots() || robot.0 >= arbiter.robots() {
-                return None;
+            let has_slot = match &interlock {
+                Interlock::Shared(arbiter, robot) => slot.0 < arbiter.slots() && robot.0 < arbiter.robots(),
+                Interlock::Granted(_) if !proves_stops => {
+                    return Err(ConfigError::NoStoppingDistance(region.name.clone()));
+                }
+                Interlock::Granted(grants) => slot.0 < grants.slots(),
+            };
+            if !has_slot {
+                return Err(ConfigError::NoArbiter(region.name.clone()));
             }
             match slots.iter_mut().find(|u| u.slot == slot) {
                 Some(known) => known.regions.push(RegionId(r)),
                 None => slots.push(SlotSession::new(slot, RegionId(r))),
             }
-            arbiter.register(slot, robot);
+            if let Interlock::Shared(arbiter, robot) = &interlock {
+                arbiter.register(slot, *robot);
+            }
         }
-        Some(Self { arbiter, robot, slots, proves_stops: config.laws.stopping_distance.is_some() })
+        Ok(Self { interlock, slots, proves_stops })
     }
 
     /// Publishes the robot's occupancy and requests the slots that it is near. A tick with invalid input does not call this:
     /// the published occupancy and the held slots stay as they are.
     pub(crate) fn update(&mut self, status: impl Fn(RegionId) -> RegionStatus, now_s: f64, log: &mut EventLog) {
         for session in &mut self.slots {
-            // Without a stated deceleration nothing is proven for a moving robot. Until the slot is granted, the warning law
-            // is assumed to keep it outside.
-            let held = session.state == SlotState::Held;
-            let occupancy = |region: RegionStatus| {
-                let can_stop = region.stops_outside || !(self.proves_stops || held && region.zone.warned);
-                region.zone.occupancy(can_stop)
-            };
-            let active = || session.regions.iter().map(|r| status(*r)).filter(|region| region.active);
-            let warned = active().any(|region| region.zone.warned);
-            session.occupancy = active().map(occupancy).max().unwrap_or(Occupancy::Outside);
-            session.left_s = if held && !warned { session.left_s.or(Some(now_s)) } else { None };
+            session.observe(&status, self.proves_stops, now_s);
         }
-        self.exchange(now_s);
+        if let Interlock::Shared(arbiter, robot) = &self.interlock {
+            exchange(arbiter, *robot, &mut self.slots, now_s);
+        }
         for session in &mut self.slots {
-            let state = session.state_now(&self.arbiter, self.robot);
+            let state = match &self.interlock {
+                Interlock::Shared(arbiter, robot) => session.shared_state(arbiter, *robot),
+                Interlock::Granted(grants) => session.granted_state(grants.may_enter(session.slot)),
+            };
             if state != session.state {
                 session.log_change(state, log);
                 session.state = state;
             }
+            if let Interlock::Granted(grants) = &self.interlock {
+                let SlotSession { slot, occupancy, is_near_active_region, .. } = *session;
+                grants.found(slot, occupancy, session.exchange_state(), is_near_active_region);
+            }
         }
     }
 
-    /// Publishes the occupancy of all slots before the first request: other robots may be granted a slot, and this robot may
-    /// have to yield, because of it.
-    fn exchange(&mut self, now_s: f64) {
-        for session in &self.slots {
-            self.arbiter.publish(session.slot, self.robot, session.occupancy, now_s);
-        }
-        for session in &mut self.slots {
-            let is_near = session.occupancy > Occupancy::Outside;
-            session.grant = is_near.then(|| self.arbiter.request(session.slot, self.robot, now_s));
-        }
+    /// The grants that the caller writes; `None` where the robots share an arbiter.
+    pub(crate) fn slot_grants(&self) -> Option<&SlotGrants> {
+        if let Interlock::Granted(grants) = &self.interlock { Some(grants) } else { None }
     }
 
     /// Invalidates the published occupancy of a slot, because one of its regions was switched on.
     pub(crate) fn invalidate(&self, slot: SlotId) {
-        self.arbiter.invalidate(slot, self.robot);
+        if let Interlock::Shared(arbiter, robot) = &self.interlock {
+            arbiter.invalidate(slot, *robot);
+        }
     }
 
-    /// True where another robot holds the slot, or occupies it.
+    /// True where another robot holds the slot, or occupies it; of a robot in another process, as far as this one is refused
+    /// or halted because of it.
     pub(crate) fn is_taken(&self, slot: SlotId) -> bool {
-        let others = || (0..self.arbiter.robots()).map(RobotSlot).filter(|r| *r != self.robot);
-        match self.arbiter.holder(slot) {
-            Some(holder) => holder != self.robot,
-            None => others().any(|r| self.arbiter.occupancy(slot, r).occupies()),
+        match &self.interlock {
+            Interlock::Shared(arbiter, robot) => {
+                let others = || (0..arbiter.robots()).map(RobotSlot).filter(|r| r != robot);
+                match arbiter.holder(slot) {
+                    Some(holder) => holder != *robot,
+                    None => others().any(|r| arbiter.occupancy(slot, r).occupies()),
+                }
+            }
+            Interlock::Granted(grants) => {
+                let is_refused = |s: &SlotSession| s.slot == slot && s.state == SlotState::Waiting;
+                grants.must_halt(slot) || self.slots.iter().any(is_refused)
+            }
         }
+    }
+
+    /// An active region that halts the robot, because another one was found inside.
+    pub(crate) fn halted_by(&self) -> Option<RegionId> {
+        let Interlock::Granted(grants) = &self.interlock else { return None };
+        self.slots.iter().filter(|s| grants.must_halt(s.slot)).find_map(|s| s.first_active)
     }
 
     pub(crate) fn state(&self, slot: SlotId) -> ExchangeState {
-        let Some(session) = self.slots.iter().find(|s| s.slot == slot) else { return ExchangeState::Outside };
-        match (session.occupancy, session.state) {
-            (Occupancy::Inside, _) => ExchangeState::Inside,
-            (Occupancy::Committed, _) => ExchangeState::Committed,
-            (_, SlotState::Held) => ExchangeState::Granted,
-            (_, SlotState::Waiting | SlotState::Deadlock) => ExchangeState::Waiting,
-            (_, SlotState::Away) => ExchangeState::Outside,
-        }
+        let session = self.slots.iter().find(|s| s.slot == slot);
+        session.map_or(ExchangeState::Outside, SlotSession::exchange_state)
     }
 
     pub(crate) fn holds(&self, slot: SlotId) -> bool {
@@ -171,19 +163,83 @@ impl ZoneClient {
     }
 }
 
+/// Publishes the occupancy of all slots before the first request: other robots may be granted a slot, and this robot may
+/// have to yield, because of it.
+fn exchange(arbiter: &ZoneArbiter, robot: RobotSlot, sessions: &mut [SlotSession], now_s: f64) {
+    for session in &*sessions {
+        arbiter.publish(session.slot, robot, session.occupancy, now_s);
+    }
+    for session in sessions {
+        // Near a region that is switched off it needs no slot, but keeps one that it has.
+        let keeps = session.occupancy > Occupancy::Outside && arbiter.holder(session.slot) == Some(robot);
+        let requests = session.is_near_active_region || keeps;
+        session.grant = requests.then(|| arbiter.request(session.slot, robot, now_s));
+    }
+}
+
 impl SlotSession {
     fn new(slot: SlotId, region: RegionId) -> Self {
-        let (occupancy, state) = (Occupancy::Unknown, SlotState::Away);
-        Self { slot, regions: vec![region], occupancy, grant: None, state, left_s: None }
+        Self {
+            slot,
+            regions: vec![region],
+            occupancy: Occupancy::Unknown,
+            is_near_active_region: false,
+            first_active: None,
+            grant: None,
+            state: SlotState::Away,
+            left_s: None,
+        }
+    }
+
+    /// Where the robot is with respect to all regions of the slot, those that are switched off included.
+    fn observe(&mut self, status: &impl Fn(RegionId) -> RegionStatus, proves_stops: bool, now_s: f64) {
+        // Without a stated deceleration nothing is proven for a moving robot. Until the slot is granted, the warning law
+        // is assumed to keep it outside.
+        let held = self.state == SlotState::Held;
+        let occupancy = |region: RegionStatus| {
+            let can_stop = region.stops_outside || !(proves_stops || held && region.zone.warned);
+            region.zone.occupancy(can_stop)
+        };
+        let all = || self.regions.iter().map(|r| status(*r));
+        let is_known = all().all(|region| region.is_measured);
+        let found = all().filter(|region| region.is_measured).map(occupancy).max().unwrap_or(Occupancy::Unknown);
+        let is_near = all().any(|r| r.is_active && occupancy(r) > Occupancy::Outside);
+        let has_left = held && !all().any(|region| region.zone.warned);
+        self.first_active = self.regions.iter().find(|r| status(**r).is_active).copied();
+        self.occupancy = if is_known || found.occupies() { found } else { Occupancy::Unknown };
+        self.is_near_active_region = is_near;
+        self.left_s = if has_left { self.left_s.or(Some(now_s)) } else { None };
+    }
+
+    fn exchange_state(&self) -> ExchangeState {
+        match (self.occupancy, self.state) {
+            (Occupancy::Inside, _) => ExchangeState::Inside,
+            (Occupancy::Committed, _) => ExchangeState::Committed,
+            (_, SlotState::Held) => ExchangeState::Granted,
+            (_, SlotState::Waiting | SlotState::Deadlock) => ExchangeState::Waiting,
+            (_, SlotState::Away) => ExchangeState::Outside,
+        }
     }
 
     /// A slot that was granted may have been released in the same tick, by yielding.
-    fn state_now(&self, arbiter: &ZoneArbiter, robot: RobotSlot) -> SlotState {
+    fn shared_state(&self, arbiter: &ZoneArbiter, robot: RobotSlot) -> SlotState {
         match self.grant {
             None => SlotState::Away,
             Some(Grant::Held) if arbiter.holder(self.slot) == Some(robot) => SlotState::Held,
             Some(Grant::Held | Grant::Waiting(_) | Grant::Unknown(_)) => SlotState::Waiting,
             Some(Grant::Deadlock) => SlotState::Deadlock,
+        }
+    }
+
+    /// A grant that has ended while the robot cannot stop outside any more was used: stopping it in the region helps nobody.
+    fn granted_state(&self, may_enter: bool) -> SlotState {
+        let goes_on = self.state == SlotState::Held && self.occupancy.occupies();
+        if may_enter || goes_on {
+            SlotState::Held
+        } else if self.is_near_active_region {
+            SlotState::Waiting
+        } else {
+            SlotState::Away
         }
     }
 

@@ -94,7 +94,7 @@ fn exchange() {
             let laws = Laws { stopping_distance: Some(stopping.clone()), ..Laws::default() };
             let regions = vec![region(0, 0.6), region(1, -0.6)];
             let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
-            Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(robot)))).unwrap()
+            Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(robot)).into())).unwrap()
         })
         .collect();
     let counter = Counter::new(ALLOCATOR);

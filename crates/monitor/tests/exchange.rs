@@ -19,7 +19,8 @@ fn states(laws: Laws) -> (Vec<ExchangeState>, Vec<Occupancy>) {
     let slot = SlotId(0);
     let region = Region::sphere("shared", Vec3::X * 4.0, 0.3).warning(0.6).kind(RegionKind::Exchange { slot });
     let parts = ConfigurationParts { laws, ..parts(gantry(), arm_volumes(), vec![region]) };
-    let mut monitor = Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(0)))).unwrap();
+    let mut monitor =
+        Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(0)).into())).unwrap();
     let (mut states, mut published) = (Vec::new(), Vec::new());
     let velocity = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     for tick in 0..4500 {

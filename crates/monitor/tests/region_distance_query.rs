@@ -134,7 +134,7 @@ fn closed_regions_are_active_and_forbidden_or_taken_by_another_robot() {
     let shared =
         Region::sphere("shared", Vec3::new(0.9, 0.0, 1.2), 0.3).warning(0.2).kind(RegionKind::Exchange { slot });
     let config = configuration(arm(), arm_volumes(), vec![shared]);
-    let mut monitor = Monitor::new(config, Some((arbiter.clone(), RobotSlot(0)))).unwrap();
+    let mut monitor = Monitor::new(config, Some((arbiter.clone(), RobotSlot(0)).into())).unwrap();
     let shared = RegionId(0);
     assert!(!monitor.is_closed(shared), "it has no holder");
     arbiter.publish(slot, RobotSlot(0), Occupancy::Outside, 0.0);
@@ -149,7 +149,7 @@ fn closed_regions_are_active_and_forbidden_or_taken_by_another_robot() {
     // Another robot is inside without a request, as after a start.
     let arbiter = Arc::new(ZoneArbiter::new(&["r", "other"], &["shared"]));
     let config = monitor.configuration().clone();
-    let monitor = Monitor::new(config, Some((arbiter.clone(), RobotSlot(0)))).unwrap();
+    let monitor = Monitor::new(config, Some((arbiter.clone(), RobotSlot(0)).into())).unwrap();
     arbiter.publish(slot, other, Occupancy::Inside, 0.0);
     assert!(monitor.is_closed(shared));
 }

@@ -45,6 +45,7 @@ pub fn reason_text(reason: OverrideReason, recording: &Recording) -> String {
         OverrideReason::Region(r) => format!("near {}", name(r.0)),
         OverrideReason::SpeedZone(r) => format!("speed zone {}", name(r.0)),
         OverrideReason::Waiting(r) => format!("waiting for {}", name(r.0)),
+        OverrideReason::Halted(r) => format!("halted: two robots are in {}", name(r.0)),
         OverrideReason::Rate => "changing at its largest rate".into(),
         OverrideReason::Fault(Fault::Source { region }) => format!("the source of {} is lost", name(region.0)),
         OverrideReason::Fault(Fault::SourceJump { region }) => format!("the source of {} jumped", name(region.0)),

@@ -1,11 +1,11 @@
-//! Links that always touch where they are joined: meshes that overlap at a wrist, a piston in its cylinder.
+//! Links that touch where they are joined: meshes that overlap at a wrist, a piston in its cylinder, a lever at its pin.
 
 use std::sync::Arc;
 
 use elbowroom_kinematics::{ChainState, JointId, LinkId};
 use elbowroom_proximity::contact::{TriangleContact, for_each_triangle_contact, triangle_surface};
 use elbowroom_proximity::{TriMesh, Workspace};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::rest_pose::touch;
 use crate::{Collider, RSequence, Robot};
@@ -14,10 +14,18 @@ use crate::{Collider, RSequence, Robot};
 const SAMPLES: u64 = 1000;
 /// Largest number of moving joints between links that several joint values move against each other.
 const MOST_JOINTS: usize = 2;
+/// The same where a mimic joint is among them: a linkage.
+const MOST_LINKAGE_JOINTS: usize = 3;
 /// The largest share of the smaller link's size that contacts may lie from the joint: 1 is as far as that link extends.
 const MOST_REACH: f64 = 1.0;
 /// The largest share of it by which the farthest contact of one configuration may lie farther from the joint than that of another.
 const MOST_SPREAD: f64 = 0.25;
+/// The largest share of it that all contacts at a pivot extend over, on either link.
+const PIVOT_EXTENT: f64 = 0.5;
+/// The least share of the configurations in which links touch at a pivot.
+const PIVOT_SHARE: f64 = 0.5;
+/// Difference up to which axes are one, m and rad.
+const SAME_AXIS: f64 = 1e-6;
 /// Error of the triangles of round shapes, as a share of the diagonal of their boxes: some twenty segments around.
 const CHORD_ERROR: f64 = 0.005;
 
@@ -27,36 +35,59 @@ const LARGEST_M: f64 = 1e4;
 /// A pair with more contacts in all configurations together is given up, so that the search ends soon.
 const MOST_CONTACTS: usize = 2_000_000;
 
-/// Two links of one robot that touch in every sampled configuration, and nowhere but at a joint between them.
+/// Two links of one robot that touch by their model, and not by the robot's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointContact {
     /// One link.
     pub a: LinkId,
     /// The other link.
     pub b: LinkId,
-    /// The moving joint between them at which they meet.
+    /// What was found.
+    pub kind: JointContactKind,
+    /// The moving joint between them that is nearest to the contacts.
     pub joint: JointId,
+    /// In each configuration the nearest contact lies between these distances from the origin of the joint, m.
+    pub nearest_m: (f64, f64),
     /// In each configuration the farthest contact lies between these distances from the origin of the joint, m.
     pub farthest_m: (f64, f64),
+    /// Number of sampled configurations in which they touch.
+    pub contacts: u64,
     /// Number of sampled configurations, spread evenly over the joint limits. The same configurations each time.
     pub samples: u64,
 }
 
-/// The pairs of links that always touch where they are joined, such as a flange that is drawn into the wrist, or a piston in its
-/// cylinder: not by the robot's motion but by its model. `start` are joint values in rad or m, one per
-/// [active joint](elbowroom_kinematics::Chain::active_joints); empty where their number does not match the chain or a value is not
-/// finite.
+/// Why a contact is one of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointContactKind {
+    /// They touch in every configuration, and nowhere but at the joint.
+    AtJoint,
+    /// They touch in every configuration, always at the joint and in some farther out as well; they turn against each other about
+    /// one axis, or a mimic joint is between them, so that they are joined like links that a joint connects directly.
+    Linkage,
+    /// One joint value moves them through mimic joints, and in at least half of its values they touch, always at the same place
+    /// of both: the pivot at which a linkage is closed, such as the eye of a piston rod.
+    Pivot,
+}
+
+/// The pairs of links that touch where they are joined, such as a flange that is drawn into the wrist, a piston in its
+/// cylinder or a lever at its pin: not by the robot's motion but by its model. `start` are joint values in rad or m, one per
+/// [active joint](elbowroom_kinematics::Chain::active_joints); empty where their number does not match the chain or a value is
+/// not finite.
 ///
-/// A pair is found where all of this holds:
+/// A pair is found where it is tested ([`Robot::links_can_meet`]), and one of this holds in 1000 configurations over the joint
+/// limits, with two million contacts in all at most. Distances are from the origin of one joint between the links, the
+/// same in all configurations; the size is the diagonal of the smaller link's box.
 ///
-/// - It is tested ([`Robot::links_can_meet`]). At most two moving joints lie between the links, or one joint value alone moves all
-///   joints between them (mimic joints follow it), as for a balancing cylinder.
-/// - Their surfaces touch at `start` and in each of 1000 configurations over the joint limits, with two million contacts in all at most.
-/// - For one of the joints between them, the same in all configurations, no contact is farther from its origin than the diagonal of the
-///   smaller link's box.
-/// - Unless one joint value alone moves them, the farthest contacts of any two configurations differ in that distance by no more
-///   than a quarter of the diagonal. So links that touch at the joint, and in some configurations farther out as well, are not
-///   found.
+/// - [`AtJoint`](JointContactKind::AtJoint): they touch in all and at `start`, no contact is farther than the size, and at most two
+///   moving joints lie between them; the farthest contacts of any two configurations differ by no more than a quarter of the size. So
+///   links that touch at the joint, and in some configurations farther out as well, are not found. Where one joint value alone moves
+///   all joints between them (mimic joints follow it), as for a balancing cylinder, there may be more joints and the contact may
+///   wander along the stroke.
+/// - [`Linkage`](JointContactKind::Linkage): they touch in all and at `start`; all joints between them turn about one axis, or at most
+///   three lie between them, one of which is a mimic joint. The nearest contact is never farther than the size, and differs by no
+///   more than a quarter of it. Since they always touch, testing them tells nothing about the contacts farther out.
+/// - [`Pivot`](JointContactKind::Pivot): one joint value moves them, through a mimic joint; they touch in half of the configurations
+///   at least, and on either link all contacts of all configurations lie in a box with a diagonal of half of the size.
 ///
 /// ```
 /// use elbowroom_robot::{example, joint_contacts};
@@ -71,10 +102,15 @@ pub fn joint_contacts(robot: &Robot, start: &[f64]) -> Vec<JointContact> {
     }
     state.q.copy_from_slice(start);
     robot.chain.forward(&mut state);
-    let touching = candidates(robot).filter(|(a, b)| touch(robot, &state, *a, *b));
-    let mut candidates: Vec<Candidate> = touching.filter_map(|(a, b)| Candidate::new(robot, a, b)).collect();
+    // At a pivot they need not touch at the start.
+    let may_be = |a, b| closes_linkage(robot, &moving_joints(robot, a, b)) || touch(robot, &state, a, b);
+    let candidates = candidates(robot).filter(|(a, b)| may_be(*a, *b));
+    let mut candidates: Vec<Candidate> = candidates.filter_map(|(a, b)| Candidate::new(robot, a, b, &state)).collect();
     let mut workspace = Workspace::new();
     candidates.retain_mut(|pair| pair.measure(&state, &mut workspace));
+    for pair in &mut candidates {
+        (pair.touching, pair.apart) = (0, 0);
+    }
     let sequence = RSequence::new(robot.chain.dof());
     for n in 0..SAMPLES {
         if candidates.is_empty() {
@@ -90,7 +126,10 @@ pub fn joint_contacts(robot: &Robot, start: &[f64]) -> Vec<JointContact> {
 fn candidates(robot: &Robot) -> impl Iterator<Item = (LinkId, LinkId)> + '_ {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let pairs: Vec<_> = links.iter().enumerate().flat_map(|(i, a)| links[i + 1..].iter().map(|b| (*a, *b))).collect();
-    let is_close = |joints: &[JointId]| joints.len() <= MOST_JOINTS || follow_one_value(robot, joints);
+    let is_close = |joints: &[JointId]| {
+        let most = if has_mimic(robot, joints) { MOST_LINKAGE_JOINTS } else { MOST_JOINTS };
+        joints.len() <= most || follow_one_value(robot, joints)
+    };
     pairs.into_iter().filter(move |(a, b)| is_close(&moving_joints(robot, *a, *b)) && robot.links_can_meet(*a, *b))
 }
 
@@ -106,18 +145,52 @@ fn follow_one_value(robot: &Robot, joints: &[JointId]) -> bool {
     joints.iter().map(value).all(|v| joints.first().map(value) == Some(v))
 }
 
-/// A pair that was in contact in all configurations so far.
+fn has_mimic(robot: &Robot, joints: &[JointId]) -> bool {
+    joints.iter().any(|j| robot.chain.mimic_source(*j).is_some())
+}
+
+/// True where the links at the ends of the joints may meet at the pivot that closes a linkage.
+fn closes_linkage(robot: &Robot, joints: &[JointId]) -> bool {
+    joints.len() > 1 && has_mimic(robot, joints) && follow_one_value(robot, joints)
+}
+
+/// True where all joints turn about one axis: in all configurations, if in one.
+fn share_axis(robot: &Robot, joints: &[JointId], state: &ChainState) -> bool {
+    let axis = |j: &JointId| {
+        let joint = &robot.chain.joints()[j.0];
+        let in_root = state.link_in_root(joint.parent) * joint.origin;
+        joint.kind.turns().then(|| (in_root.translation, in_root.transform_vector(joint.axis)))
+    };
+    let axes: Option<Vec<_>> = joints.iter().map(axis).collect();
+    let Some(axes) = axes else { return false };
+    let Some((origin, direction)) = axes.first() else { return false };
+    let is_same = |(o, d): &(Vec3, Vec3)| {
+        d.cross(*direction).length() <= SAME_AXIS && (*o - *origin).cross(*direction).length() <= SAME_AXIS
+    };
+    axes.iter().all(is_same)
+}
+
+/// A pair that may be joined, after all configurations so far.
 struct Candidate<'r> {
     robot: &'r Robot,
     links: [LinkId; 2],
     /// Per link, its surfaces with their poses in the link.
     surfaces: [Vec<(Arc<TriMesh>, Pose)>; 2],
-    /// The moving joints between the links at which all contacts were so far.
+    /// The moving joints between the links, with the contacts' distances.
     joints: Vec<JointRegion>,
     /// Diagonal of the box of the smaller link, m.
     size_m: f64,
     /// The largest difference between the farthest contacts of two configurations, m.
     most_spread_m: f64,
+    /// Which kinds it may still be.
+    may_be_at_joint: bool,
+    may_be_linkage: bool,
+    may_be_pivot: bool,
+    /// Per link, the box of all contacts in its frame.
+    boxes: [Option<Aabb>; 2],
+    /// Configurations in which they touch, and in which they do not.
+    touching: u64,
+    apart: u64,
     /// Number of contacts so far.
     contacts: usize,
 }
@@ -125,20 +198,37 @@ struct Candidate<'r> {
 /// How far from a joint two links touch.
 struct JointRegion {
     joint: JointId,
-    /// Least and largest distance of a configuration's farthest contact from the joint's origin, m.
+    /// Least and largest distance of a configuration's nearest contact from the joint's origin, m.
+    nearest_m: (f64, f64),
+    /// The same of its farthest contact, m.
     farthest_m: (f64, f64),
+}
+
+impl JointRegion {
+    fn is_at_joint(&self, size_m: f64, most_spread_m: f64) -> bool {
+        self.farthest_m.1 <= MOST_REACH * size_m && self.farthest_m.1 - self.farthest_m.0 <= most_spread_m
+    }
+
+    fn is_linkage(&self, size_m: f64) -> bool {
+        self.nearest_m.1 <= MOST_REACH * size_m && self.nearest_m.1 - self.nearest_m.0 <= MOST_SPREAD * size_m
+    }
+
+    fn include(&mut self, nearest_m: f64, farthest_m: f64) {
+        let widen = |range: &mut (f64, f64), v: f64| *range = (range.0.min(v), range.1.max(v));
+        widen(&mut self.nearest_m, nearest_m);
+        widen(&mut self.farthest_m, farthest_m);
+    }
 }
 
 impl<'r> Candidate<'r> {
     /// `None` where a link has a surface without triangles, or is too large.
-    fn new(robot: &'r Robot, a: LinkId, b: LinkId) -> Option<Self> {
+    fn new(robot: &'r Robot, a: LinkId, b: LinkId, state: &ChainState) -> Option<Self> {
         if ![a, b].iter().all(|l| robot.link_radius(*l) <= LARGEST_M) {
             return None;
         }
-        let region = |joint| JointRegion { joint, farthest_m: (f64::INFINITY, 0.0) };
+        let none = (f64::INFINITY, 0.0);
         let joints = moving_joints(robot, a, b);
         let follow_one_value = follow_one_value(robot, &joints);
-        let joints = joints.into_iter().map(region).collect();
         let chord_error_m = |c: &Collider| CHORD_ERROR * c.shape.aabb(&Pose::IDENTITY).extent().length();
         let surface = |c: &Collider| Some((triangle_surface(&c.shape, chord_error_m(c))?, c.in_link));
         let of_link = |l: LinkId| robot.colliders[l.0].iter().map(surface).collect::<Option<Vec<_>>>();
@@ -147,12 +237,24 @@ impl<'r> Candidate<'r> {
             boxes.reduce(|x, y| x.union(&y)).map_or(0.0, |b| b.extent().length())
         };
         let size_m = diagonal_m(a).min(diagonal_m(b));
-        let most_spread_m = if follow_one_value { f64::INFINITY } else { MOST_SPREAD * size_m };
-        let surfaces = [of_link(a)?, of_link(b)?];
-        Some(Self { robot, links: [a, b], surfaces, joints, size_m, most_spread_m, contacts: 0 })
+        Some(Self {
+            robot,
+            links: [a, b],
+            surfaces: [of_link(a)?, of_link(b)?],
+            size_m,
+            most_spread_m: if follow_one_value { f64::INFINITY } else { MOST_SPREAD * size_m },
+            may_be_at_joint: joints.len() <= MOST_JOINTS || follow_one_value,
+            may_be_linkage: joints.len() > 1 && (has_mimic(robot, &joints) || share_axis(robot, &joints, state)),
+            may_be_pivot: closes_linkage(robot, &joints),
+            joints: joints.into_iter().map(|joint| JointRegion { joint, nearest_m: none, farthest_m: none }).collect(),
+            boxes: [None; 2],
+            touching: 0,
+            apart: 0,
+            contacts: 0,
+        })
     }
 
-    /// Takes the contacts of a configuration; false where there is none, or one away from the joints.
+    /// Takes the contacts of a configuration; false where the pair is of no kind.
     fn measure(&mut self, state: &ChainState, workspace: &mut Workspace) -> bool {
         if !self.links.iter().all(|l| state.link_in_root(*l).translation.length() <= LARGEST_M) {
             return false;
@@ -162,16 +264,35 @@ impl<'r> Candidate<'r> {
         if self.contacts > MOST_CONTACTS {
             return false;
         }
-        let (chain, size_m, most_spread_m) = (&self.robot.chain, self.size_m, self.most_spread_m);
-        self.joints.retain_mut(|region| {
-            let joint = &chain.joints()[region.joint.0];
+        if contacts.is_empty() {
+            self.apart += 1;
+            (self.may_be_at_joint, self.may_be_linkage) = (false, false);
+            self.may_be_pivot &= self.apart as f64 <= (1.0 - PIVOT_SHARE) * SAMPLES as f64;
+            return self.may_be_pivot;
+        }
+        self.touching += 1;
+        for region in &mut self.joints {
+            let joint = &self.robot.chain.joints()[region.joint.0];
             let origin = (state.link_in_root(joint.parent) * joint.origin).translation;
-            let farthest_m = contacts.iter().map(|p| origin.distance(*p)).fold(0.0, f64::max);
-            let (least, most) = &mut region.farthest_m;
-            (*least, *most) = (least.min(farthest_m), most.max(farthest_m));
-            *most <= MOST_REACH * size_m && *most - *least <= most_spread_m
-        });
-        !contacts.is_empty() && !self.joints.is_empty()
+            let distances = || contacts.iter().map(|p| origin.distance(*p));
+            region.include(distances().fold(f64::INFINITY, f64::min), distances().fold(0.0, f64::max));
+        }
+        let (size_m, most_spread_m) = (self.size_m, self.most_spread_m);
+        self.may_be_at_joint &= self.joints.iter().any(|j| j.is_at_joint(size_m, most_spread_m));
+        self.may_be_linkage &= self.joints.iter().any(|j| j.is_linkage(size_m));
+        self.may_be_pivot = self.may_be_pivot && self.are_at_one_place(state, &contacts);
+        self.may_be_at_joint || self.may_be_linkage || self.may_be_pivot
+    }
+
+    /// Adds contacts to the boxes of the links; true where both remain small.
+    fn are_at_one_place(&mut self, state: &ChainState, contacts: &[Vec3]) -> bool {
+        self.links.iter().zip(&mut self.boxes).all(|(link, bounds)| {
+            let to_link = state.link_in_root(*link).inverse();
+            let here = Aabb::from_points(contacts.iter().map(|p| to_link.transform_point(*p)));
+            let all = bounds.map_or(here, |b| b.union(&here));
+            *bounds = Some(all);
+            all.extent().length() <= PIVOT_EXTENT * self.size_m
+        })
     }
 
     /// The points at which the links touch, in the root link.
@@ -195,8 +316,18 @@ impl<'r> Candidate<'r> {
     }
 
     fn found(self) -> Option<JointContact> {
-        let nearest = self.joints.into_iter().min_by(|a, b| a.farthest_m.1.total_cmp(&b.farthest_m.1))?;
-        let [a, b] = self.links;
-        Some(JointContact { a, b, joint: nearest.joint, farthest_m: nearest.farthest_m, samples: SAMPLES })
+        let (size_m, most_spread_m) = (self.size_m, self.most_spread_m);
+        let (kind, may_be): (_, &dyn Fn(&JointRegion) -> bool) = if self.may_be_at_joint {
+            (JointContactKind::AtJoint, &|j| j.is_at_joint(size_m, most_spread_m))
+        } else if self.may_be_linkage {
+            (JointContactKind::Linkage, &|j| j.is_linkage(size_m))
+        } else {
+            (JointContactKind::Pivot, &|_| true)
+        };
+        let joints = self.joints.iter().filter(|j| may_be(j));
+        let nearest = joints.min_by(|a, b| a.farthest_m.1.total_cmp(&b.farthest_m.1))?;
+        let ([a, b], contacts) = (self.links, self.touching);
+        let JointRegion { joint, nearest_m, farthest_m } = *nearest;
+        Some(JointContact { a, b, kind, joint, nearest_m, farthest_m, contacts, samples: SAMPLES })
     }
 }

@@ -28,7 +28,7 @@ mod robot;
 pub use adjacency::Exclusion;
 pub use collision_pairs::collision_pairs;
 pub use ids::{GeometryId, ObjectId, RobotId};
-pub use joint_contact::{JointContact, joint_contacts};
+pub use joint_contact::{JointContact, JointContactKind, joint_contacts};
 pub use r_sequence::RSequence;
 pub use rest_pose::{RestPoseContact, rest_pose_contacts};
 pub use robot::{Collider, Robot};

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Shape, Sphere, collides};
-use elbowroom_robot::{Collider, JointContact, RSequence, Robot, joint_contacts};
+use elbowroom_robot::{Collider, JointContact, JointContactKind, RSequence, Robot, joint_contacts};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 fn sphere(radius: f64, at: Vec3) -> Collider {
@@ -156,4 +156,84 @@ fn a_piston_that_one_joint_value_moves_is_found_and_one_that_leaves_its_cylinder
     assert_eq!(pairs(&pistons(0.1)), [(0, 3)]);
     // It is drawn out of the base.
     assert!(pairs(&pistons(0.5)).is_empty());
+}
+
+fn kinds(robot: &Robot) -> Vec<(usize, usize, JointContactKind)> {
+    found(robot).iter().map(|c| (c.a.0, c.b.0, c.kind)).collect()
+}
+
+/// A shoulder, an arm on it and a lever on the arm that turns about the arm's own joint; the lever's far end passes `post_x_m`.
+fn lever(lever_at: Vec3, post_x_m: f64) -> Robot {
+    let joint = |name: &str, parent, child, at| Joint {
+        name: name.to_owned(),
+        kind: JointKind::Revolute,
+        parent: LinkId(parent),
+        child: LinkId(child),
+        origin: Pose::from_translation(at),
+        axis: Vec3::Y,
+        limits: Limits::range(-1.5, 1.5),
+        mimic: None,
+    };
+    let joints = vec![joint("lift", 0, 1, Vec3::ZERO), joint("drive", 1, 2, lever_at)];
+    let names = ["shoulder", "arm", "lever"].map(String::from).to_vec();
+    let mut robot = Robot::new(Chain::new("lift", names, joints).unwrap());
+    let post = cuboid(Vec3::new(0.1, 0.1, 0.2), Vec3::new(post_x_m, 0.0, -0.5));
+    robot.colliders[0] = vec![cuboid(Vec3::splat(0.1), Vec3::ZERO), post];
+    robot.colliders[1] = vec![cuboid(Vec3::new(0.1, 0.05, 0.5), Vec3::Z * 0.3)];
+    robot.colliders[2] = vec![bar(0.6, 0.02)];
+    robot
+}
+
+#[test]
+fn a_lever_on_the_axis_of_the_joint_below_counts_as_joined_even_where_it_also_hits_farther_out() {
+    // Beside the arm the lever always touches the shoulder at the common axis; in some states its end hits the post as well.
+    let near = lever(Vec3::ZERO, 0.0);
+    assert_eq!(kinds(&near), [(0, 2, JointContactKind::Linkage)]);
+    let contact = found(&near)[0];
+    assert!(contact.nearest_m.1 < 0.1 && contact.farthest_m.1 > 0.4, "{contact:?}");
+    // It hits nothing else: only at the joint.
+    assert_eq!(kinds(&lever(Vec3::ZERO, 5.0)), [(0, 2, JointContactKind::AtJoint)]);
+    // On an axis of its own it stays a pair.
+    assert!(kinds(&lever(Vec3::new(0.03, 0.0, 0.0), 0.0)).is_empty(), "{:?}", kinds(&lever(Vec3::X * 0.03, 0.0)));
+}
+
+/// A crank, and a rod on the base that one value moves too; the rod's eye passes the crank's pin at a distance that the ratio
+/// of the mimic joint makes smaller or larger.
+fn crank(eye_m: f64, ratio: f64) -> Robot {
+    let joint = |name: &str, parent, child, at, mimic| Joint {
+        name: name.to_owned(),
+        kind: JointKind::Revolute,
+        parent: LinkId(parent),
+        child: LinkId(child),
+        origin: Pose::from_translation(at),
+        axis: Vec3::Y,
+        limits: Limits::range(-1.0, 1.0),
+        mimic,
+    };
+    let follow = Some(Mimic { joint: JointId(0), multiplier: ratio, offset: 0.0 });
+    let joints = vec![joint("turn", 0, 1, Vec3::ZERO, None), joint("swing", 0, 2, Vec3::new(1.0, 0.0, 0.0), follow)];
+    let names = ["base", "crank", "rod"].map(String::from).to_vec();
+    let mut robot = Robot::new(Chain::new("crank", names, joints).unwrap());
+    robot.colliders[0] = vec![sphere(0.05, Vec3::new(0.5, 0.0, -2.0))];
+    // The pin is 0.2 m from the crank's joint, and the eye 0.8 m from the rod's.
+    robot.colliders[1] = vec![sphere(0.03, Vec3::X * 0.2), cuboid(Vec3::new(0.15, 0.02, 0.02), Vec3::X * 0.08)];
+    robot.colliders[2] = vec![sphere(eye_m, Vec3::X * 0.2 - Vec3::X), bar(0.7, 0.01)];
+    robot.colliders[2][1].in_link.translation -= Vec3::X * 0.7;
+    robot
+}
+
+#[test]
+fn an_eye_on_its_pin_is_found_though_it_leaves_it_at_the_ends_of_the_stroke() {
+    // Turning the crank by 1 rad lifts the pin by 0.17 m; the rod by a quarter of it, the eye by 0.2 m.
+    let robot = crank(0.04, -0.25);
+    assert_eq!(kinds(&robot), [(1, 2, JointContactKind::Pivot)]);
+    let contact = found(&robot)[0];
+    assert!(contact.contacts >= 500 && contact.contacts < contact.samples, "{contact:?}");
+    // It need not touch at the start.
+    assert!(joint_contacts(&robot, &[1.0]).contains(&contact));
+    // In less than half of the stroke: no pivot. Driven by a value of its own: neither.
+    assert!(kinds(&crank(0.04, 0.25)).is_empty(), "{:?}", kinds(&crank(0.04, 0.25)));
+    let joints = robot.chain.joints().iter().cloned().map(|j| Joint { mimic: None, ..j }).collect();
+    let free = Robot { chain: Chain::new("crank", robot.chain.links().to_vec(), joints).unwrap(), ..robot };
+    assert!(kinds(&free).is_empty(), "{:?}", kinds(&free));
 }

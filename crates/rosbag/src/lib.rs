@@ -1,1 +1,50 @@
 //! MCAP recordings of a cell: written, read, replayed.
+//!
+//! [`RunRecorder`] records a simulated run, [`Recorder`] a live service. A recording has the profile `ros2`: Foxglove, Rerun
+//! and the tools of ROS 2 read it. It also has what every monitor was built from and given, bit by bit, so that [`replay`]
+//! runs the monitors again and compares their answers. `docs/recordings.md` lists the topics.
+//!
+//! ```
+//! use elbowroom_cell::Cell;
+//! use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
+//! use elbowroom_sim::{RunOptions, run::simulate_observed};
+//! let cell = Cell::parse("rail.toml", r#"
+//! version = 1
+//! units = { length = "mm", angle = "deg" }
+//! [robot.rail]
+//! dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+//! [program.rail]
+//! steps = [{ move = "joint", to = [1500], speed = 50 }]
+//! "#)?;
+//! let mut file = std::io::Cursor::new(Vec::new());
+//! let mut recorder = RunRecorder::new(CellWriter::new(&mut file, &cell, 0)?, &cell);
+//! simulate_observed(&cell, &RunOptions::default(), &mut |_| {}, Some(&mut recorder))?;
+//! recorder.finish()?;
+//! let found = replay(&file.into_inner()[..])?;
+//! assert!(found.ticks > 1000 && found.differences == 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod bag_reader;
+mod bag_writer;
+mod cell_writer;
+mod configuration;
+mod error;
+mod recorder;
+mod records;
+mod replay;
+mod replay_result;
+mod replayed_monitor;
+mod run_recorder;
+mod solid;
+mod tick;
+mod tick_writer;
+mod topics;
+
+pub use bag_reader::{BagMessage, BagReader};
+pub use cell_writer::CellWriter;
+pub use error::BagError;
+pub use recorder::{Recorder, TickRecorder};
+pub use replay::replay;
+pub use replay_result::{Difference, Replay, RobotReplay};
+pub use run_recorder::RunRecorder;

@@ -10,23 +10,19 @@
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use std::f64::consts::PI;
+#[path = "../tests/common/crossing.rs"]
+mod crossing;
+
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_avoidance::{AvoiderState, DynamicObstacles, EscapeState, ObservedObject, search_escape_tree};
-use elbowroom_cell::{Cell, Drive, ObjectPath, OutOfReachProofs, PathRepeat, QueryModel};
+use elbowroom_cell::{Cell, Drive, ObjectPath, OutOfReachProofs, QueryModel};
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
 use elbowroom_sim::run::{evasion_limits, simulate};
 use elbowroom_sim::{Recording, RobotTrack, RunOptions};
-use elbowroom_spatial::{Pose, Vec3};
 use random::Random;
 
-/// Smallest distance of the obstacle to the axis of the base, m: a pedestal cannot move away.
-const PEDESTAL_M: f64 = 1.0;
-/// Smallest initial distance of the obstacle to the robot, m.
-const MIN_START_DISTANCE_M: f64 = 0.8;
 /// Times before a hit from which an escape is searched, s.
 const EXPLAINED_S: [f64; 7] = [3.0, 2.5, 2.0, 1.5, 1.0, 0.75, 0.5];
 /// An escape is free for this time after the time of the hit, s.
@@ -52,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?.objects.clone();
     let moves = |o: &&ObjectId| cell.moving_objects.iter().any(|m| m.object == **o);
     let object = *seen.iter().find(moves).ok_or("no moving object is evaded")?;
-    let free = without_obstacle(&cell)?;
+    let free = crossing::without_obstacle(&cell)?;
     println!(
         "{}: {} robot(s), without the obstacle the program takes {:.2} s",
         cell.name,
@@ -62,12 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Single runs, `EVADE_ONLY=135,301`, with the state of the robot before a collision.
     let only: Option<Vec<usize>> =
         std::env::var("EVADE_ONLY").ok().map(|o| o.split(',').filter_map(|n| n.trim().parse().ok()).collect());
-    let mut random = Random(2026);
-    let mut paths = Vec::new();
-    let scene = obstacle_scene(&cell, object)?;
-    while paths.len() < runs {
-        paths.extend(crossing(&cell, &scene, free.duration_s, &mut random)?);
-    }
+    let paths = crossing::paths(&cell, object, free.duration_s, runs)?;
     let explain_tries: Option<usize> = std::env::var("EVADE_EXPLAIN").ok().and_then(|n| n.parse().ok());
     let show = only.is_some();
     let chosen: Vec<usize> =
@@ -129,63 +120,6 @@ fn compare(
     let mut all = all?;
     all.sort_by_key(|comparison| comparison.number);
     Ok(all)
-}
-
-/// The program without the obstacle.
-fn without_obstacle(cell: &Cell) -> Result<Recording, Box<dyn std::error::Error>> {
-    let mut cell = cell.clone();
-    for m in &mut cell.moving_objects {
-        let far = Vec3::new(100.0, 100.0, 100.0);
-        m.rest_in_world.translation = far;
-        m.drive = Drive::Path(ObjectPath::new(vec![far], 0.0, 0.0, PathRepeat::Once, Vec3::ZERO));
-    }
-    let recording = simulate(&cell, &RunOptions::default())?.recording;
-    let robot = &recording.robots[0];
-    if !robot.finished || !robot.collisions.is_empty() {
-        return Err(format!("the program fails without the obstacle: {:?}", robot.collisions.first()).into());
-    }
-    Ok(recording)
-}
-
-/// A scene of the robot and the obstacle.
-fn obstacle_scene(cell: &Cell, object: ObjectId) -> Result<Scene, Box<dyn std::error::Error>> {
-    let mut builder = Scene::builder();
-    let robot = &cell.robots[0];
-    builder.robot(&robot.name, robot.robot.clone(), robot.base_in_world);
-    builder.object(cell.objects[object.0].clone());
-    Ok(builder.build()?)
-}
-
-/// A straight path through the workspace of the arm; `None` where it would start in the arm or cross the pedestal.
-fn crossing(
-    cell: &Cell,
-    scene: &Scene,
-    seconds: f64,
-    random: &mut Random,
-) -> Result<Option<ObjectPath>, Box<dyn std::error::Error>> {
-    let base = cell.robots[0].base_in_world;
-    let speed = random.range(0.1, 1.2);
-    let (turn, climb) = (random.range(-PI, PI), random.range(-0.3, 0.3));
-    let along = Vec3::new(turn.cos() * f64::cos(climb), turn.sin() * f64::cos(climb), f64::sin(climb));
-    let (about, radius) = (random.range(-PI, PI), random.range(PEDESTAL_M, 2.6));
-    let through = Vec3::new(radius * about.cos(), radius * about.sin(), random.range(0.6, 2.2));
-    let when = random.range(0.1, 0.9) * seconds;
-    let flat = Vec3::new(along.x, along.y, 0.0).try_normalize().ok_or("no direction")?;
-    let base_distance = through.cross(flat).z.abs();
-    let (from, to) = (through - along * (speed * when), through + along * (speed * seconds));
-    let from = base.transform_point(from);
-    let path = ObjectPath::new(vec![from, base.transform_point(to)], speed, 0.0, PathRepeat::Once, Vec3::ZERO);
-    if base_distance < PEDESTAL_M {
-        return Ok(None);
-    }
-    let mut state = SceneState::new(scene);
-    state.set_q(scene, RobotId(0), &cell.robots[0].start)?;
-    state.place(scene, ObjectId(0), Pose { translation: from, ..scene.objects()[0].in_world })?;
-    let mut checker = Checker::new(scene, CheckerOptions::default());
-    let near = checker
-        .between(Selection::Robot(RobotId(0)), Selection::Object(ObjectId(0)))
-        .within(&state, MIN_START_DISTANCE_M);
-    Ok(near.is_none().then_some(path))
 }
 
 #[derive(Default)]

@@ -46,6 +46,26 @@ fn the_return_path_leads_around_a_region() {
 }
 
 #[test]
+fn a_path_is_followed_after_the_time_that_its_plan_takes() {
+    let first = |plan_ms: u32| {
+        let obstacle =
+            OBSTACLE.replacen("[avoidance.gantry]\n", &format!("[avoidance.gantry]\nplan_ms = {plan_ms}\n"), 1);
+        assert_ne!(obstacle, OBSTACLE);
+        let outcome = run(&format!("{HEAD}{GANTRY}{WALL}{obstacle}"));
+        let robot = &outcome.recording.robots[0];
+        let track = robot.avoidance.as_ref().unwrap();
+        let planned_s = track.plans.iter().find(|p| p.search_s.is_some()).unwrap().t_s;
+        let detours = track.samples.iter().map(|s| s.state == AvoiderState::Detouring);
+        let followed = robot.samples.iter().zip(detours).find(|(_, detours)| *detours).unwrap().0.t_s;
+        assert!(robot.finished && !outcome.has_violation(), "{:?}", robot.collisions);
+        (planned_s, followed)
+    };
+    let (at_once, later) = (first(0), first(300));
+    assert!(at_once.1 - at_once.0 < 0.02, "{at_once:?}");
+    assert!((later.1 - later.0 - 0.3).abs() < 0.02 && later.0 == at_once.0, "{later:?}");
+}
+
+#[test]
 fn a_robot_that_evades_towards_a_border_is_not_stopped_at_it() {
     // The cart crosses while the robot is so close to the wall that it would evade up to its border.
     let start = GANTRY.replace("[-1400, 0]", "[-200, 0]");

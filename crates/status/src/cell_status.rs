@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{PoseStatus, RobotStatus};
+use crate::event_status::EventStatus;
+use crate::robot_status::{PoseStatus, RobotStatus};
 
 /// The status of a cell at one instant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -41,17 +42,4 @@ pub struct SlotStatus {
     pub holder: Option<String>,
     /// The robots that wait, first come first.
     pub queue: Vec<String>,
-}
-
-/// An event, as in `events.csv`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EventStatus {
-    /// Time since the service started, s.
-    pub t_s: f64,
-    /// The robot; empty where it is none.
-    pub robot: String,
-    /// The region; empty where it is none.
-    pub region: String,
-    /// What happened.
-    pub event: String,
 }

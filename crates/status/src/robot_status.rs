@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use elbowroom_monitor::{Monitor, RegionId, Snapshot, TickReport, VirtualTcp};
+use elbowroom_monitor::{Configuration, Monitor, RegionId, Snapshot, TickReport, VirtualTcp};
 use elbowroom_spatial::Pose;
 use serde::{Deserialize, Serialize};
+
+use crate::event_status::EventStatus;
+use crate::status_sample::{RegionSample, StatusSample};
 
 /// The status of one robot after a tick of its monitor.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -36,6 +39,24 @@ pub struct RobotStatus {
     pub virtual_tcps: Vec<PointStatus>,
     /// Every region of the robot.
     pub regions: Vec<RegionStatus>,
+    /// How the service is doing.
+    pub health: HealthStatus,
+    /// What happened since the status before.
+    #[serde(default)]
+    pub events: Vec<EventStatus>,
+}
+
+/// How the service of one robot is doing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct HealthStatus {
+    /// Ticks since the service started.
+    pub ticks: u64,
+    /// Longest tick since the status before, from joint values to override, µs.
+    pub tick_max_us: u64,
+    /// Messages of the controller that did not count: late, doubled, damaged, of another start or another configuration.
+    pub rejected: u64,
+    /// Ticks without fresh joint values.
+    pub stale: u64,
 }
 
 /// A pose in the world.
@@ -95,32 +116,40 @@ impl RobotStatus {
         report: &TickReport,
         tcp: Option<&Pose>,
     ) -> Self {
-        let regions = monitor.configuration().regions();
+        let mut sample = StatusSample::new(monitor);
+        sample.fill(monitor, snapshot, report);
+        Self::of_sample(t_s, monitor.configuration(), &sample, tcp)
+    }
+
+    /// The status of a sample of a tick, by a monitor of this configuration.
+    pub fn of_sample(t_s: f64, configuration: &Configuration, sample: &StatusSample, tcp: Option<&Pose>) -> Self {
+        let regions = configuration.regions();
         let name = |r: RegionId| regions[r.0].name.clone();
-        let exchange = |r: RegionId| monitor.exchange_state(r).map(|state| (name(r), state.name().to_owned()));
-        let ids = || (0..regions.len()).map(RegionId);
+        let of_region = || sample.regions.iter().zip(regions);
+        let report = &sample.report;
+        let point = |point: &VirtualTcp| PointStatus::of(configuration, point);
         Self {
             t_s,
-            robot: monitor.configuration().robot().to_owned(),
-            q: snapshot.q.to_vec(),
+            robot: configuration.robot().to_owned(),
+            q: sample.q.clone(),
             speed_override: report.speed_override,
             reason: report.reason.named(regions).to_string(),
             region: report.reason.region().map(name),
-            exchange: ids().filter_map(exchange).collect(),
+            exchange: of_region().filter_map(|(s, r)| Some((r.name.clone(), s.exchange?.name().to_owned()))).collect(),
             sequence: 0,
             tcp: tcp.map(PoseStatus::from),
             outputs: report.outputs,
-            governing: report.governing.map(|point| PointStatus::of(monitor, &point)),
-            virtual_tcps: monitor.virtual_tcps(snapshot).map(|point| PointStatus::of(monitor, &point)).collect(),
-            regions: ids().map(|r| RegionStatus::of(monitor, r)).collect(),
+            governing: report.governing.as_ref().map(point),
+            virtual_tcps: sample.virtual_tcps.iter().map(point).collect(),
+            regions: of_region().map(|(s, r)| RegionStatus::of(&r.name, s)).collect(),
+            health: HealthStatus::default(),
+            events: Vec::new(),
         }
     }
 }
 
 impl PointStatus {
-    /// A virtual TCP of a monitor.
-    pub fn of(monitor: &Monitor, point: &VirtualTcp) -> Self {
-        let configuration = monitor.configuration();
+    fn of(configuration: &Configuration, point: &VirtualTcp) -> Self {
         Self {
             part: configuration.volumes()[point.volume.0].name.clone(),
             region: configuration.regions()[point.region.0].name.clone(),
@@ -132,15 +161,14 @@ impl PointStatus {
 }
 
 impl RegionStatus {
-    /// A region in the last tick of a monitor.
-    pub fn of(monitor: &Monitor, region: RegionId) -> Self {
+    fn of(name: &str, sample: &RegionSample) -> Self {
         Self {
-            name: monitor.configuration().regions()[region.0].name.clone(),
-            active: monitor.is_active(region),
-            inside: monitor.is_inside(region),
-            warned: monitor.is_warned(region),
-            closed: monitor.is_closed(region),
-            pose: PoseStatus::from(&monitor.region_in_world(region)),
+            name: name.to_owned(),
+            active: sample.active,
+            inside: sample.inside,
+            warned: sample.warned,
+            closed: sample.closed,
+            pose: PoseStatus::from(&sample.in_world),
         }
     }
 }

@@ -22,6 +22,7 @@ const KEYS: &[&str] = &[
     "horizon",
     "noise",
     "delay_ms",
+    "plan_ms",
 ];
 
 /// Range of the speed of an evasion, m/s.
@@ -39,6 +40,9 @@ const MAX_HORIZON_S: f64 = 10.0;
 const MAX_NOISE_M: f64 = 0.5;
 /// Longest delay of an observation, ms.
 const MAX_DELAY_MS: f64 = 2000.0;
+/// Longest time of a plan, and the one without the key, ms: a little more than plans took in the runs of the documents.
+const MAX_PLAN_MS: f64 = 10_000.0;
+const PLAN_MS: f64 = 70.0;
 
 pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<AvoidanceSpec>>> {
     let mut all = vec![None; cell.robots.len()];
@@ -95,6 +99,9 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     let delay_s = t.get("delay_ms").map_or(Ok(0.0), |v| {
         up_to(&v, MAX_DELAY_MS, "ms", "delay_ms = 60   (age of an observation)").map(|ms| 1e-3 * ms)
     })?;
+    let plan_ms = t.get("plan_ms").map_or(Ok(PLAN_MS), |v| {
+        up_to(&v, MAX_PLAN_MS, "ms", "plan_ms = 70   (computing time of a path, in simulated time)")
+    })?;
     let rules = t.get("rules").map_or_else(|| Ok(Rules::default()), |v| rules(&v))?;
     let reach = rules.reach_m();
     if settings.reactive.clearance_m >= reach {
@@ -113,7 +120,8 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
         None => (0..cell.robots.len()).map(RobotId).filter(|r| *r != own).collect(),
         Some(v) => v.list("robots = [\"r2\"]")?.iter().map(|v| neighbour(v, cell, own)).collect::<Result<_>>()?,
     };
-    Ok(AvoidanceSpec { rules, settings, objects, robots, replan: t.flag_or("replan", true)?, noise_m, delay_s })
+    let replan = t.flag_or("replan", true)?;
+    Ok(AvoidanceSpec { rules, settings, objects, robots, replan, noise_m, delay_s, plan_s: 1e-3 * plan_ms })
 }
 
 /// A length (m), or with `per` a speed, within its range.

@@ -183,7 +183,9 @@ impl Cell {
 /// The file of pairs that the cell names.
 fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     let Some(v) = root.get("pairs") else { return Ok(()) };
-    cell.pair_rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
+    // After those of planning scenes: the file decides.
+    let rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
+    cell.pair_rules.extend(rules);
     Ok(())
 }
 

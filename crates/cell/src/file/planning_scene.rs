@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use elbowroom_formats::planning_scene::{self, AllowedCollisions, FixedFrame, PlanningScene};
+use elbowroom_formats::planning_scene::{self, FixedFrame, PlanningScene};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
 use elbowroom_scene::Object;
@@ -11,21 +11,51 @@ use elbowroom_spatial::Pose;
 
 use super::models;
 use super::read::{Table, Value};
+use crate::scene_pairs::ScenePairs;
 use crate::{Cell, CellRobot, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 /// Keys that place the scene are those of `Units::place`.
-const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion"];
+const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion", "allowed_collisions"];
 /// The frame that a scene is placed by, unless `frame` names another.
 const WORLD: &str = "world";
 
 /// Adds the objects of all scenes to the cell, behind its own. Returns which are those of each table.
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<Vec<Range<usize>>> {
-    root.named("scene")?.into_iter().map(|(_, t)| add(&t, cell, warnings)).collect()
+    let mut ranges = Vec::new();
+    for (_, t) in root.named("scene")? {
+        let (scene, objects) = add(&t, cell)?;
+        if t.flag_or("allowed_collisions", true)? {
+            allow(&scene, &objects, cell, warnings);
+        }
+        report_unused(&scene, warnings);
+        warnings.extend(scene.warnings);
+        ranges.push(objects);
+    }
+    Ok(ranges)
 }
 
-fn add(t: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<Range<usize>> {
+/// The pairs that the scene allows are not tested, unless the cell's file of pairs says otherwise.
+fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warnings: &mut Vec<Warning>) {
+    let pairs = ScenePairs::of(scene, objects, cell);
+    let mut warn = |what: String, hint: &str| warnings.push(Warning::new(&scene.file, None, what).hint(hint));
+    if let Some([a, b]) = &pairs.example {
+        let what = format!(
+            "`allowed_collision_matrix` is applied: {} of its pairs are not tested, such as `{a}` and `{b}`",
+            pairs.count
+        );
+        warn(what, "allowed_collisions = false in the table of the scene, to test them");
+    }
+    if let Some([a, b]) = &pairs.ambiguous {
+        let what =
+            format!("`{a}` and `{b}` may touch by the scene, but several robots have such a link: they are tested");
+        warn(what, &format!("pairs = \"pairs.toml\" with {{ a = \"ROBOT/{a}\", b = \"{b}\", reason = \"…\" }}"));
+    }
+    cell.pair_rules.extend(pairs.rules);
+}
+
+fn add(t: &Table<'_>, cell: &mut Cell) -> Result<(PlanningScene, Range<usize>)> {
     t.only(KEYS)?;
     let file = t.need("file", "file = \"workshop.scene\"")?;
     let scene = planning_scene::read(&models::path(&file)?)?;
@@ -44,11 +74,9 @@ fn add(t: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<Ra
         }));
     }
     refuse_known_names(&objects, cell, &file)?;
-    report_unused(&scene, &cell.robots, warnings);
     let first = cell.objects.len();
     cell.objects.extend(objects);
-    warnings.extend(scene.warnings);
-    Ok(first..cell.objects.len())
+    Ok((scene, first..cell.objects.len()))
 }
 
 /// An object that a robot holds would be left out.
@@ -126,27 +154,10 @@ fn refuse_known_names(objects: &[Object], cell: &Cell, file: &Value<'_>) -> Resu
 }
 
 /// Warns of what a cell does not take from a scene.
-fn report_unused(scene: &PlanningScene, robots: &[CellRobot], warnings: &mut Vec<Warning>) {
-    let mut warn = |what: String, hint: &str| warnings.push(Warning::new(&scene.file, None, what).hint(hint));
-    let AllowedCollisions { names, allowed, allowed_by_default } = &scene.allowed;
-    let pairs = || allowed.iter().map(|&(a, b)| [names[a].as_str(), names[b].as_str()]);
-    let tested = pairs().filter(|pair| !robots.iter().any(|r| is_skipped(r, *pair)));
-    let count = tested.clone().count() + allowed_by_default.len();
-    if count > 0 {
-        let [a, b] = tested.clone().next().unwrap_or([allowed_by_default.first().map_or("", String::as_str), "…"]);
-        let what = format!(
-            "`allowed_collision_matrix` is not applied: {count} of its pairs are tested, such as `{a}` and `{b}`"
-        );
-        warn(what, &format!("[robot.NAME] srdf = \"arm.srdf\", or ignore = [[\"{a}\", \"{b}\"]] for links"));
-    }
+fn report_unused(scene: &PlanningScene, warnings: &mut Vec<Warning>) {
     if !scene.joints.is_empty() || scene.base_in_world.is_some() {
         let what = "`robot_state` is not applied: robots are where the cell file has them".to_owned();
-        warn(what, "[robot.NAME] start = [0, 0, 0, 0, 0, 0], base = { at = [0, 0, 0] }");
+        let hint = "[robot.NAME] start = [0, 0, 0, 0, 0, 0], base = { at = [0, 0, 0] }";
+        warnings.push(Warning::new(&scene.file, None, what).hint(hint));
     }
-}
-
-/// True for two links of a robot that are not tested anyway.
-fn is_skipped(r: &CellRobot, names: [&str; 2]) -> bool {
-    let links = names.map(|name| r.robot.chain.link(name));
-    matches!(links, [Some(a), Some(b)] if !r.robot.links_can_meet(a, b))
 }

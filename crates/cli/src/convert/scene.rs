@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom::cell::{self, Cell, ObjectTables};
+use elbowroom::cell::{self, Cell, ObjectTables, PairFile};
 use elbowroom::formats::planning_scene::{self, FixedFrame};
 use elbowroom::formats::stl;
 
@@ -33,10 +33,26 @@ pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Fai
         stl::write_binary(&mut bytes, std::slice::from_ref(mesh)).map_err(cannot_write(&path))?;
         std::fs::write(&path, bytes).map_err(cannot_write(&path))?;
     }
+    let pairs = write_pairs(args, file, &cell)?;
+    let toml = match &pairs {
+        Some(name) => toml.replacen("\n\n", &format!("\npairs = {}\n\n", toml_text(name)), 1),
+        None => toml,
+    };
     std::fs::write(file, toml).map_err(cannot_write(file))?;
     let (objects, meshes) = (cell.objects.len(), meshes.len());
     note(format_args!("wrote {}: {objects} objects, {meshes} mesh files", file.display()));
     Ok(ExitStatus::Success)
+}
+
+/// Writes the pairs that the scene lets touch to a file of pairs beside the cell file. Returns its name, where there are any.
+fn write_pairs(args: &ConvertArgs, file: &Path, cell: &Cell) -> Result<Option<String>, Failure> {
+    let name = format!("{}_pairs.toml", file.file_stem().unwrap_or_default().to_string_lossy());
+    let path = file.with_file_name(&name);
+    let Some(pairs) = PairFile::of_scene(&path, &planning_scene::read(&args.model)?, cell) else { return Ok(None) };
+    refuse_existing(&path)?;
+    std::fs::write(&path, pairs.to_string()).map_err(cannot_write(&path))?;
+    note(format_args!("wrote {}: the pairs that the scene lets touch", path.display()));
+    Ok(Some(name))
 }
 
 /// A cell that has only the scene. Where its objects are in one frame that the scene does not define, that frame is placed: there
@@ -63,7 +79,8 @@ fn cell_text(file: &Path) -> Result<String, Failure> {
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let head = "version = 1\nunits = { length = \"m\", angle = \"deg\" }\n[scene.all]\n";
-    Ok(format!("{head}file = {}\n{frame}", toml_text(&name)))
+    // The pairs go to a file.
+    Ok(format!("{head}file = {}\nallowed_collisions = false\n{frame}", toml_text(&name)))
 }
 
 fn toml_text(text: &str) -> String {

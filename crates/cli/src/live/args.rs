@@ -6,7 +6,13 @@ use clap::Args;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom live cell.toml --simulate                  the whole cell in one process, with simulated controllers")]
+  elbowroom live cell.toml --simulate                  the whole cell in one process, with simulated controllers
+  elbowroom live cell.toml --arbiter --listen 127.0.0.1:7447                       the arbiter alone
+  elbowroom live cell.toml --robots left --connect 127.0.0.1:7447 --simulate       one robot, in a process of its own
+  elbowroom live cell.toml --robots right --connect 127.0.0.1:7447 --simulate
+
+A process without --connect listens at 127.0.0.1:7447. Each robot publishes JSON under elbowroom/CELL/ROBOT/status
+(Zenoh); docs/live.md has all keys. Ctrl-C ends it: then every controller stops by itself.")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
 pub(crate) struct LiveArgs {
@@ -33,6 +39,9 @@ pub(crate) struct LiveArgs {
     /// Run the programs of the cell file in place of the controllers
     #[arg(long)]
     pub(crate) simulate: bool,
+    /// End after this time; default: at Ctrl-C
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) duration: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -57,4 +66,9 @@ pub(crate) struct ReplayArgs {
     /// Print one JSON document
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number of seconds".to_owned())?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be more than 0".to_owned()) }
 }

@@ -2,6 +2,8 @@
 
 mod args;
 #[cfg(feature = "live")]
+mod record;
+#[cfg(feature = "live")]
 mod replay;
 #[cfg(feature = "live")]
 mod service;
@@ -10,14 +12,19 @@ mod view;
 
 pub(crate) use args::{LiveArgs, ReplayArgs, ViewArgs};
 #[cfg(feature = "live")]
-pub(crate) use {replay::replay, service::live, view::view};
+pub(crate) use {record::run_recorded, replay::replay, service::live, view::view};
 
 #[cfg(not(feature = "live"))]
-pub(crate) use missing::{live, replay, view};
+pub(crate) use missing::{live, replay, run_recorded, view};
 
 /// Without the feature the commands say how to get them.
 #[cfg(not(feature = "live"))]
 mod missing {
+    use std::path::Path;
+
+    use elbowroom::cell::Cell;
+    use elbowroom::sim::{RunOptions, RunOutcome};
+
     use super::{LiveArgs, ReplayArgs, ViewArgs};
     use crate::output::{ExitStatus, Failure};
 
@@ -33,7 +40,11 @@ mod missing {
         not_built("replay")
     }
 
-    fn not_built(command: &str) -> Result<ExitStatus, Failure> {
+    pub(crate) fn run_recorded(_: &Cell, _: &RunOptions, _: &Path) -> Result<RunOutcome, Failure> {
+        not_built("run --mcap")
+    }
+
+    fn not_built<T>(command: &str) -> Result<T, Failure> {
         Err(Failure::Wrong(format!(
             "`{command}` is not in this build, which has no network.\n  help: cargo build --release --features live"
         )))

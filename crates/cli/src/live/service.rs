@@ -1,8 +1,72 @@
-//! `elbowroom live`.
+//! `elbowroom live`: guards real controllers over a network.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use elbowroom::cell::Cell;
+use elbowroom::live::{DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
 
 use super::LiveArgs;
-use crate::output::{ExitStatus, Failure};
+use crate::output::{ExitStatus, Failure, note};
 
-pub(crate) fn live(_: &LiveArgs) -> Result<ExitStatus, Failure> {
-    Err(Failure::Wrong("not built yet".into()))
+/// How often the process looks whether it has to end.
+const POLL: Duration = Duration::from_millis(200);
+
+pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let keys = Keys::new(&cell.name);
+    let options = ServiceOptions {
+        robots: args.robots.clone(),
+        listen: args.listen.clone(),
+        connect: args.connect.clone(),
+        arbiter: args.arbiter,
+        simulate: args.simulate,
+        web: args.web.clone(),
+        record: args.record.clone(),
+        on_event: Some(Arc::new(|event: &str| note(event))),
+    };
+    let stop = stop_signal()?;
+    let checksum = cell.checksum.clone();
+    let service = Service::start(cell, &options).map_err(|e| Failure::Wrong(e.to_string()))?;
+    let address = args.listen.as_deref().or(args.connect.as_deref()).unwrap_or(DEFAULT_ADDRESS);
+    note(format_args!(
+        "{} robot(s) guarded{}, {address}, configuration {}\nstatus: {}",
+        service.guarded(),
+        if service.is_arbiter() { ", arbiter" } else { "" },
+        checksum.get(..16).unwrap_or_default(),
+        keys.status("ROBOT"),
+    ));
+    if let Some(url) = service.web_address() {
+        note(url);
+    }
+    let status = wait(&stop, args.duration.map(Duration::from_secs_f64), &service)?;
+    service.stop().map_err(|e| Failure::Wrong(e.to_string()))?;
+    Ok(status)
+}
+
+/// A message when the process is asked to end.
+fn stop_signal() -> Result<Receiver<()>, Failure> {
+    let (stop, stopped) = mpsc::channel();
+    // The receiver is gone only when the process ends.
+    let handler = move || {
+        let _ = stop.send(());
+    };
+    ctrlc::set_handler(handler).map_err(|e| Failure::Wrong(format!("Ctrl-C cannot be handled: {e}")))?;
+    Ok(stopped)
+}
+
+fn wait(stop: &Receiver<()>, duration: Option<Duration>, service: &Service) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    loop {
+        if stop.recv_timeout(POLL) != Err(RecvTimeoutError::Timeout)
+            || duration.is_some_and(|duration| started.elapsed() >= duration)
+        {
+            return Ok(ExitStatus::Success);
+        }
+        if !service.is_running() {
+            return Err(Failure::Wrong("the simulated controllers have ended".into()));
+        }
+    }
 }

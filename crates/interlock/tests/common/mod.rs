@@ -1,25 +1,22 @@
-//! A simulated cell: arms with brakes, their guards, an arbiter, a network that loses, repeats, delays and reorders messages, and
+//! A simulated cell: arms with brakes, their guards, arbiters, a network that loses, repeats, delays and reorders messages, and
 //! processes that pause, crash and restart. The truth is where the arms are, not what the protocol believes.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
+mod arm;
+mod deadlocks;
+mod process;
+
 use elbowroom_interlock::{
-    Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, StateMessage, Token,
+    Arbiter, ArbiterEvent, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, Outputs, RobotSettings, StateMessage,
 };
 use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
 use elbowroom_testkit::random::{split_mix, unit};
 
-/// Regions on the path of every arm, m.
-const REGIONS: [(f64, f64); 2] = [(0.8, 1.0), (1.1, 1.3)];
-const PATH_END_M: f64 = 2.1;
-const WARNING_M: f64 = 0.5;
-const BRAKE_M_S2: f64 = 5.0;
-const STEP_MS: u64 = 1;
-const TICK_MS: u64 = 2;
+use arm::{Arm, Progress, REGIONS, STEP_MS, TICK_MS};
+use deadlocks::DeadlockWatch;
+use process::{ArbiterProcess, Process};
+
 const SEND_MS: u64 = 10;
-/// A controller brakes when it has had no tick for this long.
-const WATCHDOG_MS: u64 = 20;
-/// An arm that has waited for this long turns back.
-const PATIENCE_MS: u64 = 1_000;
 
 /// Faults that are built in to see whether the simulation finds them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,8 +24,6 @@ pub enum PlantedFault {
     None,
     /// Grants never expire, and silent robots are cleared at once.
     EndlessValidity,
-    /// A report without a grant counts as one that gives it up, whichever it was.
-    TokensUnchecked,
     /// A robot that is asked to give a slot up loses it without its consent.
     UnilateralRelease,
 }
@@ -37,56 +32,55 @@ pub enum PlantedFault {
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct Findings {
     pub double_occupancies: u64,
-    /// Arms that did not get on in the last part, in which no fault happens.
+    /// A message from before a clear, which came after it, said that the robot is where another one is by now: both halt until
+    /// the next message.
+    pub conflicts: u64,
+    /// Arms that did not get on in the last part, in which no fault happens, although none is preferred to them; nor in
+    /// twenty seconds more.
     pub stuck: u64,
+    /// Arms that did in those: many slow arms share the regions, and turn back on the way.
+    pub late: u64,
+    /// Arms that did not get on in the last part while preferred ones did.
+    pub starved: u64,
+    /// Circles of waiting robots that could have been resolved, and were not.
+    pub unresolved_deadlocks: u64,
     pub passages: u64,
     pub clears: u64,
     pub restarts: u64,
+    pub second_arbiters: u64,
+    pub switched_off: u64,
     pub longest_wait_ms: u64,
 }
 
-#[derive(Debug)]
-struct Arm {
-    x: f64,
-    v: f64,
-    direction: f64,
-    top_speed: f64,
-    rest_until_ms: u64,
-    accelerates: bool,
-    last_tick_ms: u64,
-    still_since_ms: u64,
-    inside: [bool; 2],
-    passed_at_ms: u64,
-}
-
-#[derive(Debug)]
-struct Process {
-    down_until_ms: u64,
-    paused_until_ms: u64,
-    offset: u64,
-    /// Rate of the clock, 1 ± 0.5 %.
-    rate: f64,
-}
-
-impl Process {
-    fn new(rng: &mut u64) -> Self {
-        let rate = 0.995 + 0.01 * unit(split_mix(rng));
-        Self { down_until_ms: 0, paused_until_ms: 0, offset: split_mix(rng) % 1_000_000_000, rate }
-    }
-
-    fn runs(&self, ms: u64) -> bool {
-        ms >= self.down_until_ms && ms >= self.paused_until_ms
-    }
-
-    fn clock(&self, ms: u64) -> Micros {
-        Micros(self.offset + (ms as f64 * 1e3 * self.rate) as u64)
+impl Findings {
+    pub fn add(&mut self, other: &Self) {
+        self.double_occupancies += other.double_occupancies;
+        self.conflicts += other.conflicts;
+        self.stuck += other.stuck;
+        self.late += other.late;
+        self.starved += other.starved;
+        self.unresolved_deadlocks += other.unresolved_deadlocks;
+        self.passages += other.passages;
+        self.clears += other.clears;
+        self.restarts += other.restarts;
+        self.second_arbiters += other.second_arbiters;
+        self.switched_off += other.switched_off;
+        self.longest_wait_ms = self.longest_wait_ms.max(other.longest_wait_ms);
     }
 }
 
 #[derive(Debug, Clone)]
 enum Packet {
-    State(StateMessage),
+    /// To the arbiter of this number.
+    State(u64, StateMessage),
     Grants(GrantsMessage),
+}
+
+/// Until when no message passes to and from a robot.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cut {
+    states_until_ms: u64,
+    grants_until_ms: u64,
 }
 
 /// One simulated cell.
@@ -98,35 +92,40 @@ pub struct World {
     guards: Vec<Guard>,
     processes: Vec<Process>,
     trusted_at_ms: Vec<u64>,
-    cut_until_ms: Vec<u64>,
+    cuts: Vec<Cut>,
     boots: u64,
-    arbiter: Arbiter,
+    arbiters: Vec<ArbiterProcess>,
     settings: ArbiterSettings,
-    arbiter_process: Process,
     packets: Vec<(u64, Packet)>,
     loss: f64,
     /// Faults are this much rarer.
     calm: f64,
+    deadlock: DeadlockWatch,
     pub findings: Findings,
 }
 
 impl World {
     pub fn new(robots: usize, seed: u64, planted: PlantedFault) -> Self {
         let mut rng = seed;
-        let robot = |i: usize| {
-            let mut settings = RobotSettings::new(&format!("r{i}"), [SlotId(0), SlotId(1)]);
+        let has_priorities = split_mix(&mut rng).is_multiple_of(2);
+        let slots = (0..REGIONS).map(SlotId);
+        let mut robot = |i: usize| {
+            let mut settings = RobotSettings::new(&format!("r{i}"), slots.clone());
             settings.stop_time = if planted == PlantedFault::EndlessValidity { Micros(0) } else { Micros(500_000) };
+            settings.priority = if has_priorities { (split_mix(&mut rng) % 3) as i32 } else { 0 };
             settings
         };
-        let mut settings = ArbiterSettings::new((0..robots).map(robot).collect(), 2);
+        let mut settings = ArbiterSettings::new((0..robots).map(&mut robot).collect(), REGIONS);
         if planted == PlantedFault::EndlessValidity {
             settings.validity = Micros(0);
         }
-        let arms = (0..robots).map(|_| Arm::new(&mut rng)).collect();
+        let is_turned = split_mix(&mut rng).is_multiple_of(2);
+        let arms = (0..robots).map(|r| Arm::new(&mut rng, if is_turned { r } else { 0 })).collect();
         let processes = (0..robots).map(|_| Process::new(&mut rng)).collect();
-        let arbiter_process = Process::new(&mut rng);
+        let process = Process::new(&mut rng);
         let loss = [0.0, 0.02, 0.3][split_mix(&mut rng) as usize % 3];
         let calm = [1.0, 3.0, 10.0][split_mix(&mut rng) as usize % 3];
+        let arbiter = Arbiter::new(settings.clone(), Boot(10));
         let mut world = Self {
             rng,
             ms: 0,
@@ -135,14 +134,14 @@ impl World {
             guards: Vec::new(),
             processes,
             trusted_at_ms: vec![0; robots],
-            cut_until_ms: vec![0; robots],
+            cuts: vec![Cut::default(); robots],
             boots: 10,
-            arbiter: Arbiter::new(settings.clone(), Boot(10)),
+            arbiters: vec![ArbiterProcess { id: 10, arbiter, process, ends_ms: u64::MAX }],
             settings,
-            arbiter_process,
             packets: Vec::new(),
             loss,
             calm,
+            deadlock: DeadlockWatch::default(),
             findings: Findings::default(),
         };
         world.guards = (0..robots).map(|r| world.new_guard(r, Boot(10))).collect();
@@ -159,10 +158,29 @@ impl World {
                 self.end_faults();
             }
             self.step();
+            // The first messages after the faults must have been answered.
+            if self.ms > calm + 500 && self.deadlock.is_unresolved(&self.arbiters[0].arbiter, &self.arms, self.ms) {
+                self.findings.unresolved_deadlocks += 1;
+            }
         }
-        let since = |arm: &Arm| length_ms.saturating_sub(arm.passed_at_ms);
-        self.findings.stuck = self.arms.iter().filter(|arm| since(arm) > length_ms - calm).count() as u64;
+        let late = self.count_stuck(calm);
+        while self.findings.stuck > 0 && self.ms < length_ms + 20_000 {
+            self.step();
+            self.count_stuck(calm);
+        }
+        self.findings.late = late.saturating_sub(self.findings.stuck);
         self.findings.clone()
+    }
+
+    fn count_stuck(&mut self, since_ms: u64) -> u64 {
+        (self.findings.starved, self.findings.stuck) = (0, 0);
+        let priority = |r: usize| self.settings.robots[r].priority;
+        let gets_on: Vec<bool> = self.arms.iter().map(|arm| arm.passed_at_ms >= since_ms).collect();
+        for r in (0..gets_on.len()).filter(|r| !gets_on[*r]) {
+            let is_starved = (0..gets_on.len()).any(|other| gets_on[other] && priority(other) > priority(r));
+            *(if is_starved { &mut self.findings.starved } else { &mut self.findings.stuck }) += 1;
+        }
+        self.findings.stuck
     }
 
     fn chance(&mut self, p: f64) -> bool {
@@ -174,7 +192,7 @@ impl World {
     }
 
     fn new_guard(&self, robot: usize, boot: Boot) -> Guard {
-        let guard = Guard::new(RobotSlot(robot), 2, 0, boot);
+        let guard = Guard::new(RobotSlot(robot), REGIONS, 0, boot);
         if self.planted == PlantedFault::EndlessValidity { guard.validity(Micros(u64::MAX)) } else { guard }
     }
 
@@ -193,14 +211,24 @@ impl World {
                 self.restart_guard(r);
             }
             if self.fails(0.000_5) {
-                self.cut_until_ms[r] = self.ms + self.between(10, 3_000);
+                self.cut(r);
             }
             if self.fails(0.002) {
                 self.clear_by_a_person(r);
             }
+            if self.fails(0.005) {
+                self.switch_off(r);
+            }
+        }
+        if self.fails(0.000_2) {
+            // The network falls apart.
+            let members: Vec<usize> = (0..self.arms.len()).filter(|_| self.chance(0.5)).collect();
+            for r in members {
+                self.cut(r);
+            }
         }
         if self.fails(0.000_3) {
-            self.arbiter_process.paused_until_ms = self.ms + self.between(10, 2_000);
+            self.pause_arbiter();
         }
         if self.fails(0.000_2) {
             self.restart_arbiter();
@@ -209,9 +237,29 @@ impl World {
 
     fn end_faults(&mut self) {
         self.loss = 0.0;
-        self.cut_until_ms.fill(0);
-        for process in self.processes.iter_mut().chain([&mut self.arbiter_process]) {
+        self.cuts.fill(Cut::default());
+        self.arbiters.truncate(1);
+        for process in self.processes.iter_mut().chain([&mut self.arbiters[0].process]) {
             process.paused_until_ms = process.paused_until_ms.min(self.ms);
+        }
+    }
+
+    /// In both directions, or in one.
+    fn cut(&mut self, r: usize) {
+        let until_ms = self.ms + self.between(10, 3_000);
+        let (states, grants) = [(true, true), (true, false), (false, true)][self.between(0, 3) as usize];
+        let cut = &mut self.cuts[r];
+        cut.states_until_ms = if states { until_ms } else { cut.states_until_ms };
+        cut.grants_until_ms = if grants { until_ms } else { cut.grants_until_ms };
+    }
+
+    /// A person switches the regions off in which the arm is.
+    fn switch_off(&mut self, r: usize) {
+        let until_ms = self.ms + self.between(10, 2_000);
+        let arm = &mut self.arms[r];
+        for i in (0..REGIONS).filter(|i| arm.inside[*i]) {
+            arm.off_until_ms[i] = until_ms;
+            self.findings.switched_off += 1;
         }
     }
 
@@ -235,30 +283,55 @@ impl World {
 
     fn restart_arbiter(&mut self) {
         let boot = self.next_boot();
-        self.arbiter = Arbiter::new(self.settings.clone(), boot);
-        self.arbiter_process.down_until_ms = self.ms + self.between(1, 1_000);
+        self.arbiters[0].arbiter = Arbiter::new(self.settings.clone(), boot);
+        self.arbiters[0].process.down_until_ms = self.ms + self.between(1, 1_000);
         self.findings.restarts += 1;
+    }
+
+    /// Somebody may start another arbiter meanwhile, and stop one of the two when they see both.
+    fn pause_arbiter(&mut self) {
+        let until_ms = self.ms + self.between(10, 2_000);
+        self.arbiters[0].process.paused_until_ms = until_ms;
+        if self.arbiters.len() > 1 || self.chance(0.5) {
+            return;
+        }
+        let (boot, process) = (self.next_boot(), Process::new(&mut self.rng));
+        let both_until_ms = until_ms + self.between(0, 300);
+        let arbiter = Arbiter::new(self.settings.clone(), boot);
+        let id = self.boots;
+        self.arbiters.push(ArbiterProcess { id, arbiter, process, ends_ms: u64::MAX });
+        let which = self.between(0, 2) as usize;
+        self.arbiters[which].ends_ms = both_until_ms;
+        self.findings.second_arbiters += 1;
     }
 
     /// A person clears a robot that they see at rest outside of the regions.
     fn clear_by_a_person(&mut self, robot: usize) {
-        let arm = &self.arms[robot];
-        let is_outside = REGIONS.iter().all(|(from, to)| arm.x < *from || arm.x > *to);
-        if arm.v == 0.0 && is_outside && self.arbiter_process.runs(self.ms) {
-            let now = self.arbiter_process.clock(self.ms);
-            let is_hasty = self.planted == PlantedFault::EndlessValidity;
-            if self.arbiter.is_known(RobotSlot(robot), now) && !is_hasty {
-                return;
-            }
-            if let Ok(outputs) = self.arbiter.clear(RobotSlot(robot), now) {
-                self.findings.clears += 1;
-                outputs.replies.into_iter().for_each(|m| self.send(m.robot.0, &Packet::Grants(m)));
-            }
+        let ArbiterProcess { arbiter, process, .. } = &mut self.arbiters[0];
+        if !self.arms[robot].rests_outside() || !process.runs(self.ms) {
+            return;
+        }
+        let now = process.clock(self.ms);
+        let is_hasty = self.planted == PlantedFault::EndlessValidity;
+        if arbiter.is_known(RobotSlot(robot), now) && !is_hasty {
+            return;
+        }
+        if let Ok(outputs) = arbiter.clear(RobotSlot(robot), now) {
+            self.findings.clears += 1;
+            self.give_out(outputs);
         }
     }
 
+    fn give_out(&mut self, outputs: Outputs) {
+        let conflicts = outputs.events.iter().filter(|e| matches!(e, ArbiterEvent::Conflict(..))).count();
+        self.findings.conflicts += conflicts as u64;
+        outputs.replies.into_iter().for_each(|m| self.send(m.robot.0, &Packet::Grants(m)));
+    }
+
     fn send(&mut self, robot: usize, packet: &Packet) {
-        if self.ms < self.cut_until_ms[robot] || self.chance(self.loss) {
+        let cut = self.cuts[robot];
+        let until_ms = if matches!(packet, Packet::State(..)) { cut.states_until_ms } else { cut.grants_until_ms };
+        if self.ms < until_ms || self.chance(self.loss) {
             return;
         }
         let copies = if self.chance(0.05) { 2 } else { 1 };
@@ -269,6 +342,9 @@ impl World {
     }
 
     fn step(&mut self) {
+        if self.arbiters.len() > 1 {
+            self.arbiters.retain(|arbiter| self.ms < arbiter.ends_ms);
+        }
         self.deliver();
         for r in 0..self.arms.len() {
             if self.processes[r].runs(self.ms) {
@@ -277,7 +353,10 @@ impl World {
                 }
                 if (self.ms + r as u64).is_multiple_of(SEND_MS) {
                     let message = self.guards[r].state(self.processes[r].clock(self.ms));
-                    self.send(r, &Packet::State(message));
+                    let ids: Vec<u64> = self.arbiters.iter().map(|arbiter| arbiter.id).collect();
+                    for id in ids {
+                        self.send(r, &Packet::State(id, message.clone()));
+                    }
                 }
             }
             self.move_arm(r);
@@ -286,22 +365,28 @@ impl World {
         self.ms += STEP_MS;
     }
 
+    fn arbiter(&mut self, id: u64) -> Option<&mut ArbiterProcess> {
+        self.arbiters.iter_mut().find(|arbiter| arbiter.id == id)
+    }
+
     fn deliver(&mut self) {
-        let mut i = 0;
+        let (ms, mut i) = (self.ms, 0);
         while i < self.packets.len() {
             let (at, packet) = &self.packets[i];
-            let is_ready = *at <= self.ms
+            let is_ready = *at <= ms
                 && match packet {
-                    Packet::State(_) => self.arbiter_process.paused_until_ms <= self.ms,
-                    Packet::Grants(m) => self.processes[m.robot.0].paused_until_ms <= self.ms,
+                    Packet::State(id, _) => {
+                        self.arbiters.iter().all(|a| a.id != *id || a.process.paused_until_ms <= ms)
+                    }
+                    Packet::Grants(m) => self.processes[m.robot.0].paused_until_ms <= ms,
                 };
             if !is_ready {
                 i += 1;
                 continue;
             }
             match self.packets.swap_remove(i).1 {
-                Packet::State(message) => self.arbiter_receives(message),
-                Packet::Grants(message) if self.processes[message.robot.0].runs(self.ms) => {
+                Packet::State(id, message) => self.arbiter_receives(id, &message),
+                Packet::Grants(message) if self.processes[message.robot.0].runs(ms) => {
                     let _ = self.guards[message.robot.0].receive(&message);
                 }
                 Packet::Grants(_) => {}
@@ -309,91 +394,66 @@ impl World {
         }
     }
 
-    fn arbiter_receives(&mut self, mut message: StateMessage) {
-        if !self.arbiter_process.runs(self.ms) {
+    fn arbiter_receives(&mut self, id: u64, message: &StateMessage) {
+        let (ms, planted) = (self.ms, self.planted);
+        let Some(ArbiterProcess { arbiter, process, .. }) = self.arbiter(id).filter(|a| a.process.runs(ms)) else {
             return;
-        }
-        let last = Token { boot: Boot(u64::MAX), number: u64::MAX };
-        if self.planted == PlantedFault::TokensUnchecked {
-            for slot in message.slots.iter_mut().filter(|s| s.token.is_none() && !s.occupancy.occupies()) {
-                slot.released = Some(last);
+        };
+        let now = process.clock(ms);
+        let outputs = arbiter.receive(message, now);
+        for reply in &outputs.replies {
+            let takes_back = planted == PlantedFault::UnilateralRelease && reply.robot == message.robot;
+            if let Some(forged) = given_up(message, reply).filter(|_| takes_back) {
+                arbiter.receive(&forged, now);
             }
         }
-        let now = self.arbiter_process.clock(self.ms);
-        let outputs = self.arbiter.receive(&message, now);
-        for reply in outputs.replies {
-            let takes_back = self.planted == PlantedFault::UnilateralRelease && reply.robot == message.robot;
-            if let Some(forged) = given_up(&message, &reply).filter(|_| takes_back) {
-                self.arbiter.receive(&forged, now);
-            }
-            self.send(reply.robot.0, &Packet::Grants(reply));
-        }
+        self.give_out(outputs);
     }
 
     /// One tick of the monitor of an arm: how fast it may move, and what the guard is to know of it.
     fn tick(&mut self, r: usize) {
-        let now = self.processes[r].clock(self.ms);
-        let arm = &self.arms[r];
+        let ms = self.ms;
+        let now = self.processes[r].clock(ms);
+        self.arms[r].switch_on(ms);
+        let (arm, guard) = (&self.arms[r], &self.guards[r]);
         let dt = 1e-3 * TICK_MS as f64;
-        let wants_to_move = self.ms >= arm.rest_until_ms && self.ms >= self.trusted_at_ms[r];
-        let is_inside = |s: usize| arm.sweeps(arm.stop(), s);
-        let allowed = (0..2).all(|s| {
+        let is_trusted = ms >= self.trusted_at_ms[r];
+        let is_inside = |i: usize| arm.sweeps(arm.stop(), i);
+        let allowed = (0..REGIONS).all(|i| {
             // Rounding must not make a robot that stops just before the border one that cannot stop.
-            let stays_out = !arm.sweeps(arm.latest_stop(dt + 1e-3), s);
-            is_inside(s) || stays_out || self.guards[r].may_enter(SlotId(s), now)
+            let stays_out = !arm.sweeps(arm.latest_stop(dt + 1e-3), i);
+            is_inside(i) || stays_out || guard.may_enter(arm.slots[i], now)
         });
-        let halts = (0..2).any(|s| self.guards[r].must_halt(SlotId(s)) && !is_inside(s));
-        let accelerates = wants_to_move && allowed && !halts;
+        let halts = (0..REGIONS).any(|i| arm.off_until_ms[i] == 0 && guard.must_halt(arm.slots[i]));
+        let accelerates = ms >= arm.rest_until_ms && is_trusted && allowed && !halts;
         let stop = if accelerates { arm.latest_stop(dt) } else { arm.stop() };
-        let occupancy = [0, 1].map(|s| arm.occupancy(stop, s));
-        self.arms[r].accelerates = accelerates;
-        self.arms[r].last_tick_ms = self.ms;
-        for (s, occupancy) in occupancy.into_iter().enumerate() {
-            let trusted = self.ms >= self.trusted_at_ms[r];
-            self.guards[r].observe(SlotId(s), if trusted { occupancy } else { Occupancy::Unknown });
+        for i in 0..REGIONS {
+            let occupancy = if is_trusted { arm.occupancy(stop, i) } else { Occupancy::Unknown };
+            self.guards[r].need(arm.slots[i], arm.off_until_ms[i] == 0);
+            self.guards[r].observe(arm.slots[i], occupancy);
         }
+        self.arms[r].accelerates = accelerates;
+        self.arms[r].last_tick_ms = ms;
     }
 
     fn move_arm(&mut self, r: usize) {
-        let ms = self.ms;
-        let rest = self.between(0, 150);
-        let arm = &mut self.arms[r];
-        let dt = 1e-3 * STEP_MS as f64;
-        let has_ticks = ms - arm.last_tick_ms <= WATCHDOG_MS;
-        arm.v = if arm.accelerates && has_ticks {
-            (arm.v + BRAKE_M_S2 * dt).min(arm.top_speed)
-        } else {
-            (arm.v - BRAKE_M_S2 * dt).max(0.0)
-        };
-        arm.x += arm.direction * arm.v * dt;
-        let ahead = if arm.direction > 0.0 { PATH_END_M - arm.x } else { arm.x };
-        if arm.v > 0.0 {
-            arm.still_since_ms = ms;
-        }
-        let is_at_end = ahead < 0.3;
-        if is_at_end {
-            arm.rest_until_ms = arm.rest_until_ms.max(ms + rest);
-        }
-        if arm.v == 0.0 && is_at_end {
-            arm.direction = -arm.direction;
-            arm.passed_at_ms = ms;
-            self.findings.passages += 1;
-        } else if arm.v == 0.0 && ms.saturating_sub(arm.still_since_ms) > PATIENCE_MS && ms >= arm.rest_until_ms {
-            self.findings.longest_wait_ms = self.findings.longest_wait_ms.max(ms - arm.still_since_ms);
-            arm.direction = -arm.direction;
-            arm.still_since_ms = ms + split_mix(&mut self.rng) % 500;
+        let rest_ms = self.between(0, 150);
+        match self.arms[r].advance(self.ms, rest_ms, &mut self.rng) {
+            Progress::None => {}
+            Progress::Passed => self.findings.passages += 1,
+            Progress::TurnedBack(waited_ms) => {
+                self.findings.longest_wait_ms = self.findings.longest_wait_ms.max(waited_ms);
+            }
         }
     }
 
-    /// Counts the moments at which two arms begin to be in one region.
+    /// Counts the moments at which an arm enters a slot that another one is in.
     fn count_double_occupancies(&mut self) {
-        for (s, (from, to)) in REGIONS.iter().enumerate() {
-            let before = self.arms.iter().filter(|arm| arm.inside[s]).count();
-            for arm in &mut self.arms {
-                arm.inside[s] = arm.x > *from && arm.x < *to;
+        for r in 0..self.arms.len() {
+            for slot in self.arms[r].look() {
+                let is_taken = self.arms.iter().enumerate().any(|(other, arm)| other != r && arm.is_in(slot));
+                self.findings.double_occupancies += u64::from(is_taken);
             }
-            let after = self.arms.iter().filter(|arm| arm.inside[s]).count();
-            self.findings.double_occupancies += u64::from(after > 1 && after > before);
         }
     }
 }
@@ -406,52 +466,4 @@ fn given_up(message: &StateMessage, reply: &GrantsMessage) -> Option<StateMessag
     let slot = &mut forged.slots[s];
     (slot.released, slot.token, slot.occupancy) = (reply.slots[s].granted, None, Occupancy::Warning);
     Some(forged)
-}
-
-impl Arm {
-    fn new(rng: &mut u64) -> Self {
-        let forward = split_mix(rng).is_multiple_of(2);
-        Self {
-            x: if forward { 0.0 } else { PATH_END_M },
-            v: 0.0,
-            direction: if forward { 1.0 } else { -1.0 },
-            top_speed: 0.5 + unit(split_mix(rng)),
-            rest_until_ms: split_mix(rng) % 500,
-            accelerates: false,
-            last_tick_ms: 0,
-            still_since_ms: 0,
-            inside: [false; 2],
-            passed_at_ms: 0,
-        }
-    }
-
-    /// Where it rests if it brakes now.
-    fn stop(&self) -> f64 {
-        self.x + self.direction * self.v * self.v / (2.0 * BRAKE_M_S2)
-    }
-
-    /// Where it rests at the latest if it speeds up for a time (s) and until its controller notices that no tick came.
-    fn latest_stop(&self, time_s: f64) -> f64 {
-        let reaction_s = time_s + 1e-3 * (WATCHDOG_MS + TICK_MS) as f64;
-        let v = (self.v + BRAKE_M_S2 * reaction_s).min(self.top_speed);
-        self.x + self.direction * (v * reaction_s + v * v / (2.0 * BRAKE_M_S2))
-    }
-
-    /// Whether it is in a region or will be before it rests at `stop`.
-    fn sweeps(&self, stop: f64, s: usize) -> bool {
-        let (from, to) = REGIONS[s];
-        let (low, high) = (self.x.min(stop), self.x.max(stop));
-        high >= from && low <= to
-    }
-
-    fn occupancy(&self, stop: f64, s: usize) -> Occupancy {
-        let (from, to) = REGIONS[s];
-        let distance = (from - self.x).max(self.x - to);
-        match (distance <= 0.0, self.sweeps(stop, s), distance < WARNING_M) {
-            (true, ..) => Occupancy::Inside,
-            (_, true, _) => Occupancy::Committed,
-            (.., true) => Occupancy::Warning,
-            _ => Occupancy::Outside,
-        }
-    }
 }

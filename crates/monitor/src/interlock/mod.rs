@@ -27,17 +27,23 @@
 mod arbiter;
 #[cfg(test)]
 mod check;
+mod connection;
+mod exchange_state;
 mod group;
 mod occupancy;
 mod robot_set;
 mod safe_order;
 mod shared_state;
 mod slot;
+mod slot_grants;
 #[cfg(test)]
 mod tests;
 mod wait_for_graph;
 
 pub use arbiter::ZoneArbiter;
+pub use connection::Interlock;
+pub use exchange_state::ExchangeState;
 pub use group::group_overlapping;
 pub use occupancy::{Grant, Occupancy};
 pub use slot::{RobotSlot, SlotId};
+pub use slot_grants::SlotGrants;

@@ -27,6 +27,11 @@ pub struct ConvexHull {
     aabb: Aabb,
 }
 
+/// A corner may be outside of a face by this part of the extent.
+const OUTSIDE: f64 = 1e-9;
+/// Most pairs of corner and face that are tested.
+const MAX_SIDES: usize = 1 << 32;
+
 impl ConvexHull {
     /// The convex hull of a set of points (quickhull; Barber, Dobkin, Huhdanpaa, 1996).
     ///
@@ -37,11 +42,44 @@ impl ConvexHull {
     /// Fewer than four points, a coordinate that is not finite, or all points on one point, line or plane.
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
         let (vertices, triangles) = quickhull(points)?;
-        let planes = triangles.iter().map(|t| plane(&vertices, *t)).collect::<Option<Vec<_>>>();
-        let planes = planes.ok_or(HullError::Numeric)?;
+        Self::assemble(vertices, triangles).ok_or(HullError::Numeric)
+    }
+
+    /// The hull with exactly these corners and faces, such as those of a hull that was written to a file: the order of both
+    /// is kept, so that every query gives the same bits.
+    ///
+    /// # Errors
+    /// [`HullError::Faces`] where a face names no corner or has no area, or a corner is outside of a face.
+    ///
+    /// ```
+    /// use elbowroom_proximity::ConvexHull;
+    /// use elbowroom_spatial::Vec3;
+    /// let hull = ConvexHull::from_points(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z])?;
+    /// assert_eq!(ConvexHull::from_faces(hull.vertices().to_vec(), hull.triangles().to_vec())?, hull);
+    /// # Ok::<(), elbowroom_proximity::HullError>(())
+    /// ```
+    pub fn from_faces(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, HullError> {
+        if vertices.len() < 4 {
+            return Err(HullError::TooFew(vertices.len()));
+        }
+        if let Some(bad) = vertices.iter().position(|v| !v.is_finite()) {
+            return Err(HullError::NotFinite(bad));
+        }
+        let names_corners = triangles.iter().flatten().all(|i| (*i as usize) < vertices.len());
+        if triangles.len() < 4 || !names_corners || vertices.len().saturating_mul(triangles.len()) > MAX_SIDES {
+            return Err(HullError::Faces);
+        }
+        let hull = Self::assemble(vertices, triangles).ok_or(HullError::Faces)?;
+        let tolerance = OUTSIDE * hull.aabb.min.abs().max(hull.aabb.max.abs()).max_element();
+        let is_inside = |v: &Vec3| hull.planes.iter().all(|(normal, offset)| normal.dot(*v) - offset <= tolerance);
+        if hull.volume > 0.0 && hull.vertices.iter().all(is_inside) { Ok(hull) } else { Err(HullError::Faces) }
+    }
+
+    fn assemble(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Option<Self> {
+        let planes = triangles.iter().map(|t| plane(&vertices, *t)).collect::<Option<Vec<_>>>()?;
         let volume = enclosed_volume(&vertices, &triangles);
         let aabb = Aabb::from_points(vertices.iter().copied());
-        Ok(Self { vertices, triangles, planes, volume, aabb })
+        Some(Self { vertices, triangles, planes, volume, aabb })
     }
 
     /// Corners, metres, local frame.

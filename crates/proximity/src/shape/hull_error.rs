@@ -18,6 +18,9 @@ pub enum HullError {
     /// All points lie in one plane within rounding.
     #[error("all points lie in one plane: a convex hull needs an inside; use a thin box instead")]
     Flat,
+    /// The faces are not those of a convex hull.
+    #[error("the faces are not the surface of a convex hull of these corners")]
+    Faces,
     /// Rounding prevents a closed surface (points on a scale that f64 cannot separate).
     #[error("the points are too close to degenerate for a closed hull; scale or thin them out")]
     Numeric,

@@ -3,7 +3,7 @@
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{
     AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
-    ObservedObject, PathKind, Reference,
+    ObservedObject, PathKind, PlannedDetour, Reference,
 };
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
@@ -66,6 +66,14 @@ const REPLANNING: ReplanSettings = ReplanSettings {
 /// Samples per input of the recorded control surfaces.
 const SURFACE_SAMPLES: usize = 33;
 
+/// A plan that is known only after its computing time.
+#[derive(Debug)]
+struct PendingPlan {
+    ready_s: f64,
+    detour: Option<PlannedDetour>,
+    goal: Vec<f64>,
+}
+
 /// A robot with avoidance.
 #[derive(Debug)]
 pub(super) struct AvoidingRobot<'s> {
@@ -76,6 +84,8 @@ pub(super) struct AvoidingRobot<'s> {
     /// Zero velocity of every joint.
     rest: Vec<f64>,
     not_before_s: f64,
+    /// A plan that is being computed.
+    pending: Option<PendingPlan>,
     /// Failed plans in a row.
     failed: u64,
     /// Objects that a robot has gripped: they no longer move by themselves.
@@ -115,6 +125,7 @@ impl<'s> AvoidingRobot<'s> {
             output: AvoiderOutput { rate: 1.0, nearest_m: f64::INFINITY, ..AvoiderOutput::default() },
             rest: vec![0.0; q.len()],
             not_before_s: 0.0,
+            pending: None,
             failed: 0,
             taken: Vec::new(),
             step_ns: Vec::new(),
@@ -201,8 +212,11 @@ impl<'s> AvoidingRobot<'s> {
         let before = self.output.state;
         let at_border = self.at_border(clock, allowed);
         let needs_path = self.output.requests_detour || (at_border && self.avoider.is_stationary());
-        if self.spec.replan && needs_path && t_s >= self.not_before_s {
+        if self.pending.is_none() && self.spec.replan && needs_path && t_s >= self.not_before_s {
             self.plan(clock, t_s, &mut regions);
+        }
+        if let Some(plan) = self.pending.take_if(|plan| t_s >= plan.ready_s) {
+            self.use_plan(clock, plan);
         }
         // No closer to a border than a planned path can leave in time.
         let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
@@ -283,18 +297,17 @@ impl<'s> AvoidingRobot<'s> {
         }
     }
 
-    /// Replans: to the end of a joint move, else back to the path.
+    /// Replans. The path is proven against what is seen now, and followed after the time of planning.
     fn plan<'f>(
         &mut self,
         clock: &mut ProgramClock,
         t_s: f64,
         regions: &mut impl FnMut(f64) -> Option<RegionConstraint<'f>>,
     ) {
-        let end = clock.end_of_joint_move();
-        let goal = end.clone().unwrap_or_else(|| clock.point().q.clone());
+        let goal = goal(clock);
         let begin = std::time::Instant::now();
         let settings = REPLANNING;
-        let found = settings.attempts.into_iter().any(|ReplanAttempt { clearance_m, warning_share }| {
+        let detour = settings.attempts.into_iter().find_map(|ReplanAttempt { clearance_m, warning_share }| {
             // Another seed may find a path where the last one did not.
             let seed = 1 + self.failed;
             let options = RrtConnectSettings {
@@ -305,10 +318,9 @@ impl<'s> AvoidingRobot<'s> {
                 ..RrtConnectSettings::default()
             };
             let mut constraint = regions(warning_share);
-            self.avoider
-                .plan_to_constrained(&goal, &options, constraint.as_mut().map(|f| f as &mut dyn PathConstraint))
-                .is_ok()
+            self.avoider.plan_detour(&goal, &options, constraint.as_mut().map(|f| f as &mut dyn PathConstraint)).ok()
         });
+        let found = detour.is_some();
         self.failed = if found { 0 } else { self.failed + 1 };
         // For a trapped robot, planning is not repeated in every tick.
         let interval_s =
@@ -316,10 +328,21 @@ impl<'s> AvoidingRobot<'s> {
         self.not_before_s = t_s + interval_s;
         let search_s = found.then(|| begin.elapsed().as_secs_f64());
         self.track.plans.push(ReplanRecord { t_s, search_s });
-        if found && end.is_some() {
+        self.pending = Some(PendingPlan { ready_s: t_s + self.spec.plan_s, detour, goal });
+    }
+
+    /// Follows a plan that has become known, if the robot and its goal are still where they were.
+    fn use_plan(&mut self, clock: &mut ProgramClock, plan: PendingPlan) {
+        let Some(detour) = plan.detour.filter(|_| goal(clock) == plan.goal) else { return };
+        if self.avoider.follow_detour(detour).is_ok() && clock.end_of_joint_move().is_some() {
             clock.skip_move();
         }
     }
+}
+
+/// Where a plan leads: to the end of a joint move, else back to the path.
+fn goal(clock: &ProgramClock) -> Vec<f64> {
+    clock.end_of_joint_move().unwrap_or_else(|| clock.point().q.clone())
 }
 
 /// Names in the order of the keys in [`AvoiderOutput::governed_by`]: objects, then the links of all robots.

@@ -6,6 +6,7 @@ mod deadlock_detector;
 mod fault_injection;
 mod idle_detector;
 mod observation;
+mod observer;
 mod obstacle_guard;
 mod outcome;
 mod override_delay;
@@ -46,6 +47,7 @@ use carried_parts::CarriedParts;
 use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
 use idle_detector::{IDLE_TIMEOUT_S, IdleDetector, STANDSTILL_TIMEOUT_S};
+pub use observer::{ObservedInstant, ObservedTick, RunObserver};
 use obstacle_guard::ObstacleGuard;
 use override_delay::OverrideDelay;
 use perceived_obstacles::PerceivedObstacles;
@@ -143,6 +145,19 @@ pub fn simulate_with(
     options: &RunOptions,
     progress: &mut dyn FnMut(RunProgress),
 ) -> Result<RunOutcome, FormatError> {
+    simulate_observed(cell, options, progress, None)
+}
+
+/// [`simulate_with`] with an observer of the monitors' ticks, such as one that records them.
+///
+/// # Errors
+/// As for [`simulate`].
+pub fn simulate_observed(
+    cell: &Cell,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(RunProgress),
+    observer: Option<&mut dyn RunObserver>,
+) -> Result<RunOutcome, FormatError> {
     let mut notes = Vec::new();
     let mut clocks = Vec::new();
     let setups = configure::setups(cell)?;
@@ -165,6 +180,9 @@ pub fn simulate_with(
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let mut run = Simulation::new(cell, options, &setups, &models, monitors, clocks, avoiding);
     (run.arbiter, run.claims) = (arbiter, claims);
+    if let Some(observer) = observer {
+        run.observer = Some(observer);
+    }
     run.guards = obstacle_guards(cell, &perceived, &run.avoiding, &mut notes)?;
     run.perceived = Some(perceived);
     let mut tick = 0_u64;
@@ -258,6 +276,10 @@ struct Simulation<'a> {
     idle_detector: IdleDetector,
     standstill_detector: IdleDetector,
     tick_ns: Vec<u64>,
+    /// `None` where nobody observes the run.
+    observer: Option<&'a mut dyn RunObserver>,
+    /// Number of events that the observer has seen.
+    observed_events: usize,
 }
 
 impl<'a> Simulation<'a> {
@@ -330,6 +352,8 @@ impl<'a> Simulation<'a> {
             idle_detector: IdleDetector::new(cell, IDLE_TIMEOUT_S),
             standstill_detector: IdleDetector::new(cell, STANDSTILL_TIMEOUT_S),
             tick_ns: Vec::new(),
+            observer: None,
+            observed_events: 0,
             monitors,
             clocks,
             avoiding,
@@ -372,7 +396,17 @@ impl<'a> Simulation<'a> {
                 intent: Some(clock.intent()),
                 sources: &sources,
             };
-            self.monitors[i].tick(&snapshot);
+            let report = self.monitors[i].tick(&snapshot);
+            if let Some(observer) = &mut self.observer {
+                let (monitor, present) = (&self.monitors[i], &self.present[i]);
+                observer.ticked(&ObservedTick {
+                    robot: RobotId(i),
+                    snapshot: &snapshot,
+                    report: &report,
+                    monitor,
+                    present,
+                });
+            }
             self.log_events(i, 0.0);
         }
     }
@@ -394,7 +428,16 @@ impl<'a> Simulation<'a> {
         if let Some(arbiter) = &self.arbiter {
             self.deadlocks.observe(t_s, arbiter, &self.stop_states);
         }
+        self.observe_instant(t_s);
         self.detach_released()
+    }
+
+    fn observe_instant(&mut self, t_s: f64) {
+        let Some(observer) = &mut self.observer else { return };
+        let events = &self.events[self.observed_events..];
+        let arbiter = self.arbiter.as_deref();
+        observer.instant(&ObservedInstant { t_s, objects: &self.objects, events, arbiter });
+        self.observed_events = self.events.len();
     }
 
     /// What a robot releases counts up to the instant of the release.
@@ -402,6 +445,9 @@ impl<'a> Simulation<'a> {
         for (robot, volume) in std::mem::take(&mut self.released) {
             let detached = self.monitors[robot].detach(volume).and_then(|()| self.regions.detach(robot, volume));
             detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[robot].line, e.to_string()))?;
+            if let Some(observer) = &mut self.observer {
+                observer.detached(RobotId(robot), volume);
+            }
         }
         Ok(())
     }
@@ -424,7 +470,7 @@ impl<'a> Simulation<'a> {
 
     /// Attaches and detaches the tools that were exchanged, in collisions and in regions.
     fn exchange_volumes(&mut self, robot: usize, before: &CellRobot) -> Result<(), FormatError> {
-        let Self { cell, setups, present, monitors, regions, checker, released, states, .. } = self;
+        let Self { cell, setups, present, monitors, regions, checker, released, states, observer, .. } = self;
         let states: Vec<&ChainState> = states.iter().collect();
         let line = present[robot].line;
         for (tool, _) in present[robot].tools.iter().zip(&before.tools).filter(|(now, old)| now.mounted != old.mounted)
@@ -439,6 +485,9 @@ impl<'a> Simulation<'a> {
                 let attached = monitors[robot].attach(id, &volume.in_link);
                 let attached = attached.and_then(|()| regions.attach(robot, id, &volume.in_link));
                 attached.map_err(|e| FormatError::new(&cell.file, line, e.to_string()))?;
+                if let Some(observer) = observer {
+                    observer.attached(RobotId(robot), id, &volume.in_link);
+                }
             }
         }
         Ok(())
@@ -560,7 +609,11 @@ impl<'a> Simulation<'a> {
         }
         self.released.retain(|released| *released != (robot, volume));
         let attached = self.monitors[robot].attach(volume, &in_link);
-        attached.and_then(|()| self.regions.attach(robot, volume, &in_link)).map_err(|e| error(e.to_string()))
+        attached.and_then(|()| self.regions.attach(robot, volume, &in_link)).map_err(|e| error(e.to_string()))?;
+        if let Some(observer) = &mut self.observer {
+            observer.attached(RobotId(robot), volume, &in_link);
+        }
+        Ok(())
     }
 
     fn declare_claims(&mut self) {
@@ -602,10 +655,13 @@ impl<'a> Simulation<'a> {
                     &cell.regions[region.0].region.name,
                     if active { RunEvent::On } else { RunEvent::Off },
                 );
-                for (setup, monitor) in self.setups.iter().zip(&mut self.monitors) {
+                for (i, (setup, monitor)) in self.setups.iter().zip(&mut self.monitors).enumerate() {
                     let Some(local) = setup.regions.iter().position(|r| *r == region) else { continue };
                     // The cell file refuses switching of permanent regions, so this cannot fail.
-                    let _ = monitor.switch(RegionId(local), active, AccessClass::Programmer);
+                    let switched = monitor.switch(RegionId(local), active, AccessClass::Programmer);
+                    if let (Ok(()), Some(observer)) = (switched, &mut self.observer) {
+                        observer.switched(RobotId(i), RegionId(local), active);
+                    }
                 }
             }
         }
@@ -634,6 +690,16 @@ impl<'a> Simulation<'a> {
         let begin = Instant::now();
         let report = self.monitors[i].tick(&snapshot);
         self.tick_ns.push(begin.elapsed().as_nanos() as u64);
+        if let Some(observer) = &mut self.observer {
+            let (monitor, present) = (&self.monitors[i], &self.present[i]);
+            observer.ticked(&ObservedTick {
+                robot: RobotId(i),
+                snapshot: &snapshot,
+                report: &report,
+                monitor,
+                present,
+            });
+        }
         let applied = if self.options.apply_override { report.speed_override } else { programmed_override };
         let applied = applied.min(programmed_override);
         self.applied[i] = applied;

@@ -1,0 +1,68 @@
+//! Computing time of the search for escapes, counted in elementary tests.
+
+use std::ops::Sub;
+
+use elbowroom_scene::CheckerStats;
+
+/// Measured costs, ns: an upper estimate on the machine of `docs/measurements/avoidance.md` with other work on it.
+const QUERY_NS: u64 = 8_000;
+const EXACT_PAIR_NS: u64 = 6_000;
+const COARSE_PAIR_NS: u64 = 200;
+const CLEARED_PAIR_NS: u64 = 150;
+const BOXES_NS: u64 = 1_000;
+const TRIANGLES_NS: u64 = 1_000;
+const MARGIN_NS: u64 = 8_000;
+
+/// An amount of work, ns. Equal on every machine, because tests are counted and not time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(crate) struct EscapeWork(u64);
+
+impl EscapeWork {
+    pub(crate) const UNLIMITED: Self = Self(u64::MAX);
+
+    pub(crate) fn from_us(us: u32) -> Self {
+        Self(u64::from(us) * 1000)
+    }
+
+    /// All that a checker did so far, and so many evaluations of a constraint.
+    pub(crate) fn of(stats: &CheckerStats, margins: u64) -> Self {
+        let exact = stats.pairs_tested.l3;
+        let coarse = stats.pairs_tested.total() - exact;
+        Self(
+            QUERY_NS * stats.answered.total()
+                + EXACT_PAIR_NS * exact
+                + COARSE_PAIR_NS * coarse
+                + CLEARED_PAIR_NS * stats.pairs_cleared.total()
+                + BOXES_NS * stats.mesh_boxes
+                + TRIANGLES_NS * stats.mesh_triangles
+                + MARGIN_NS * margins,
+        )
+    }
+
+    /// How many exact tests of pairs this is.
+    pub(crate) fn exact_tests(self) -> u32 {
+        u32::try_from(self.0 / EXACT_PAIR_NS).unwrap_or(u32::MAX)
+    }
+
+    /// A share of it.
+    pub(crate) fn share(self, share: f64) -> Self {
+        Self((self.0 as f64 * share) as u64)
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+
+    pub(crate) fn us(self) -> u64 {
+        self.0 / 1000
+    }
+}
+
+impl Sub for EscapeWork {
+    type Output = Self;
+
+    /// What is left; none where the other is more.
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+}

@@ -1,0 +1,197 @@
+//! The arbiter of a cell's exchange regions, on the network.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::{Cell, configure};
+use elbowroom_interlock::wire::{self, Message};
+use elbowroom_interlock::{Arbiter, ArbiterEvent, ArbiterSettings, Boot, Micros, RobotSettings};
+use elbowroom_monitor::{RobotSlot, SlotId};
+use elbowroom_status::SlotStatus;
+
+use crate::clock::Clock;
+use crate::keys::Keys;
+use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::service::configuration_number;
+
+/// Messages that wait for the arbiter; further ones are dropped, and the guards send again.
+const WAITING: usize = 1024;
+/// How often it is published who holds what; a change is published at once.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// Called with every event of the arbiter, in words.
+pub type EventHandler = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// A running arbiter. It ends when it is dropped.
+pub struct ArbiterService {
+    subscriptions: Vec<Subscription>,
+    inbox: Option<SyncSender<Vec<u8>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ArbiterService {
+    /// Starts the arbiter of a cell; `None` for a cell without exchange regions. `boot` should be higher than at former starts.
+    ///
+    /// # Errors
+    /// [`NetworkError`] where the keys cannot be used.
+    pub fn start(
+        cell: &Arc<Cell>,
+        network: &Arc<dyn Network>,
+        boot: u64,
+        on_event: Option<EventHandler>,
+    ) -> Result<Option<Self>, NetworkError> {
+        let Some(settings) = settings(cell) else { return Ok(None) };
+        let keys = Keys::new(&cell.name);
+        let (inbox, waiting) = mpsc::sync_channel::<Vec<u8>>(WAITING);
+        let (mut subscriptions, mut grants) = (Vec::new(), Vec::new());
+        for robot in &cell.robots {
+            let inbox = inbox.clone();
+            let handler = Box::new(move |bytes: &[u8]| {
+                if bytes.len() <= wire::MAX_BYTES {
+                    // A full queue is a lost message, which the guard repeats.
+                    let _ = inbox.try_send(bytes.to_vec());
+                }
+            });
+            subscriptions.push(network.subscribe(&keys.interlock_state(&robot.name), handler)?);
+            grants.push(network.publisher(&keys.interlock_grants(&robot.name), Urgency::RealTime)?);
+        }
+        let running = Running {
+            slots: slot_regions(cell, settings.slots),
+            robots: cell.robots.iter().map(|r| r.name.clone()).collect(),
+            arbiter: Arbiter::new(settings, Boot(boot)),
+            grants,
+            status: network.publisher(&keys.interlocks(), Urgency::Display)?,
+            clock: Clock::start(),
+            on_event,
+        };
+        let thread = std::thread::Builder::new().name("arbiter".into()).spawn(move || running.run(&waiting));
+        Ok(Some(Self { subscriptions, inbox: Some(inbox), thread: thread.ok() }))
+    }
+}
+
+impl Drop for ArbiterService {
+    fn drop(&mut self) {
+        // The handlers hold the other senders.
+        self.subscriptions.clear();
+        self.inbox = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// What the arbiter of a cell knows of it; `None` without exchange regions.
+fn settings(cell: &Cell) -> Option<ArbiterSettings> {
+    let slots = configure::slots(cell);
+    let count = slots.iter().flatten().map(|slot| slot.0 + 1).max()?;
+    let robots = (0..cell.robots.len()).map(|i| {
+        let is_of_robot = |r: &elbowroom_cell::CellRegion| r.robots.iter().any(|robot| robot.0 == i);
+        let of_robot = slots.iter().zip(&cell.regions).filter(|(_, r)| is_of_robot(r));
+        let mut own: Vec<SlotId> = of_robot.filter_map(|(slot, _)| *slot).collect();
+        own.sort_unstable();
+        own.dedup();
+        RobotSettings { stop_time: stop_time(cell, i), ..RobotSettings::new(&cell.robots[i].name, own) }
+    });
+    let settings = ArbiterSettings::new(robots.collect(), count);
+    Some(ArbiterSettings { checksum: configuration_number(cell), ..settings })
+}
+
+/// Longest time in which a robot stops from full speed once its controller hears no override any more.
+fn stop_time(cell: &Cell, robot: usize) -> Micros {
+    let braking = cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
+    let laws = &cell.laws;
+    Micros::from_seconds(braking + laws.reaction_s + 2.0 * laws.laws.stale_s)
+}
+
+fn slot_regions(cell: &Cell, count: usize) -> Vec<Vec<String>> {
+    let slots = configure::slots(cell);
+    let of = |slot: usize| {
+        let members = slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
+        members.map(|(_, r)| r.region.name.clone()).collect()
+    };
+    (0..count).map(of).collect()
+}
+
+struct Running {
+    arbiter: Arbiter,
+    /// Per slot the names of its regions.
+    slots: Vec<Vec<String>>,
+    robots: Vec<String>,
+    grants: Vec<Box<dyn Publisher>>,
+    status: Box<dyn Publisher>,
+    clock: Clock,
+    on_event: Option<EventHandler>,
+}
+
+impl Running {
+    fn run(mut self, waiting: &Receiver<Vec<u8>>) {
+        let mut published: Option<Instant> = None;
+        loop {
+            let has_changed = match waiting.recv_timeout(PERIOD) {
+                Ok(bytes) => self.take(&bytes),
+                Err(RecvTimeoutError::Timeout) => false,
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            if has_changed || published.is_none_or(|at| at.elapsed() >= PERIOD) {
+                published = Some(Instant::now());
+                self.publish();
+            }
+        }
+    }
+
+    /// Takes a guard's message, and answers. True where something has changed.
+    fn take(&mut self, bytes: &[u8]) -> bool {
+        let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
+        let outputs = self.arbiter.receive(&state, self.clock.micros());
+        for reply in outputs.replies {
+            let robot = reply.robot;
+            if let (Some(bytes), Some(grants)) = (wire::encode(&Message::Grants(reply)), self.grants.get_mut(robot.0)) {
+                grants.publish(&bytes);
+            }
+        }
+        for event in &outputs.events {
+            if let Some(on_event) = &self.on_event {
+                on_event(&self.words(event));
+            }
+        }
+        !outputs.events.is_empty()
+    }
+
+    fn publish(&mut self) {
+        let name = |robot: RobotSlot| self.robots[robot.0].clone();
+        let slot = |(i, regions): (usize, &Vec<String>)| SlotStatus {
+            regions: regions.clone(),
+            holder: self.arbiter.holder(SlotId(i)).map(name),
+            queue: self.arbiter.queue(SlotId(i)).iter().map(|r| name(*r)).collect(),
+        };
+        let slots: Vec<SlotStatus> = self.slots.iter().enumerate().map(slot).collect();
+        if let Ok(json) = serde_json::to_vec(&slots) {
+            self.status.publish(&json);
+        }
+    }
+
+    fn words(&self, event: &ArbiterEvent) -> String {
+        let robot = |r: &RobotSlot| &self.robots[r.0];
+        let slot = |s: &SlotId| self.slots[s.0].join(", ");
+        match event {
+            ArbiterEvent::Granted(s, r) => format!("{}: granted to {}", slot(s), robot(r)),
+            ArbiterEvent::Released(s, r) => format!("{}: released by {}", slot(s), robot(r)),
+            ArbiterEvent::FoundInside(s, r) => format!("{}: {} was found inside, and holds it", slot(s), robot(r)),
+            ArbiterEvent::Conflict(s, a, b) => {
+                format!("{}: {} was found inside while {} holds it: both have to stop", slot(s), robot(b), robot(a))
+            }
+            ArbiterEvent::Deadlock(robots) => {
+                let names: Vec<&str> = robots.iter().map(|r| robot(r).as_str()).collect();
+                format!("deadlock of {}", names.join(", "))
+            }
+            ArbiterEvent::GuardStarted(r, _) => format!("{}: its guard has started", robot(r)),
+            ArbiterEvent::OtherConfiguration(r) => {
+                format!("{}: has loaded another configuration, and is not trusted", robot(r))
+            }
+            ArbiterEvent::Cleared(r) => format!("{}: was cleared", robot(r)),
+            ArbiterEvent::StartedAgain(_) => "this arbiter began again: the guards obey a later one".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Puts together what the robots of a cell publish: for the page in a browser, and for recordings.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use elbowroom_cell::Cell;
+use elbowroom_interlock::Micros;
+use elbowroom_rosbag::Recorder;
+use elbowroom_status::{CellStatus, EventStatus, RobotStatus, SlotStatus};
+use elbowroom_view::StatusFeed;
+
+use crate::clock::Clock;
+use crate::keys::Keys;
+use crate::network::{Network, NetworkError, Subscription};
+
+/// How often the status of the cell is put together: the page shows 30 pictures a second.
+const PERIOD: Duration = Duration::from_millis(33);
+/// A robot whose status is older than this is shown as silent.
+const SILENT: Micros = Micros(500_000);
+/// More events than this are not kept between two statuses of the cell.
+const MAX_EVENTS: usize = 1000;
+
+/// Puts together what the robots of a cell publish. It ends when it is dropped.
+pub(crate) struct CellObserver {
+    _subscriptions: Vec<Subscription>,
+    is_closed: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Option<Recorder>>>,
+}
+
+#[derive(Default)]
+struct Heard {
+    /// Per robot its last status, and when it was heard.
+    robots: Vec<Option<(RobotStatus, Micros)>>,
+    slots: Vec<SlotStatus>,
+    events: Vec<EventStatus>,
+}
+
+type Shared = Arc<Mutex<Heard>>;
+
+fn lock(shared: &Shared) -> MutexGuard<'_, Heard> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl CellObserver {
+    /// Listens to all robots of the cell, in this process and in others.
+    pub(crate) fn start(
+        cell: &Arc<Cell>,
+        network: &Arc<dyn Network>,
+        clock: Clock,
+        feed: Option<StatusFeed>,
+        recorder: Option<Recorder>,
+    ) -> Result<Self, NetworkError> {
+        let shared = Shared::default();
+        lock(&shared).robots.resize(cell.robots.len(), None);
+        let subscriptions = subscribe(cell, network, clock, &shared)?;
+        let is_closed = Arc::new(AtomicBool::new(false));
+        let (closed, cell) = (is_closed.clone(), cell.clone());
+        let run = move || {
+            while !closed.load(Ordering::SeqCst) {
+                let status = together(&cell, clock, &shared);
+                if let Some(recorder) = &recorder {
+                    recorder.status(status.clone());
+                }
+                if let Some(feed) = &feed {
+                    feed.publish(status);
+                }
+                std::thread::sleep(PERIOD);
+            }
+            recorder
+        };
+        let thread = std::thread::Builder::new().name("observer".into()).spawn(run);
+        Ok(Self { _subscriptions: subscriptions, is_closed, thread: thread.ok() })
+    }
+
+    /// Ends it, and gives the recorder back.
+    pub(crate) fn stop(mut self) -> Option<Recorder> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Option<Recorder> {
+        self.is_closed.store(true, Ordering::SeqCst);
+        self.thread.take()?.join().ok()?
+    }
+}
+
+impl Drop for CellObserver {
+    fn drop(&mut self) {
+        if let Some(recorder) = self.end() {
+            // Without `stop` nobody asks for an error.
+            let _ = recorder.finish();
+        }
+    }
+}
+
+fn subscribe(
+    cell: &Cell,
+    network: &Arc<dyn Network>,
+    clock: Clock,
+    shared: &Shared,
+) -> Result<Vec<Subscription>, NetworkError> {
+    let keys = Keys::new(&cell.name);
+    let mut subscriptions = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        let shared = shared.clone();
+        let handler = Box::new(move |bytes: &[u8]| {
+            let Ok(mut status) = serde_json::from_slice::<RobotStatus>(bytes) else { return };
+            let mut heard = lock(&shared);
+            let room = MAX_EVENTS.saturating_sub(heard.events.len());
+            heard.events.extend(status.events.drain(..).take(room));
+            heard.robots[i] = Some((status, clock.micros()));
+        });
+        subscriptions.push(network.subscribe(&keys.status(&robot.name), handler)?);
+    }
+    let shared = shared.clone();
+    let handler = Box::new(move |bytes: &[u8]| {
+        if let Ok(slots) = serde_json::from_slice(bytes) {
+            lock(&shared).slots = slots;
+        }
+    });
+    subscriptions.push(network.subscribe(&keys.interlocks(), handler)?);
+    Ok(subscriptions)
+}
+
+fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
+    let mut heard = lock(shared);
+    let now = clock.micros();
+    let robot = |(heard, robot): (&Option<(RobotStatus, Micros)>, &elbowroom_cell::CellRobot)| match heard {
+        Some((status, at)) if now - *at <= SILENT => status.clone(),
+        Some((status, at)) => {
+            let silent_s = (now - *at).0 as f64 * 1e-6;
+            let reason = format!("no status for {silent_s:.1} s");
+            RobotStatus { speed_override: 0.0, reason, region: None, ..status.clone() }
+        }
+        None => RobotStatus {
+            robot: robot.name.clone(),
+            q: robot.start.clone(),
+            reason: "no status yet; shown at its start".to_owned(),
+            ..RobotStatus::default()
+        },
+    };
+    CellStatus {
+        t_s: clock.seconds(),
+        cell: cell.name.clone(),
+        checksum: cell.checksum.clone(),
+        robots: heard.robots.iter().zip(&cell.robots).map(robot).collect(),
+        objects: Vec::new(),
+        slots: heard.slots.clone(),
+        events: std::mem::take(&mut heard.events),
+    }
+}

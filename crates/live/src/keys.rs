@@ -1,0 +1,69 @@
+//! The keys under which a cell's messages are published.
+
+/// The keys of a cell: `elbowroom/CELL/ROBOT/…`.
+///
+/// ```
+/// let keys = elbowroom_live::Keys::new("welding column");
+/// assert_eq!(keys.status("left"), "elbowroom/welding column/left/status");
+/// assert_eq!(elbowroom_live::Keys::new("a/b*").regions(), "elbowroom/a_b_/regions");
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Keys {
+    cell: String,
+}
+
+impl Keys {
+    /// The keys of the cell of this name. What a key may not have (`/ * $ ? #`) is written as `_`.
+    pub fn new(cell: &str) -> Self {
+        Self { cell: chunk(cell) }
+    }
+
+    /// From the controller: [`JointState`](crate::messages::JointState).
+    pub fn joint_states(&self, robot: &str) -> String {
+        self.of(robot, "joint_states")
+    }
+
+    /// To the controller: [`OverrideAnswer`](crate::messages::OverrideAnswer).
+    pub fn speed_override(&self, robot: &str) -> String {
+        self.of(robot, "override")
+    }
+
+    /// For everybody: [`RobotStatus`](elbowroom_status::RobotStatus) as JSON.
+    pub fn status(&self, robot: &str) -> String {
+        self.of(robot, "status")
+    }
+
+    /// From the guard of a robot to the arbiter.
+    pub fn interlock_state(&self, robot: &str) -> String {
+        self.of(robot, "interlock/state")
+    }
+
+    /// From the arbiter to the guard of a robot.
+    pub fn interlock_grants(&self, robot: &str) -> String {
+        self.of(robot, "interlock/grants")
+    }
+
+    /// Which regions are switched on, from the arbiter's process: JSON.
+    pub fn regions(&self) -> String {
+        format!("elbowroom/{}/regions", self.cell)
+    }
+
+    /// A request to switch a region: JSON.
+    pub fn switch(&self) -> String {
+        format!("elbowroom/{}/switch", self.cell)
+    }
+
+    /// Who holds and waits for exchange regions, from the arbiter: JSON.
+    pub fn interlocks(&self) -> String {
+        format!("elbowroom/{}/interlocks", self.cell)
+    }
+
+    fn of(&self, robot: &str, what: &str) -> String {
+        format!("elbowroom/{}/{}/{what}", self.cell, chunk(robot))
+    }
+}
+
+fn chunk(name: &str) -> String {
+    let allowed = name.replace(['/', '*', '$', '?', '#'], "_");
+    if allowed.is_empty() { "_".to_owned() } else { allowed }
+}

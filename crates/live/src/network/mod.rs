@@ -1,0 +1,83 @@
+//! Messages between processes: bytes published under a key, and delivered at most once, late or never.
+
+mod local;
+mod udp;
+mod zenoh_network;
+
+use std::fmt;
+
+use thiserror::Error;
+
+pub use local::LocalNetwork;
+pub use udp::UdpNetwork;
+pub use zenoh_network::{ZenohNetwork, ZenohSettings};
+
+/// A network of processes. Nothing is guaranteed of what is published: it may be lost, late, doubled or reordered.
+pub trait Network: Send + Sync + fmt::Debug {
+    /// A publisher of one key.
+    ///
+    /// # Errors
+    /// The key is not accepted, or the network is closed.
+    fn publisher(&self, key: &str, urgency: Urgency) -> Result<Box<dyn Publisher>, NetworkError>;
+
+    /// Calls the handler with all that is published under a key, on a thread of the network, until the subscription is dropped.
+    /// The handler must return soon.
+    ///
+    /// # Errors
+    /// The key is not accepted, or the network is closed.
+    fn subscribe(&self, key: &str, handler: Handler) -> Result<Subscription, NetworkError>;
+}
+
+/// Publishes the bytes of one key.
+pub trait Publisher: Send {
+    /// Sends a message, without a reply and without a promise.
+    fn publish(&mut self, bytes: &[u8]);
+}
+
+/// Takes a message.
+pub type Handler = Box<dyn Fn(&[u8]) + Send + Sync>;
+
+/// Ends when it is dropped.
+pub struct Subscription(#[allow(dead_code, reason = "held for its drop")] Box<dyn std::any::Any + Send>);
+
+impl fmt::Debug for Subscription {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Subscription")
+    }
+}
+
+impl Subscription {
+    fn new(guard: impl Send + 'static) -> Self {
+        Self(Box::new(guard))
+    }
+}
+
+/// What a network prefers when it cannot send everything at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Urgency {
+    /// Overrides, joint states and interlocks: sent at once.
+    RealTime,
+    /// What people look at.
+    Display,
+}
+
+/// Why a network does not work.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NetworkError {
+    /// An address that cannot be used.
+    #[error("{address}: {why}\n  help: write HOST:PORT, such as 127.0.0.1:7447")]
+    Address {
+        /// As it was given.
+        address: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A key that cannot be used.
+    #[error("the key {key}: {why}")]
+    Key {
+        /// The key.
+        key: String,
+        /// What is wrong.
+        why: String,
+    },
+}

@@ -1,0 +1,278 @@
+//! One robot, its monitor, and what its regions follow: the tick, without threads or a network.
+
+use std::sync::Arc;
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, Follow, Frames};
+use elbowroom_interlock::Micros;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{AccessClass, Fault, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId};
+use elbowroom_rosbag::TickRecorder;
+use elbowroom_spatial::{FrameMotion, Pose};
+use elbowroom_status::StatusSample;
+
+use super::inbox::{Contents, Heard};
+use super::node_monitor::NodeMonitor;
+use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, OverrideAnswer};
+use crate::regions_table::{RegionTable, TABLE_VALIDITY};
+
+/// How long a robot that has jumped must be at rest.
+const STANDSTILL: Micros = Micros(1_000_000);
+
+/// One guarded robot. Everything is allocated when it is made: [`Self::tick`] neither allocates nor waits.
+pub(super) struct GuardedRobot {
+    cell: Arc<Cell>,
+    setup: MonitorSetup,
+    monitor: NodeMonitor,
+    state: JointState,
+    /// Time of the joint values, and the present time, on the controller's clock.
+    stamp: Option<Micros>,
+    now: Micros,
+    /// Chains of the robots of the cell; only those that are followed are up to date.
+    chains: Vec<ChainState>,
+    /// How old the joint values of the others are.
+    ages: Vec<Option<Micros>>,
+    sources: Vec<SourceState>,
+    attached: Vec<AttachedVolume>,
+    /// Since when the robot is at rest where it cannot have moved to.
+    jumped: Option<Micros>,
+    regions: RegionTable,
+    all_on: RegionTable,
+    answers: u64,
+    checksum: u64,
+    pub(super) sample: StatusSample,
+    recorder: Option<TickRecorder>,
+}
+
+impl GuardedRobot {
+    pub(super) fn new(
+        cell: Arc<Cell>,
+        setup: MonitorSetup,
+        monitor: NodeMonitor,
+        checksum: u64,
+        recorder: Option<TickRecorder>,
+    ) -> Self {
+        Self {
+            chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
+            ages: vec![None; cell.robots.len()],
+            sources: Vec::with_capacity(setup.sources.len()),
+            attached: Vec::with_capacity(MAX_ATTACHED),
+            state: JointState::with_capacity(),
+            stamp: None,
+            now: Micros(0),
+            jumped: None,
+            regions: RegionTable::initial(&cell),
+            all_on: RegionTable::all_on(&cell),
+            answers: 0,
+            checksum,
+            sample: StatusSample::new(monitor.monitor()),
+            monitor,
+            recorder,
+            setup,
+            cell,
+        }
+    }
+
+    /// Takes what has arrived, in the time that the lock of the inbox is held.
+    pub(super) fn take(&mut self, inbox: &mut Contents, now: Micros) {
+        if std::mem::take(&mut inbox.own.is_new) {
+            std::mem::swap(&mut self.state, &mut inbox.own.state);
+            self.stamp = inbox.own.stamp;
+        }
+        self.now = inbox.own.now(now);
+        for (robot, heard) in inbox.followed.iter_mut().enumerate() {
+            let Some(heard) = heard else { continue };
+            if std::mem::take(&mut heard.is_new) {
+                follow(&self.cell, robot, heard, &mut self.chains[robot]);
+            }
+            self.ages[robot] = heard.stamp.map(|stamp| heard.now(now) - stamp);
+        }
+        if std::mem::take(&mut inbox.has_grants) {
+            self.monitor.receive(&inbox.grants);
+        }
+        let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
+        let table = if is_known { &inbox.regions } else { &self.all_on };
+        if self.regions.active != table.active {
+            self.regions.active.copy_from_slice(&table.active);
+        }
+    }
+
+    /// How old the joint values are; `None` before the first.
+    pub(super) fn age(&self) -> Option<Micros> {
+        self.stamp.map(|stamp| self.now - stamp)
+    }
+
+    /// The override for the joint values that arrived last. `now` is on this process's clock.
+    pub(super) fn tick(&mut self, now: Micros) -> TickReport {
+        self.switch_regions();
+        let is_attached = self.attach();
+        self.place_sources(now);
+        let Some(stamp) = self.stamp else { return self.silent() };
+        let snapshot = Snapshot {
+            now_s: seconds(self.now),
+            stamp_s: seconds(stamp),
+            q: &self.state.q,
+            qd: &self.state.qd,
+            qdd: &[],
+            programmed_override: self.state.programmed_override,
+            intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
+            sources: &self.sources,
+        };
+        let mut report = self.monitor.tick(&snapshot, now);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.tick(&snapshot, &report, self.monitor.monitor());
+        }
+        let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
+        if !is_attached {
+            // The robot carries what its monitor cannot know.
+            (report.speed_override, report.reason) = (0.0, OverrideReason::Fault(Fault::WrongLength));
+        }
+        self.sample.fill(self.monitor.monitor(), &snapshot, &report);
+        self.sample.add_events(self.monitor.monitor());
+        self.notice_standstill(has_jumped, now);
+        report
+    }
+
+    /// A robot that is at rest at another place than before was moved while nobody looked: by hand, or with its controller off.
+    /// After a second of rest its new place counts.
+    fn notice_standstill(&mut self, has_jumped: bool, now: Micros) {
+        let is_at_rest = self.state.qd.iter().all(|v| *v == 0.0);
+        match self.jumped {
+            _ if !has_jumped || !is_at_rest => self.jumped = None,
+            None => self.jumped = Some(now),
+            Some(since) if now - since > STANDSTILL => {
+                self.monitor.monitor_mut().forget_position();
+                self.jumped = None;
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Before the first joint values.
+    fn silent(&mut self) -> TickReport {
+        let reason = OverrideReason::Fault(Fault::Stale);
+        let report =
+            TickReport { stamp_s: 0.0, speed_override: 0.0, reason, governing: None, outputs: 0, measured_pairs: 0 };
+        self.sample.fill_without_input(&report);
+        report
+    }
+
+    /// The answer to the controller.
+    pub(super) fn answer(&mut self, report: &TickReport) -> OverrideAnswer {
+        self.answers += 1;
+        OverrideAnswer {
+            checksum: self.checksum,
+            boot: self.state.boot,
+            echo: self.state.sequence,
+            sequence: self.answers,
+            speed_override: report.speed_override,
+            outputs: report.outputs,
+            reason: match report.reason {
+                OverrideReason::Free => 0,
+                OverrideReason::Region(_) => 1,
+                OverrideReason::SpeedZone(_) => 2,
+                OverrideReason::Waiting(_) => 3,
+                OverrideReason::Rate => 4,
+                OverrideReason::Fault(_) => 5,
+                OverrideReason::Halted(_) => 6,
+            },
+            region: report.reason.region().map_or(u16::MAX, |r| r.0 as u16),
+        }
+    }
+
+    /// The bytes of the next message to the arbiter; empty where no region needs one.
+    pub(super) fn interlock_state(&mut self, now: Micros) -> &[u8] {
+        self.monitor.state(now)
+    }
+
+    /// True where the last tick changed what the arbiter has to know.
+    pub(super) fn interlock_has_news(&mut self) -> bool {
+        self.monitor.has_news()
+    }
+
+    /// The number of the message that the last answer was for.
+    pub(super) fn sequence(&self) -> u64 {
+        self.state.sequence
+    }
+
+    fn switch_regions(&mut self) {
+        for (local, region) in self.setup.regions.iter().enumerate() {
+            let (id, on) = (RegionId(local), self.regions.active[region.0]);
+            let monitor = self.monitor.monitor_mut();
+            if monitor.is_active(id) != on {
+                // Permanent regions are always on in a table, so that nothing is refused.
+                let _ = monitor.switch(id, on, AccessClass::Programmer);
+                if let Some(recorder) = &mut self.recorder {
+                    recorder.switched(id, on);
+                }
+            }
+        }
+    }
+
+    /// Attaches and detaches the optional volumes as the controller says. False where it names one that there is not.
+    fn attach(&mut self) -> bool {
+        let Self { monitor, attached, state, recorder, .. } = self;
+        if *attached == state.attached {
+            return true;
+        }
+        let monitor = monitor.monitor_mut();
+        let wanted = |volume: VolumeId| state.attached.iter().any(|a| a.volume == volume);
+        for gone in attached.iter().filter(|a| !wanted(a.volume)) {
+            // It was attached before, so that it can be detached.
+            let _ = monitor.detach(gone.volume);
+            if let Some(recorder) = recorder {
+                recorder.detached(gone.volume);
+            }
+        }
+        attached.clear();
+        for volume in &state.attached {
+            if monitor.attach(volume.volume, &volume.in_link).is_ok() {
+                attached.push(*volume);
+                if let Some(recorder) = recorder {
+                    recorder.attached(volume.volume, &volume.in_link);
+                }
+            }
+        }
+        attached.len() == state.attached.len()
+    }
+
+    fn place_sources(&mut self, now: Micros) {
+        let Self { cell, setup, chains, ages, sources, .. } = self;
+        let frames = Frames::new(cell);
+        sources.clear();
+        for follow in &setup.sources {
+            // Stamps are on the clock of the own controller, as those of the joint values.
+            let age = match follow {
+                Follow::Robot { robot, .. } => ages[robot.0],
+                _ => Some(Micros(0)),
+            };
+            sources.push(match age {
+                Some(age) => SourceState {
+                    stamp_s: seconds(self.now) - seconds(age),
+                    ..frames.source(follow, chains, seconds(now))
+                },
+                None => SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY },
+            });
+        }
+    }
+}
+
+fn seconds(time: Micros) -> f64 {
+    time.0 as f64 * 1e-6
+}
+
+/// Moves the chain of a followed robot to where it was heard to be.
+fn follow(cell: &Cell, robot: usize, heard: &Heard, chain: &mut ChainState) {
+    let state = &heard.state;
+    if state.q.len() != chain.q.len() {
+        return;
+    }
+    chain.q.copy_from_slice(&state.q);
+    if state.qd.len() == chain.qd.len() {
+        chain.qd.copy_from_slice(&state.qd)
+    } else {
+        chain.qd.fill(0.0)
+    }
+    chain.qdd.fill(0.0);
+    cell.robots[robot].robot.chain.forward_motion(chain);
+}

@@ -1,0 +1,220 @@
+//! Which joint states of a controller count, and how old they are.
+
+use elbowroom_interlock::Micros;
+use thiserror::Error;
+
+use crate::messages::JointState;
+
+/// A controller that was silent for this long may have started again with a lower number: its clock was set back.
+const FORGOTTEN: Micros = Micros(1_000_000);
+/// A stamp farther ahead than this is no stamp of a clock.
+const MOST_AHEAD: Micros = Micros(1_000_000);
+/// The least delay of messages is that of the last two such spans, so that clocks of different rates do not drift apart.
+const SPAN: Micros = Micros(2_000_000);
+
+/// Why a joint state does not count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Rejected {
+    /// Its number is not higher than that of the last one: late, doubled or replayed.
+    #[error("a joint state with a higher number was there before")]
+    Late,
+    /// Of a controller that was started before the present one.
+    #[error("the joint state is of a former start of the controller")]
+    FormerStart,
+    /// The controller expects another configuration.
+    #[error("the controller expects another configuration: load the same cell file on both sides")]
+    OtherConfiguration,
+    /// Its stamp is far ahead of the controller's clock.
+    #[error("the stamp is more than a second ahead of the controller's clock, which must not jump")]
+    Stamp,
+}
+
+/// Passes the joint states of one controller in order, and tells how old they are.
+///
+/// Stamps stay on the controller's clock, so that their differences are exact whatever the network does. Where that clock stands
+/// now is known from the message with the least delay: a constant delay is not noticed (the controller's watchdog bounds the way
+/// there and back), every further one makes a message that much older. A controller that starts again goes on with the time of
+/// the former one.
+#[derive(Debug, Clone, Default)]
+pub struct InputGate {
+    checksum: u64,
+    last: Option<Last>,
+    /// Added to stamps: continues the time of a former start of the controller.
+    base_us: i64,
+    /// The least difference of arrival and stamp in this span and the one before, µs.
+    least: [Option<i64>; 2],
+    span_began: Micros,
+    /// The latest time that was shown: it never goes back.
+    shown: Micros,
+    /// Messages that did not count.
+    pub rejected: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Last {
+    boot: u64,
+    sequence: u64,
+    arrived: Micros,
+}
+
+impl InputGate {
+    /// For controllers that expect this configuration, or say 0.
+    pub fn new(checksum: u64) -> Self {
+        Self { checksum, ..Self::default() }
+    }
+
+    /// The time of the joint values on the controller's clock.
+    ///
+    /// # Errors
+    /// Why they do not count.
+    pub fn pass(&mut self, state: &JointState, arrived: Micros) -> Result<Micros, Rejected> {
+        if let Err(why) = self.check(state, arrived) {
+            return Err(self.reject(why));
+        }
+        let now = self.now(arrived);
+        let raw_us = i64::try_from(state.stamp_us).unwrap_or(i64::MAX);
+        let based = |base_us: i64| Micros(raw_us.saturating_add(base_us).max(0) as u64);
+        let is_ahead = based(self.base_us) - now > MOST_AHEAD;
+        if is_ahead && !self.was_silent(arrived) {
+            return Err(self.reject(Rejected::Stamp));
+        }
+        if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
+            // The first one starts where this process's clock stands.
+            let from = if self.last.is_none() { arrived } else { now };
+            self.base_us = (from.0 as i64).saturating_sub(raw_us);
+            self.least = [None, None];
+            self.span_began = arrived;
+        }
+        let stamp = based(self.base_us);
+        self.last = Some(Last { boot: state.boot, sequence: state.sequence, arrived });
+        if arrived - self.span_began > SPAN {
+            self.least = [None, self.least[0]];
+            self.span_began = arrived;
+        }
+        let delay_us = arrived.0 as i64 - stamp.0 as i64;
+        self.least[0] = Some(self.least[0].map_or(delay_us, |least| least.min(delay_us)));
+        Ok(stamp)
+    }
+
+    /// Where the controller's clock stands when this process's clock shows `local`. It never goes back, and is never before the
+    /// last stamp.
+    pub fn now(&mut self, local: Micros) -> Micros {
+        if let Some(least) = self.least.iter().flatten().min() {
+            self.shown = self.shown.max(Micros((local.0 as i64 - least).max(0) as u64));
+        }
+        self.shown
+    }
+
+    fn check(&self, state: &JointState, arrived: Micros) -> Result<(), Rejected> {
+        if state.checksum != 0 && state.checksum != self.checksum {
+            return Err(Rejected::OtherConfiguration);
+        }
+        match self.last {
+            Some(last) if state.boot == last.boot && state.sequence <= last.sequence => Err(Rejected::Late),
+            Some(last) if state.boot < last.boot && !self.was_silent(arrived) => Err(Rejected::FormerStart),
+            _ => Ok(()),
+        }
+    }
+
+    fn was_silent(&self, now: Micros) -> bool {
+        self.last.is_none_or(|last| now - last.arrived >= FORGOTTEN)
+    }
+
+    fn reject(&mut self, why: Rejected) -> Rejected {
+        self.rejected += 1;
+        why
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(boot: u64, sequence: u64, stamp_us: u64) -> JointState {
+        JointState { boot, sequence, stamp_us, ..JointState::default() }
+    }
+
+    #[test]
+    fn late_doubled_and_replayed_messages_do_not_count() {
+        let mut gate = InputGate::new(5);
+        gate.pass(&state(10, 4, 0), Micros(100)).unwrap();
+        for sequence in [4, 3, 0] {
+            assert_eq!(gate.pass(&state(10, sequence, 0), Micros(200)), Err(Rejected::Late));
+        }
+        assert_eq!(gate.pass(&state(9, 99, 0), Micros(200)), Err(Rejected::FormerStart));
+        assert!(gate.pass(&state(11, 1, 0), Micros(300)).is_ok(), "a later start begins at 1");
+        let other = JointState { checksum: 6, ..state(11, 2, 0) };
+        assert_eq!(gate.pass(&other, Micros(400)), Err(Rejected::OtherConfiguration));
+        assert_eq!(gate.rejected, 5);
+        assert!(gate.pass(&state(3, 1, 0), Micros(2_000_000)).is_ok(), "the clock of the controller was set back");
+    }
+
+    /// The `n`-th message of a controller whose clock shows 1 s more, sent every 2 ms, and its arrival.
+    fn sent(n: u64, delay_us: u64) -> (JointState, Micros) {
+        (state(1, n, 1_000_000 + n * 2_000), Micros(n * 2_000 + delay_us))
+    }
+
+    #[test]
+    fn a_delayed_message_is_as_old_as_it_is_late() {
+        let mut gate = InputGate::new(0);
+        for n in 1..50 {
+            let (state, arrived) = sent(n, 100);
+            let stamp = gate.pass(&state, arrived).unwrap();
+            assert_eq!(gate.now(arrived) - stamp, Micros(0));
+        }
+        let (state, arrived) = sent(50, 30_000);
+        let stamp = gate.pass(&state, arrived).unwrap();
+        assert_eq!(gate.now(arrived) - stamp, Micros(29_900));
+    }
+
+    #[test]
+    fn stamps_keep_their_differences_and_now_never_goes_back() {
+        let mut gate = InputGate::new(0);
+        let (mut last, mut shown) = (None, Micros(0));
+        for n in 1..5_000 {
+            let (state, arrived) = sent(n, n * 7919 % 1_900);
+            let stamp = gate.pass(&state, arrived).unwrap();
+            assert!(last.is_none_or(|last| stamp - last == Micros(2_000)));
+            let now = gate.now(arrived);
+            assert!(now >= shown && now >= stamp);
+            (last, shown) = (Some(stamp), now);
+        }
+    }
+
+    #[test]
+    fn a_controller_that_starts_again_goes_on_with_the_time_of_the_former_one() {
+        let mut gate = InputGate::new(0);
+        let before = gate.pass(&state(1, 1, 50_000_000), Micros(0)).unwrap();
+        let after = gate.pass(&state(2, 1, 3), Micros(400_000)).unwrap();
+        assert_eq!(after - before, Micros(400_000));
+    }
+
+    #[test]
+    fn a_clock_that_jumps_is_no_clock() {
+        let mut gate = InputGate::new(0);
+        gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
+        assert_eq!(gate.pass(&state(1, 2, u64::MAX), Micros(2_000)), Err(Rejected::Stamp));
+        assert_eq!(gate.pass(&state(1, 3, 5_000_000), Micros(4_000)), Err(Rejected::Stamp));
+        assert_eq!(gate.pass(&state(1, 4, 6_000), Micros(6_000)), Ok(Micros(6_000)));
+    }
+
+    #[test]
+    fn a_pause_costs_no_message() {
+        let mut gate = InputGate::new(0);
+        gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
+        // The controller was about to send when it was paused for 2 s; then it goes on with the present time.
+        gate.pass(&state(1, 2, 2_000), Micros(2_002_000)).unwrap();
+        assert_eq!(gate.pass(&state(1, 3, 2_004_000), Micros(2_004_000)), Ok(Micros(2_004_000)));
+    }
+
+    #[test]
+    fn clocks_of_different_rates_do_not_drift_apart() {
+        let mut gate = InputGate::new(0);
+        // The controller's clock is 0.1 % slow: 60 ms per minute.
+        for n in 1..60_000_u64 {
+            let arrived = Micros(n * 2_000);
+            let stamp = gate.pass(&state(1, n, n * 1_998), arrived).unwrap();
+            assert!(gate.now(arrived) - stamp <= Micros(5_000), "{arrived:?} {stamp:?}");
+        }
+    }
+}

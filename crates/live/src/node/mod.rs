@@ -1,0 +1,316 @@
+//! A node: guards one robot. Joint states in, overrides out.
+//!
+//! Three threads: those of the network put what arrives into the inbox; the tick's own thread computes the override, without
+//! allocation, when joint values arrive; another one sends. So nothing that a network does delays a tick.
+
+mod guarded_robot;
+mod inbox;
+mod input_gate;
+mod node_monitor;
+mod outbox;
+
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use elbowroom_cell::Cell;
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_interlock::Micros;
+use elbowroom_interlock::wire::MAX_BYTES;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{Configuration, TickReport};
+use elbowroom_robot::RobotId;
+use elbowroom_spatial::Pose;
+use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
+
+use elbowroom_rosbag::TickRecorder;
+
+use crate::clock::Clock;
+use crate::keys::Keys;
+use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::regions_table::{RegionTable, RegionTableMessage};
+use guarded_robot::GuardedRobot;
+use inbox::Inbox;
+use outbox::Outbox;
+
+pub use input_gate::{InputGate, Rejected};
+pub use node_monitor::NodeMonitor;
+
+/// How often a status is published, at most.
+const STATUS_PERIOD: Micros = Micros(20_000);
+/// How often a guard writes to the arbiter; at once where something changed.
+const REPORT_PERIOD: Micros = Micros(10_000);
+
+/// What a node needs.
+pub struct NodeParts {
+    /// The cell.
+    pub cell: Arc<Cell>,
+    /// The robot to guard.
+    pub robot: RobotId,
+    /// Its setup.
+    pub setup: MonitorSetup,
+    /// Its monitor, of this setup.
+    pub monitor: NodeMonitor,
+    /// [`configuration_number`](crate::configuration_number) of the cell.
+    pub checksum: u64,
+    /// The clock of the process.
+    pub clock: Clock,
+    /// Joint states, overrides and statuses.
+    pub network: Arc<dyn Network>,
+    /// The way to the arbiter.
+    pub interlocks: Arc<dyn Network>,
+    /// Records every tick.
+    pub recorder: Option<TickRecorder>,
+}
+
+/// A running node; it ends when it is dropped.
+pub struct Node {
+    inbox: Arc<Inbox>,
+    outbox: Arc<Outbox>,
+    threads: Vec<JoinHandle<()>>,
+    _subscriptions: Vec<Subscription>,
+}
+
+impl Node {
+    /// Starts to guard a robot.
+    ///
+    /// # Errors
+    /// [`NetworkError`] where a key cannot be used.
+    pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
+        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder } = parts;
+        let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
+        let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
+        let inbox = Arc::new(Inbox::new(checksum, followed.clone(), RegionTable::initial(&cell)));
+        let outbox = Arc::new(Outbox::new(monitor.monitor()));
+        let mut subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
+        let grants = inbox.clone();
+        let handler = Box::new(move |bytes: &[u8]| grants.take_grants(bytes));
+        subscriptions.push(interlocks.subscribe(&keys.interlock_grants(&name), handler)?);
+        let sender = Sender {
+            answers: network.publisher(&keys.speed_override(&name), Urgency::RealTime)?,
+            statuses: network.publisher(&keys.status(&name), Urgency::Display)?,
+            states: interlocks.publisher(&keys.interlock_state(&name), Urgency::RealTime)?,
+            configuration: setup.configuration.clone(),
+            sample: StatusSample::new(monitor.monitor()),
+            chain: ChainState::new(setup.configuration.chain()),
+            cell: cell.clone(),
+            robot,
+        };
+        let guarded = GuardedRobot::new(cell.clone(), setup, monitor, checksum, recorder);
+        let ticking = Ticking {
+            stale: Micros::from_seconds(cell.laws.laws.stale_s),
+            guarded,
+            inbox: inbox.clone(),
+            outbox: outbox.clone(),
+            clock,
+            health: HealthStatus::default(),
+            published: None,
+            reported: None,
+        };
+        let sending = outbox.clone();
+        let threads = [
+            std::thread::Builder::new().name(format!("tick {name}")).spawn(move || ticking.run()),
+            std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
+        ];
+        // Without threads the system cannot do anything else either.
+        let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
+        Ok(Self { inbox, outbox, threads, _subscriptions: subscriptions })
+    }
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        self.inbox.close();
+        self.outbox.put(|o| o.is_closed = true);
+        for thread in self.threads.drain(..) {
+            // A thread that panicked has stopped to answer: the controller has stopped by itself.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn follows(setup: &MonitorSetup, robot: RobotId) -> bool {
+    setup.sources.iter().any(|s| matches!(s, elbowroom_cell::Follow::Robot { robot: r, .. } if *r == robot))
+}
+
+fn subscribe(
+    network: &dyn Network,
+    keys: &Keys,
+    cell: &Arc<Cell>,
+    robot: RobotId,
+    followed: &[bool],
+    inbox: &Arc<Inbox>,
+    clock: Clock,
+) -> Result<Vec<Subscription>, NetworkError> {
+    let own = inbox.clone();
+    let handler = Box::new(move |bytes: &[u8]| own.take_joint_state(bytes, clock.micros()));
+    let mut subscriptions = vec![network.subscribe(&keys.joint_states(&cell.robots[robot.0].name), handler)?];
+    for other in (0..followed.len()).filter(|r| followed[*r]) {
+        let inbox = inbox.clone();
+        let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(other, bytes, clock.micros()));
+        subscriptions.push(network.subscribe(&keys.joint_states(&cell.robots[other].name), handler)?);
+    }
+    let (inbox, cell) = (inbox.clone(), cell.clone());
+    let handler = Box::new(move |bytes: &[u8]| {
+        let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
+        let mut contents = inbox.lock();
+        if contents.regions.take(&message, &cell) {
+            contents.regions_heard = Some(clock.micros());
+        }
+    });
+    subscriptions.push(network.subscribe(&keys.regions(), handler)?);
+    Ok(subscriptions)
+}
+
+/// The thread of the tick.
+struct Ticking {
+    guarded: GuardedRobot,
+    inbox: Arc<Inbox>,
+    outbox: Arc<Outbox>,
+    clock: Clock,
+    stale: Micros,
+    health: HealthStatus,
+    published: Option<Micros>,
+    /// When the guard wrote to the arbiter last.
+    reported: Option<Micros>,
+}
+
+impl Ticking {
+    fn run(mut self) {
+        while self.step() {}
+    }
+
+    /// Waits for joint values and answers them; without any, ticks when the last ones are stale. False at the end.
+    fn step(&mut self) -> bool {
+        let (now, has_joints) = {
+            let mut contents = self.inbox.wait(Duration::from_micros(self.stale.0));
+            if contents.is_closed {
+                return false;
+            }
+            let now = self.clock.micros();
+            let has_joints = contents.own.is_new;
+            self.health.rejected = contents.own.rejected();
+            self.guarded.take(&mut contents, now);
+            (now, has_joints)
+        };
+        let is_stale = self.guarded.age().is_none_or(|age| age > self.stale);
+        if has_joints || is_stale {
+            let report = self.guarded.tick(now);
+            self.health.ticks += 1;
+            self.health.stale += u64::from(is_stale);
+            let spent = self.clock.micros() - now;
+            self.health.tick_max_us = self.health.tick_max_us.max(spent.0);
+            self.put(&report, now);
+        }
+        true
+    }
+
+    fn put(&mut self, report: &TickReport, now: Micros) {
+        let answer = self.guarded.answer(report);
+        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
+        let is_report_due =
+            self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
+        let Self { guarded, outbox, health, published, reported, .. } = self;
+        outbox.put(|outgoing| {
+            outgoing.answer = Some(answer);
+            if is_report_due {
+                outgoing.state.clear();
+                outgoing.state.extend_from_slice(guarded.interlock_state(now));
+                *reported = Some(now);
+            }
+            if is_status_due && !outgoing.has_sample {
+                std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
+                outgoing.has_sample = true;
+                (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
+                outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
+                *published = Some(now);
+            }
+        });
+    }
+}
+
+/// The thread that sends.
+struct Sender {
+    answers: Box<dyn Publisher>,
+    statuses: Box<dyn Publisher>,
+    /// To the arbiter.
+    states: Box<dyn Publisher>,
+    configuration: Configuration,
+    sample: StatusSample,
+    chain: ChainState,
+    cell: Arc<Cell>,
+    robot: RobotId,
+}
+
+impl Sender {
+    fn run(mut self, outbox: &Outbox) {
+        let mut bytes = Vec::with_capacity(256);
+        let mut state = Vec::with_capacity(MAX_BYTES);
+        loop {
+            state.clear();
+            let (answer, status) = {
+                let mut outgoing = outbox.wait();
+                if outgoing.is_closed {
+                    return;
+                }
+                std::mem::swap(&mut state, &mut outgoing.state);
+                let status = std::mem::take(&mut outgoing.has_sample);
+                if status {
+                    std::mem::swap(&mut self.sample, &mut outgoing.sample);
+                }
+                let status = status.then_some((outgoing.t_s, outgoing.sequence, outgoing.health));
+                (outgoing.answer.take(), status)
+            };
+            if let Some(answer) = answer {
+                answer.encode(&mut bytes);
+                self.answers.publish(&bytes);
+            }
+            if !state.is_empty() {
+                self.states.publish(&state);
+            }
+            if let Some((t_s, sequence, health)) = status {
+                self.publish_status(t_s, sequence, health);
+            }
+        }
+    }
+
+    fn publish_status(&mut self, t_s: f64, sequence: u64, health: HealthStatus) {
+        let tcp = self.tcp();
+        let mut status = RobotStatus::of_sample(t_s, &self.configuration, &self.sample, tcp.as_ref());
+        (status.sequence, status.health) = (sequence, health);
+        if self.sample.joint_positions().is_empty() {
+            status.reason = "no joint values from the controller yet".to_owned();
+        }
+        status.events = self.events(t_s);
+        if let Ok(json) = serde_json::to_vec(&status) {
+            self.statuses.publish(&json);
+        }
+    }
+
+    fn events(&mut self, t_s: f64) -> Vec<EventStatus> {
+        let name = |r: Option<elbowroom_monitor::RegionId>| {
+            r.map_or_else(String::new, |r| self.configuration.regions()[r.0].name.clone())
+        };
+        let robot = self.configuration.robot();
+        let (events, _) = self.sample.take_events();
+        let event = |e: elbowroom_monitor::Event| EventStatus {
+            t_s,
+            robot: robot.to_owned(),
+            region: name(e.region),
+            event: e.kind.name().to_owned(),
+        };
+        events.map(event).collect()
+    }
+
+    /// Pose of the TCP in the world at the joint values of the sample.
+    fn tcp(&mut self) -> Option<Pose> {
+        let q = self.sample.joint_positions();
+        if q.len() != self.chain.q.len() {
+            return None;
+        }
+        self.chain.q.copy_from_slice(q);
+        self.configuration.chain().forward(&mut self.chain);
+        let robot = &self.cell.robots[self.robot.0];
+        Some(robot.base_in_world * self.chain.link_in_root(robot.flange) * robot.tcp_in_flange)
+    }
+}

@@ -1,0 +1,91 @@
+//! The monitor of a node, with or without exchange regions.
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_interlock::{Boot, Guard, GuardedMonitor, Micros};
+use elbowroom_monitor::{ConfigError, Monitor, Occupancy, RegionKind, RobotSlot, SlotId, Snapshot, TickReport};
+
+/// The monitor of a robot, with a guard where it has exchange regions.
+#[derive(Debug)]
+pub struct NodeMonitor {
+    monitor: Inner,
+    /// Per slot what the arbiter was told last.
+    told: Vec<Occupancy>,
+}
+
+#[derive(Debug)]
+enum Inner {
+    Alone(Box<Monitor>),
+    Guarded(Box<GuardedMonitor>),
+}
+
+impl NodeMonitor {
+    /// The monitor of a setup, in a cell with this number of slots and this configuration. `boot` must be higher than at former
+    /// starts of the node.
+    ///
+    /// # Errors
+    /// As for [`GuardedMonitor::new`].
+    pub fn new(
+        setup: &MonitorSetup,
+        robot: RobotSlot,
+        slots: usize,
+        checksum: u64,
+        boot: Boot,
+    ) -> Result<Self, ConfigError> {
+        let configuration = setup.configuration.clone();
+        let is_exchange = |kind: RegionKind| matches!(kind, RegionKind::Exchange { .. });
+        if !configuration.regions().iter().any(|r| is_exchange(r.kind)) {
+            return Ok(Self { monitor: Inner::Alone(Box::new(Monitor::new(configuration, None)?)), told: Vec::new() });
+        }
+        let guard = Guard::new(robot, slots, checksum, boot);
+        let guarded = GuardedMonitor::new(configuration, guard)?;
+        Ok(Self { monitor: Inner::Guarded(Box::new(guarded)), told: vec![Occupancy::Unknown; slots] })
+    }
+
+    pub(crate) fn monitor(&self) -> &Monitor {
+        match &self.monitor {
+            Inner::Alone(monitor) => monitor,
+            Inner::Guarded(guarded) => guarded.monitor(),
+        }
+    }
+
+    pub(super) fn monitor_mut(&mut self) -> &mut Monitor {
+        match &mut self.monitor {
+            Inner::Alone(monitor) => monitor,
+            Inner::Guarded(guarded) => guarded.monitor_mut(),
+        }
+    }
+
+    pub(super) fn tick(&mut self, snapshot: &Snapshot<'_>, now: Micros) -> TickReport {
+        match &mut self.monitor {
+            Inner::Alone(monitor) => monitor.tick(snapshot),
+            Inner::Guarded(guarded) => guarded.tick(snapshot, now),
+        }
+    }
+
+    /// The bytes of the next message to the arbiter; empty without exchange regions.
+    pub(super) fn state(&mut self, now: Micros) -> &[u8] {
+        match &mut self.monitor {
+            Inner::Alone(_) => &[],
+            Inner::Guarded(guarded) => guarded.state(now),
+        }
+    }
+
+    /// Takes bytes of the arbiter. What is not obeyed changes nothing.
+    pub(super) fn receive(&mut self, bytes: &[u8]) {
+        if let Inner::Guarded(guarded) = &mut self.monitor {
+            let _ = guarded.receive(bytes);
+        }
+    }
+
+    /// True where the robot's occupancy of a slot is another one than at the last call.
+    pub(super) fn has_news(&mut self) -> bool {
+        let Inner::Guarded(guarded) = &self.monitor else { return false };
+        let mut has_news = false;
+        for (slot, told) in self.told.iter_mut().enumerate() {
+            let occupancy = guarded.grants().occupancy(SlotId(slot));
+            has_news |= *told != occupancy;
+            *told = occupancy;
+        }
+        has_news
+    }
+}

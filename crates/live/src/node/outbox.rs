@@ -1,0 +1,68 @@
+//! What a node has to send.
+
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use elbowroom_interlock::wire::MAX_BYTES;
+use elbowroom_monitor::Monitor;
+use elbowroom_status::{HealthStatus, StatusSample};
+
+use crate::messages::OverrideAnswer;
+
+/// What the thread of the tick leaves for the thread that sends. A message that was not sent yet is replaced by the next one.
+#[derive(Debug)]
+pub(super) struct Outbox {
+    contents: Mutex<Outgoing>,
+    news: Condvar,
+}
+
+#[derive(Debug)]
+pub(super) struct Outgoing {
+    pub(super) answer: Option<OverrideAnswer>,
+    /// The guard's message to the arbiter; empty where there is none.
+    pub(super) state: Vec<u8>,
+    /// The last tick, valid where `has_sample`.
+    pub(super) sample: StatusSample,
+    pub(super) has_sample: bool,
+    pub(super) t_s: f64,
+    pub(super) sequence: u64,
+    pub(super) health: HealthStatus,
+    pub(super) is_closed: bool,
+}
+
+impl Outgoing {
+    fn is_empty(&self) -> bool {
+        self.answer.is_none() && self.state.is_empty() && !self.has_sample && !self.is_closed
+    }
+}
+
+impl Outbox {
+    pub(super) fn new(monitor: &Monitor) -> Self {
+        let contents = Outgoing {
+            answer: None,
+            state: Vec::with_capacity(MAX_BYTES),
+            sample: StatusSample::new(monitor),
+            has_sample: false,
+            t_s: 0.0,
+            sequence: 0,
+            health: HealthStatus::default(),
+            is_closed: false,
+        };
+        Self { contents: Mutex::new(contents), news: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Outgoing> {
+        self.contents.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes what is to be sent, and wakes the thread that sends.
+    pub(super) fn put(&self, change: impl FnOnce(&mut Outgoing)) {
+        change(&mut self.lock());
+        self.news.notify_one();
+    }
+
+    /// Waits until there is something to send.
+    pub(super) fn wait(&self) -> MutexGuard<'_, Outgoing> {
+        let waited = self.news.wait_while(self.lock(), |o| o.is_empty());
+        waited.unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,199 @@
+//! Stands in for the controllers of robots: runs the programs of the cell file under the overrides that arrive.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, SyncSender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+use elbowroom_interlock::Micros;
+use elbowroom_robot::RobotId;
+use elbowroom_sim::motion::{PlanStep, ProgramClock, ProgramPlan, plan};
+
+use crate::client::{ControllerClient, ControllerState};
+use crate::clock::{Clock, boot_number};
+use crate::keys::Keys;
+use crate::network::{Network, Publisher, Subscription, Urgency};
+use crate::region_keeper::SwitchRequest;
+use crate::service::{ServiceError, configuration_number};
+
+/// A thread that was late by more than this many ticks does not catch up: its robots have stood still meanwhile.
+const MOST_LATE_TICKS: u32 = 5;
+
+/// Controllers of robots that are not there. They end when they are dropped.
+pub struct SimulatedControllers {
+    is_closed: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl SimulatedControllers {
+    /// Starts the programs of these robots. When a program has finished it begins again, from where it ended.
+    ///
+    /// # Errors
+    /// [`ServiceError`] where a program cannot be planned.
+    pub(crate) fn start(
+        cell: &Arc<Cell>,
+        robots: &[RobotId],
+        network: &Arc<dyn Network>,
+        clock: Clock,
+    ) -> Result<Self, ServiceError> {
+        let is_closed = Arc::new(AtomicBool::new(false));
+        let (started, is_started) = mpsc::sync_channel(1);
+        let thread = {
+            let (cell, robots, network, is_closed) =
+                (cell.clone(), robots.to_vec(), network.clone(), is_closed.clone());
+            // Plans are made on the thread that follows them.
+            move || run(&cell, &robots, &network, clock, &started, &is_closed)
+        };
+        let thread = std::thread::Builder::new().name("controllers".into()).spawn(thread);
+        let controllers = Self { is_closed, thread: thread.ok() };
+        match is_started.recv() {
+            Ok(Err(error)) => Err(error),
+            _ => Ok(controllers),
+        }
+    }
+
+    /// False where the thread has ended.
+    pub fn is_running(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+}
+
+impl Drop for SimulatedControllers {
+    fn drop(&mut self) {
+        self.is_closed.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn run(
+    cell: &Arc<Cell>,
+    robots: &[RobotId],
+    network: &Arc<dyn Network>,
+    clock: Clock,
+    started: &SyncSender<Result<(), ServiceError>>,
+    is_closed: &AtomicBool,
+) {
+    let made: Result<Vec<_>, _> = robots.iter().map(|r| SimulatedController::new(cell, *r, network)).collect();
+    let mut controllers = match made {
+        Ok(controllers) => controllers,
+        Err(error) => {
+            // Nobody waits for an error after the service was dropped.
+            let _ = started.send(Err(error));
+            return;
+        }
+    };
+    let _ = started.send(Ok(()));
+    let period = Duration::from_secs_f64(cell.tick_s);
+    let mut due = Instant::now();
+    // The joints of a simulated robot are those of the nominal time of its tick, however late the thread is.
+    let (began, begin) = (clock.micros(), due);
+    while !is_closed.load(Ordering::SeqCst) {
+        for controller in &mut controllers {
+            let nominal = began + Micros((due - begin).as_micros() as u64);
+            controller.tick(cell.tick_s, nominal, clock.micros());
+        }
+        due += period;
+        let now = Instant::now();
+        if now > due + period * MOST_LATE_TICKS {
+            due = now;
+        }
+        std::thread::sleep(due.saturating_duration_since(now));
+    }
+}
+
+/// The controller of one robot.
+struct SimulatedController {
+    robot: String,
+    program: ProgramClock,
+    /// The program once more, from its end.
+    again: Option<ProgramPlan>,
+    limits: Vec<elbowroom_cell::JointLimits>,
+    client: Arc<Mutex<ControllerClient>>,
+    joint_states: Box<dyn Publisher>,
+    switches: Box<dyn Publisher>,
+    cell: Arc<Cell>,
+    velocity: Vec<f64>,
+    bytes: Vec<u8>,
+    _answers: Subscription,
+}
+
+impl SimulatedController {
+    fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, ServiceError> {
+        let at = &cell.robots[robot.0];
+        let keys = Keys::new(&cell.name);
+        let once = plan(cell, robot, 1, &mut Vec::new())?;
+        let again = repetition(cell, robot, &once);
+        let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
+        let client = ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(watchdog);
+        let client = Arc::new(Mutex::new(client));
+        let answers = {
+            let client = client.clone();
+            let handler = Box::new(move |bytes: &[u8]| {
+                // An answer that is refused is of another start, or late: the watchdog sees to it.
+                let _ = client.lock().unwrap_or_else(PoisonError::into_inner).receive(bytes);
+            });
+            network.subscribe(&keys.speed_override(&at.name), handler)?
+        };
+        Ok(Self {
+            robot: at.name.clone(),
+            program: ProgramClock::new(once, at.limits.clone()),
+            again,
+            limits: at.limits.clone(),
+            client,
+            joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,
+            switches: network.publisher(&keys.switch(), Urgency::RealTime)?,
+            cell: cell.clone(),
+            velocity: Vec::new(),
+            bytes: Vec::new(),
+            _answers: answers,
+        })
+    }
+
+    /// Moves on by a tick under the override that counts now, and tells the node where the robot is.
+    fn tick(&mut self, dt_s: f64, nominal: Micros, now: Micros) {
+        let speed_override = self.client.lock().unwrap_or_else(PoisonError::into_inner).speed_override(now);
+        self.program.advance(dt_s, speed_override);
+        for switch in self.program.take_switches() {
+            let region = self.cell.regions[switch.region.0].region.name.clone();
+            let request = SwitchRequest { robot: self.robot.clone(), region, active: switch.active };
+            if let Ok(json) = serde_json::to_vec(&request) {
+                self.switches.publish(&json);
+            }
+        }
+        if self.program.finished()
+            && let Some(again) = &self.again
+        {
+            self.program = ProgramClock::new(again.clone(), self.limits.clone());
+        }
+        self.velocity.clear();
+        self.velocity.extend(self.program.velocity());
+        let state = ControllerState {
+            q: &self.program.point().q,
+            qd: &self.velocity,
+            intent: self.program.intent(),
+            programmed_override: self.program.programmed_override(),
+            attached: &[],
+            stamp: Some(nominal),
+        };
+        self.bytes.clear();
+        let mut client = self.client.lock().unwrap_or_else(PoisonError::into_inner);
+        self.bytes.extend_from_slice(client.joint_state(now, &state));
+        drop(client);
+        self.joint_states.publish(&self.bytes);
+    }
+}
+
+/// The program once more, from where it ends: the steps of a second pass. `None` for a robot without one, or where a third pass
+/// would not begin where the second one did.
+fn repetition(cell: &Cell, robot: RobotId, once: &ProgramPlan) -> Option<ProgramPlan> {
+    let twice = plan(cell, robot, 2, &mut Vec::new()).ok()?;
+    let steps = twice.steps.get(once.steps.len()..).filter(|steps| !steps.is_empty())?;
+    let end = |plan: &ProgramPlan| plan.steps.iter().rev().find_map(PlanStep::end);
+    let (first, second) = (end(once)?, end(&twice)?);
+    let is_closed = first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-9);
+    is_closed.then(|| ProgramPlan { start: first, speed_override: once.speed_override, steps: steps.to_vec() })
+}

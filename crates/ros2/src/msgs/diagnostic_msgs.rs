@@ -1,0 +1,58 @@
+//! Diagnostics.
+
+use super::std_msgs::Header;
+use crate::message::{Byte, message};
+
+message! {
+    /// A value with its name.
+    KeyValue = "diagnostic_msgs/msg/KeyValue" {
+        /// The name.
+        key: String,
+        /// The value.
+        value: String,
+    }
+}
+
+message! {
+    /// The status of one component.
+    DiagnosticStatus = "diagnostic_msgs/msg/DiagnosticStatus" {
+        /// [`DiagnosticStatus::OK`] and the like.
+        level: Byte,
+        /// The component.
+        name: String,
+        /// In words.
+        message: String,
+        /// The hardware.
+        hardware_id: String,
+        /// Values.
+        values: Vec<KeyValue>,
+    }
+}
+
+message! {
+    /// The status of several components.
+    DiagnosticArray = "diagnostic_msgs/msg/DiagnosticArray" {
+        /// Time.
+        header: Header,
+        /// The components.
+        status: Vec<DiagnosticStatus>,
+    }
+}
+
+impl DiagnosticStatus {
+    /// As it should be.
+    pub const OK: Byte = Byte(0);
+    /// Works, with a limit.
+    pub const WARN: Byte = Byte(1);
+    /// Does not work.
+    pub const ERROR: Byte = Byte(2);
+    /// Says nothing any more.
+    pub const STALE: Byte = Byte(3);
+}
+
+impl KeyValue {
+    /// A value with its name.
+    pub fn new(key: &str, value: impl ToString) -> Self {
+        Self { key: key.to_owned(), value: value.to_string() }
+    }
+}

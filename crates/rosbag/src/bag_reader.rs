@@ -1,0 +1,154 @@
+//! Reads an MCAP file from begin to end, in the order in which it was written.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Read;
+
+use crate::BagError;
+use crate::records::{self, Framed, MAGIC, Record};
+
+/// A message of a recording.
+#[derive(Debug, Clone)]
+pub struct BagMessage {
+    /// Its number in the file, from 0.
+    pub index: u64,
+    /// Its topic.
+    pub topic: String,
+    /// When it was recorded, ns.
+    pub time_ns: u64,
+    /// Its payload.
+    pub payload: Vec<u8>,
+}
+
+/// An MCAP file as a stream of messages. Chunks are checked before their messages are handed out; a file that ends early gives
+/// what it has, and [`BagReader::is_cut_off`] is true then.
+pub struct BagReader<R: Read> {
+    file: R,
+    /// What is left of the present chunk.
+    chunk: Vec<u8>,
+    at: usize,
+    topics: HashMap<u16, String>,
+    metadata: BTreeMap<String, BTreeMap<String, String>>,
+    attachments: Vec<String>,
+    messages: u64,
+    state: State,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Begin,
+    Data,
+    End,
+    CutOff,
+}
+
+impl<R: Read> BagReader<R> {
+    /// Reads from a file.
+    pub fn new(file: R) -> Self {
+        Self {
+            file,
+            chunk: Vec::new(),
+            at: 0,
+            topics: HashMap::new(),
+            metadata: BTreeMap::new(),
+            attachments: Vec::new(),
+            messages: 0,
+            state: State::Begin,
+        }
+    }
+
+    /// The next message; `None` at the end.
+    ///
+    /// # Errors
+    /// [`BagError::Foreign`] and [`BagError::Damaged`].
+    pub fn next_message(&mut self) -> Result<Option<BagMessage>, BagError> {
+        if self.state == State::Begin {
+            self.begin()?;
+        }
+        while self.state == State::Data {
+            let messages = self.messages;
+            let found = if self.at < self.chunk.len() { self.from_chunk() } else { self.from_file() };
+            if let Some(message) = found.map_err(|why| BagError::Damaged { messages, why })? {
+                return Ok(Some(message));
+            }
+        }
+        Ok(None)
+    }
+
+    fn begin(&mut self) -> Result<(), BagError> {
+        let mut magic = Vec::new();
+        let read = (&mut self.file).take(MAGIC.len() as u64).read_to_end(&mut magic);
+        read.map_err(|e| BagError::Damaged { messages: 0, why: format!("the file cannot be read: {e}") })?;
+        if magic != MAGIC {
+            return Err(BagError::Foreign);
+        }
+        self.state = State::Data;
+        Ok(())
+    }
+
+    fn from_file(&mut self) -> Result<Option<BagMessage>, String> {
+        match records::next(&mut self.file)? {
+            Framed::CutOff => {
+                self.state = State::CutOff;
+                Ok(None)
+            }
+            Framed::Record { opcode, body } => {
+                let record = records::parse(opcode, &body)?;
+                self.take(record)
+            }
+        }
+    }
+
+    fn from_chunk(&mut self) -> Result<Option<BagMessage>, String> {
+        let chunk = std::mem::take(&mut self.chunk);
+        let (opcode, body, rest) = records::first(&chunk[self.at..])?;
+        let at = chunk.len() - rest.len();
+        let found = match records::parse(opcode, body)? {
+            Record::Chunk(_) => return Err("a chunk is inside of another one".into()),
+            record => self.take(record),
+        };
+        (self.chunk, self.at) = (chunk, at);
+        found
+    }
+
+    fn take(&mut self, record: Record<'_>) -> Result<Option<BagMessage>, String> {
+        match record {
+            Record::Message { channel, time_ns, payload } => {
+                let topic = self.topics.get(&channel).cloned();
+                let topic = topic.ok_or_else(|| format!("a message is on channel {channel}, which there is not"))?;
+                let index = self.messages;
+                self.messages += 1;
+                return Ok(Some(BagMessage { index, topic, time_ns, payload: payload.to_vec() }));
+            }
+            Record::Channel { id, topic } => _ = self.topics.insert(id, topic.to_owned()),
+            Record::Chunk(contents) => (self.chunk, self.at) = (contents, 0),
+            Record::Metadata { name, values } => {
+                let values = values.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+                self.metadata.insert(name.to_owned(), values);
+            }
+            Record::Attachment { name } => self.attachments.push(name.to_owned()),
+            Record::End => self.state = State::End,
+            Record::Other => {}
+        }
+        Ok(None)
+    }
+
+    /// Number of messages up to now.
+    pub fn messages(&self) -> u64 {
+        self.messages
+    }
+
+    /// The metadata of a name that have been read up to now.
+    pub fn metadata(&self, name: &str) -> Option<&BTreeMap<String, String>> {
+        self.metadata.get(name)
+    }
+
+    /// Names of the attachments that have been read up to now.
+    pub fn attachments(&self) -> &[String] {
+        &self.attachments
+    }
+
+    /// True where the file ended before the end of its data was written.
+    pub fn is_cut_off(&self) -> bool {
+        self.state == State::CutOff
+    }
+}

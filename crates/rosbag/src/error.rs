@@ -1,0 +1,70 @@
+//! Why a recording cannot be written or read.
+
+use std::path::PathBuf;
+
+/// Why a recording cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum BagError {
+    /// The file system refuses.
+    #[error("{}: {source}", file.display())]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A record cannot be written.
+    #[error("the recording cannot be written: {0}")]
+    Write(mcap::McapError),
+    /// The file is no MCAP file.
+    #[error(
+        "is not an MCAP file: it does not begin with the bytes 89 M C A P 30\n  help: a file that `elbowroom run --mcap` or `elbowroom live --record` wrote"
+    )]
+    Foreign,
+    /// The bytes of the file are not as they were written.
+    #[error("is damaged behind message {messages}: {why}")]
+    Damaged {
+        /// Number of messages that could be read before.
+        messages: u64,
+        /// What is wrong.
+        why: String,
+    },
+    /// A message is not what its channel says.
+    #[error("message {message} on {topic} is not a {what}: {source}")]
+    Message {
+        /// Its number in the file, from 0.
+        message: u64,
+        /// Its topic.
+        topic: String,
+        /// The type of the topic.
+        what: &'static str,
+        /// What is wrong.
+        source: elbowroom_ros2::CdrError,
+    },
+    /// The file has nothing to replay.
+    #[error(
+        "has no ticks of a monitor ({messages} messages of other kinds)\n  help: a file that `elbowroom run --mcap` or `elbowroom live --record` wrote"
+    )]
+    NothingToReplay {
+        /// Messages in the file.
+        messages: u64,
+    },
+    /// A recorded configuration cannot be built.
+    #[error("the configuration of robot {robot} is not valid: {why}")]
+    Configuration {
+        /// The robot.
+        robot: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A recorded tick does not fit its configuration.
+    #[error("tick {sequence} of robot {robot}: {why}")]
+    Tick {
+        /// The robot.
+        robot: String,
+        /// The number of the tick.
+        sequence: u64,
+        /// What is wrong.
+        why: String,
+    },
+}

@@ -1,0 +1,164 @@
+//! The framing of MCAP, read from bytes that anybody may have written: nothing is believed before it is there.
+//!
+//! The crate `mcap` writes our files. Its reader (0.26) panics on lengths that do not fit their record, so that files are read
+//! here: the few kinds of records that a replay needs.
+
+use std::io::Read;
+
+/// The first bytes of a file.
+pub(crate) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
+/// Largest record, and largest chunk after decompression, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// A record that a replay needs.
+pub(crate) enum Record<'a> {
+    Channel {
+        id: u16,
+        topic: &'a str,
+    },
+    Message {
+        channel: u16,
+        time_ns: u64,
+        payload: &'a [u8],
+    },
+    Chunk(Vec<u8>),
+    Metadata {
+        name: &'a str,
+        values: Vec<(&'a str, &'a str)>,
+    },
+    Attachment {
+        name: &'a str,
+    },
+    /// The end of the data; an index may follow.
+    End,
+    Other,
+}
+
+/// A record of a file as it is there.
+pub(crate) enum Framed {
+    Record {
+        opcode: u8,
+        body: Vec<u8>,
+    },
+    /// The file ends inside a record, or where another one should begin.
+    CutOff,
+}
+
+/// The next record of a file.
+pub(crate) fn next(file: &mut impl Read) -> Result<Framed, String> {
+    let mut head = Vec::new();
+    read_into(file, 9, &mut head)?;
+    let [opcode, length @ ..] = &head[..] else { return Ok(Framed::CutOff) };
+    let Ok(length) = <[u8; 8]>::try_from(length) else { return Ok(Framed::CutOff) };
+    let length = u64::from_le_bytes(length);
+    if length > MAX_BYTES {
+        return Err(format!("a record claims {length} bytes, more than the {MAX_BYTES} that are read"));
+    }
+    let mut body = Vec::new();
+    read_into(file, length, &mut body)?;
+    let is_whole = body.len() as u64 == length;
+    Ok(if is_whole { Framed::Record { opcode: *opcode, body } } else { Framed::CutOff })
+}
+
+/// Memory grows with what is there, not with what is claimed.
+fn read_into(file: &mut impl Read, count: u64, to: &mut Vec<u8>) -> Result<(), String> {
+    file.take(count).read_to_end(to).map(|_| ()).map_err(|e| format!("the file cannot be read: {e}"))
+}
+
+/// The record of an opcode and its body.
+pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+    let mut fields = Fields(body);
+    Ok(match opcode {
+        0x04 => {
+            let id = u16::from_le_bytes(fields.number()?);
+            let _schema: [u8; 2] = fields.number()?;
+            Record::Channel { id, topic: fields.text()? }
+        }
+        0x05 => {
+            let channel = u16::from_le_bytes(fields.number()?);
+            let _sequence: [u8; 4] = fields.number()?;
+            let time_ns = u64::from_le_bytes(fields.number()?);
+            let _published: [u8; 8] = fields.number()?;
+            Record::Message { channel, time_ns, payload: fields.0 }
+        }
+        0x06 => Record::Chunk(chunk(&mut fields)?),
+        0x09 => {
+            let _times: [u8; 16] = fields.number()?;
+            Record::Attachment { name: fields.text()? }
+        }
+        0x0c => {
+            let name = fields.text()?;
+            let length = u32::from_le_bytes(fields.number()?);
+            let mut map = Fields(fields.take(length as usize)?);
+            let mut values = Vec::new();
+            while !map.0.is_empty() {
+                values.push((map.text()?, map.text()?));
+            }
+            Record::Metadata { name, values }
+        }
+        0x0f => Record::End,
+        _ => Record::Other,
+    })
+}
+
+/// The first record of the contents of a chunk, and what follows it.
+pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), String> {
+    let mut fields = Fields(contents);
+    let [opcode] = fields.number()?;
+    let length = u64::from_le_bytes(fields.number()?);
+    let body = fields.take(usize::try_from(length).unwrap_or(usize::MAX))?;
+    Ok((opcode, body, fields.0))
+}
+
+/// The contents of a chunk, compared with their checksum.
+fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
+    let _times: [u8; 16] = fields.number()?;
+    let size = u64::from_le_bytes(fields.number()?);
+    let checksum = u32::from_le_bytes(fields.number()?);
+    let compression = fields.text()?;
+    let compressed_size = u64::from_le_bytes(fields.number()?);
+    let compressed = fields.take(usize::try_from(compressed_size).unwrap_or(usize::MAX))?;
+    if size > MAX_BYTES {
+        return Err(format!("a chunk claims {size} bytes, more than the {MAX_BYTES} that are read"));
+    }
+    let mut contents = Vec::new();
+    match compression {
+        "" => contents.extend_from_slice(compressed),
+        "lz4" => {
+            let decoder = lz4::Decoder::new(compressed).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
+            // One more than it claims, to see that it is too long.
+            decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
+        }
+        other => return Err(format!("a chunk is compressed with \"{other}\"; lz4 can be read")),
+    }
+    if contents.len() as u64 != size {
+        return Err(format!("a chunk has {} bytes, not the {size} that it claims", contents.len()));
+    }
+    // 0: the writer computed none.
+    if checksum != 0 && crc32fast::hash(&contents) != checksum {
+        return Err("a chunk does not have its checksum".into());
+    }
+    Ok(contents)
+}
+
+/// The fields of a record, one after the other.
+struct Fields<'a>(&'a [u8]);
+
+impl<'a> Fields<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
+        let (taken, rest) = self.0.split_at_checked(count).ok_or("a record is shorter than its fields")?;
+        self.0 = rest;
+        Ok(taken)
+    }
+
+    fn number<const N: usize>(&mut self) -> Result<[u8; N], String> {
+        let (taken, rest) = self.0.split_first_chunk().ok_or("a record is shorter than its fields")?;
+        self.0 = rest;
+        Ok(*taken)
+    }
+
+    fn text(&mut self) -> Result<&'a str, String> {
+        let length = u32::from_le_bytes(self.number()?);
+        std::str::from_utf8(self.take(length as usize)?).map_err(|_| "a text in a record is not UTF-8".into())
+    }
+}

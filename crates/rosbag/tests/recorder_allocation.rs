@@ -1,0 +1,58 @@
+//! Recording a tick does not allocate. Without the test harness, because its threads allocate, too, and the counter counts the
+//! whole process.
+
+mod common;
+
+use std::alloc::System;
+use std::sync::atomic::Ordering::SeqCst;
+use std::time::Duration;
+
+use common::{SlowFile, position, rail, velocity};
+use elbowroom_monitor::{AccessClass, Snapshot};
+use elbowroom_rosbag::{CellWriter, Recorder};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+fn main() {
+    let (cell, mut monitor) = rail();
+    let file = SlowFile::default();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap()).unwrap();
+    let mut ticks = recorder.robot(0, &monitor, 0.0);
+    let gate = monitor.region("gate").unwrap();
+    // The first switch makes room for all others.
+    ticks.switched(gate, false);
+    std::thread::sleep(Duration::from_millis(1200));
+    // From now on the thread of the recorder waits for its file, so that it allocates nothing either.
+    file.is_closed.store(true, SeqCst);
+    let mut run = |from: u32, to: u32| {
+        for i in from..to {
+            let t_s = 0.002 * f64::from(i);
+            let (q, qd) = ([position(t_s)], [velocity(t_s)]);
+            let snapshot = Snapshot { qd: &qd, intent: Some(&qd), ..Snapshot::stationary(t_s, &q) };
+            if i % 100 == 50 {
+                monitor.switch(gate, i % 200 == 50, AccessClass::Programmer).unwrap();
+                ticks.switched(gate, i % 200 == 50);
+            }
+            let report = monitor.tick(&snapshot);
+            ticks.tick(&snapshot, &report, &monitor);
+        }
+    };
+    // Until the flush of the second is due, which waits for the file.
+    run(0, 10);
+    std::thread::sleep(Duration::from_millis(1200));
+    let region = Region::new(ALLOCATOR);
+    run(10, 900);
+    let change = region.change();
+    assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+    assert_eq!(recorder.lost_ticks(), 0);
+    // Ticks beyond the room are left out, without an allocation too.
+    run(900, 3000);
+    let change = region.change();
+    assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+    assert!(recorder.lost_ticks() > 1500);
+    file.is_closed.store(false, SeqCst);
+    recorder.finish().unwrap();
+    println!("890 recorded ticks and 2,100 more: no allocation");
+}

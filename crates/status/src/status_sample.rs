@@ -1,0 +1,103 @@
+//! What a tick leaves for the status, copied without allocation.
+
+use elbowroom_monitor::{Event, ExchangeState, Monitor, OverrideReason, RegionId, Snapshot, TickReport, VirtualTcp};
+use elbowroom_spatial::Pose;
+
+/// Most events between two statuses; further ones are counted, not kept.
+const MAX_EVENTS: usize = 256;
+
+/// What a tick leaves for a [`RobotStatus`](crate::RobotStatus): plain copies, into memory that was allocated before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatusSample {
+    pub(crate) q: Vec<f64>,
+    pub(crate) report: TickReport,
+    pub(crate) regions: Vec<RegionSample>,
+    pub(crate) virtual_tcps: Vec<VirtualTcp>,
+    events: Vec<Event>,
+    lost_events: usize,
+}
+
+/// A region in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RegionSample {
+    pub(crate) active: bool,
+    pub(crate) inside: bool,
+    pub(crate) warned: bool,
+    pub(crate) closed: bool,
+    pub(crate) exchange: Option<ExchangeState>,
+    pub(crate) in_world: Pose,
+}
+
+impl RegionSample {
+    fn of(monitor: &Monitor, region: RegionId) -> Self {
+        Self {
+            active: monitor.is_active(region),
+            inside: monitor.is_inside(region),
+            warned: monitor.is_warned(region),
+            closed: monitor.is_closed(region),
+            exchange: monitor.exchange_state(region),
+            in_world: monitor.region_in_world(region),
+        }
+    }
+}
+
+impl StatusSample {
+    /// An empty sample with memory for this monitor.
+    pub fn new(monitor: &Monitor) -> Self {
+        let regions = monitor.configuration().regions().len();
+        let nothing = TickReport {
+            stamp_s: 0.0,
+            speed_override: 0.0,
+            reason: OverrideReason::Free,
+            governing: None,
+            outputs: 0,
+            measured_pairs: 0,
+        };
+        Self {
+            q: Vec::with_capacity(monitor.configuration().chain().dof()),
+            report: nothing,
+            regions: Vec::with_capacity(regions),
+            virtual_tcps: Vec::with_capacity(regions),
+            events: Vec::with_capacity(MAX_EVENTS),
+            lost_events: 0,
+        }
+    }
+
+    /// Takes the result of a tick. Does not allocate.
+    pub fn fill(&mut self, monitor: &Monitor, snapshot: &Snapshot<'_>, report: &TickReport) {
+        self.q.clear();
+        self.q.extend(snapshot.q.iter().take(self.q.capacity()));
+        self.report = *report;
+        self.regions.clear();
+        let count = monitor.configuration().regions().len();
+        self.regions.extend((0..count).map(|r| RegionSample::of(monitor, RegionId(r))));
+        self.virtual_tcps.clear();
+        self.virtual_tcps.extend(monitor.virtual_tcps(snapshot).take(self.virtual_tcps.capacity()));
+    }
+
+    /// Takes the result of a tick without any joint values.
+    pub fn fill_without_input(&mut self, report: &TickReport) {
+        self.report = *report;
+        self.q.clear();
+        self.regions.clear();
+        self.virtual_tcps.clear();
+    }
+
+    /// The joint positions; empty without input.
+    pub fn joint_positions(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// Takes the events of a tick, so that none is lost between two statuses. Does not allocate.
+    pub fn add_events(&mut self, monitor: &Monitor) {
+        for event in monitor.events() {
+            if self.events.len() < MAX_EVENTS { self.events.push(*event) } else { self.lost_events += 1 }
+        }
+    }
+
+    /// The events since the last call, and how many more there were.
+    pub fn take_events(&mut self) -> (impl Iterator<Item = Event> + '_, usize) {
+        let lost = std::mem::take(&mut self.lost_events);
+        (self.events.drain(..), lost)
+    }
+}
