@@ -282,7 +282,6 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
             holder: Some("north".into()),
             queue: vec!["east".into()],
         }],
-        events: vec![EventStatus { t_s, robot: "east".into(), region: "pallet".into(), event: "waiting".into() }],
         // One per second, at 100 statuses per second.
         events: if ((100.0 * t_s) as u64).is_multiple_of(100) { vec![event] } else { Vec::new() },
         ..CellStatus::default()
