@@ -192,7 +192,7 @@ fn open_pages(context: &Context) -> Result<(), String> {
     match &driver {
         Some(python) => env.push(("ELBOWROOM_PLAYWRIGHT", python)),
         None => {
-            println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser")
+            println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser");
         }
     }
     shell::cargo(context.root, &["test", "--workspace", "--test", "browser"], &env)

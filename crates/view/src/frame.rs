@@ -68,6 +68,6 @@ impl Frame {
     /// A frame without distances.
     pub(crate) fn of(status: CellStatus, robots: Vec<FrameRobot>) -> Self {
         let CellStatus { t_s, objects, slots, .. } = status;
-        Self { t_s, objects, slots, robots, ..Self::default() }
+        Self { t_s, robots, objects, slots, ..Self::default() }
     }
 }

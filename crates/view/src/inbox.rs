@@ -38,7 +38,13 @@ pub(crate) struct Taken {
 impl Inbox {
     /// Replaces a status that nobody has taken; its events are kept.
     pub(crate) fn publish(&self, mut status: CellStatus) {
-        let events = std::mem::take(&mut status.events);
+        let mut events = std::mem::take(&mut status.events);
+        // A service may list an event at the robot, at the cell, or at both.
+        for event in status.robots.iter_mut().flat_map(|robot| std::mem::take(&mut robot.events)) {
+            if !events.contains(&event) {
+                events.push(event);
+            }
+        }
         let replaced = {
             let mut waiting = self.lock();
             waiting.events.extend(events);

@@ -283,7 +283,7 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
             queue: vec!["east".into()],
         }],
         // One per second, at 100 statuses per second.
-        events: if (100.0 * t_s) as u64 % 100 == 0 { vec![event] } else { Vec::new() },
+        events: if ((100.0 * t_s) as u64).is_multiple_of(100) { vec![event] } else { Vec::new() },
         ..CellStatus::default()
     }
 }

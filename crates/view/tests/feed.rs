@@ -120,7 +120,11 @@ fn every_event_arrives_once_however_fast_they_come() {
     let server = Server::watch(&cell(), &feed, settings()).unwrap();
     let mut page = Page::of(&server);
     for k in 0..400 {
-        feed.publish(CellStatus { events: vec![event(k)], ..status(k as f64) });
+        // At the cell, at the robot, or at both: it is one event.
+        let mut next = status(k as f64);
+        next.events.extend((k % 3 != 0).then(|| event(k)));
+        next.robots[0].events.extend((k % 3 != 1).then(|| event(k)));
+        feed.publish(next);
     }
     let mut seen = Vec::new();
     let mut frames = 0;

@@ -16,7 +16,7 @@ impl Hosts {
     pub(crate) fn new(hosts: Vec<String>) -> Self {
         // `'self'` includes the WebSocket in browsers of this decade; a policy cannot name a host in brackets.
         let named = hosts.iter().filter(|host| !host.starts_with('['));
-        let sockets: String = named.map(|host| format!(" ws://{host}")).collect();
+        let sockets = named.map(|host| format!(" ws://{host}")).collect::<Vec<_>>().concat();
         let policy = format!(
             "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'{sockets}; \
              base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
