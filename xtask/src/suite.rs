@@ -54,7 +54,11 @@ const STEPS: [Step; 12] = [
     },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
-    Step { name: "browser", what: "report and view in headless Chromium: controls, distances, console", check: open_pages },
+    Step {
+        name: "browser",
+        what: "report and view in headless Chromium: controls, distances, console",
+        check: open_pages,
+    },
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
@@ -176,13 +180,16 @@ fn open_pages(context: &Context) -> Result<(), String> {
         println!("--offline: no Chromium is there, and none is installed: report and view are not opened in a browser");
         return Ok(());
     };
-    let driver = if context.offline { playwright::ready(context.root) } else { Some(playwright::install(context.root)?) };
+    let driver =
+        if context.offline { playwright::ready(context.root) } else { Some(playwright::install(context.root)?) };
     let (path, driver) = (browser.to_string_lossy(), driver.map(|path| path.to_string_lossy().into_owned()));
     let mut env = network(context);
     env.push(("ELBOWROOM_CHROMIUM", &path));
     match &driver {
         Some(python) => env.push(("ELBOWROOM_PLAYWRIGHT", python)),
-        None => println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser"),
+        None => {
+            println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser")
+        }
     }
     shell::cargo(context.root, &["test", "--workspace", "--test", "browser"], &env)
 }

@@ -9,7 +9,8 @@ use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, color, myself, note, print, width};
-use crate::run::{warn_of_overruns, with_progress, write_files};
+use crate::run::{warn_of_overruns, write_files};
+use crate::simulation::with_progress;
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
 /// Default output folder.

@@ -22,6 +22,7 @@ mod query;
 mod region;
 mod rules;
 mod run;
+mod simulation;
 mod states;
 mod teach;
 mod watch;

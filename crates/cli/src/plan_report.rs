@@ -10,7 +10,7 @@ use elbowroom::robot::RobotId;
 use elbowroom::sim::RunOptions;
 
 use crate::output::{Failure, cannot_write};
-use crate::run::with_progress;
+use crate::simulation::with_progress;
 
 /// A robot and the samples of its path: s, and rad or m.
 pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);

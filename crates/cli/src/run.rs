@@ -8,13 +8,12 @@ use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
 use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
-use elbowroom::sim::run::{RunObserver, RunProgress, simulate_observed};
-use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
+use elbowroom::sim::{Recording, RunOptions, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
 use crate::live;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
-use crate::progress::Progress;
+use crate::simulation::with_progress;
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
@@ -80,26 +79,6 @@ struct Document<'a> {
     summary: RunSummary,
     #[serde(skip_serializing_if = "Option::is_none")]
     seal: Option<&'a Seal>,
-}
-
-/// Runs the cell with a progress bar that appears after 0.7 s.
-pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
-    with_observer(cell, options, None)
-}
-
-/// [`with_progress`] with an observer of the monitors.
-pub(crate) fn with_observer(
-    cell: &Cell,
-    options: &RunOptions,
-    observer: Option<&mut dyn RunObserver>,
-) -> Result<RunOutcome, Failure> {
-    let progress = Progress::unknown();
-    let mut show = |p: RunProgress| {
-        progress.go_on(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
-    };
-    let outcome = simulate_observed(cell, options, &mut show, observer);
-    progress.end();
-    Ok(outcome?)
 }
 
 /// Writes trace, events and the report. `without` is the run without the monitor: its distances are shown, and all of it with

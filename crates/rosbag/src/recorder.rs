@@ -22,7 +22,7 @@ const TICKS_PER_ROBOT: usize = 1024;
 /// The writer looks this often: a thread that waited in the queue would have to be woken by the tick.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Records a live service. A thread of its own writes; what comes faster than it can write is left out and counted.
+/// Records a live service. A thread of its own writes; ticks that arrive faster than it can write are left out and counted.
 pub struct Recorder {
     queue: SyncSender<Item>,
     shared: Arc<Shared>,
@@ -43,7 +43,7 @@ enum Item {
     Configuration(Box<MonitorConfiguration>, f64),
 }
 
-/// A tick on its way to the file, and the way back.
+/// A tick for the file, and the queue to which it returns empty.
 struct TickBuffer {
     tick: MonitorTick,
     back: SyncSender<Box<TickBuffer>>,
@@ -137,6 +137,11 @@ impl TickRecorder {
         self.ticks.detached(volume);
     }
 
+    /// The monitor has forgotten its robot's position ([`Monitor::forget_position`]).
+    pub fn forgot_position(&mut self) {
+        self.ticks.forgot_position();
+    }
+
     /// The monitor was built again, from another configuration. Not part of the tick: it allocates.
     pub fn configuration(&self, monitor: &Monitor, t_s: f64) {
         let message = Box::new(configuration::of_monitor(self.robot, monitor));
@@ -146,14 +151,15 @@ impl TickRecorder {
         }
     }
 
-    /// The monitor has ticked. Never waits, and does not allocate.
-    pub fn tick(&mut self, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
+    /// The monitor has ticked, at `t_s` of the recording's clock: that of the statuses, and common to all robots. `report` is the
+    /// monitor's own. Never waits, and does not allocate.
+    pub fn tick(&mut self, t_s: f64, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
         let Ok(mut buffer) = self.free.try_recv() else {
             self.ticks.skip();
             self.shared.lost_ticks.fetch_add(1, Relaxed);
             return;
         };
-        self.ticks.write(&mut buffer.tick, snapshot, report, monitor);
+        self.ticks.write(&mut buffer.tick, t_s, snapshot, report, monitor);
         if self.queue.try_send(Item::Tick(buffer)).is_err() {
             self.shared.lost_ticks.fetch_add(1, Relaxed);
         }
@@ -189,7 +195,7 @@ fn write_all<W: Write + Seek>(
         let may_end = matches!(item, Err(TryRecvError::Disconnected)) || item.is_err() && shared.stop.load(Relaxed);
         match item {
             Ok(Item::Tick(buffer)) => {
-                now_s = buffer.tick.now_s;
+                now_s = buffer.tick.t_s;
                 let written = writer.tick(&buffer.tick);
                 let back = buffer.back.clone();
                 let _ = back.try_send(buffer);

@@ -62,7 +62,7 @@ fn grants_and_halts_replay_to_the_bit() {
             OverrideReason::Free => free += 1,
             _ => {}
         }
-        ticks.tick(&snapshot, &report, &monitor);
+        ticks.tick(t_s, &snapshot, &report, &monitor);
         if i % 500 == 0 {
             std::thread::sleep(std::time::Duration::from_millis(20));
         }

@@ -19,7 +19,7 @@ fn tick(monitor: &mut Monitor, recorder: &mut TickRecorder, t_s: f64) -> CellSta
     let (q, qd) = ([position(t_s)], [velocity(t_s)]);
     let snapshot = Snapshot { qd: &qd, ..Snapshot::stationary(t_s, &q) };
     let report = monitor.tick(&snapshot);
-    recorder.tick(&snapshot, &report, monitor);
+    recorder.tick(t_s, &snapshot, &report, monitor);
     let robots = vec![RobotStatus::of_tick(t_s, monitor, &snapshot, &report, None)];
     CellStatus { t_s, robots, ..CellStatus::default() }
 }

@@ -82,7 +82,8 @@ fn shown_q(state: &Value) -> Vec<Vec<f64>> {
 fn compare(cell: &Cell, state: &Value) {
     let q = shown_q(state);
     let model = QueryModel::of_cell(cell);
-    let names = |r: &elbowroom_cell::CellRobot| r.joint_names().iter().map(|j| format!("{}.{j}", r.name)).collect::<Vec<_>>();
+    let names =
+        |r: &elbowroom_cell::CellRobot| r.joint_names().iter().map(|j| format!("{}.{j}", r.name)).collect::<Vec<_>>();
     let header: Vec<String> = cell.robots.iter().flat_map(names).collect();
     let values: Vec<String> = q.iter().flatten().map(|v| format!("{v:?}")).collect();
     let text = format!("{}\n{}\n", header.join(","), values.join(","));
@@ -135,12 +136,14 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
     }
     let q = |k: usize| shown_q(&seen[k]);
     let start: Vec<Vec<f64>> = cell.robots.iter().map(|r| r.start.clone()).collect();
-    let near = |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-9);
+    let near =
+        |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-9);
     assert!(near(&q(0), &start));
     // 0.7 of the way from -90° to 90°, less what the thumb of the slider takes.
     assert!((q(1)[0][1].to_degrees() - 36.0).abs() < 6.0, "{}", q(1)[0][1].to_degrees());
     assert!(near(&q(4), &start));
-    let tcp = |k: usize| -> [f64; 3] { serde_json::from_value(seen[k]["robots"][0]["tcp"]["position_m"].clone()).unwrap() };
+    let tcp =
+        |k: usize| -> [f64; 3] { serde_json::from_value(seen[k]["robots"][0]["tcp"]["position_m"].clone()).unwrap() };
     let moved = |from: [f64; 3], to: [f64; 3]| [0, 1, 2].map(|k| to[k] - from[k]);
     let by_ball = moved(tcp(4), tcp(5));
     assert!(by_ball.iter().map(|v| v * v).sum::<f64>().sqrt() > 0.02, "{by_ball:?}");
@@ -174,7 +177,19 @@ fn everything_has_a_name_and_is_reached_by_the_keyboard() {
     assert_eq!(seen[0]["title"], "two arms – elbowroom");
     assert!(seen[0]["controls"].as_u64().unwrap() > 20);
     let reached: Vec<&str> = seen[1].as_array().unwrap().iter().filter_map(Value::as_str).collect();
-    for id in ["theme", "canvas", "fit", "look-top", "play", "scrub", "speed", "now", "joint-0-0", "joint-0-0-number", "tcp-0-0"] {
+    for id in [
+        "theme",
+        "canvas",
+        "fit",
+        "look-top",
+        "play",
+        "scrub",
+        "speed",
+        "now",
+        "joint-0-0",
+        "joint-0-0-number",
+        "tcp-0-0",
+    ] {
         assert!(reached.contains(&id), "{id} is not in {reached:?}");
     }
     let start = cell().robots[0].start[0];
@@ -253,7 +268,11 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
         t_s,
         cell: cell.name.clone(),
         robots: cell.robots.iter().enumerate().map(robot).collect(),
-        slots: vec![SlotStatus { regions: vec!["pallet".into()], holder: Some("north".into()), queue: vec!["east".into()] }],
+        slots: vec![SlotStatus {
+            regions: vec!["pallet".into()],
+            holder: Some("north".into()),
+            queue: vec!["east".into()],
+        }],
         events: vec![EventStatus { t_s, robot: "east".into(), region: "pallet".into(), event: "waiting".into() }],
         ..CellStatus::default()
     }
@@ -318,7 +337,9 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     assert!(seen[6]["live"] == json!(true) && t(6) > t(3));
     let region = &seen[6]["regions"][0];
     assert_eq!((&region["holder"], &region["queue"]), (&json!("north"), &json!(["east"])));
-    assert!(seen[7].as_str().unwrap().contains("north") && seen[8].as_str().unwrap().contains("east · waiting · pallet"));
+    assert!(
+        seen[7].as_str().unwrap().contains("north") && seen[8].as_str().unwrap().contains("east · waiting · pallet")
+    );
     assert_eq!(seen[9]["unnamed"], json!([]));
 }
 

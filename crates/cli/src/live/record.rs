@@ -7,7 +7,7 @@ use elbowroom::rosbag::{BagError, CellWriter, RunRecorder};
 use elbowroom::sim::{RunOptions, RunOutcome};
 
 use crate::output::Failure;
-use crate::run::with_observer;
+use crate::simulation::with_observer;
 
 /// Runs a cell and records it.
 pub(crate) fn run_recorded(cell: &Cell, options: &RunOptions, file: &Path) -> Result<RunOutcome, Failure> {
