@@ -33,6 +33,8 @@ pub struct Recorder {
 struct Shared {
     lost_ticks: AtomicU64,
     lost_statuses: AtomicU64,
+    /// Ticks that wait for the file.
+    waiting: AtomicU64,
     stop: AtomicBool,
     failed: AtomicBool,
 }
@@ -105,6 +107,11 @@ impl Recorder {
         self.shared.lost_ticks.load(Relaxed)
     }
 
+    /// Number of ticks that wait for the file.
+    pub fn waiting_ticks(&self) -> u64 {
+        self.shared.waiting.load(Relaxed)
+    }
+
     /// True where the file cannot be written any more: [`Recorder::finish`] says why.
     pub fn has_failed(&self) -> bool {
         self.shared.failed.load(Relaxed)
@@ -160,7 +167,9 @@ impl TickRecorder {
             return;
         };
         self.ticks.write(&mut buffer.tick, t_s, snapshot, report, monitor);
+        self.shared.waiting.fetch_add(1, Relaxed);
         if self.queue.try_send(Item::Tick(buffer)).is_err() {
+            self.shared.waiting.fetch_sub(1, Relaxed);
             self.shared.lost_ticks.fetch_add(1, Relaxed);
         }
     }
@@ -199,6 +208,7 @@ fn write_all<W: Write + Seek>(
                 let written = writer.tick(&buffer.tick);
                 let back = buffer.back.clone();
                 let _ = back.try_send(buffer);
+                shared.waiting.fetch_sub(1, Relaxed);
                 written?;
                 continue;
             }
