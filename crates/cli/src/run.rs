@@ -8,7 +8,7 @@ use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
 use elbowroom::report::{self, HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
-use elbowroom::sim::{Recording, RunOptions, RunOutcome, RunSummary, SensorTrack, csv};
+use elbowroom::sim::{Recording, RunOptions, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
 use crate::live;

@@ -1,4 +1,4 @@
-//! Runs a cell in simulated time, with progress.
+//! A simulated run with a progress bar.
 
 use elbowroom::cell::Cell;
 use elbowroom::sim::run::{RunObserver, RunProgress, simulate_observed};

@@ -164,7 +164,7 @@ impl<W: Write + Seek> CellWriter<W> {
     /// # Errors
     /// [`BagError::Write`].
     pub(crate) fn tick(&mut self, tick: &MonitorTick) -> Result<(), BagError> {
-        let time_ns = self.time_ns(tick.now_s);
+        let time_ns = self.time_ns(tick.t_s);
         self.bag.write(topics::TICK, time_ns, tick)?;
         let Some(robot) = self.robots.get_mut(tick.robot as usize) else { return Ok(()) };
         if robot.joints.len() == tick.q.len() && robot.due.is_due(time_ns, VIEWER_NS) {

@@ -22,7 +22,7 @@ const TICKS_PER_ROBOT: usize = 1024;
 /// The writer looks this often: a thread that waited in the queue would have to be woken by the tick.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Records a live service. A thread of its own writes; what is faster than it can write is left out and counted.
+/// Records a live service. A thread of its own writes; ticks that arrive faster than it can write are left out and counted.
 pub struct Recorder {
     queue: SyncSender<Item>,
     shared: Arc<Shared>,
@@ -33,6 +33,8 @@ pub struct Recorder {
 struct Shared {
     lost_ticks: AtomicU64,
     lost_statuses: AtomicU64,
+    /// Ticks that wait for the file.
+    waiting: AtomicU64,
     stop: AtomicBool,
     failed: AtomicBool,
 }
@@ -43,7 +45,7 @@ enum Item {
     Configuration(Box<MonitorConfiguration>, f64),
 }
 
-/// A tick on its way to the file, and back.
+/// A tick for the file, and the queue to which it returns empty.
 struct TickBuffer {
     tick: MonitorTick,
     back: SyncSender<Box<TickBuffer>>,
@@ -105,6 +107,11 @@ impl Recorder {
         self.shared.lost_ticks.load(Relaxed)
     }
 
+    /// Number of ticks that wait for the file.
+    pub fn waiting_ticks(&self) -> u64 {
+        self.shared.waiting.load(Relaxed)
+    }
+
     /// True where the file cannot be written any more: [`Recorder::finish`] says why.
     pub fn has_failed(&self) -> bool {
         self.shared.failed.load(Relaxed)
@@ -137,6 +144,11 @@ impl TickRecorder {
         self.ticks.detached(volume);
     }
 
+    /// The monitor has forgotten its robot's position ([`Monitor::forget_position`]).
+    pub fn forgot_position(&mut self) {
+        self.ticks.forgot_position();
+    }
+
     /// The monitor was built again, from another configuration. Not part of the tick: it allocates.
     pub fn configuration(&self, monitor: &Monitor, t_s: f64) {
         let message = Box::new(configuration::of_monitor(self.robot, monitor));
@@ -146,15 +158,18 @@ impl TickRecorder {
         }
     }
 
-    /// The monitor has ticked. Never waits, and does not allocate.
-    pub fn tick(&mut self, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
+    /// The monitor has ticked, at `t_s` of the recording's clock: that of the statuses, and common to all robots. `report` is the
+    /// monitor's own. Never waits, and does not allocate.
+    pub fn tick(&mut self, t_s: f64, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
         let Ok(mut buffer) = self.free.try_recv() else {
             self.ticks.skip();
             self.shared.lost_ticks.fetch_add(1, Relaxed);
             return;
         };
-        self.ticks.write(&mut buffer.tick, snapshot, report, monitor);
+        self.ticks.write(&mut buffer.tick, t_s, snapshot, report, monitor);
+        self.shared.waiting.fetch_add(1, Relaxed);
         if self.queue.try_send(Item::Tick(buffer)).is_err() {
+            self.shared.waiting.fetch_sub(1, Relaxed);
             self.shared.lost_ticks.fetch_add(1, Relaxed);
         }
     }
@@ -189,10 +204,11 @@ fn write_all<W: Write + Seek>(
         let may_end = matches!(item, Err(TryRecvError::Disconnected)) || item.is_err() && shared.stop.load(Relaxed);
         match item {
             Ok(Item::Tick(buffer)) => {
-                now_s = buffer.tick.now_s;
+                now_s = buffer.tick.t_s;
                 let written = writer.tick(&buffer.tick);
                 let back = buffer.back.clone();
                 let _ = back.try_send(buffer);
+                shared.waiting.fetch_sub(1, Relaxed);
                 written?;
                 continue;
             }

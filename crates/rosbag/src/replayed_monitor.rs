@@ -75,6 +75,9 @@ impl ReplayedMonitor {
 
     /// What had changed since the tick before.
     fn change(&mut self, tick: &MonitorTick) -> Result<(), String> {
+        if tick.forgot_position {
+            self.monitor.forget_position();
+        }
         for switch in &tick.switched {
             let region = switch.region as usize;
             if region >= self.monitor.configuration().regions().len() {
@@ -111,7 +114,7 @@ impl ReplayedMonitor {
 
     fn compare(&mut self, tick: &MonitorTick, report: &TickReport) {
         self.found.ticks += 1;
-        self.found.until_s = tick.now_s;
+        self.found.until_s = tick.t_s;
         let what = if report.speed_override.to_bits() != tick.speed_override.to_bits() {
             "override"
         } else if report.outputs != tick.outputs {
@@ -123,7 +126,7 @@ impl ReplayedMonitor {
         };
         self.found.differences += 1;
         self.found.first.get_or_insert(Difference {
-            t_s: tick.now_s,
+            t_s: tick.t_s,
             sequence: tick.sequence,
             what,
             recorded: tick.speed_override,

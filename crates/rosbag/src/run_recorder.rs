@@ -68,7 +68,7 @@ impl<W: Write + Seek> RunRecorder<W> {
             let index = u32::try_from(robot).unwrap_or(u32::MAX);
             self.writer.configuration(index, tick.monitor, now_s)?;
         }
-        self.robots[robot].write(&mut self.tick, tick.snapshot, tick.report, tick.monitor);
+        self.robots[robot].write(&mut self.tick, now_s, tick.snapshot, tick.report, tick.monitor);
         if now_s >= self.next_status_s {
             let present = tick.present;
             let tcp_in_root = tick.monitor.state().link_in_root(present.flange) * present.tcp_in_flange;

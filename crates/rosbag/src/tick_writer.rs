@@ -13,6 +13,7 @@ pub(crate) struct TickWriter {
     sequence: u64,
     switched: Vec<RegionSwitch>,
     attached: Vec<VolumeAttachment>,
+    forgot_position: bool,
 }
 
 impl TickWriter {
@@ -34,16 +35,23 @@ impl TickWriter {
         self.attached.push(VolumeAttachment { volume: index(volume.0), attached: false, in_link });
     }
 
+    pub(crate) fn forgot_position(&mut self) {
+        self.forgot_position = true;
+    }
+
     /// Writes the tick into a message.
     pub(crate) fn write(
         &mut self,
         to: &mut MonitorTick,
+        t_s: f64,
         snapshot: &Snapshot<'_>,
         report: &TickReport,
         monitor: &Monitor,
     ) {
         tick::write(to, self.robot, snapshot, report, monitor);
+        to.t_s = t_s;
         to.sequence = self.sequence;
+        to.forgot_position = std::mem::take(&mut self.forgot_position);
         to.switched.clear();
         to.switched.append(&mut self.switched);
         to.attached.clear();
@@ -56,6 +64,7 @@ impl TickWriter {
     pub(crate) fn skip(&mut self) {
         self.switched.clear();
         self.attached.clear();
+        self.forgot_position = false;
         self.sequence += 1;
     }
 }

@@ -36,7 +36,7 @@ fn main() {
                 ticks.switched(gate, i % 200 == 50);
             }
             let report = monitor.tick(&snapshot);
-            ticks.tick(&snapshot, &report, &monitor);
+            ticks.tick(t_s, &snapshot, &report, &monitor);
         }
     };
     // Until the flush of the second is due, which waits for the file.

@@ -218,7 +218,11 @@ message! {
         switched: Vec<RegionSwitch>,
         /// Volumes that were attached or detached before it, in order.
         attached: Vec<VolumeAttachment>,
-        /// Time of the monitor's clock, s.
+        /// The position before it was forgotten: the robot may have been moved by hand.
+        forgot_position: bool,
+        /// Time of the recording's clock, s.
+        t_s: f64,
+        /// Time of the monitor's clock, s: that of the controller, where they differ.
         now_s: f64,
         /// Time stamp of the joint values, s.
         stamp_s: f64,

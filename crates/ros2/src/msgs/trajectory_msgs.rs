@@ -21,7 +21,7 @@ message! {
 }
 
 message! {
-    /// A point of a trajectory of bodies that move freely.
+    /// A point of a trajectory of things that move freely in space.
     MultiDOFJointTrajectoryPoint = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint" {
         /// Poses.
         transforms: Vec<Transform>,
