@@ -403,7 +403,7 @@ impl Arbiter {
         for robot in &mut self.robots {
             let is_trusted = robot.is_trusted;
             for report in &mut robot.reports {
-                let occupancy = crate::model::what_counts(report.occupancy);
+                let occupancy = crate::model::renaming::what_counts(report.occupancy);
                 let seen = SlotReport { occupancy, token: report.token.and(any), ..SlotReport::UNKNOWN };
                 *report = if is_trusted { seen } else { SlotReport::UNKNOWN };
             }
@@ -432,7 +432,7 @@ impl Arbiter {
 
     /// Gives robot `r` the index `to[r]`.
     pub(crate) fn reindex(&mut self, to: &[usize]) {
-        crate::model::permute(&mut self.robots, to);
+        crate::model::renaming::permute(&mut self.robots, to);
         let map = |robot: &mut RobotSlot| *robot = RobotSlot(to[robot.0]);
         for slot in &mut self.slots {
             slot.holder.iter_mut().for_each(|holder| map(&mut holder.robot));

@@ -6,8 +6,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use elbowroom_monitor::RobotSlot;
 
+use super::renaming::what_counts;
 use super::state::{CellState, NOW};
-use super::what_counts;
 use crate::{Boot, Micros, SlotReport, Token};
 
 /// Counters of the arbiter are above all ranks.

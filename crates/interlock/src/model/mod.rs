@@ -8,6 +8,7 @@
 mod canonical;
 mod checks;
 mod programs;
+pub(crate) mod renaming;
 mod state;
 
 use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
@@ -15,7 +16,6 @@ use stateright::{Model, Property};
 
 use crate::{Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, StateMessage, Token};
 use programs::Program;
-pub(crate) use state::permute;
 use state::{CellState, FaultBudget, NOW, RobotState};
 
 /// A step of time.
@@ -100,15 +100,6 @@ enum Action {
     CrashArbiter,
     Clear(usize),
     TakeBack(usize),
-}
-
-/// What the arbiter makes of an occupancy: unknown, out, or in.
-pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
-    match occupancy {
-        Occupancy::Unknown => Occupancy::Unknown,
-        Occupancy::Outside | Occupancy::Warning => Occupancy::Outside,
-        Occupancy::Committed | Occupancy::Inside => Occupancy::Committed,
-    }
 }
 
 impl CellModel {

@@ -2,6 +2,7 @@
 
 use elbowroom_monitor::RobotSlot;
 
+use super::renaming::permute;
 use crate::{Arbiter, GrantsMessage, Guard, Micros, StateMessage};
 
 /// Time of every state.
@@ -58,11 +59,4 @@ impl CellState {
             self.to_guard[r].iter_mut().for_each(|m| m.robot = robot);
         }
     }
-}
-
-/// Moves the element at each index to the index `to` has for it.
-pub(crate) fn permute<T>(elements: &mut Vec<T>, to: &[usize]) {
-    let mut moved: Vec<(usize, T)> = to.iter().copied().zip(elements.drain(..)).collect();
-    moved.sort_by_key(|(to, _)| *to);
-    elements.extend(moved.into_iter().map(|(_, element)| element));
 }
