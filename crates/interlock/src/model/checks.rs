@@ -67,7 +67,7 @@ struct Check {
 
 /// The first states, of which there are more.
 fn first(name: &'static str, model: CellModel) -> Check {
-    Check { name, model, states: 60_000, is_complete: false }
+    Check { name, model, states: 30_000, is_complete: false }
 }
 
 fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs: &[&[&str]]) -> CellModel {
