@@ -214,7 +214,9 @@ where
     }
 
     fn write(&self, to: &mut Writer<'_>) {
-        self.iter().for_each(|value| value.write(to));
+        for value in self {
+            value.write(to);
+        }
     }
 
     fn read(from: &mut Reader<'_>) -> Result<Self, CdrError> {

@@ -1,4 +1,5 @@
 //! A million changed messages: no panic, bounded in time and memory.
+#![allow(clippy::print_stdout)]
 
 use std::time::{Duration, Instant};
 
@@ -24,7 +25,7 @@ impl Random {
 
 const MESSAGES: usize = 1_000_000;
 /// In a debug build on a busy machine.
-const AT_MOST: Duration = Duration::from_secs(300);
+const AT_MOST: Duration = Duration::from_mins(5);
 
 fn joint_state() -> JointState {
     JointState {
@@ -106,7 +107,9 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 #[test]
 fn a_million_changed_messages_are_refused_or_read() {
     let seeds = seeds();
-    seeds.iter().for_each(|(bytes, decode)| decode(bytes).unwrap());
+    for (bytes, decode) in &seeds {
+        decode(bytes).unwrap();
+    }
     let mut random = Random(17);
     let begin = Instant::now();
     let (mut read, mut slowest) = (0, Duration::ZERO);

@@ -66,7 +66,7 @@ impl<R: Read> BagReader<R> {
         }
         while self.state == State::Data {
             let messages = self.messages;
-            let found = if self.at < self.chunk.len() { self.from_chunk() } else { self.from_file() };
+            let found = if self.at < self.chunk.len() { self.next_in_chunk() } else { self.next_in_file() };
             if let Some(message) = found.map_err(|why| BagError::Damaged { messages, why })? {
                 return Ok(Some(message));
             }
@@ -85,7 +85,7 @@ impl<R: Read> BagReader<R> {
         Ok(())
     }
 
-    fn from_file(&mut self) -> Result<Option<BagMessage>, String> {
+    fn next_in_file(&mut self) -> Result<Option<BagMessage>, String> {
         match records::next(&mut self.file)? {
             Framed::CutOff => {
                 self.state = State::CutOff;
@@ -98,7 +98,7 @@ impl<R: Read> BagReader<R> {
         }
     }
 
-    fn from_chunk(&mut self) -> Result<Option<BagMessage>, String> {
+    fn next_in_chunk(&mut self) -> Result<Option<BagMessage>, String> {
         let chunk = std::mem::take(&mut self.chunk);
         let (opcode, body, rest) = records::first(&chunk[self.at..])?;
         let at = chunk.len() - rest.len();

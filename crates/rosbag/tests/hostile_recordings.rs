@@ -1,4 +1,5 @@
 //! Recordings that somebody has changed: refused or replayed, never a panic.
+#![allow(clippy::print_stdout)]
 
 mod common;
 
@@ -146,7 +147,7 @@ fn changed_messages_are_refused_or_replayed() {
         *kinds.entry(kind).or_default() += 1;
     }
     println!("{CHANGES} in {:?}: {kinds:#?}", begin.elapsed());
-    assert!(begin.elapsed() < Duration::from_secs(300));
+    assert!(begin.elapsed() < Duration::from_mins(5));
     assert!(kinds["differs"] > 100 && kinds["same"] > 100 && kinds.len() > 10);
 }
 

@@ -1,4 +1,5 @@
 //! The recorder of a service: it never waits, counts what it loses, and leaves a file that can be read when it is killed.
+#![allow(clippy::print_stdout)]
 
 mod common;
 
@@ -70,7 +71,7 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
         recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
     }
     println!("100,000 ticks in {:?}", begin.elapsed());
-    assert!(begin.elapsed() < Duration::from_secs(60));
+    assert!(begin.elapsed() < Duration::from_mins(1));
     let lost = recorder.lost_ticks();
     // What is on its way is bounded: the ticks that one robot has, and a chunk.
     assert!(lost > 80_000, "only {lost} ticks were left out");
@@ -94,7 +95,7 @@ fn records_until_it_is_killed() {
     let recorder = Recorder::start(CellWriter::create(path.as_ref(), &cell, 0).unwrap()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let begin = Instant::now();
-    while begin.elapsed() < Duration::from_secs(60) {
+    while begin.elapsed() < Duration::from_mins(1) {
         let t_s = begin.elapsed().as_secs_f64();
         recorder.status(tick(&mut monitor, &mut ticks, t_s));
         println!("tick {t_s}");

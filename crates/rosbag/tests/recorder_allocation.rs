@@ -1,5 +1,6 @@
 //! Recording a tick does not allocate. Without the test harness, because its threads allocate, too, and the counter counts the
 //! whole process.
+#![allow(clippy::print_stdout)]
 
 mod common;
 

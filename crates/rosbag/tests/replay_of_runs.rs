@@ -1,4 +1,5 @@
 //! Recordings of runs replay to the bit: all example cells, and a cell that has everything at once for ten minutes.
+#![allow(clippy::print_stdout)]
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,7 @@
 //! Diagnostics.
 
+use std::fmt::Display;
+
 use super::std_msgs::Header;
 use crate::message::{Byte, message};
 
@@ -52,7 +54,7 @@ impl DiagnosticStatus {
 
 impl KeyValue {
     /// A value with its name.
-    pub fn new(key: &str, value: impl ToString) -> Self {
-        Self { key: key.to_owned(), value: value.to_string() }
+    pub fn new(key: &str, value: impl Display) -> Self {
+        Self { key: key.to_owned(), value: format!("{value}") }
     }
 }
