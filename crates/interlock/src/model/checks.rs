@@ -6,9 +6,7 @@ use std::time::{Duration, Instant};
 use stateright::{Checker, Model};
 
 use super::state::FaultBudget;
-use super::{CellModel, Clock, PlantedFault};
-
-pub(super) const EXCLUSION: &str = "at most one robot is in a slot or may enter it";
+use super::{CellModel, Clock, EXCLUSION, PlantedFault};
 
 /// Two robots and one slot.
 const PAIR: &[&[&str]] = &[&["_.X"], &["_.X"]];

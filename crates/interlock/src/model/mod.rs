@@ -18,6 +18,9 @@ use crate::{Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotS
 use programs::Program;
 use state::{CellState, FaultBudget, NOW, RobotState};
 
+/// The property that is checked.
+const EXCLUSION: &str = "at most one robot is in a slot or may enter it";
+
 /// A step of time.
 const STEP: Micros = Micros(100);
 
@@ -299,7 +302,7 @@ impl Model for CellModel {
     }
 
     fn properties(&self) -> Vec<Property<Self>> {
-        vec![Property::always(checks::EXCLUSION, |model: &Self, state: &CellState| {
+        vec![Property::always(EXCLUSION, |model: &Self, state: &CellState| {
             (0..model.slots).map(SlotId).all(|slot| {
                 let claims = |r: &usize| model.is_in(state, *r, slot) || state.guards[*r].may_enter(slot, NOW);
                 (0..model.programs.len()).filter(claims).count() <= 1

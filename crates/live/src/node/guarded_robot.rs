@@ -120,7 +120,7 @@ impl GuardedRobot {
         };
         let mut report = self.monitor.tick(&snapshot, now);
         if let Some(recorder) = &mut self.recorder {
-            recorder.tick(&snapshot, &report, self.monitor.monitor());
+            recorder.tick(seconds(now), &snapshot, &report, self.monitor.monitor());
         }
         let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
         if !is_attached {
@@ -142,6 +142,9 @@ impl GuardedRobot {
             None => self.jumped = Some(now),
             Some(since) if now - since > STANDSTILL => {
                 self.monitor.monitor_mut().forget_position();
+                if let Some(recorder) = &mut self.recorder {
+                    recorder.forgot_position();
+                }
                 self.jumped = None;
             }
             Some(_) => {}
