@@ -86,7 +86,7 @@ impl ControllerClient {
         Self {
             checksum,
             watchdog: Micros(20_000),
-            state: JointState { boot, checksum, ..JointState::with_capacity() },
+            state: JointState { checksum, boot, ..JointState::with_capacity() },
             bytes: Vec::with_capacity(crate::messages::MAX_JOINT_STATE_BYTES),
             sent: [Micros(0); REMEMBERED],
             answer: None,

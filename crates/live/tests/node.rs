@@ -164,7 +164,7 @@ fn nothing_but_fresh_valid_values_is_answered_with_more_than_zero() {
     });
     let answers = s.answers.lock().unwrap();
     // Only the first 64 messages of the last kind were valid when they were sent.
-    let was_valid = |a: &&OverrideAnswer| a.boot == 5 && a.echo % 8 == 0 && a.echo <= 64 * 8;
+    let was_valid = |a: &&OverrideAnswer| a.boot == 5 && a.echo.is_multiple_of(8) && a.echo <= 64 * 8;
     let go: Vec<&OverrideAnswer> = answers.iter().filter(|a| a.speed_override > 0.0).collect();
     assert!(!go.is_empty() && go.iter().all(was_valid), "{:?}", go.iter().find(|a| !was_valid(a)));
 }

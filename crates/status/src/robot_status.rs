@@ -84,6 +84,7 @@ pub struct PointStatus {
 }
 
 /// A region, for one robot.
+#[allow(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RegionStatus {
     /// Its name.

@@ -18,6 +18,7 @@ pub struct StatusSample {
 }
 
 /// A region in a tick.
+#[allow(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RegionSample {
     pub(crate) active: bool,

@@ -11,7 +11,7 @@ mod programs;
 pub(crate) mod renaming;
 mod state;
 
-use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
+use elbowroom_monitor::{RobotSlot, SlotId};
 use stateright::{Model, Property};
 
 use crate::{Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, StateMessage, Token};

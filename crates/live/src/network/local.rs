@@ -59,6 +59,8 @@ impl Publisher for LocalPublisher {
             handlers.retain(|handler| handler.strong_count() > 0);
             handlers.iter().filter_map(Weak::upgrade).collect()
         };
-        handlers.iter().for_each(|handler| handler(bytes));
+        for handler in handlers {
+            handler(bytes);
+        }
     }
 }

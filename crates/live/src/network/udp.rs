@@ -149,12 +149,16 @@ impl Shared {
             handlers.retain(|handler| handler.strong_count() > 0);
             handlers.iter().filter_map(Weak::upgrade).collect()
         };
-        handlers.iter().for_each(|handler| handler(contents));
+        for handler in handlers {
+            handler(contents);
+        }
     }
 
     fn repeat_subscriptions(&self) {
         let keys: Vec<String> = self.lock().handlers.keys().cloned().collect();
-        keys.iter().for_each(|key| self.subscribe_at_peers(key));
+        for key in keys {
+            self.subscribe_at_peers(&key);
+        }
     }
 
     fn subscribe_at_peers(&self, key: &str) {

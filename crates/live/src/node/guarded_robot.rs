@@ -272,9 +272,9 @@ fn follow(cell: &Cell, robot: usize, heard: &Heard, chain: &mut ChainState) {
     }
     chain.q.copy_from_slice(&state.q);
     if state.qd.len() == chain.qd.len() {
-        chain.qd.copy_from_slice(&state.qd)
+        chain.qd.copy_from_slice(&state.qd);
     } else {
-        chain.qd.fill(0.0)
+        chain.qd.fill(0.0);
     }
     chain.qdd.fill(0.0);
     cell.robots[robot].robot.chain.forward_motion(chain);

@@ -72,7 +72,7 @@ impl InputGate {
             return Err(self.reject(why));
         }
         let now = self.now(arrived);
-        let raw_us = i64::try_from(state.stamp_us).unwrap_or(i64::MAX);
+        let raw_us = signed_us(Micros(state.stamp_us));
         let based = |base_us: i64| Micros(raw_us.saturating_add(base_us).max(0) as u64);
         let is_ahead = based(self.base_us) - now > MOST_AHEAD;
         if is_ahead && !self.was_silent(arrived) {
@@ -81,7 +81,7 @@ impl InputGate {
         if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
             // The first one starts where this process's clock stands.
             let from = if self.last.is_none() { arrived } else { now };
-            self.base_us = (from.0 as i64).saturating_sub(raw_us);
+            self.base_us = signed_us(from).saturating_sub(raw_us);
             self.least = [None, None];
             self.span_began = arrived;
         }
@@ -91,7 +91,7 @@ impl InputGate {
             self.least = [None, self.least[0]];
             self.span_began = arrived;
         }
-        let delay_us = arrived.0 as i64 - stamp.0 as i64;
+        let delay_us = signed_us(arrived).saturating_sub(signed_us(stamp));
         self.least[0] = Some(self.least[0].map_or(delay_us, |least| least.min(delay_us)));
         Ok(stamp)
     }
@@ -100,7 +100,7 @@ impl InputGate {
     /// last stamp.
     pub fn now(&mut self, local: Micros) -> Micros {
         if let Some(least) = self.least.iter().flatten().min() {
-            self.shown = self.shown.max(Micros((local.0 as i64 - least).max(0) as u64));
+            self.shown = self.shown.max(Micros(signed_us(local).saturating_sub(*least).max(0) as u64));
         }
         self.shown
     }
@@ -124,6 +124,10 @@ impl InputGate {
         self.rejected += 1;
         why
     }
+}
+
+fn signed_us(time: Micros) -> i64 {
+    i64::try_from(time.0).unwrap_or(i64::MAX)
 }
 
 #[cfg(test)]

@@ -78,6 +78,9 @@ impl Node {
     ///
     /// # Errors
     /// [`NetworkError`] where a key cannot be used.
+    ///
+    /// # Panics
+    /// Where the system gives no thread.
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
         let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
@@ -114,7 +117,6 @@ impl Node {
             std::thread::Builder::new().name(format!("tick {name}")).spawn(move || ticking.run()),
             std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
         ];
-        // Without threads the system cannot do anything else either.
         let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
         Ok(Self { inbox, outbox, threads, _subscriptions: subscriptions, _networks: [network, interlocks] })
     }
@@ -281,7 +283,7 @@ impl Sender {
         let mut status = RobotStatus::of_sample(t_s, &self.configuration, &self.sample, tcp.as_ref());
         (status.sequence, status.health) = (sequence, health);
         if self.sample.joint_positions().is_empty() {
-            status.reason = "no joint values from the controller yet".to_owned();
+            "no joint values from the controller yet".clone_into(&mut status.reason);
         }
         status.events = self.events(t_s);
         if let Ok(json) = serde_json::to_vec(&status) {
