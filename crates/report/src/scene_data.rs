@@ -21,7 +21,7 @@ const MAX_MEASURED_TRIANGLES: usize = 200_000;
 pub struct PageData {
     /// A document that refers to arrays.
     pub json: Value,
-    /// The arrays: [`ArrayPacker`].
+    /// The arrays, packed.
     pub arrays: Vec<u8>,
 }
 
