@@ -19,7 +19,7 @@ use crate::regions_table::{RegionTable, TABLE_VALIDITY};
 /// How long a robot that has jumped must be at rest.
 const STANDSTILL: Micros = Micros(1_000_000);
 
-/// One guarded robot. Everything is allocated when it is made: [`Self::tick`] neither allocates nor waits.
+/// One guarded robot. Its memory is allocated when it is made, so that [`Self::tick`] needs no more.
 pub(super) struct GuardedRobot {
     cell: Arc<Cell>,
     setup: MonitorSetup,
