@@ -1,6 +1,6 @@
 // Obstacles that sensors see, as translucent prisms: what the robots knew at an instant, not where the obstacles were.
 const Perceived = (() => {
-  const COLORS = ['#8e44ad', '#00838f', '#ad6c00'];
+  const COLORS = ['#00838f', '#ad6c00', '#5d6d1e'];
 
   // What every sensor of a run knew at time t: its last record that was usable by then.
   function known(run, t) {
