@@ -21,6 +21,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         robots: args.robots.clone(),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
+        udp: args.udp.clone(),
         arbiter: args.arbiter,
         simulate: args.simulate,
         web: args.web.clone(),
