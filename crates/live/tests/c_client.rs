@@ -41,7 +41,7 @@ fn compile(source: &Path, name: &str) -> Option<PathBuf> {
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let is_there = Command::new(&compiler).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     if !is_there.is_ok_and(|status| status.success()) {
-        println!("skipped: no C compiler {compiler}");
+        eprintln!("skipped: no C compiler {compiler}");
         return None;
     }
     let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);

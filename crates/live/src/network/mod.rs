@@ -10,4 +10,4 @@ pub use joined::JoinedNetworks;
 pub use local::LocalNetwork;
 pub use pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 pub use udp::UdpNetwork;
-pub use zenoh_network::{ZenohNetwork, ZenohSettings};
+pub use zenoh_network::{ZENOH_RUNTIME, ZenohNetwork, ZenohSettings};
