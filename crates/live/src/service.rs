@@ -15,7 +15,7 @@ use crate::arbiter_service::{ArbiterService, EventHandler};
 use crate::cell_observer::CellObserver;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
-use crate::network::{Network, ZenohNetwork, ZenohSettings};
+use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::RegionKeeper;
 use crate::service_error::ServiceError;
@@ -33,6 +33,8 @@ pub struct ServiceOptions {
     pub listen: Option<String>,
     /// Connects here.
     pub connect: Option<String>,
+    /// Takes controllers by UDP datagrams at this address, too.
+    pub udp: Option<String>,
     /// Grants exchange regions, and keeps which regions are switched on.
     pub arbiter: bool,
     /// Runs the programs of the cell file in place of the controllers.
@@ -72,6 +74,7 @@ impl Service {
         };
         let network = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
         let shared: Arc<dyn Network> = network.clone();
+        let of_controllers = with_udp(&shared, options.udp.as_deref())?;
         let clock = Clock::start();
         let (mut keeper, mut arbiter) = (None, None);
         if options.arbiter || is_whole_cell {
@@ -95,7 +98,7 @@ impl Service {
                 monitor,
                 checksum,
                 clock,
-                network: shared.clone(),
+                network: of_controllers.clone(),
                 interlocks: shared.clone(),
                 recorder: tick_recorder,
             })?);
@@ -164,6 +167,12 @@ impl Service {
     pub fn network(&self) -> &Arc<ZenohNetwork> {
         &self.network
     }
+}
+
+/// The network of the controllers: with UDP datagrams, where there is an address for them.
+fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn Network>, NetworkError> {
+    let Some(address) = address else { return Ok(zenoh.clone()) };
+    Ok(Arc::new(JoinedNetworks::new(vec![zenoh.clone(), Arc::new(UdpNetwork::bind(address, &[])?)])))
 }
 
 fn start_recorder(file: &Path, cell: &Cell) -> Result<Recorder, BagError> {
