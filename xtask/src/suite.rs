@@ -169,7 +169,7 @@ fn tests(context: &Context) -> Result<(), String> {
     announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)?;
     // The command with the network, as processes.
-    shell::cargo(context.root, &["test", "-p", "elbowroom-cli", "--features", "live", "--test", "live"], &env)?;
+    shell::cargo(context.root, &["test", "-p", "elbowroom-cli", "--features", "live", "--test", "live", "--test", "recordings"], &env)?;
     if python.is_some() || context.offline {
         return Ok(());
     }
