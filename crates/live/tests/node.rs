@@ -5,12 +5,13 @@ use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Boot;
-use elbowroom_live::messages::{JointState, OverrideAnswer};
+use elbowroom_live::messages::{AttachedVolume, JointState, OverrideAnswer};
 use elbowroom_live::network::{LocalNetwork, Network, Publisher, Subscription, UdpNetwork, Urgency};
 use elbowroom_live::node::{NodeMonitor, NodeParts};
 use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Node, configuration_number};
-use elbowroom_monitor::RobotSlot;
+use elbowroom_monitor::{RobotSlot, VolumeId};
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Pose;
 use elbowroom_testkit::random::{split_mix, unit};
 
 const CELL: &str = r#"
@@ -176,5 +177,20 @@ fn random_bytes_are_no_message() {
     for length in (0..1200).cycle().take(100_000) {
         let bytes: Vec<u8> = (0..length).map(|_| split_mix(&mut random) as u8).collect();
         assert!(state.decode(&bytes).is_err() && OverrideAnswer::decode(&bytes).is_err());
+    }
+}
+
+#[test]
+fn more_volumes_or_joints_than_a_message_has_are_refused() {
+    let attached = AttachedVolume { volume: VolumeId(0), in_link: Pose::IDENTITY };
+    let mut read = JointState::with_capacity();
+    for (joints, volumes, is_message) in
+        [(32, 16, true), (33, 0, false), (6, 17, false), (300, 0, false), (6, 272, false)]
+    {
+        let state = JointState { q: vec![0.5; joints], attached: vec![attached; volumes], ..JointState::default() };
+        let mut bytes = Vec::new();
+        state.encode(&mut bytes);
+        assert_eq!(read.decode(&bytes).is_ok(), is_message, "{joints} joints, {volumes} volumes");
+        assert!(!is_message || read == state);
     }
 }
