@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
@@ -215,6 +215,37 @@ fn ten_thousand_hanging_connections_keep_nobody_out() {
         assert!(closed.is_ok() || closed.is_err_and(|e| e.kind() == std::io::ErrorKind::ConnectionReset));
     }
     assert_alive(&server);
+}
+
+/// The order in which connections were accepted counts, not that in which the server comes to them.
+#[test]
+fn a_websocket_is_as_old_as_its_connection() {
+    let long = Duration::from_secs(10);
+    let two = ServerSettings { limits: Limits { connections: 2, head: long, request: long, ..limits() }, ..settings() };
+    let server = Server::jog(&cell(), two).unwrap();
+    let address = server.address();
+    let connect = || {
+        let stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(long / 2)).unwrap();
+        stream
+    };
+    let (mut page, mut younger) = (connect(), connect());
+    let upgrade = format!(
+        "GET /socket HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\nConnection: Upgrade\r\n\
+         Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+    );
+    page.write_all(upgrade.as_bytes()).unwrap();
+    let mut upgraded = [0; 12];
+    page.read_exact(&mut upgraded).unwrap();
+    assert_eq!(&upgraded, b"HTTP/1.1 101");
+    let mut youngest = connect();
+    std::io::copy(&mut page, &mut std::io::sink()).expect("the oldest connection makes room");
+    for stream in [&mut younger, &mut youngest] {
+        write!(stream, "GET /view.css HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        assert_eq!(status(&String::from_utf8_lossy(&answer)), 200);
+    }
 }
 
 #[test]

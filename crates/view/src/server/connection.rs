@@ -4,12 +4,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
+use hyper::Request;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
+use hyper::service::{Service as _, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 
+use super::places::Place;
 use super::shared::Shared;
 
 /// After an error of the listener, such as too many open files.
@@ -28,23 +32,32 @@ pub(crate) async fn accept(
             _ = stopped.wait_for(|stopped| *stopped) => return,
         };
         match accepted {
-            Ok((stream, _)) => _ = tokio::spawn(serve(stream, router.clone(), shared.clone())),
+            Ok((stream, _)) => {
+                // Here, as tasks run in any order: a connection is as old as its acceptance.
+                let place = shared.places.enter();
+                _ = tokio::spawn(serve(stream, place, router.clone(), shared.clone()));
+            }
             Err(_) => tokio::time::sleep(RETRY).await,
         }
     }
 }
 
 /// One request, or a WebSocket, which goes on by itself.
-async fn serve(stream: TcpStream, router: Router, shared: Arc<Shared>) {
+async fn serve(stream: TcpStream, place: Place, router: Router, shared: Arc<Shared>) {
     let limits = &shared.limits;
-    let mut place = shared.places.enter();
+    let (router, held) = (TowerToHyperService::new(router), place.clone());
+    // A WebSocket keeps the place of its connection.
+    let service = service_fn(move |mut request: Request<Incoming>| {
+        request.extensions_mut().insert(held.clone());
+        router.call(request)
+    });
     // Frames are small and must not wait for more.
     let _ = stream.set_nodelay(true);
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.head)
         .max_buf_size(limits.head_bytes)
-        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+        .serve_connection(TokioIo::new(stream), service)
         .with_upgrades();
     tokio::select! {
         _ = tokio::time::timeout(limits.request, connection) => {}

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use tokio::sync::oneshot;
+use tokio::sync::watch;
 
 /// Whoever hangs cannot keep others out: a newcomer takes the place of the oldest.
 #[derive(Debug, Clone)]
@@ -15,15 +15,18 @@ pub(crate) struct Places {
 #[derive(Debug, Default)]
 struct Taken {
     next: u64,
-    by_age: BTreeMap<u64, oneshot::Sender<()>>,
+    by_age: BTreeMap<u64, watch::Sender<()>>,
 }
 
-/// A place, until it is dropped or vacated.
+/// A place, until its last clone is dropped, or it is vacated. Its age is that of the connection that entered, whoever holds it later.
+#[derive(Debug, Clone)]
+pub(crate) struct Place(Arc<Held>);
+
 #[derive(Debug)]
-pub(crate) struct Place {
+struct Held {
     id: u64,
     taken: Arc<Mutex<Taken>>,
-    vacated: oneshot::Receiver<()>,
+    vacated: watch::Receiver<()>,
 }
 
 impl Places {
@@ -32,27 +35,28 @@ impl Places {
     }
 
     pub(crate) fn enter(&self) -> Place {
-        let (vacate, vacated) = oneshot::channel();
+        let (vacate, vacated) = watch::channel(());
         let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
         while taken.by_age.len() >= self.limit {
-            // Dropping the sender wakes the holder.
+            // Dropping the sender wakes the holders.
             taken.by_age.pop_first();
         }
         let id = taken.next;
         taken.next += 1;
         taken.by_age.insert(id, vacate);
-        Place { id, taken: self.taken.clone(), vacated }
+        Place(Arc::new(Held { id, taken: self.taken.clone(), vacated }))
     }
 }
 
 impl Place {
     /// Ends when a newcomer needs the place.
-    pub(crate) async fn vacated(&mut self) {
-        let _ = (&mut self.vacated).await;
+    pub(crate) async fn vacated(&self) {
+        let mut vacated = self.0.vacated.clone();
+        while vacated.changed().await.is_ok() {}
     }
 }
 
-impl Drop for Place {
+impl Drop for Held {
     fn drop(&mut self) {
         self.taken.lock().unwrap_or_else(PoisonError::into_inner).by_age.remove(&self.id);
     }
@@ -62,15 +66,34 @@ impl Drop for Place {
 mod tests {
     use super::*;
 
+    fn ages(places: &Places) -> Vec<u64> {
+        places.taken.lock().unwrap().by_age.keys().copied().collect()
+    }
+
     #[tokio::test]
     async fn a_newcomer_takes_the_place_of_the_oldest() {
         let places = Places::new(2);
-        let (mut first, mut second) = (places.enter(), places.enter());
+        let (first, second) = (places.enter(), places.enter());
         let _third = places.enter();
         first.vacated().await;
-        assert!(second.vacated.try_recv().is_err_and(|e| e == oneshot::error::TryRecvError::Empty));
+        assert!(second.0.vacated.has_changed().is_ok());
         drop(second);
         let _fourth = places.enter();
-        assert_eq!(places.taken.lock().unwrap().by_age.keys().copied().collect::<Vec<_>>(), [2, 3]);
+        assert_eq!(ages(&places), [2, 3]);
+    }
+
+    #[tokio::test]
+    async fn a_place_is_as_old_as_its_first_holder_and_is_taken_until_its_last() {
+        let places = Places::new(2);
+        let connection = places.enter();
+        let newer = places.enter();
+        let session = connection.clone();
+        drop(connection);
+        assert_eq!(ages(&places), [0, 1]);
+        let _newest = places.enter();
+        session.vacated().await;
+        assert!(newer.0.vacated.has_changed().is_ok());
+        drop(newer);
+        assert_eq!(ages(&places), [2]);
     }
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
@@ -10,9 +9,11 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::middleware;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use axum::{Extension, Router};
 
 use super::assets::Asset;
 use super::guard::guard;
+use super::places::Place;
 use super::session;
 use super::shared::Shared;
 
@@ -66,11 +67,16 @@ fn no_token() -> Response {
     (StatusCode::UNAUTHORIZED, "the token is missing or another one\n").into_response()
 }
 
-async fn socket(State(shared): State<Arc<Shared>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
+async fn socket(
+    State(shared): State<Arc<Shared>>,
+    Extension(place): Extension<Place>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     if !shared.hosts.is_own_page(&headers) {
         return (StatusCode::FORBIDDEN, "only the page of this server may connect\n").into_response();
     }
     let bytes = shared.limits.message_bytes;
     let upgrade = upgrade.max_message_size(bytes).max_frame_size(bytes);
-    upgrade.on_upgrade(move |socket| session::run(socket, shared))
+    upgrade.on_upgrade(move |socket| session::run(socket, place, shared))
 }

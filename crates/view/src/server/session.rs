@@ -8,6 +8,7 @@ use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket};
 use serde::Deserialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
+use super::places::Place;
 use super::shared::Shared;
 use crate::source::Command;
 
@@ -39,9 +40,8 @@ enum Sent {
 /// Why a session ends: the code and the reason, or none where the page is gone.
 type Ended = Option<(u16, &'static str)>;
 
-/// Serves a page until it goes.
-pub(crate) async fn run(mut socket: WebSocket, shared: Arc<Shared>) {
-    let mut place = shared.places.enter();
+/// Serves a page until it goes. Until it has shown its token it keeps the place of its connection.
+pub(crate) async fn run(mut socket: WebSocket, place: Place, shared: Arc<Shared>) {
     let admitted = tokio::select! {
         admitted = timeout(shared.limits.head, admit(&mut socket, &shared)) => admitted.unwrap_or(Err(Some((LATE, "no token has come")))),
         () = place.vacated() => return,
