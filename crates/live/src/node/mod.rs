@@ -33,6 +33,7 @@ use guarded_robot::GuardedRobot;
 use inbox::Inbox;
 use outbox::Outbox;
 
+pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;
 
