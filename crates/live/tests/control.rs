@@ -201,7 +201,7 @@ fn roles_decide_who_may_switch() {
     assert!(document["error"].as_str().unwrap().contains("takes the programmer class, and \"operator\" is operator"));
     // A permanent region is nobody's to switch; the role counts first.
     assert_eq!(setup.switch(OPERATOR, "wall", false).0, 403);
-    assert_eq!(setup.switch(PROGRAMMER, "wall", false).0, 403);
+    assert_eq!(setup.switch(PROGRAMMER, "wall", false).0, 409);
     let (status, document) = setup.switch(INTEGRATOR, "wall", false);
     assert_eq!(status, 409);
     assert!(document["error"].as_str().unwrap().contains("permanent"));

@@ -135,7 +135,7 @@ shape = "sphere"
 centre = [-3000, 0, 0]
 radius = 200
 warning = 100
-follow = { robot = "other", link = "link 1" }
+follow = { robot = "other", frame = "flange" }
 "#;
 
     fn at(q: f64) -> Option<JointState> {

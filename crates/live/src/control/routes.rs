@@ -51,11 +51,11 @@ async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Respo
 }
 
 async fn switch(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
-    change(state, headers, body, |desk, who, at, request| desk.switch(who, at, request)).await
+    change(state, headers, body, Desk::switch).await
 }
 
 async fn clear(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
-    change(state, headers, body, |desk, who, at, request| desk.clear(who, at, request)).await
+    change(state, headers, body, Desk::clear).await
 }
 
 /// Makes a change that a token holder asks for.
