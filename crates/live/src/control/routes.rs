@@ -5,8 +5,9 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
-use axum::extract::{DefaultBodyLimit, State};
+use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
+use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use elbowroom_cell::seal::{AccessToken, AccessTokens};
@@ -39,7 +40,19 @@ pub(crate) fn routes(desk: Desk, tokens: AccessTokens, hosts: Hosts) -> Router {
             answer(&Refusal::new(404, "not here").help("GET /regions, POST /switch or POST /clear (docs/control.md)"))
         })
         .layer(DefaultBodyLimit::max(MAX_BODY))
+        .layer(middleware::from_fn(short))
         .with_state(Arc::new(Shared { desk, tokens, hosts }))
+}
+
+/// Refuses a body that announces that it is too long, before it arrives.
+async fn short(request: Request, next: Next) -> Response {
+    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok());
+    let is_long = length.is_some_and(|length| !length.parse::<usize>().is_ok_and(|length| length <= MAX_BODY));
+    if is_long { answer(&too_long()) } else { next.run(request).await }
+}
+
+fn too_long() -> Refusal {
+    Refusal::new(413, format!("the body is longer than {MAX_BODY} bytes"))
 }
 
 async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
@@ -114,7 +127,7 @@ fn request<R: DeserializeOwned>(headers: &HeaderMap, body: Result<Bytes, BytesRe
         return Err(Refusal::new(415, "the body is no JSON").help("the header Content-Type: application/json"));
     }
     let body = body.map_err(|rejection| match rejection.status() {
-        StatusCode::PAYLOAD_TOO_LARGE => Refusal::new(413, format!("the body is longer than {MAX_BODY} bytes")),
+        StatusCode::PAYLOAD_TOO_LARGE => too_long(),
         _ => Refusal::new(400, "the body did not arrive"),
     })?;
     serde_json::from_slice(&body).map_err(|e| Refusal::new(422, format!("the body is not such a request: {e}")))
