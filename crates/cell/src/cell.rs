@@ -12,7 +12,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack, TcpTarget};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -293,8 +293,8 @@ pub enum StepAction {
 pub enum MoveTarget {
     /// Joint values, rad or m.
     Joints(Vec<f64>),
-    /// TCP in the world.
-    Tcp(Pose),
+    /// A pose of the TCP.
+    Tcp(TcpTarget),
 }
 
 /// Settings of the joint-space map of a robot.

@@ -4,6 +4,7 @@ mod common;
 
 use common::{HEAD, rail};
 use elbowroom_cell::Cell;
+use elbowroom_spatial::Pose;
 
 /// A cell with a robot, an object that moves, and a table that has one more line.
 fn cell(table: &str, line: &str) -> String {
@@ -19,6 +20,12 @@ fn cell(table: &str, line: &str) -> String {
 type Case = (&'static str, &'static str, [(&'static str, &'static str, &'static str); 3]);
 
 const AVOIDANCE: &str = "[avoidance.r]";
+const CLOUD: &str = "[cloud.mast]\npose = { at = [1700, 0, 6500], rpy = [180, 0, 0] }\narea = [[750, -3000], [4800, -3000], [4800, 3000]]";
+const SPHERE: &str = "[region.ball]\nshape = \"sphere\"\nradius = 100\nwarning = 50";
+const ENCODER: &str = "[encoder.belt]\nspeed = 200";
+const CAMERA: &str = "[camera.top]\nsize = [640, 480]\nfocal_px = 500\npose = { at = [1700, 0, 6500], rpy = [180, 0, 0] }\n\
+                      area = [[750, -3000], [4800, -3000], [4800, 3000]]";
+const FOLLOWING: &str = "[region.ball]\nshape = \"sphere\"\ncentre = [0, 0, 500]\nradius = 100\nwarning = 50";
 const CASES: &[Case] = &[
     (
         AVOIDANCE,
@@ -102,6 +109,60 @@ const CASES: &[Case] = &[
         ],
     ),
     (
+        CLOUD,
+        "to_floor = false",
+        [
+            ("to_floor = 0", "must be true or false", "to_floor = true"),
+            ("to_floor = \"no\"", "must be true or false", "to_floor = true"),
+            ("to_flor = true", "no key `to_flor`", "to_floor"),
+        ],
+    ),
+    (
+        SPHERE,
+        "center = [0, 0, 500]",
+        [
+            ("center = [0, 0]", "needs 3 numbers", "center"),
+            ("center = 3", "must be a list", "center"),
+            ("center = [0, 0, nan]", "NaN", "finite"),
+        ],
+    ),
+    (
+        FOLLOWING,
+        "follow = { object = \"cart\", max_turn = 90 }",
+        [
+            ("follow = { object = \"cart\", max_turn = 0 }", "above 0", "max_turn"),
+            ("follow = { object = \"cart\", max_turn = \"fast\" }", "must be a number", "max_turn"),
+            ("follow = { object = \"cart\", max_turns = 3 }", "no key `max_turns`", "max_turn"),
+        ],
+    ),
+    (
+        ENCODER,
+        "wrap = 500",
+        [
+            ("wrap = 0", "above 0", "wrap"),
+            ("wrap = \"turn\"", "must be a number", "wrap"),
+            ("wraps = 500", "no key `wraps`", "wrap"),
+        ],
+    ),
+    (
+        CAMERA,
+        "center_px = [320, 240]",
+        [
+            ("center_px = [320]", "needs 2 numbers", "centre_px"),
+            ("center_px = 320", "must be a list", "centre_px"),
+            ("center_pix = [320, 240]", "no key `center_pix`", "center_px"),
+        ],
+    ),
+    (
+        "[monitor]",
+        "recovery = 5",
+        [
+            ("recovery = 101", "0 to 100, not 101", "recovery"),
+            ("recovery = -1", "0 to 100, not -1", "recovery"),
+            ("recovery = true", "must be a number", "recovery"),
+        ],
+    ),
+    (
         "top",
         "max_s = 30",
         [
@@ -134,4 +195,34 @@ fn keys_have_a_good_case_and_three_bad_ones_at_their_line() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+const TRIANGLES: &str = "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+#[test]
+fn a_mesh_has_the_unit_that_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cart.obj"), TRIANGLES).unwrap();
+    let file = dir.path().join("cell.toml");
+    let cell = |line: &str| {
+        let text = format!("{HEAD}{}[object.cart]\nshape = \"mesh\"\nmesh = \"cart.obj\"\n{line}\n", rail("r", 0.0));
+        let at = text.lines().position(|l| l == line).unwrap() + 1;
+        (Cell::parse(&file, &text), at)
+    };
+    for (unit, length_m) in [("m", 100.0), ("mm", 0.1), ("cm", 1.0), ("in", 2.54)] {
+        let (read, _) = cell(&format!("mesh_unit = \"{unit}\""));
+        let read = read.unwrap();
+        let bounds = read.objects[0].shape.aabb(&Pose::IDENTITY);
+        assert!((bounds.max.x - length_m).abs() < 1e-9 * length_m.max(1.0), "{unit}: {bounds:?}");
+    }
+    for (line, what, hint) in [
+        ("mesh_unit = \"km\"", "cannot be \"km\"", "mm"),
+        ("mesh_unit = 0.001", "must be one of", "mesh_unit"),
+        ("mesh_units = \"mm\"", "no key `mesh_units`", "mesh_unit"),
+    ] {
+        let (read, at) = cell(line);
+        let e = read.unwrap_err();
+        assert!(e.what.contains(what) && e.write_instead.as_deref().unwrap_or("").contains(hint), "{line}: {e}");
+        assert_eq!(e.line, Some(at), "{line}");
+    }
 }

@@ -213,12 +213,14 @@ pub(crate) struct JointArgs {
   elbowroom convert cell.toml --robot ns16 --out ns16  the robot of a cell, with its tool and load
   elbowroom convert arm.urdf arm.srdf                  its groups, states, and the pairs that need no test
   elbowroom convert shelf.scene shelf.toml             a MoveIt planning scene (or .yaml) as objects of a cell file
+  elbowroom convert log.mcap log.csv                   the joint states of a ROS 2 recording as a `trajectory`
 
 Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
-    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it; or a planning scene (docs/models.md)
+    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it; or a planning scene (docs/models.md); or an
+    /// MCAP recording of ROS 2 (in builds with the feature `live`)
     pub(crate) model: PathBuf,
-    /// The output, a new file: .srdf for a robot, .toml for a planning scene
+    /// The output, a new file: .srdf for a robot, .toml for a planning scene, .csv for a recording
     #[arg(required_unless_present = "out", conflicts_with_all = ["out", "to"])]
     pub(crate) output: Option<PathBuf>,
     /// The output folder of --to
@@ -236,6 +238,9 @@ pub(crate) struct ConvertArgs {
     /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
+    /// The topic of a recording; optional if there is only one with joint states
+    #[arg(long, value_name = "TOPIC")]
+    pub(crate) topic: Option<String>,
     #[command(flatten)]
     pub(crate) joints: JointArgs,
 }
@@ -400,6 +405,13 @@ pub(crate) struct PlanArgs {
     /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
     pub(crate) to_pose: Option<Numbers>,
+    /// Configuration at --to-pose, of six axes with a spherical wrist: front or back, up or down, no_flip or flip, or
+    /// some of them
+    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
+    pub(crate) configuration: Vec<String>,
+    /// Of the solutions for --to-pose only the one nearest to these joint values, as --from
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
+    pub(crate) near: Option<Configuration>,
     /// --from and --to are in the cell file's units, as in a program
     #[arg(long, conflicts_with = "urdf")]
     pub(crate) cell_units: bool,

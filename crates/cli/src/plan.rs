@@ -6,7 +6,8 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
-use elbowroom::cell::{Cell, QUATERNION_TOLERANCE};
+use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, TcpTarget};
+use elbowroom::kinematics::inverse::ConfigurationChoice;
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
@@ -71,12 +72,38 @@ fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<O
 
 fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
     if let Some(Numbers(numbers)) = &args.to_pose {
-        return pose(cell, numbers).map(PathGoal::Tcp);
+        return tcp_target(args, cell, numbers).map(PathGoal::Tcp);
     }
     // clap requires a goal.
     let none = Configuration::Values(Vec::new());
     let to = at_most_one(args, "--to", &args.to)?.unwrap_or(&none);
     configuration(args, cell, None, to).map(PathGoal::Joints)
+}
+
+/// The pose, and which solution of inverse kinematics is wanted.
+fn tcp_target(args: &PlanArgs, cell: &Cell, numbers: &[f64]) -> Result<TcpTarget, Failure> {
+    let in_world = pose(cell, numbers)?;
+    let near = args.near.as_ref().map(|near| near_values(args, cell, near)).transpose()?;
+    let words = args.configuration.iter().map(String::as_str);
+    let configuration = ConfigurationChoice::from_words(words)
+        .map_err(|e| Failure::Wrong(format!("--configuration: {e}\n  write: --configuration front,up,no_flip")))?;
+    let (_, robot) = plan::select_robot(cell, args.robot.first().map(String::as_str))?;
+    if !configuration.is_open() && robot.ik_solver().configuration(&robot.start).is_none() {
+        let what = format!("--configuration: robot \"{}\" has not six axes with a spherical wrist", robot.name);
+        return Err(Failure::Wrong(format!("{what}\n  write: --near q,…   (the nearest solution to them is taken)")));
+    }
+    Ok(TcpTarget { in_world, configuration, near })
+}
+
+fn near_values(args: &PlanArgs, cell: &Cell, near: &Configuration) -> Result<Vec<f64>, Failure> {
+    let q = configuration(args, cell, None, near)?;
+    let (_, robot) = plan::select_robot(cell, args.robot.first().map(String::as_str))?;
+    let joints = robot.joint_names();
+    if q.len() == joints.len() {
+        return Ok(q);
+    }
+    let what = format!("--near has {} values for {} joints", q.len(), joints.len());
+    Err(Failure::Wrong(format!("{what}\n  write: one value per joint, in this order: {}", joints.join(", "))))
 }
 
 /// x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
@@ -120,6 +147,9 @@ fn text(answer: &PathAnswer) -> String {
     let legs = waypoints.len().saturating_sub(1);
     let legs = if legs == 1 { "straight".into() } else { format!("{legs} straight stretches") };
     let mut out = format!("{}: {legs}, {cost_rad:.4} rad in joint space, {duration_s:.3} s, {stops}\n", answer.robot);
+    if let Some(configuration) = answer.configuration {
+        let _ = writeln!(out, "ends in the configuration {configuration}");
+    }
     let (searched, shortened) = (milliseconds(answer.planning_us), milliseconds(answer.simplify_us));
     if !answer.regions.is_empty() {
         let _ = writeln!(out, "stays out of {}", answer.regions.join(", "));

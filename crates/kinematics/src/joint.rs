@@ -69,6 +69,21 @@ impl Limits {
     pub fn contains(&self, value: f64, tolerance: f64) -> bool {
         value >= self.lower - tolerance && value <= self.upper + tolerance
     }
+
+    /// How far `value` (rad or m) is beyond the limits (the joint overshoot of S3): above 0 beyond the upper one, below 0 beyond
+    /// the lower one, 0 within them. NaN for NaN.
+    ///
+    /// ```
+    /// use elbowroom_kinematics::Limits;
+    /// let limits = Limits::symmetric(2.0);
+    /// assert_eq!([-2.5, 1.0, 2.25].map(|q| limits.overshoot(q)), [-0.5, 0.0, 0.25]);
+    /// ```
+    pub fn overshoot(&self, value: f64) -> f64 {
+        if value.is_nan() {
+            return value;
+        }
+        (value - self.upper).max(0.0) + (value - self.lower).min(0.0)
+    }
 }
 
 /// A joint that follows another: its value is `multiplier · q(joint) + offset`.

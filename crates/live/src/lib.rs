@@ -4,6 +4,7 @@
 //! `docs/live.md` has the keys, the bytes and the bounds; `docs/interlocks.md` the protocol of exchange regions.
 
 mod arbiter_service;
+mod carried_volumes;
 mod cell_observer;
 mod client;
 mod clock;

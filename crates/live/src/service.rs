@@ -18,7 +18,7 @@ use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::control::{ControlOptions, ControlServer, DeskParts, JointsHeard};
 use crate::event_handler::EventHandler;
-use crate::network::{Network, ZenohNetwork, ZenohSettings};
+use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::service_error::ServiceError;
@@ -36,6 +36,8 @@ pub struct ServiceOptions {
     pub listen: Option<String>,
     /// Connects here.
     pub connect: Option<String>,
+    /// Takes controllers by UDP datagrams at this address, too.
+    pub udp: Option<String>,
     /// Grants exchange regions, and keeps which regions are switched on.
     pub arbiter: bool,
     /// Runs the programs of the cell file in place of the controllers.
@@ -78,6 +80,7 @@ impl Service {
         };
         let network = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
         let shared: Arc<dyn Network> = network.clone();
+        let of_controllers = with_udp(&shared, options.udp.as_deref())?;
         let clock = Clock::start();
         let (mut keeper, mut arbiter) = (None, None);
         if options.arbiter || is_whole_cell {
@@ -91,7 +94,7 @@ impl Service {
             (Some(_), None) => return Err(ServiceError::ControlWithoutArbiter),
             (Some(control), Some(keeper)) => {
                 let (keeper, arbiter, on_event) = (keeper.clone(), arbiter.clone(), options.on_event.clone());
-                let joints = JointsHeard::start(&cell, &shared, clock)?;
+                let joints = JointsHeard::start(&cell, &of_controllers, clock)?;
                 let parts = DeskParts { cell: cell.clone(), keeper, arbiter, joints, clock, on_event };
                 Some(ControlServer::start(parts, control)?)
             }
@@ -113,7 +116,7 @@ impl Service {
                 monitor,
                 checksum,
                 clock,
-                network: shared.clone(),
+                network: of_controllers.clone(),
                 interlocks: shared.clone(),
                 recorder: tick_recorder,
             })?);
@@ -195,6 +198,12 @@ fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
         Some(control) if !control.program_switches => ProgramSwitches::Ignored(options.on_event.clone()),
         _ => ProgramSwitches::Obeyed,
     }
+}
+
+/// The network of the controllers: with UDP datagrams, where there is an address for them.
+fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn Network>, NetworkError> {
+    let Some(address) = address else { return Ok(zenoh.clone()) };
+    Ok(Arc::new(JoinedNetworks::new(vec![zenoh.clone(), Arc::new(UdpNetwork::bind(address, &[])?)])))
 }
 
 fn start_recorder(file: &Path, cell: &Cell) -> Result<Recorder, BagError> {

@@ -6,11 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Micros;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::motion::{PlanStep, ProgramClock, ProgramPlan, plan};
 
+use crate::carried_volumes::{CarriedVolumes, SimulatedObjects};
 use crate::client::{ControllerClient, ControllerState};
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
@@ -78,8 +79,7 @@ fn run(
     started: &SyncSender<Result<(), ServiceError>>,
     is_closed: &AtomicBool,
 ) {
-    let made: Result<Vec<_>, _> = robots.iter().map(|r| SimulatedController::new(cell, *r, network)).collect();
-    let mut controllers = match made {
+    let mut controllers = match controllers(cell, robots, network) {
         Ok(controllers) => controllers,
         Err(error) => {
             // Nobody waits for an error after the service was dropped.
@@ -95,7 +95,7 @@ fn run(
     while !is_closed.load(Ordering::SeqCst) {
         for controller in &mut controllers {
             let nominal = began + Micros((due - begin).as_micros() as u64);
-            controller.tick(cell.tick_s, nominal, clock.micros());
+            controller.tick(cell.tick_s, nominal, clock);
         }
         due += period;
         let now = Instant::now();
@@ -106,6 +106,16 @@ fn run(
     }
 }
 
+fn controllers(
+    cell: &Arc<Cell>,
+    robots: &[RobotId],
+    network: &Arc<dyn Network>,
+) -> Result<Vec<SimulatedController>, ServiceError> {
+    let (objects, setups) = (SimulatedObjects::new(cell), configure::setups(cell)?);
+    let carried = |robot: RobotId| CarriedVolumes::new(cell, robot, setups[robot.0].clone(), objects.clone());
+    robots.iter().map(|robot| SimulatedController::new(cell, *robot, network, carried(*robot))).collect()
+}
+
 /// The controller of one robot.
 struct SimulatedController {
     robot: String,
@@ -113,6 +123,7 @@ struct SimulatedController {
     /// The program once more, from its end.
     again: Option<ProgramPlan>,
     limits: Vec<elbowroom_cell::JointLimits>,
+    carried: CarriedVolumes,
     client: Arc<Mutex<ControllerClient>>,
     joint_states: Box<dyn Publisher>,
     switches: Box<dyn Publisher>,
@@ -123,7 +134,12 @@ struct SimulatedController {
 }
 
 impl SimulatedController {
-    fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, ServiceError> {
+    fn new(
+        cell: &Arc<Cell>,
+        robot: RobotId,
+        network: &Arc<dyn Network>,
+        carried: CarriedVolumes,
+    ) -> Result<Self, ServiceError> {
         let at = &cell.robots[robot.0];
         let keys = Keys::new(&cell.name);
         let once = plan(cell, robot, 1, &mut Vec::new())?;
@@ -144,6 +160,7 @@ impl SimulatedController {
             program: ProgramClock::new(once, at.limits.clone()),
             again,
             limits: at.limits.clone(),
+            carried,
             client,
             joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,
             switches: network.publisher(&keys.switch(), Urgency::RealTime)?,
@@ -155,7 +172,8 @@ impl SimulatedController {
     }
 
     /// Moves on by a tick under the override that counts now, and tells the node where the robot is.
-    fn tick(&mut self, dt_s: f64, nominal: Micros, now: Micros) {
+    fn tick(&mut self, dt_s: f64, nominal: Micros, clock: Clock) {
+        let now = clock.micros();
         let speed_override = self.client.lock().unwrap_or_else(PoisonError::into_inner).speed_override(now);
         self.program.advance(dt_s, speed_override);
         for switch in self.program.take_switches() {
@@ -165,6 +183,7 @@ impl SimulatedController {
                 self.switches.publish(&json);
             }
         }
+        self.carried.follow(&mut self.program, clock.seconds());
         if self.program.finished()
             && let Some(again) = &self.again
         {
@@ -177,7 +196,7 @@ impl SimulatedController {
             qd: &self.velocity,
             intent: self.program.intent(),
             programmed_override: self.program.programmed_override(),
-            attached: &[],
+            attached: self.carried.volumes(),
             stamp: Some(nominal),
         };
         self.bytes.clear();

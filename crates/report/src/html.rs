@@ -18,7 +18,7 @@ const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
 /// In order: each uses those before it.
-const SCRIPTS: [&str; 11] = [
+const SCRIPTS: [&str; 12] = [
     shared_assets::DOM,
     shared_assets::PACKING,
     include_str!("../assets/report/data.js"),
@@ -27,6 +27,7 @@ const SCRIPTS: [&str; 11] = [
     include_str!("../assets/report/cell.js"),
     include_str!("../assets/report/figures.js"),
     shared_assets::STAGE,
+    include_str!("../assets/report/perceived.js"),
     include_str!("../assets/report/scene.js"),
     include_str!("../assets/report/panel.js"),
     include_str!("../assets/report/player.js"),

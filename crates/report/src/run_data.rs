@@ -1,7 +1,8 @@
 //! Data of runs for the scripts of the page: values per frame.
 
+use elbowroom_analysis::watch::{WatchStatus, WatchedObstacle};
 use elbowroom_kinematics::LinkId;
-use elbowroom_sim::{Recording, RegionPoses, RobotTrack, RunEvent, Sample, Span};
+use elbowroom_sim::{Recording, RegionPoses, RobotTrack, RunEvent, Sample, SensorTrack, Span};
 use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
 
@@ -20,6 +21,8 @@ const MAX_EVENT_FRAMES: usize = 200;
 const EXACT: f64 = 1e-8;
 const TIME_STEP_S: f64 = 1e-6;
 const SHOWN_STEP: f64 = 1e-6;
+/// Of outlines that sensors see, m.
+const SEEN_STEP_M: f64 = 1e-3;
 
 /// The ticks that the page has: evenly spaced, with every stop and its end.
 pub fn frames(rec: &Recording) -> Vec<usize> {
@@ -73,7 +76,22 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
         "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
+        "sensors": rec.sensors.iter().map(sensor).collect::<Vec<_>>(),
     })
+}
+
+/// What a sensor saw: for each accepted picture or cloud the time from which on it was used, and its obstacles.
+fn sensor(track: &SensorTrack) -> Value {
+    let rounded = |v: f64| (v / SEEN_STEP_M).round() * SEEN_STEP_M;
+    let obstacle = |o: &WatchedObstacle| {
+        let outline: Vec<[f64; 2]> = o.outline_m.iter().map(|p| p.map(rounded)).collect();
+        json!({ "id": o.id, "outline": outline, "bottom": rounded(o.bottom_m), "height": rounded(o.height_m) })
+    };
+    let accepted = track.records.iter().filter(|r| r.status == WatchStatus::Accepted);
+    let records = accepted.map(
+        |r| json!({ "t": r.t_s + track.latency_s, "obstacles": r.obstacles.iter().map(obstacle).collect::<Vec<_>>() }),
+    );
+    json!({ "name": track.name, "records": records.collect::<Vec<_>>() })
 }
 
 /// When which robot holds the object: (robot, start, end), the times in seconds.

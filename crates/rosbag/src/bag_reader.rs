@@ -13,6 +13,8 @@ pub struct BagMessage {
     pub index: u64,
     /// Its topic.
     pub topic: String,
+    /// The name of its type, such as `sensor_msgs/msg/JointState`; empty where the file does not say.
+    pub message_type: String,
     /// When it was recorded, ns.
     pub time_ns: u64,
     /// Its payload.
@@ -26,7 +28,9 @@ pub struct BagReader<R: Read> {
     /// What is left of the present chunk.
     chunk: Vec<u8>,
     at: usize,
-    topics: HashMap<u16, String>,
+    schemas: HashMap<u16, String>,
+    /// Topic and type of each channel.
+    channels: HashMap<u16, (String, String)>,
     metadata: BTreeMap<String, BTreeMap<String, String>>,
     attachments: Vec<String>,
     messages: u64,
@@ -48,7 +52,8 @@ impl<R: Read> BagReader<R> {
             file,
             chunk: Vec::new(),
             at: 0,
-            topics: HashMap::new(),
+            schemas: HashMap::new(),
+            channels: HashMap::new(),
             metadata: BTreeMap::new(),
             attachments: Vec::new(),
             messages: 0,
@@ -113,13 +118,18 @@ impl<R: Read> BagReader<R> {
     fn take(&mut self, record: Record<'_>) -> Result<Option<BagMessage>, String> {
         match record {
             Record::Message { channel, time_ns, payload } => {
-                let topic = self.topics.get(&channel).cloned();
-                let topic = topic.ok_or_else(|| format!("a message is on channel {channel}, which there is not"))?;
+                let known = self.channels.get(&channel).cloned();
+                let (topic, message_type) =
+                    known.ok_or_else(|| format!("a message is on channel {channel}, which there is not"))?;
                 let index = self.messages;
                 self.messages += 1;
-                return Ok(Some(BagMessage { index, topic, time_ns, payload: payload.to_vec() }));
+                return Ok(Some(BagMessage { index, topic, message_type, time_ns, payload: payload.to_vec() }));
             }
-            Record::Channel { id, topic } => _ = self.topics.insert(id, topic.to_owned()),
+            Record::Schema { id, name } => _ = self.schemas.insert(id, name.to_owned()),
+            Record::Channel { id, schema, topic } => {
+                let message_type = self.schemas.get(&schema).cloned().unwrap_or_default();
+                self.channels.insert(id, (topic.to_owned(), message_type));
+            }
             Record::Chunk(contents) => (self.chunk, self.at) = (contents, 0),
             Record::Metadata { name, values } => {
                 let values = values.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();

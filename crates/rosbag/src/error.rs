@@ -18,7 +18,7 @@ pub enum BagError {
     Write(mcap::McapError),
     /// The file is no MCAP file.
     #[error(
-        "is not an MCAP file: it does not begin with the bytes 89 M C A P 30\n  help: a file that `elbowroom run --mcap` or `elbowroom live --record` wrote"
+        "is not an MCAP file: it does not begin with the bytes 89 M C A P 30\n  help: a file that `elbowroom run --mcap`, `elbowroom live --record` or `ros2 bag record -s mcap` wrote"
     )]
     Foreign,
     /// The bytes of the file are not as they were written.
@@ -49,6 +49,32 @@ pub enum BagError {
         /// Messages in the file.
         messages: u64,
     },
+    /// The file has no joint states on the topic.
+    #[error("has no sensor_msgs/msg/JointState on {}\n  help: {}", wanted.as_deref().unwrap_or("any topic"), topics(found))]
+    NoJointStates {
+        /// The topic that was asked for.
+        wanted: Option<String>,
+        /// Topics that have joint states.
+        found: Vec<String>,
+    },
+    /// Several topics have joint states.
+    #[error("has joint states on several topics\n  help: {}", topics(found))]
+    SeveralTopics {
+        /// The topics.
+        found: Vec<String>,
+    },
+    /// Joint states that say nothing of a joint.
+    #[error("message {message} on {topic} has {names} names and {positions} positions")]
+    JointStateLength {
+        /// Its number in the file, from 0.
+        message: u64,
+        /// Its topic.
+        topic: String,
+        /// Number of names.
+        names: usize,
+        /// Number of positions.
+        positions: usize,
+    },
     /// A recorded configuration cannot be built.
     #[error("the configuration of robot {robot} is not valid: {why}")]
     Configuration {
@@ -67,4 +93,11 @@ pub enum BagError {
         /// What is wrong.
         why: String,
     },
+}
+
+fn topics(found: &[String]) -> String {
+    match found {
+        [] => "`ros2 bag record -s mcap /joint_states` records them".into(),
+        found => format!("--topic {}", found.join(" or --topic ")),
+    }
 }

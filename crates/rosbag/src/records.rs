@@ -5,6 +5,8 @@
 
 use std::io::Read;
 
+use ruzstd::decoding::StreamingDecoder;
+
 /// The first bytes of a file.
 pub(crate) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
 /// Largest record, and largest chunk after decompression, bytes.
@@ -12,8 +14,13 @@ const MAX_BYTES: u64 = 1 << 30;
 
 /// A record that a replay needs.
 pub(crate) enum Record<'a> {
+    Schema {
+        id: u16,
+        name: &'a str,
+    },
     Channel {
         id: u16,
+        schema: u16,
         topic: &'a str,
     },
     Message {
@@ -69,10 +76,14 @@ fn read_into(file: &mut impl Read, count: u64, to: &mut Vec<u8>) -> Result<(), S
 pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
     let mut fields = Fields(body);
     Ok(match opcode {
+        0x03 => {
+            let id = u16::from_le_bytes(fields.number()?);
+            Record::Schema { id, name: fields.text()? }
+        }
         0x04 => {
             let id = u16::from_le_bytes(fields.number()?);
-            let _schema: [u8; 2] = fields.number()?;
-            Record::Channel { id, topic: fields.text()? }
+            let schema = u16::from_le_bytes(fields.number()?);
+            Record::Channel { id, schema, topic: fields.text()? }
         }
         0x05 => {
             let channel = u16::from_le_bytes(fields.number()?);
@@ -129,7 +140,11 @@ fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
             // One more than it claims, to see that it is too long.
             decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
         }
-        other => return Err(format!("a chunk is compressed with \"{other}\"; lz4 can be read")),
+        "zstd" => {
+            let decoder = StreamingDecoder::new(compressed).map_err(|e| format!("a chunk is not Zstandard: {e}"))?;
+            decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not Zstandard: {e}"))?;
+        }
+        other => return Err(format!("a chunk is compressed with \"{other}\"; lz4 and zstd can be read")),
     }
     if contents.len() as u64 != size {
         return Err(format!("a chunk has {} bytes, not the {size} that it claims", contents.len()));

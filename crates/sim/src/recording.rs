@@ -142,6 +142,8 @@ pub struct SensorTrack {
     pub name: String,
     /// `camera` or `cloud`.
     pub kind: &'static str,
+    /// Time from a picture or cloud to its use, s.
+    pub latency_s: f64,
     /// One per picture or cloud that was taken in.
     pub records: Vec<WatchRecord>,
     /// Wall-clock time from the picture in the file to the reaction of the robots.

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use elbowroom_cell::CellRobot;
+use elbowroom_kinematics::inverse::ArmConfiguration;
 use elbowroom_planner::{PlannedPath, TimedMotion};
 use serde::{Serialize, Serializer};
 
@@ -19,6 +20,9 @@ pub struct PathAnswer {
     pub joints: Vec<String>,
     /// Names of the regions that the path avoids.
     pub regions: Vec<String>,
+    /// Shoulder, elbow and wrist at the end of the path; `None` without a path, and for other arms than six axes with a
+    /// spherical wrist.
+    pub configuration: Option<ArmConfiguration>,
     /// Why no path was found.
     pub reason: Option<String>,
     /// Time of the search, µs.
@@ -51,6 +55,7 @@ impl PathAnswer {
             robot: robot.name.clone(),
             joints: robot.joint_names(),
             regions: Vec::new(),
+            configuration: None,
             reason: Some(reason),
             planning_us: micros(took),
             simplify_us: 0,
@@ -60,11 +65,13 @@ impl PathAnswer {
 
     pub(super) fn found(robot: &CellRobot, path: PlannedPath, motion: TimedMotion) -> Self {
         let TimedMotion { duration_s, stops, rows } = motion;
+        let end = rows.last().map(|(_, q)| &q[..]);
         Self {
             found: true,
             robot: robot.name.clone(),
             joints: robot.joint_names(),
             regions: Vec::new(),
+            configuration: end.and_then(|q| robot.ik_solver().configuration(q)),
             reason: None,
             planning_us: micros(path.planning_time),
             simplify_us: micros(path.simplification_time),
@@ -82,6 +89,7 @@ impl Serialize for PathAnswer {
             robot: &'a str,
             joints: &'a [String],
             regions: &'a [String],
+            configuration: Option<String>,
             waypoints: &'a [Vec<f64>],
             cost_rad: Option<f64>,
             duration_s: Option<f64>,
@@ -96,6 +104,7 @@ impl Serialize for PathAnswer {
             robot: &self.robot,
             joints: &self.joints,
             regions: &self.regions,
+            configuration: self.configuration.map(|c| c.to_string()),
             waypoints: motion.map_or(&[], |m| &m.waypoints),
             cost_rad: motion.map(|m| m.cost_rad),
             duration_s: motion.map(|m| m.duration_s),

@@ -10,9 +10,8 @@ mod several;
 use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
+use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, TcpTarget, region_constraint};
 use elbowroom_formats::FormatError;
-use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
     RrtConnectSettings, TaskSpaceRegion, TimedMotion,
@@ -32,8 +31,8 @@ pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsR
 pub enum PathGoal {
     /// Values of all joints in the order of the chain, rad or m.
     Joints(Vec<f64>),
-    /// The TCP in the world, in any posture: whichever is reached first.
-    Tcp(Pose),
+    /// A pose of the TCP; of the solutions of inverse kinematics that are wanted, whichever is reached first.
+    Tcp(TcpTarget),
 }
 
 impl Default for PathGoal {
@@ -204,26 +203,19 @@ fn goals(
     seed: u64,
 ) -> Result<Vec<Vec<f64>>, FormatError> {
     let robot = &cell.robots[id.0];
-    let tcp_in_world = match to {
+    let target = match to {
         PathGoal::Joints(q) => {
             request_validation::check_joint_values(cell, robot, "goal", q)?;
             return Ok(vec![q.clone()]);
         }
-        PathGoal::Tcp(in_world) => in_world,
+        PathGoal::Tcp(target) => target,
     };
-    let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, *tcp_in_world);
+    let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, target.in_world);
     let found = region.configurations(scene, state, id, 0, seed);
-    if found.is_empty() {
-        let mut solver = IkSolver::new(&robot.robot.chain, robot.flange, robot.tcp_in_flange, IkOptions::default());
-        let why = solver.solve(&robot.base_in_world.inverse_mul(tcp_in_world), state.q(id)).err();
-        let why = why.map_or_else(
-            || "no posture within the limits was found".to_owned(),
-            |e| cell.units.describe_ik_error(&e, &robot.robot.chain),
-        );
+    target.choose(robot, cell.units, state.q(id), found).map_err(|why| {
         let what = format!("the goal of robot \"{}\": {why}", robot.name);
-        return Err(FormatError::new(&cell.file, robot.line, what).hint("a pose within reach, or joint values"));
-    }
-    Ok(found)
+        FormatError::new(&cell.file, robot.line, what).hint("a pose within reach, or joint values")
+    })
 }
 
 /// The state with all robots at their start, except one.

@@ -29,6 +29,8 @@ pub struct WatchedObstacle {
     pub kind: Option<String>,
     /// Corners of its footprint, with the uncertainty, world x and y, m.
     pub outline_m: Vec<[f64; 2]>,
+    /// Height of its lower end in the world, m.
+    pub bottom_m: f64,
     /// Height of its upper end above its lower one, m.
     pub height_m: f64,
     /// Its estimated centre, world x and y, m.
@@ -102,6 +104,7 @@ impl WatchedObstacle {
             id: prism.id.0,
             kind: prism.kind.clone(),
             outline_m: prism.footprint_m.iter().map(|p| [p.x, p.y]).collect(),
+            bottom_m: prism.z_from_m,
             height_m: prism.z_to_m - prism.z_from_m,
             centre_m: [prism.centre_m.x, prism.centre_m.y],
             velocity_m_s: [prism.velocity_mps.x, prism.velocity_mps.y],

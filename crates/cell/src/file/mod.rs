@@ -7,6 +7,7 @@ mod definitions;
 mod document;
 mod flange;
 mod follow;
+mod goal;
 mod guarding;
 mod models;
 pub(crate) mod node;

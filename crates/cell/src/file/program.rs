@@ -7,12 +7,11 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use super::models;
 use super::read::{Table, Value};
-use super::robot::joint_values;
+use super::{goal, models};
 use crate::{
-    Cell, CellRegion, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction,
-    TrajectoryRow, Units, suggest,
+    Cell, CellRegion, CellRegionId, CellRobot, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
+    suggest,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -121,7 +120,7 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
     } else {
         "to = [0, -20, 90, 0, 40, 0]"
     };
-    let to = target(&t.need("to", example)?, example, units, robot)?;
+    let to = goal::read(&t.need("to", example)?, example, units, robot, kind == Movement::Linear)?;
     let speed = t.get("speed");
     if kind == Movement::Linear {
         let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
@@ -132,24 +131,6 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
         v.percent()
     })?;
     Ok(if kind == Movement::Planned { StepAction::Planned { to, speed } } else { StepAction::Joint { to, speed } })
-}
-
-/// A pose, joint values, or the name of a state of the robot.
-fn target(to: &Value<'_>, example: &str, units: Units, robot: &CellRobot) -> Result<MoveTarget> {
-    if to.is_table() {
-        return units.pose(to).map(MoveTarget::Tcp);
-    }
-    if to.is_list() {
-        return joint_values(to, &robot.robot.chain, units).map(MoveTarget::Joints);
-    }
-    let Ok(name) = to.text() else {
-        return Err(to.error("is neither joint values, a pose, nor the name of a state").hint(example));
-    };
-    robot.state(name).map(|q| MoveTarget::Joints(q.to_vec())).ok_or_else(|| {
-        let known = robot.states.iter().map(|(name, _)| name.as_str());
-        to.error(format!("names the state \"{name}\", which robot \"{}\" does not have", robot.name))
-            .hint(suggest::hint(name, known))
-    })
 }
 
 fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {

@@ -1,4 +1,5 @@
-//! `elbowroom convert`: a robot as URDF, 3DS or SRDF; a planning scene as a cell file.
+//! `elbowroom convert`: a robot as URDF, 3DS or SRDF; a planning scene as a cell file; joint states of an MCAP
+//! recording as a table.
 
 mod robot;
 mod scene;
@@ -7,10 +8,23 @@ mod srdf;
 use std::path::Path;
 
 use crate::args::ConvertArgs;
+use crate::live;
 use crate::output::{ExitStatus, Failure};
 use robot::has_extension;
 
 pub(crate) fn convert(args: &ConvertArgs) -> Result<ExitStatus, Failure> {
+    if has_extension(&args.model, "mcap") {
+        return match &args.output {
+            Some(table) if has_extension(table, "csv") => {
+                live::convert_recording(&args.model, args.topic.as_deref(), table)
+            }
+            _ => Err(Failure::Wrong("a recording becomes a table\n  write: convert log.mcap log.csv".into())),
+        };
+    }
+    if let Some(topic) = &args.topic {
+        let what = format!("--topic {topic} is for recordings, and {} is none", args.model.display());
+        return Err(Failure::Wrong(format!("{what}\n  write: convert log.mcap log.csv --topic {topic}")));
+    }
     let is_scene = ["scene", "yaml", "yml"].iter().any(|e| has_extension(&args.model, e));
     match (&args.output, &args.out) {
         (Some(file), _) if has_extension(file, "toml") && !has_extension(&args.model, "toml") => {

@@ -27,6 +27,9 @@ pub(crate) struct LiveArgs {
     /// Connect to the process at this address
     #[arg(long, value_name = "ADDR")]
     pub(crate) connect: Option<String>,
+    /// Take controllers by UDP datagrams at this address, too (clients/c)
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) udp: Option<String>,
     /// Grant exchange regions in this process; without --robots, nothing else
     #[arg(long)]
     pub(crate) arbiter: bool,

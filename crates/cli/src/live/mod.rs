@@ -2,6 +2,8 @@
 
 mod args;
 #[cfg(feature = "live")]
+mod joint_recording;
+#[cfg(feature = "live")]
 mod record;
 #[cfg(feature = "live")]
 mod replay;
@@ -12,10 +14,10 @@ mod view;
 
 pub(crate) use args::{LiveArgs, ReplayArgs, ViewArgs};
 #[cfg(feature = "live")]
-pub(crate) use {record::run_recorded, replay::replay, service::live, view::view};
+pub(crate) use {joint_recording::convert_recording, record::run_recorded, replay::replay, service::live, view::view};
 
 #[cfg(not(feature = "live"))]
-pub(crate) use missing::{live, replay, run_recorded, view};
+pub(crate) use missing::{convert_recording, live, replay, run_recorded, view};
 
 /// Without the feature the commands say how to get them.
 #[cfg(not(feature = "live"))]
@@ -42,6 +44,10 @@ mod missing {
 
     pub(crate) fn run_recorded(_: &Cell, _: &RunOptions, _: &Path) -> Result<RunOutcome, Failure> {
         not_built("run --mcap")
+    }
+
+    pub(crate) fn convert_recording(_: &Path, _: Option<&str>, _: &Path) -> Result<ExitStatus, Failure> {
+        not_built("convert RECORDING.mcap")
     }
 
     fn not_built<T>(command: &str) -> Result<T, Failure> {

@@ -5,6 +5,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use elbowroom::cell::Cell;
+use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
 
 use super::LiveArgs;
@@ -14,6 +15,7 @@ use crate::output::{ExitStatus, Failure, note};
 const POLL: Duration = Duration::from_millis(200);
 
 pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
+    with_few_threads();
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let keys = Keys::new(&cell.name);
@@ -21,6 +23,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         robots: args.robots.clone(),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
+        udp: args.udp.clone(),
         arbiter: args.arbiter,
         simulate: args.simulate,
         web: args.web.clone(),
@@ -54,6 +57,23 @@ fn control(args: &LiveArgs) -> Option<ControlOptions> {
     let (address, tokens) = (args.control.clone()?, args.tokens.clone()?);
     Some(ControlOptions { address, tokens, log: None, program_switches: args.program_switches })
 }
+
+/// Starts this program again in its place, with the threads of Zenoh that wake the fewest for a message. Zenoh reads the variable
+/// once, at its start; one that is set already is kept.
+#[cfg(unix)]
+fn with_few_threads() {
+    use std::os::unix::process::CommandExt;
+    if std::env::var_os("ZENOH_RUNTIME").is_none()
+        && let Ok(program) = std::env::current_exe()
+    {
+        let arguments = std::env::args_os().skip(1);
+        // Returns only where it fails: then Zenoh's own threads will do.
+        let _ = std::process::Command::new(program).args(arguments).env("ZENOH_RUNTIME", ZENOH_RUNTIME).exec();
+    }
+}
+
+#[cfg(not(unix))]
+fn with_few_threads() {}
 
 /// A message when the process is asked to end.
 fn stop_signal() -> Result<Receiver<()>, Failure> {

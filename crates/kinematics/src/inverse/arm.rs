@@ -47,6 +47,8 @@ pub struct ArmVariable {
 pub struct Arm {
     pub joints: Vec<ArmJoint>,
     pub variables: Vec<ArmVariable>,
+    /// The link that carries the first moving joint, in the root.
+    pub base_in_root: Pose,
     /// The tip (tool included) in the last joint's frame.
     pub tip_in_last: Pose,
     /// Upper bound on the distance of the tip from the first joint's origin, m. Infinite with an unlimited slide.
@@ -62,10 +64,19 @@ pub struct AxisInRoot {
 
 impl Arm {
     pub fn new(chain: &Chain, tip: LinkId, tip_offset: Pose) -> Self {
-        let mut arm = Self { joints: Vec::new(), variables: Vec::new(), tip_in_last: Pose::IDENTITY, reach: 0.0 };
+        let mut arm = Self {
+            joints: Vec::new(),
+            variables: Vec::new(),
+            base_in_root: Pose::IDENTITY,
+            tip_in_last: Pose::IDENTITY,
+            reach: 0.0,
+        };
         let mut pending = Pose::IDENTITY;
         for id in chain.path(tip) {
             let joint = &chain.joints[id.0];
+            if arm.joints.is_empty() {
+                arm.base_in_root = pending;
+            }
             pending = pending * joint.origin;
             if let Some(coupling) = chain.couplings[id.0] {
                 let variable = arm.variable(chain, coupling.index);

@@ -11,6 +11,9 @@
 //! | six or more axes otherwise (UR, iiwa, rails, positioners) | numeric | one solution, near the seed where possible |
 //! | fewer than six | numeric | [`IkTask::Pose`] where the target lies within the chain's freedom, else [`IkTask::Position`] |
 //!
+//! The up to eight solutions of a spherical wrist have names: shoulder front or back, elbow up or down, wrist flipped or not
+//! ([`ArmConfiguration`]).
+//!
 //! ```
 //! use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 //! use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, dh::ClassicalRow};
@@ -39,6 +42,7 @@
 //! ```
 
 pub(crate) mod arm;
+mod arm_configuration;
 mod error;
 pub(crate) mod goal;
 pub(crate) mod levenberg_marquardt;
@@ -50,6 +54,7 @@ mod solution;
 mod solver;
 mod spherical_wrist;
 
+pub use arm_configuration::{ArmConfiguration, ConfigurationChoice, ConfigurationWordError, Elbow, Shoulder, Wrist};
 pub use error::IkError;
 pub use options::{IkMethod, IkOptions, IkTask};
 pub use solution::IkSolution;

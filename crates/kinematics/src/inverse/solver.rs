@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use elbowroom_spatial::Pose;
 
 use super::arm::{Arm, ArmVariable};
+use super::arm_configuration::ArmConfiguration;
 use super::error::IkError;
 use super::levenberg_marquardt::{LevenbergMarquardt, LmWorkspace};
 use super::options::{IkMethod, IkOptions, IkTask};
@@ -80,6 +81,16 @@ impl IkSolver {
     /// The method used.
     pub fn method(&self) -> IkMethod {
         if self.wrist.is_some() { IkMethod::SphericalWrist } else { IkMethod::Numeric }
+    }
+
+    /// The branch that `q` (all of the chain's values) belongs to; `None` where the arm has no spherical wrist, or where `q` has
+    /// another length or is not finite.
+    pub fn configuration(&self, q: &[f64]) -> Option<ArmConfiguration> {
+        if q.len() != self.dof || !q.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let x = self.start(q);
+        self.wrist.as_ref()?.configuration(&self.arm, x.as_slice().try_into().ok()?)
     }
 
     /// A solution within the joint limits for the tip at `target_in_root`, near `seed` (all of the chain's `q`, rad or m): in closed

@@ -4,12 +4,15 @@
 //! axis 2 the parameters of the ortho-parallel basis follow; the transform from the model's last frame to the tip is a constant
 //! tool.
 
+use std::f64::consts::PI;
+
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose as OpwPose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
 
 use super::arm::{Arm, AxisInRoot};
+use super::arm_configuration::{ArmConfiguration, Elbow, Shoulder, Wrist};
 use super::rotation_error::rotation_error;
 use super::sequence::quasirandom;
 
@@ -23,6 +26,18 @@ pub struct SphericalWrist {
     model: OPWKinematics,
     base_in_root: Pose,
     tool_in_flange: Pose,
+    branches: Branches,
+}
+
+/// What tells the branches apart.
+#[derive(Debug, Clone, Copy)]
+struct Branches {
+    /// 1 where axis 2 as it is in the file, crossed with axis 1, points to the front.
+    front: f64,
+    /// 1 where axis 1 as it is in the file points away from the base.
+    up: f64,
+    /// Value of joint 5 at which axes 4 and 6 are aligned, nearest to the middle of its range, rad.
+    straight: f64,
 }
 
 impl SphericalWrist {
@@ -37,13 +52,13 @@ impl SphericalWrist {
         }
         let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
         let tip_in_root = arm.tip_in_root(&[0.0; 6], &mut axes);
-        let mut wrist = Self::from_axes(&axes)?;
+        let mut wrist = Self::from_axes(&axes, arm)?;
         let flange_in_root = wrist.base_in_root * wrist.flange_in_base(&[0.0; 6])?;
         wrist.tool_in_flange = flange_in_root.inverse() * tip_in_root;
         wrist.reproduces(arm).then_some(wrist)
     }
 
-    fn from_axes(axes: &[AxisInRoot; 6]) -> Option<Self> {
+    fn from_axes(axes: &[AxisInRoot; 6], arm: &Arm) -> Option<Self> {
         let [a1, a2, a3, a4, a5, a6] = axes;
         let perpendicular = |a: Vec3, b: Vec3| a.dot(b).abs() < SLACK;
         let right_angles = perpendicular(a1.axis, a2.axis)
@@ -95,7 +110,37 @@ impl SphericalWrist {
             dof: 6,
         };
         let sound = parameters.c2 > 1e-6 && parameters.a2.hypot(parameters.c3) > 1e-6;
-        sound.then(|| Self { model: OPWKinematics::new(parameters), base_in_root, tool_in_flange: Pose::IDENTITY })
+        let branches = Branches {
+            front: f64::from(sign2),
+            up: away_from_base(z, &base_in_root, arm),
+            straight: straight(-theta5, arm),
+        };
+        sound.then(|| Self {
+            model: OPWKinematics::new(parameters),
+            base_in_root,
+            tool_in_flange: Pose::IDENTITY,
+            branches,
+        })
+    }
+
+    /// The branch that values of the arm's joints belong to.
+    pub fn configuration(&self, arm: &Arm, q: &[f64; 6]) -> Option<ArmConfiguration> {
+        let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
+        arm.tip_in_root(q, &mut axes);
+        let [a1, a2, a3, a4, a5, a6] = &axes;
+        let center = wrist_center(a4, a5, a6)?;
+        let Branches { front, up, straight } = self.branches;
+        let ahead = (a2.axis * front).cross(a1.axis);
+        let is_front = (center - a1.origin).dot(ahead) >= 0.0;
+        // The triangle axis 2, axis 3, wrist centre in the plane of the arm: ahead and up.
+        let flat = |v: Vec3| (v.dot(ahead), v.dot(a1.axis * up));
+        let (elbow, wrist) = (flat(a3.origin - a2.origin), flat(center - a2.origin));
+        let turned = elbow.0 * wrist.1 - elbow.1 * wrist.0;
+        Some(ArmConfiguration {
+            shoulder: if is_front { Shoulder::Front } else { Shoulder::Back },
+            elbow: if (turned <= 0.0) == is_front { Elbow::Up } else { Elbow::Down },
+            wrist: if (q[4] - straight).sin() >= 0.0 { Wrist::NoFlip } else { Wrist::Flip },
+        })
     }
 
     fn flange_in_base(&self, q: &[f64; 6]) -> Option<Pose> {
@@ -129,6 +174,21 @@ impl SphericalWrist {
             Err(_) => Vec::new(),
         }
     }
+}
+
+/// 1 where `axis_1` points from the arm's base to the arm.
+fn away_from_base(axis_1: Vec3, shoulder_in_root: &Pose, arm: &Arm) -> f64 {
+    let height = axis_1.dot(shoulder_in_root.translation - arm.base_in_root.translation);
+    let along = if height.abs() > SLACK { height } else { axis_1.dot(arm.base_in_root.rotation * Vec3::Z) };
+    if along < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// Of `aligned` and what is half turns away from it, the value nearest to the middle of the range of joint 5.
+fn straight(aligned: f64, arm: &Arm) -> f64 {
+    let range = &arm.variables[4];
+    let middle = 0.5 * (range.lower + range.upper);
+    let middle = if middle.is_finite() { middle } else { 0.0 };
+    aligned + PI * ((middle - aligned) / PI).round()
 }
 
 type OpwRotation = rs_opw_kinematics::glam::DQuat;

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{split_mix, unit};
 
 pub fn data() -> Option<PathBuf> {
@@ -159,4 +159,31 @@ impl Random {
             *value = self.range(joint.limits.lower.max(-unlimited * 8.0), joint.limits.upper.min(unlimited * 8.0));
         }
     }
+}
+
+/// Ortho-parallel basis and spherical wrist with every frame rotated at random: nothing of the geometry is along an axis.
+pub fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
+    let lateral = random.range(-0.2, 0.2) * random.below(2) as f64;
+    let points = [
+        Vec3::new(0.0, 0.0, random.range(0.0, 0.5)),
+        Vec3::new(random.range(-0.4, 0.4) * random.below(3).min(1) as f64, lateral, random.range(0.0, 0.5)),
+        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
+        Vec3::new(random.range(-0.2, 0.2), 0.0, random.range(-0.1, 0.1)),
+        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
+        Vec3::new(0.0, 0.0, random.range(0.0, 0.1)),
+    ];
+    let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::Z, Vec3::Y, Vec3::Z];
+    // In the file: model frame k = file frame k · hidden(k)
+    let hidden: Vec<Rotation> = (0..7).map(|_| random.pose().rotation).collect();
+    let mut joints = Vec::new();
+    let mut before = random.pose().rotation; // the base itself is rotated
+    for k in 0..6 {
+        let bend = Rotation::from_axis_angle(axes[k], random.range(-2.0, 2.0)); // zero positions anywhere
+        let origin = Pose::new(before * bend * hidden[k].inverse(), before * points[k]);
+        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        joints.push((JointKind::Revolute, origin, hidden[k] * (axes[k] * sign), Limits::symmetric(limit)));
+        before = hidden[k];
+    }
+    joints.push((JointKind::Fixed, random.pose(), Vec3::Z, Limits::UNLIMITED));
+    serial(&joints)
 }

@@ -71,19 +71,14 @@ impl JointState {
         }
     }
 
-    /// Writes the bytes into `out`, which is emptied. At most [`MAX_JOINTS`] joints and [`MAX_ATTACHED`] volumes are written:
-    /// more are no message, and the other side refuses them by their number.
+    /// Writes the bytes into `out`, which is emptied. More than [`MAX_JOINTS`] joints or [`MAX_ATTACHED`] volumes are no message:
+    /// the other side refuses them by their number, so that no volume is left out silently.
     pub fn encode(&self, out: &mut Vec<u8>) {
         begin(KIND, out);
         let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
         let flags =
             flag(self.qd.len() == self.q.len(), HAS_VELOCITY) | flag(self.intent.len() == self.q.len(), HAS_INTENT);
-        out.extend_from_slice(&[
-            self.q.len().min(MAX_JOINTS) as u8,
-            flags,
-            self.attached.len().min(MAX_ATTACHED) as u8,
-            0,
-        ]);
+        out.extend_from_slice(&[count(self.q.len()), flags, count(self.attached.len()), 0]);
         for word in [self.checksum, self.boot, self.sequence, self.stamp_us] {
             out.extend_from_slice(&word.to_le_bytes());
         }
@@ -123,16 +118,21 @@ impl JointState {
         (self.checksum, self.boot) = (reader.u64()?, reader.u64()?);
         (self.sequence, self.stamp_us) = (reader.u64()?, reader.u64()?);
         self.programmed_override = reader.f64()?;
-        let count = |flag: u8| if flags & flag == 0 { 0 } else { joints };
+        let flagged = |flag: u8| if flags & flag == 0 { 0 } else { joints };
         reader.numbers(joints, &mut self.q)?;
-        reader.numbers(count(HAS_VELOCITY), &mut self.qd)?;
-        reader.numbers(count(HAS_INTENT), &mut self.intent)?;
+        reader.numbers(flagged(HAS_VELOCITY), &mut self.qd)?;
+        reader.numbers(flagged(HAS_INTENT), &mut self.intent)?;
         self.attached.clear();
         for _ in 0..attached {
             self.attached.push(attached_volume(reader)?);
         }
         Some(())
     }
+}
+
+/// A number of things in its byte; more than fit there are more than any message may have.
+fn count(length: usize) -> u8 {
+    u8::try_from(length).unwrap_or(u8::MAX)
 }
 
 fn attached_volume(reader: &mut Reader<'_>) -> Option<AttachedVolume> {

@@ -9,6 +9,13 @@ use zenoh::{Session, Wait};
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
+/// The value of the environment variable `ZENOH_RUNTIME` with which a joint state wakes the fewest threads.
+///
+/// By default Zenoh reads a connection on other threads than those that wait for its sockets, so that every message wakes three of
+/// them. Zenoh reads the variable once, and a process cannot safely set its own: set it where the process is started.
+pub const ZENOH_RUNTIME: &str =
+    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
+
 /// How a process takes part.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ZenohSettings {

@@ -6,7 +6,9 @@ use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{AccessClass, Fault, OverrideReason, RegionId, Snapshot, SourceState, TickReport, VolumeId};
+use elbowroom_monitor::{
+    AccessClass, Fault, Monitor, OverrideReason, Presence, RegionId, Snapshot, SourceState, TickReport, VolumeId,
+};
 use elbowroom_rosbag::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
@@ -33,7 +35,10 @@ pub(super) struct GuardedRobot {
     /// How old the joint values of the others are.
     ages: Vec<Option<Micros>>,
     sources: Vec<SourceState>,
+    /// What the monitor has attached.
     attached: Vec<AttachedVolume>,
+    /// The controller has named an attached volume once: from then on it is known to name them all.
+    names_attached: bool,
     /// Since when the robot is at rest where it cannot have moved to.
     jumped: Option<Micros>,
     regions: RegionTable,
@@ -52,11 +57,17 @@ impl GuardedRobot {
         checksum: u64,
         recorder: Option<TickRecorder>,
     ) -> Self {
+        // What is mounted at the start, until the controller names what is attached.
+        let volumes = setup.configuration.volumes().iter().enumerate();
+        let mounted = volumes.filter(|(_, v)| v.presence == Presence::Attached);
+        let mut attached = Vec::with_capacity(MAX_ATTACHED);
+        attached.extend(mounted.map(|(i, v)| AttachedVolume { volume: VolumeId(i), in_link: v.in_link }));
         Self {
             chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             ages: vec![None; cell.robots.len()],
             sources: Vec::with_capacity(setup.sources.len()),
-            attached: Vec::with_capacity(MAX_ATTACHED),
+            attached,
+            names_attached: false,
             state: JointState::with_capacity(),
             stamp: None,
             now: Micros(0),
@@ -95,6 +106,10 @@ impl GuardedRobot {
         if self.regions.active != table.active {
             self.regions.active.copy_from_slice(&table.active);
         }
+    }
+
+    pub(super) fn monitor(&self) -> &Monitor {
+        self.monitor.monitor()
     }
 
     /// How old the joint values are; `None` before the first.
@@ -214,8 +229,9 @@ impl GuardedRobot {
 
     /// Attaches and detaches the optional volumes as the controller says. False where it names one that there is not.
     fn attach(&mut self) -> bool {
-        let Self { monitor, attached, state, recorder, .. } = self;
-        if *attached == state.attached {
+        let Self { monitor, attached, names_attached, state, recorder, .. } = self;
+        *names_attached |= !state.attached.is_empty();
+        if !*names_attached || *attached == state.attached {
             return true;
         }
         let monitor = monitor.monitor_mut();

@@ -3,12 +3,13 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
 use elbowroom_interlock::wire::MAX_BYTES;
 
 use super::input_gate::InputGate;
 use crate::messages::JointState;
-use crate::regions_table::RegionTable;
+use crate::regions_table::{RegionTable, RegionTableMessage};
 
 /// What has arrived since the last tick. Threads of the network write, the thread of the tick reads; what is written twice is
 /// read once, in its newest state.
@@ -119,6 +120,14 @@ impl Inbox {
     pub(super) fn take_followed(&self, robot: usize, bytes: &[u8], arrived: Micros) {
         if let Some(Some(heard)) = self.lock().followed.get_mut(robot) {
             heard.take(bytes, arrived);
+        }
+    }
+
+    /// Which regions are switched on.
+    pub(super) fn take_regions(&self, message: &RegionTableMessage, cell: &Cell, arrived: Micros) {
+        let mut contents = self.lock();
+        if contents.regions.take(message, cell) {
+            contents.regions_heard = Some(arrived);
         }
     }
 

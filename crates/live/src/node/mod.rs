@@ -7,18 +7,17 @@ mod guarded_robot;
 mod inbox;
 mod input_gate;
 mod node_monitor;
+mod node_tick;
 mod outbox;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_interlock::Micros;
 use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Configuration, TickReport};
+use elbowroom_monitor::Configuration;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
@@ -28,19 +27,15 @@ use elbowroom_rosbag::TickRecorder;
 use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
-use crate::regions_table::{RegionTable, RegionTableMessage};
-use guarded_robot::GuardedRobot;
+use crate::regions_table::RegionTableMessage;
 use inbox::Inbox;
+use node_tick::follows;
 use outbox::Outbox;
 
 pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;
-
-/// How often a status is published, at most.
-const STATUS_PERIOD: Micros = Micros(20_000);
-/// How often a guard writes to the arbiter; at once where something changed.
-const REPORT_PERIOD: Micros = Micros(10_000);
+pub use node_tick::NodeTick;
 
 /// What a node needs.
 pub struct NodeParts {
@@ -86,8 +81,9 @@ impl Node {
         let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
         let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
-        let inbox = Arc::new(Inbox::new(checksum, followed.clone(), RegionTable::initial(&cell)));
-        let outbox = Arc::new(Outbox::new(monitor.monitor()));
+        let (configuration, sample) = (setup.configuration.clone(), StatusSample::new(monitor.monitor()));
+        let mut tick = NodeTick::new(cell.clone(), setup, monitor, checksum, recorder);
+        let (inbox, outbox) = (tick.inbox().clone(), tick.outbox().clone());
         let mut subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
         let grants = inbox.clone();
         let handler = Box::new(move |bytes: &[u8]| grants.take_grants(bytes));
@@ -96,26 +92,15 @@ impl Node {
             answers: network.publisher(&keys.speed_override(&name), Urgency::RealTime)?,
             statuses: network.publisher(&keys.status(&name), Urgency::Display)?,
             states: interlocks.publisher(&keys.interlock_state(&name), Urgency::RealTime)?,
-            configuration: setup.configuration.clone(),
-            sample: StatusSample::new(monitor.monitor()),
-            chain: ChainState::new(setup.configuration.chain()),
-            cell: cell.clone(),
+            chain: ChainState::new(configuration.chain()),
+            configuration,
+            sample,
+            cell,
             robot,
-        };
-        let guarded = GuardedRobot::new(cell.clone(), setup, monitor, checksum, recorder);
-        let ticking = Ticking {
-            stale: Micros::from_seconds(cell.laws.laws.stale_s),
-            guarded,
-            inbox: inbox.clone(),
-            outbox: outbox.clone(),
-            clock,
-            health: HealthStatus::default(),
-            published: None,
-            reported: None,
         };
         let sending = outbox.clone();
         let threads = [
-            std::thread::Builder::new().name(format!("tick {name}")).spawn(move || ticking.run()),
+            std::thread::Builder::new().name(format!("tick {name}")).spawn(move || while tick.wait_and_tick(clock) {}),
             std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
         ];
         let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
@@ -132,10 +117,6 @@ impl Drop for Node {
             let _ = thread.join();
         }
     }
-}
-
-fn follows(setup: &MonitorSetup, robot: RobotId) -> bool {
-    setup.sources.iter().any(|s| matches!(s, elbowroom_cell::Follow::Robot { robot: r, .. } if *r == robot))
 }
 
 fn subscribe(
@@ -158,80 +139,10 @@ fn subscribe(
     let (inbox, cell) = (inbox.clone(), cell.clone());
     let handler = Box::new(move |bytes: &[u8]| {
         let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
-        let mut contents = inbox.lock();
-        if contents.regions.take(&message, &cell) {
-            contents.regions_heard = Some(clock.micros());
-        }
+        inbox.take_regions(&message, &cell, clock.micros());
     });
     subscriptions.push(network.subscribe(&keys.regions(), handler)?);
     Ok(subscriptions)
-}
-
-/// The thread of the tick.
-struct Ticking {
-    guarded: GuardedRobot,
-    inbox: Arc<Inbox>,
-    outbox: Arc<Outbox>,
-    clock: Clock,
-    stale: Micros,
-    health: HealthStatus,
-    published: Option<Micros>,
-    /// When the guard wrote to the arbiter last.
-    reported: Option<Micros>,
-}
-
-impl Ticking {
-    fn run(mut self) {
-        while self.step() {}
-    }
-
-    /// Waits for joint values and answers them; without any, ticks when the last ones are stale. False at the end.
-    fn step(&mut self) -> bool {
-        let (now, has_joints) = {
-            let mut contents = self.inbox.wait(Duration::from_micros(self.stale.0));
-            if contents.is_closed {
-                return false;
-            }
-            let now = self.clock.micros();
-            let has_joints = contents.own.is_new;
-            self.health.rejected = contents.own.rejected();
-            self.guarded.take(&mut contents, now);
-            (now, has_joints)
-        };
-        let is_stale = self.guarded.age().is_none_or(|age| age > self.stale);
-        if has_joints || is_stale {
-            let report = self.guarded.tick(now);
-            self.health.ticks += 1;
-            self.health.stale += u64::from(is_stale);
-            let spent = self.clock.micros() - now;
-            self.health.tick_max_us = self.health.tick_max_us.max(spent.0);
-            self.put(&report, now);
-        }
-        true
-    }
-
-    fn put(&mut self, report: &TickReport, now: Micros) {
-        let answer = self.guarded.answer(report);
-        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
-        let is_report_due =
-            self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
-        let Self { guarded, outbox, health, published, reported, .. } = self;
-        outbox.put(|outgoing| {
-            outgoing.answer = Some(answer);
-            if is_report_due {
-                outgoing.state.clear();
-                outgoing.state.extend_from_slice(guarded.interlock_state(now));
-                *reported = Some(now);
-            }
-            if is_status_due && !outgoing.has_sample {
-                std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
-                outgoing.has_sample = true;
-                (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
-                outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
-                *published = Some(now);
-            }
-        });
-    }
 }
 
 /// The thread that sends.
@@ -259,12 +170,7 @@ impl Sender {
                     return;
                 }
                 std::mem::swap(&mut state, &mut outgoing.state);
-                let status = std::mem::take(&mut outgoing.has_sample);
-                if status {
-                    std::mem::swap(&mut self.sample, &mut outgoing.sample);
-                }
-                let status = status.then_some((outgoing.t_s, outgoing.sequence, outgoing.health));
-                (outgoing.answer.take(), status)
+                (outgoing.answer.take(), outgoing.take_sample(&mut self.sample))
             };
             if let Some(answer) = answer {
                 answer.encode(&mut bytes);

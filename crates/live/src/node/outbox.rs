@@ -33,6 +33,15 @@ impl Outgoing {
     fn is_empty(&self) -> bool {
         self.answer.is_none() && self.state.is_empty() && !self.has_sample && !self.is_closed
     }
+
+    /// Exchanges the sample with `into`, where there is a new one; with its time, its number and the health.
+    pub(super) fn take_sample(&mut self, into: &mut StatusSample) -> Option<(f64, u64, HealthStatus)> {
+        if !std::mem::take(&mut self.has_sample) {
+            return None;
+        }
+        std::mem::swap(into, &mut self.sample);
+        Some((self.t_s, self.sequence, self.health))
+    }
 }
 
 impl Outbox {
@@ -50,7 +59,7 @@ impl Outbox {
         Self { contents: Mutex::new(contents), news: Condvar::new() }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Outgoing> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, Outgoing> {
         self.contents.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

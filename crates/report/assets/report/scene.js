@@ -10,6 +10,7 @@ const Stage = (() => {
         const cell = Cell.at(r, (run.t[run.t.length - 1] * n) / 24);
         Data.robots.forEach((robot, i) => robot.solids.forEach((s) => add(Data.meshes[s.mesh], Kinematics.multiply(cell.links[i][s.link], s.pose))));
         if (n % 6 === 0) Data.objects.forEach((object, i) => add(Data.meshes[object.mesh], cell.objects[i].pose));
+        if (n % 6 === 0) Perceived.known(run, cell.t).forEach((o) => o.outline.forEach(([x, y]) => points.push(new THREE.Vector3(x, y, o.bottom + o.height))));
         if (n % 6 === 0) Data.regions.forEach((region, i) => add(Data.meshes[region.shell ?? region.solid], cell.regions[i].pose));
       }
     });
@@ -38,6 +39,9 @@ const Stage = (() => {
     return group;
   });
 
+  const perceived = stage.works ? Perceived.layer() : null;
+  if (perceived) stage.add(perceived.group);
+
   // Shows a cell; per robot a line to show, or null.
   function show(runIndex, cell, pairs) {
     const { t, run } = cell;
@@ -48,6 +52,7 @@ const Stage = (() => {
     };
     const line = (pair) => pair && { ...pair, text: `${pair.part} – ${pair.target.name} ${millimetres(pair.distance)}` };
     paths.forEach((path, i) => { path.visible = i === runIndex; });
+    if (perceived) perceived.show(run, t);
     stage.show({
       robots: cell.links.map((links, i) => ({
         links, absent: cell.absent[i], tcp: Cell.tcp(run.robots[i], links, t).slice(9),

@@ -9,7 +9,6 @@ use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
 };
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -260,7 +259,7 @@ impl<'a> ProgramPlanner<'a> {
                 from: Some(self.q.clone()),
                 to: match to {
                     MoveTarget::Joints(q) => PathGoal::Joints(q.clone()),
-                    MoveTarget::Tcp(in_world) => PathGoal::Tcp(*in_world),
+                    MoveTarget::Tcp(target) => PathGoal::Tcp(target.clone()),
                 },
                 speed,
                 placed: self.parts.placed(),
@@ -337,7 +336,7 @@ impl<'a> ProgramPlanner<'a> {
 
     fn line(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<TcpLine, FormatError> {
         let to_in_root = match to {
-            MoveTarget::Tcp(in_world) => self.robot.base_in_world.inverse_mul(in_world),
+            MoveTarget::Tcp(target) => self.robot.base_in_world.inverse_mul(&target.in_world),
             MoveTarget::Joints(q) => self.tcp_in_root(q),
         };
         TcpLine::new(&self.robot, self.cell.units, &self.q, to_in_root).map_err(|error| {
@@ -357,18 +356,11 @@ impl<'a> ProgramPlanner<'a> {
     }
 
     fn joint_target(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<Vec<f64>, FormatError> {
-        let in_world = match to {
-            MoveTarget::Joints(q) => return Ok(q.clone()),
-            MoveTarget::Tcp(in_world) => in_world,
-        };
-        let target = self.robot.base_in_world.inverse_mul(in_world);
-        let mut solver =
-            IkSolver::new(&self.robot.robot.chain, self.robot.flange, self.robot.tcp_in_flange, IkOptions::default());
-        match solver.solve(&target, &self.q) {
-            Ok(solution) => Ok(solution.q),
-            Err(e) => Err(self
-                .error(index, step, &self.cell.units.describe_ik_error(&e, &self.robot.robot.chain))
-                .hint("a pose within reach, or joint values")),
+        match to {
+            MoveTarget::Joints(q) => Ok(q.clone()),
+            MoveTarget::Tcp(target) => target
+                .joint_values(&self.robot, self.cell.units, &self.q)
+                .map_err(|why| self.error(index, step, &why).hint("a pose within reach, or joint values")),
         }
     }
 

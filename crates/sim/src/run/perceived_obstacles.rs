@@ -152,6 +152,7 @@ impl<'a> PerceivedObstacles<'a> {
         let track = |s: RunSensor<'_>| SensorTrack {
             name: s.spec.name.clone(),
             kind: s.spec.table(),
+            latency_s: s.spec.latency_s,
             records: s.records,
             processing_ns: TickTimes::of(s.processing_ns),
         };

@@ -1,0 +1,98 @@
+//! A pose of the TCP as a goal, and which solution of inverse kinematics is wanted.
+
+use elbowroom_kinematics::inverse::{ConfigurationChoice, IkOptions, IkSolver};
+use elbowroom_spatial::Pose;
+
+use crate::{CellRobot, Units};
+
+/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TcpTarget {
+    /// The TCP in the world.
+    pub in_world: Pose,
+    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
+    pub configuration: ConfigurationChoice,
+    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
+    pub near: Option<Vec<f64>>,
+}
+
+impl From<Pose> for TcpTarget {
+    /// Any solution.
+    fn from(in_world: Pose) -> Self {
+        Self { in_world, configuration: ConfigurationChoice::default(), near: None }
+    }
+}
+
+impl TcpTarget {
+    /// Joint values for the TCP of a robot, nearest to `near` or else to `from`.
+    ///
+    /// # Errors
+    /// Why there are none, in the units of the cell.
+    pub fn joint_values(&self, robot: &CellRobot, units: Units, from: &[f64]) -> Result<Vec<f64>, String> {
+        let mut solver = robot.ik_solver();
+        let seed = self.near.as_deref().unwrap_or(from);
+        if self.configuration.is_open() {
+            let found = solver.solve(&robot.base_in_world.inverse_mul(&self.in_world), seed);
+            return found.map(|found| found.q).map_err(|e| units.describe_ik_error(&e, &robot.robot.chain));
+        }
+        let all = solver.solve_all(&robot.base_in_world.inverse_mul(&self.in_world), seed);
+        let chosen = self.choose(robot, units, from, all)?;
+        Ok(chosen.into_iter().next().unwrap_or_default())
+    }
+
+    /// Of the solutions found, those that are wanted, in their order; never empty.
+    ///
+    /// # Errors
+    /// Why none is left, in the units of the cell.
+    pub fn choose(
+        &self,
+        robot: &CellRobot,
+        units: Units,
+        from: &[f64],
+        found: Vec<Vec<f64>>,
+    ) -> Result<Vec<Vec<f64>>, String> {
+        let mut solver = robot.ik_solver();
+        if found.is_empty() {
+            let why = solver.solve(&robot.base_in_world.inverse_mul(&self.in_world), from).err();
+            return Err(why.map_or_else(
+                || "no posture within the limits was found".to_owned(),
+                |e| units.describe_ik_error(&e, &robot.robot.chain),
+            ));
+        }
+        let chosen = self.with_configuration(&solver, found)?;
+        let Some(near) = &self.near else { return Ok(chosen) };
+        let distance = |q: &Vec<f64>| q.iter().zip(near).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        Ok(chosen.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).into_iter().collect())
+    }
+
+    fn with_configuration(&self, solver: &IkSolver, found: Vec<Vec<f64>>) -> Result<Vec<Vec<f64>>, String> {
+        if self.configuration.is_open() {
+            return Ok(found);
+        }
+        let (mut chosen, mut others) = (Vec::new(), Vec::new());
+        for q in found {
+            match solver.configuration(&q) {
+                Some(is) if self.configuration.admits(&is) => chosen.push(q),
+                Some(is) => others.push(is.to_string()),
+                None => {}
+            }
+        }
+        if chosen.is_empty() {
+            others.sort();
+            others.dedup();
+            let others = others.join(", ");
+            return Err(format!(
+                "the target is not reached in the configuration {}, but in {others}",
+                self.configuration
+            ));
+        }
+        Ok(chosen)
+    }
+}
+
+impl CellRobot {
+    /// Inverse kinematics of the active TCP, in the robot's base.
+    pub fn ik_solver(&self) -> IkSolver {
+        IkSolver::new(&self.robot.chain, self.flange, self.tcp_in_flange, IkOptions::default())
+    }
+}

@@ -1,0 +1,181 @@
+//! The tick of a node, without its threads, its network and its clock.
+
+use std::sync::{Arc, MutexGuard};
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, Follow};
+use elbowroom_interlock::Micros;
+use elbowroom_monitor::TickReport;
+use elbowroom_robot::RobotId;
+use elbowroom_rosbag::TickRecorder;
+use elbowroom_status::{HealthStatus, StatusSample};
+
+use super::guarded_robot::GuardedRobot;
+use super::inbox::{Contents, Inbox};
+use super::node_monitor::NodeMonitor;
+use super::outbox::Outbox;
+use crate::clock::Clock;
+use crate::messages::OverrideAnswer;
+use crate::regions_table::{RegionTable, RegionTableMessage};
+
+/// How often a status is published, at most.
+const STATUS_PERIOD: Micros = Micros(20_000);
+/// How often a guard writes to the arbiter; at once where something changed.
+const REPORT_PERIOD: Micros = Micros(10_000);
+
+/// Whether the regions of a setup follow a robot.
+pub(super) fn follows(setup: &MonitorSetup, robot: RobotId) -> bool {
+    setup.sources.iter().any(|s| matches!(s, Follow::Robot { robot: r, .. } if *r == robot))
+}
+
+/// What a [`Node`](super::Node) does between a joint state and its answer, for programs that have a loop of their own: messages are
+/// put in, [`Self::tick`] is called, messages are taken out.
+///
+/// Nothing is allocated after [`Self::new`], but by [`Self::regions`] and by a recorder; `tests/alloc.rs` counts.
+pub struct NodeTick {
+    guarded: GuardedRobot,
+    inbox: Arc<Inbox>,
+    outbox: Arc<Outbox>,
+    cell: Arc<Cell>,
+    stale: Micros,
+    health: HealthStatus,
+    /// When a status was left last.
+    published: Option<Micros>,
+    /// When the guard wrote to the arbiter last.
+    reported: Option<Micros>,
+}
+
+impl NodeTick {
+    /// The tick of the robot of a setup and a monitor of it. `checksum` is the
+    /// [`configuration_number`](crate::configuration_number) of the cell.
+    pub fn new(
+        cell: Arc<Cell>,
+        setup: MonitorSetup,
+        monitor: NodeMonitor,
+        checksum: u64,
+        recorder: Option<TickRecorder>,
+    ) -> Self {
+        let followed = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
+        Self {
+            inbox: Arc::new(Inbox::new(checksum, followed, RegionTable::initial(&cell))),
+            outbox: Arc::new(Outbox::new(monitor.monitor())),
+            guarded: GuardedRobot::new(cell.clone(), setup, monitor, checksum, recorder),
+            stale: Micros::from_seconds(cell.laws.laws.stale_s),
+            cell,
+            health: HealthStatus::default(),
+            published: None,
+            reported: None,
+        }
+    }
+
+    pub(super) fn inbox(&self) -> &Arc<Inbox> {
+        &self.inbox
+    }
+
+    pub(super) fn outbox(&self) -> &Arc<Outbox> {
+        &self.outbox
+    }
+
+    /// Puts in a joint state of the robot. Times are those of one monotonic clock of this process.
+    pub fn joint_state(&self, bytes: &[u8], arrived: Micros) {
+        self.inbox.take_joint_state(bytes, arrived);
+    }
+
+    /// Puts in a joint state of another robot, which counts where a region follows that one.
+    pub fn followed_joint_state(&self, robot: RobotId, bytes: &[u8], arrived: Micros) {
+        self.inbox.take_followed(robot.0, bytes, arrived);
+    }
+
+    /// Puts in a message of the arbiter.
+    pub fn grants(&self, bytes: &[u8]) {
+        self.inbox.take_grants(bytes);
+    }
+
+    /// Puts in which regions are switched on.
+    pub fn regions(&self, message: &RegionTableMessage, arrived: Micros) {
+        self.inbox.take_regions(message, &self.cell, arrived);
+    }
+
+    /// Answers the joint state that arrived last, if it is new; without one, ticks where the last one is stale. `None`: there was
+    /// nothing to do.
+    pub fn tick(&mut self, now: Micros) -> Option<TickReport> {
+        let inbox = self.inbox.clone();
+        self.tick_on(inbox.lock(), now)
+    }
+
+    /// Takes the answer to the controller, where there is a new one.
+    pub fn take_answer(&self) -> Option<OverrideAnswer> {
+        self.outbox.lock().answer.take()
+    }
+
+    /// Exchanges the message to the arbiter with `bytes`; false where there is no new one.
+    pub fn take_interlock_state(&self, bytes: &mut Vec<u8>) -> bool {
+        bytes.clear();
+        std::mem::swap(bytes, &mut self.outbox.lock().state);
+        !bytes.is_empty()
+    }
+
+    /// Exchanges what a status is made of with `sample`; false where there is no new one. Fifty per second are left.
+    pub fn take_sample(&self, sample: &mut StatusSample) -> bool {
+        self.outbox.lock().take_sample(sample).is_some()
+    }
+
+    /// An empty sample for [`Self::take_sample`].
+    pub fn new_sample(&self) -> StatusSample {
+        StatusSample::new(self.guarded.monitor())
+    }
+
+    /// Waits for joint values and answers them; without any, ticks when the last ones are stale. False at the end.
+    pub(super) fn wait_and_tick(&mut self, clock: Clock) -> bool {
+        let inbox = self.inbox.clone();
+        let contents = inbox.wait(Duration::from_micros(self.stale.0));
+        if contents.is_closed {
+            return false;
+        }
+        self.tick_on(contents, clock.micros());
+        true
+    }
+
+    fn tick_on(&mut self, mut contents: MutexGuard<'_, Contents>, now: Micros) -> Option<TickReport> {
+        let began = Instant::now();
+        let has_joints = contents.own.is_new;
+        self.health.rejected = contents.own.rejected();
+        self.guarded.take(&mut contents, now);
+        // What arrives during the tick is for the next one.
+        drop(contents);
+        let is_stale = self.guarded.age().is_none_or(|age| age > self.stale);
+        if !has_joints && !is_stale {
+            return None;
+        }
+        let report = self.guarded.tick(now);
+        self.health.ticks += 1;
+        self.health.stale += u64::from(is_stale);
+        self.health.tick_max_us = self.health.tick_max_us.max(began.elapsed().as_micros() as u64);
+        self.put(&report, now);
+        Some(report)
+    }
+
+    fn put(&mut self, report: &TickReport, now: Micros) {
+        let answer = self.guarded.answer(report);
+        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
+        let is_report_due =
+            self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
+        let Self { guarded, outbox, health, published, reported, .. } = self;
+        outbox.put(|outgoing| {
+            outgoing.answer = Some(answer);
+            if is_report_due {
+                outgoing.state.clear();
+                outgoing.state.extend_from_slice(guarded.interlock_state(now));
+                *reported = Some(now);
+            }
+            if is_status_due && !outgoing.has_sample {
+                std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
+                outgoing.has_sample = true;
+                (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
+                outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
+                *published = Some(now);
+            }
+        });
+    }
+}

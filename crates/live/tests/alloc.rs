@@ -1,0 +1,299 @@
+//! The tick of a node, what it takes in and its controller's client do not allocate. Without the test harness, because the
+//! counter includes all threads of the process.
+
+use std::alloc::System;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use elbowroom_cell::configure::{self, MonitorSetup};
+use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_interlock::wire::{MAX_BYTES, decode_state, encode_grants};
+use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings, StateMessage};
+use elbowroom_live::messages::{AttachedVolume, MAX_JOINT_STATE_BYTES, OVERRIDE_ANSWER_BYTES};
+use elbowroom_live::node::{NodeMonitor, NodeTick};
+use elbowroom_live::{ControllerClient, ControllerState, RegionTable, configuration_number};
+use elbowroom_monitor::{EventKind, Fault, OverrideReason, Presence, RobotSlot, TickReport, VolumeId};
+use elbowroom_robot::RobotId;
+use elbowroom_status::StatusSample;
+use elbowroom_testkit::random::split_mix;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+const TICK_US: u64 = 2_000;
+const TICKS: u64 = 20_000;
+/// The first swings are not counted.
+const WARM_UP: u64 = 4_000;
+
+/// An arm with two tools and a part swings past a post, through a region that robots exchange, through one that is switched,
+/// and past one that follows a carriage.
+const CELL: &str = r#"
+version = 1
+name = "swing"
+units = { length = "mm", angle = "deg" }
+tick_ms = 2
+[robot.arm]
+dh = [
+  { d = 400, alpha = 90, min = -170, max = 170, speed = 200 },
+  { a = 400, min = -170, max = 170, speed = 200 },
+  { a = 300, min = -170, max = 170, speed = 200 },
+]
+links = [[], { capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 60 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 50 } }]
+[robot.arm.tools.gripper]
+tcp = { at = [120, 0, 0], rpy = [0, 90, 0] }
+box = { at = [60, 0, 0], size = [120, 80, 80] }
+[robot.arm.tools.torch]
+tcp = { at = [200, 0, 0], rpy = [0, 90, 0] }
+box = { at = [100, 0, 0], size = [200, 60, 60] }
+mounted = false
+[robot.carriage]
+base = { at = [1300, 0, 400], rpy = [0, -90, 0] }
+dh = [{ kind = "prismatic", min = 0, max = 1000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+[object.part]
+shape = "box"
+at = [820, 0, 400]
+size = [100, 100, 100]
+[region.post]
+shape = "sphere"
+centre = [600, -700, 400]
+radius = 100
+warning = 250
+life = "permanent"
+robots = ["arm"]
+[region.table]
+shape = "sphere"
+centre = [500, 550, 400]
+radius = 100
+kind = "exchange"
+warning = 200
+guards = ["tool"]
+robots = ["arm"]
+[region.gate]
+shape = "sphere"
+centre = [900, 200, 400]
+radius = 60
+warning = 200
+life = "temporary"
+robots = ["arm"]
+[region.hand]
+shape = "sphere"
+centre = [0, 0, 0]
+radius = 80
+warning = 200
+follow = { robot = "carriage", frame = "flange" }
+robots = ["arm"]
+[monitor]
+stopping_distance = true
+direction_aware = true
+[program.arm]
+steps = [{ grip = "part" }, { release = "part" }]
+"#;
+
+/// The node of the arm, its controller, the controller of the carriage, and the arbiter.
+struct Setup {
+    cell: Arc<Cell>,
+    node: NodeTick,
+    client: ControllerClient,
+    carriage: ControllerClient,
+    arbiter: Arbiter,
+    /// The region that is switched.
+    gate: usize,
+    /// What the arm carries in turn: nothing named, tools, a part, and a volume that there is not.
+    carried: Vec<Vec<AttachedVolume>>,
+}
+
+impl Setup {
+    fn new() -> Self {
+        let cell = Arc::new(Cell::parse("swing.toml", CELL).expect("a cell"));
+        let checksum = configuration_number(&cell);
+        let setup = configure::setups(&cell).expect("setups").remove(0);
+        let settings = ArbiterSettings::new(vec![RobotSettings::of(&setup.configuration)], 1);
+        let monitor = NodeMonitor::new(&setup, RobotSlot(0), 1, checksum, Boot(1)).expect("a monitor");
+        Self {
+            carried: carried(&setup, &cell.robots[0]),
+            node: NodeTick::new(cell.clone(), setup, monitor, checksum, None),
+            client: ControllerClient::new(1, checksum),
+            carriage: ControllerClient::new(1, checksum),
+            arbiter: Arbiter::new(ArbiterSettings { checksum, ..settings }, Boot(1)),
+            gate: cell.regions.iter().position(|r| r.region.name == "gate").expect("a region"),
+            cell,
+        }
+    }
+}
+
+fn carried(setup: &MonitorSetup, robot: &CellRobot) -> Vec<Vec<AttachedVolume>> {
+    let of_tool = |tool: usize| -> Vec<AttachedVolume> {
+        let volumes = setup.tool_volumes(robot.tools[tool].link);
+        volumes.map(|(volume, v)| AttachedVolume { volume, in_link: v.in_link }).collect()
+    };
+    let [gripper, torch] = [of_tool(0), of_tool(1)];
+    let (_, part) = setup.gripped[0];
+    let in_link = setup.configuration.volumes()[part.0].in_link;
+    let part = AttachedVolume { volume: part, in_link };
+    let nowhere = AttachedVolume { volume: VolumeId(999), in_link };
+    assert!(setup.configuration.volumes().iter().filter(|v| v.presence != Presence::Always).count() >= 3);
+    vec![Vec::new(), gripper.clone(), torch, [gripper, vec![part]].concat(), vec![nowhere], Vec::new()]
+}
+
+/// What was seen.
+#[derive(Default)]
+struct Seen {
+    allocations: usize,
+    reasons: BTreeSet<&'static str>,
+    granted: usize,
+    switched: usize,
+    ticks: u64,
+    limited: usize,
+    obeyed: usize,
+}
+
+impl Seen {
+    fn report(&mut self, report: &TickReport) {
+        self.ticks += 1;
+        self.limited += usize::from(report.speed_override > 0.0 && report.speed_override < 1.0);
+        self.reasons.insert(match report.reason {
+            OverrideReason::Free => "free",
+            OverrideReason::Waiting(_) => "waiting",
+            OverrideReason::Fault(Fault::Stale) => "stale",
+            OverrideReason::Fault(Fault::WrongLength) => "wrong length",
+            OverrideReason::Fault(Fault::NotFinite) => "not finite",
+            OverrideReason::Fault(_) => "another fault",
+            _ => "a region",
+        });
+    }
+
+    fn sample(&mut self, sample: &mut StatusSample) {
+        let (events, _) = sample.take_events();
+        for event in events {
+            self.granted += usize::from(event.kind == EventKind::Granted);
+            self.switched += usize::from(matches!(event.kind, EventKind::On | EventKind::Off));
+        }
+    }
+}
+
+fn main() {
+    let counter = Counter::new(ALLOCATOR);
+    drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
+    assert_eq!(allocations_since(&counter), 2, "the counter counts");
+    let mut s = Setup::new();
+    let mut seen = Seen::default();
+    let mut sample = s.node.new_sample();
+    let mut interlock = Vec::with_capacity(MAX_BYTES);
+    let (mut sent, mut old) = (Vec::with_capacity(MAX_JOINT_STATE_BYTES), Vec::with_capacity(MAX_JOINT_STATE_BYTES));
+    let mut answer_bytes = Vec::with_capacity(OVERRIDE_ANSWER_BYTES);
+    let mut random = 5;
+    for n in 0..TICKS {
+        let now = Micros(1 + n * TICK_US);
+        if n % 25 == 0 {
+            // On the node's other thread: reading it allocates.
+            let mut table = RegionTable { revision: (1, n), ..RegionTable::initial(&s.cell) };
+            table.active[s.gate] = n % 4_000 < 2_000;
+            s.node.regions(&table.message(&s.cell), now);
+        }
+        let counter = Counter::new(ALLOCATOR);
+        send_joint_states(&mut s, n, now, &mut sent);
+        send_hostile(&s.node, n, now, &sent, &mut old, &mut random);
+        if let Some(report) = s.node.tick(now) {
+            seen.report(&report);
+        }
+        if let Some(answer) = s.node.take_answer() {
+            answer.encode(&mut answer_bytes);
+            // Answers to what a silent controller sent before are late.
+            let _ = s.client.receive(&answer_bytes);
+            // Damaged.
+            answer_bytes[9] ^= 4;
+            assert!(s.client.receive(&answer_bytes).is_err());
+        }
+        seen.obeyed += usize::from(s.client.speed_override(now) > 0.0);
+        let has_interlock = s.node.take_interlock_state(&mut interlock);
+        if s.node.take_sample(&mut sample) {
+            seen.sample(&mut sample);
+        }
+        let mut allocations = allocations_since(&counter);
+        if has_interlock {
+            allocations += answer_interlock(&mut s, &interlock, now);
+        }
+        if n >= WARM_UP {
+            seen.allocations += allocations;
+        }
+    }
+    let expected = ["a region", "free", "not finite", "stale", "waiting", "wrong length"];
+    assert!(expected.iter().all(|reason| seen.reasons.contains(reason)), "not all was seen: {:?}", seen.reasons);
+    let counts = [seen.granted, seen.switched, seen.limited, seen.obeyed];
+    assert!(counts.iter().zip([5, 5, 1000, 1000]).all(|(count, least)| *count >= least), "{counts:?}");
+    assert!(seen.ticks > TICKS / 2, "{} ticks", seen.ticks);
+    assert_eq!(seen.allocations, 0);
+}
+
+/// The arm swings, the carriage moves to and fro; every second both are silent for 40 ms.
+fn send_joint_states(s: &mut Setup, n: u64, now: Micros, sent: &mut Vec<u8>) {
+    if n % 500 < 20 && n > 500 {
+        return;
+    }
+    let t = n as f64 * TICK_US as f64 * 1e-6;
+    let (swing, speed) = ((1.5 * t).sin(), 1.5 * (1.5 * t).cos());
+    // Not a number for a tick, now and then.
+    let first = if n % 500 == 400 { f64::NAN } else { swing };
+    let state = ControllerState {
+        q: &[first, 0.1 * swing, 0.0],
+        qd: &[speed, 0.1 * speed, 0.0],
+        intent: &[speed, 0.1 * speed, 0.0],
+        programmed_override: 1.0,
+        attached: &s.carried[n as usize / 300 % s.carried.len()],
+        stamp: None,
+    };
+    sent.clear();
+    sent.extend_from_slice(s.client.joint_state(now, &state));
+    s.node.joint_state(sent, now);
+    let state = ControllerState {
+        q: &[0.3 + 0.2 * swing],
+        qd: &[0.2 * speed],
+        programmed_override: 1.0,
+        ..ControllerState::default()
+    };
+    let bytes = s.carriage.joint_state(now, &state);
+    s.node.followed_joint_state(RobotId(1), bytes, now);
+}
+
+/// Messages that must not count: replayed, damaged, cut, without contents.
+fn send_hostile(node: &NodeTick, n: u64, now: Micros, sent: &[u8], old: &mut Vec<u8>, random: &mut u64) {
+    match n % 7 {
+        0 => {
+            old.clear();
+            old.extend_from_slice(sent);
+        }
+        1 => node.joint_state(old, now),
+        2 if !old.is_empty() => {
+            let at = split_mix(random) as usize % old.len();
+            old[at] ^= 1 << (split_mix(random) % 8);
+            node.joint_state(old, now);
+            node.followed_joint_state(RobotId(1), old, now);
+        }
+        3 => node.joint_state(&sent[..sent.len() / 2], now),
+        4 => node.grants(old),
+        _ => node.joint_state(&[], now),
+    }
+}
+
+/// Passes a message to the arbiter, which allocates and is no part of the node, and its answer to the node. Returns what the node
+/// allocated.
+fn answer_interlock(s: &mut Setup, bytes: &[u8], now: Micros) -> usize {
+    let mut message = StateMessage::with_slots(1);
+    decode_state(bytes, &mut message).expect("a state");
+    let mut grants = Vec::with_capacity(MAX_BYTES);
+    let mut allocations = 0;
+    for reply in &s.arbiter.receive(&message, now).replies {
+        assert!(encode_grants(reply, &mut grants));
+        let counter = Counter::new(ALLOCATOR);
+        s.node.grants(&grants);
+        allocations += allocations_since(&counter);
+    }
+    allocations
+}
+
+fn allocations_since(counter: &Counter<'_, System>) -> usize {
+    let change = counter.change();
+    change.allocations + change.reallocations + change.deallocations
+}

@@ -1,0 +1,126 @@
+//! Simulated controllers report what their robots carry, so that the node guards it.
+
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+use elbowroom_live::network::{Network, Subscription};
+use elbowroom_live::{Keys, Service, ServiceOptions};
+use elbowroom_status::RobotStatus;
+
+/// A carriage that carries a bar of one metre to where only the bar is near a region, and comes back without it.
+const BAR: &str = r#"
+version = 1
+name = "bar"
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+start = [200]
+[object.bar]
+shape = "box"
+at = [0, 0, 700]
+size = [60, 60, 1000]
+[region.end]
+shape = "sphere"
+centre = [0, 0, 2500]
+radius = 200
+warning = 400
+[program.rail]
+steps = [
+  { grip = "bar" },
+  { move = "joint", to = [1050], speed = 80 },
+  { move = "joint", to = [200], speed = 80 },
+  { release = "bar" },
+  { move = "joint", to = [1050], speed = 80 },
+  { move = "joint", to = [200], speed = 80 },
+]
+"#;
+
+/// The same with a long tool in place of the bar.
+const TOOL: &str = r#"
+version = 1
+name = "tool"
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+start = [200]
+[robot.rail.tools.gripper]
+box = { at = [0, 0, 50], size = [60, 60, 100] }
+[robot.rail.tools.lance]
+box = { at = [0, 0, 500], size = [60, 60, 1000] }
+mounted = false
+[region.end]
+shape = "sphere"
+centre = [0, 0, 2500]
+radius = 200
+warning = 400
+[program.rail]
+steps = [
+  { tool = "lance" },
+  { move = "joint", to = [1050], speed = 80 },
+  { move = "joint", to = [200], speed = 80 },
+  { tool = "gripper" },
+  { move = "joint", to = [1050], speed = 80 },
+  { move = "joint", to = [200], speed = 80 },
+]
+"#;
+
+type Statuses = Arc<Mutex<Vec<RobotStatus>>>;
+
+/// Runs the cell in this process, with its statuses.
+fn start(text: &str) -> (Service, Statuses, Subscription) {
+    let cell = Cell::parse("carried.toml", text).expect("a cell");
+    let key = Keys::new(&cell.name).status("rail");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let listen = Some(listener.local_addr().expect("its address").to_string());
+    drop(listener);
+    let options = ServiceOptions { listen, simulate: true, ..ServiceOptions::default() };
+    let service = Service::start(cell, &options).expect("a service");
+    let statuses = Statuses::default();
+    let taken = statuses.clone();
+    let handler = Box::new(move |bytes: &[u8]| {
+        taken.lock().unwrap().push(serde_json::from_slice(bytes).expect("a status"));
+    });
+    let subscription = service.network().subscribe(&key, handler).expect("a key");
+    (service, statuses, subscription)
+}
+
+/// Waits for a status, at most 20 s.
+fn wait_for(statuses: &Statuses, what: &str, mut is_it: impl FnMut(&RobotStatus) -> bool) {
+    let began = Instant::now();
+    while began.elapsed() < Duration::from_secs(20) {
+        if statuses.lock().unwrap().drain(..).any(|status| is_it(&status)) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("{what}");
+}
+
+/// Carried, the part limits the override far out; without it the same place is free.
+fn governs_while_carried(text: &str, part: &str) {
+    let (service, statuses, _subscription) = start(text);
+    let is_far = |status: &RobotStatus| status.q.first().is_some_and(|q| *q > 0.95);
+    for pass in 1..=2 {
+        wait_for(&statuses, &format!("{part} never limited the override, pass {pass}"), |status| {
+            let governing = status.governing.as_ref();
+            is_far(status) && status.speed_override < 1.0 && governing.is_some_and(|point| point.part == part)
+        });
+        wait_for(&statuses, &format!("{part} limits the override where it is not, pass {pass}"), |status| {
+            is_far(status) && status.speed_override == 1.0 && status.governing.is_none()
+        });
+    }
+    service.stop().expect("it ends");
+}
+
+#[test]
+fn a_gripped_part_is_guarded_until_it_is_released() {
+    governs_while_carried(BAR, "bar");
+}
+
+#[test]
+fn an_exchanged_tool_is_guarded_until_it_is_taken_off() {
+    governs_while_carried(TOOL, "lance");
+}
